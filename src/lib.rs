@@ -8,7 +8,7 @@
 //!
 //! * [`world::day::step_day`] lists the steps of a day in order, one line per mechanism.
 //! * Mechanisms emit events ([`world::events`]); `database` turns them into rows, `voice` turns some into texts.
-//! * A tool is a specification ([`tools::Spec`]) and a pure plan. A call is planned, its line is written to disk, then it is
+//! * A tool is a specification ([`tools::ToolSpec`]) and a pure plan. A call is planned, its line is written to disk, then it is
 //!   applied, which cannot fail. Memory is never ahead of the trajectory, and the trajectory never ahead of the confirmation.
 //! * `database` and the answers of tools decide what a player may see. Hidden state leaves a session only through a
 //!   [`session::Look`], in debug runs and finished runs.
@@ -38,7 +38,7 @@
 pub mod cli;
 
 use novamind_assets as shipped;
-use novamind_base::{notation, statistics};
+use novamind_base::{formatting, statistics};
 #[doc(inline)]
 pub use novamind_console as console;
 #[doc(inline)]

@@ -7,8 +7,8 @@ use std::path::Path;
 use std::sync::{Mutex, MutexGuard};
 use std::time::Duration;
 
-use novamind::database::query::Limits;
-use novamind::database::{Cell, QueryConnection, QueryError, Rows};
+use novamind::database::query::QueryLimits;
+use novamind::database::{Cell, QueryConnection, QueryError, QueryResult};
 use novamind::insight::Inspect;
 use novamind::record::folder::configuration::Configuration;
 use novamind::record::mode::Mode;
@@ -17,23 +17,23 @@ use novamind::session::{NewRun, Session, Storage};
 use serde_json::json;
 
 /// The time limit is out of reach: endless statements end at the limit of steps.
-const LIMITS: Limits = Limits { rows: 5000, time: Duration::from_secs(3600), steps: Some(400_000) };
+const LIMITS: QueryLimits = QueryLimits { rows: 5000, time: Duration::from_secs(3600), steps: Some(400_000) };
 
 /// Limits for statements that must complete.
-const AMPLE: Limits = Limits { steps: Some(1_000_000_000), ..LIMITS };
+const AMPLE_LIMITS: QueryLimits = QueryLimits { steps: Some(1_000_000_000), ..LIMITS };
 
 /// Serializes the tests, because the memory that one uses could stop the queries of another.
 static MEMORY: Mutex<()> = Mutex::new(());
 
-fn alone() -> MutexGuard<'static, ()> {
+fn memory_lock() -> MutexGuard<'static, ()> {
     MEMORY.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
 }
 
 /// Creates a company of six weeks with rows in as many tables as possible.
-fn played(folder: &Path) -> Session {
+fn played_session(folder: &Path) -> Session {
     let storage = Storage::Runs(folder.to_owned());
     let new = NewRun { seed: Some(7), days: Some(60), storage, ..NewRun::default() };
-    let mut session = Session::create(new, &Configuration::shipped()).expect("the run starts");
+    let mut session = Session::create(new, &Configuration::bundled()).expect("the run starts");
     for (tool, arguments) in [
         ("set_prices", json!({"A": 12, "B": 25, "C": 55})),
         ("set_model_tiers", json!({"B": 2, "C": 4})),
@@ -54,7 +54,7 @@ fn played(folder: &Path) -> Session {
 }
 
 /// Returns the contents of a database file with its schema.
-fn contents(folder: &Path) -> Vec<String> {
+fn database_contents(folder: &Path) -> Vec<String> {
     let flags = rusqlite::OpenFlags::SQLITE_OPEN_READ_ONLY;
     let connection =
         rusqlite::Connection::open_with_flags(folder.join("world.db"), flags).expect("a database");
@@ -96,7 +96,7 @@ fn attacks() -> Vec<Attack> {
     attacks
 }
 
-fn first_cell(rows: &Rows) -> String {
+fn first_cell(rows: &QueryResult) -> String {
     match rows.rows.first().and_then(|row| row.first()) {
         Some(Cell::Integer(number)) => number.to_string(),
         Some(Cell::Real(number)) => number.to_string(),
@@ -107,7 +107,7 @@ fn first_cell(rows: &Rows) -> String {
 }
 
 /// Returns a description if the outcome of an attack is not the expected one.
-fn problem(attack: &Attack, outcome: &Result<Rows, QueryError>) -> Option<String> {
+fn outcome_problem(attack: &Attack, outcome: &Result<QueryResult, QueryError>) -> Option<String> {
     let (head, value) = attack.head.split_once(' ').unwrap_or((&attack.head, ""));
     let fits = match (head, outcome) {
         ("refused", Err(error)) => error.code == value,
@@ -122,12 +122,12 @@ fn problem(attack: &Attack, outcome: &Result<Rows, QueryError>) -> Option<String
     (!fits).then(|| format!("{}\n    expected {}, got {told}", attack.sql, attack.head))
 }
 
-fn ask_all(connection: &QueryConnection, attacks: &[Attack], secrets: &[String]) {
+fn run_attacks(connection: &QueryConnection, attacks: &[Attack], secrets: &[String]) {
     let mut problems = Vec::new();
     for attack in attacks {
-        let limits = if attack.head.starts_with("answered") { AMPLE } else { LIMITS };
-        let outcome = connection.ask(&attack.sql, limits);
-        problems.extend(problem(attack, &outcome));
+        let limits = if attack.head.starts_with("answered") { AMPLE_LIMITS } else { LIMITS };
+        let outcome = connection.query(&attack.sql, limits);
+        problems.extend(outcome_problem(attack, &outcome));
         let texts: Vec<String> = match outcome {
             Ok(rows) => {
                 assert!(rows.rows.len() <= LIMITS.rows, "{}", attack.sql);
@@ -148,12 +148,12 @@ fn ask_all(connection: &QueryConnection, attacks: &[Attack], secrets: &[String])
 }
 
 #[test]
-fn statements_read_nothing_hidden_write_nothing_and_end() {
-    let _alone = alone();
+fn hostile_statements_are_rejected_or_bounded() {
+    let _alone = memory_lock();
     let runs = tempfile::tempdir().expect("a folder");
-    let session = played(runs.path());
+    let session = played_session(runs.path());
     let folder = session.folder().expect("a folder").to_owned();
-    let (before, hash) = (contents(&folder), session.state_hash());
+    let (before, hash) = (database_contents(&folder), session.state_hash());
     let position = rusqlite::Connection::open(folder.join("world.db"))
         .and_then(|own| own.query_row("SELECT line_hash FROM projection", [], |row| row.get::<_, String>(0)));
     // Internal names and values, which no result and no message may reveal.
@@ -177,23 +177,23 @@ fn statements_read_nothing_hidden_write_nothing_and_end() {
     let attacks = attacks();
     assert!(attacks.len() >= 300, "{}", attacks.len());
     let connection = session.database().open_connection().expect("a connection");
-    ask_all(&connection, &attacks, &secrets);
+    run_attacks(&connection, &attacks, &secrets);
 
-    assert_eq!(contents(&folder), before, "something was written");
+    assert_eq!(database_contents(&folder), before, "something was written");
     assert_eq!(session.state_hash(), hash);
     for stray in ["attack_copy.db", "attack_other.db", "attack_file.txt"] {
         assert!(!Path::new(stray).exists() && !folder.join(stray).exists(), "{stray} was created");
     }
     // The connection still works.
-    let rows = connection.ask("SELECT count(*) FROM group_info_levels", LIMITS).expect("an answer");
+    let rows = connection.query("SELECT count(*) FROM group_info_levels", LIMITS).expect("an answer");
     assert_eq!(first_cell(&rows), "26");
 }
 
 #[test]
-fn sealed_columns_and_tables_do_not_exist_in_any_form() {
-    let _alone = alone();
+fn hidden_columns_and_tables_are_not_reachable() {
+    let _alone = memory_lock();
     let runs = tempfile::tempdir().expect("a folder");
-    let session = played(runs.path());
+    let session = played_session(runs.path());
     let mut attacks = Vec::new();
     let mut reader = csv::Reader::from_reader(include_str!("data/sealed.csv").as_bytes());
     for record in reader.records().map(|record| record.expect("a row")) {
@@ -233,17 +233,17 @@ fn sealed_columns_and_tables_do_not_exist_in_any_form() {
         attacks.extend(statements.map(|sql| Attack { head: head.to_owned(), sql }));
     }
     assert!(attacks.len() > 700);
-    ask_all(&session.database().open_connection().expect("a connection"), &attacks, &[]);
+    run_attacks(&session.database().open_connection().expect("a connection"), &attacks, &[]);
 }
 
 /// A query with x-ray permission reads the hidden tables, and nothing else that other queries cannot read.
 #[test]
-fn the_connection_of_the_xray_withstands_the_same_statements() {
-    let _alone = alone();
+fn xray_connection_rejects_hostile_statements() {
+    let _alone = memory_lock();
     let runs = tempfile::tempdir().expect("a folder");
     let storage = Storage::Runs(runs.path().to_owned());
     let new = NewRun { days: Some(28), mode: Mode::Debug, storage, ..NewRun::default() };
-    let mut session = Session::create(new, &Configuration::shipped()).expect("the run starts");
+    let mut session = Session::create(new, &Configuration::bundled()).expect("the run starts");
     session.step(2, &mut |_| {}).expect("days");
     let mut problems = Vec::new();
     let names_hidden = |sql: &str| {
@@ -257,7 +257,7 @@ fn the_connection_of_the_xray_withstands_the_same_statements() {
         if is_endless || (!attack.head.starts_with("refused sql_write") && names_hidden(&attack.sql)) {
             continue;
         }
-        let outcome = match session.inspect().xray_query(&attack.sql, None) {
+        let outcome = match session.inspect().query_hidden_tables(&attack.sql, None) {
             Err(refusal) => {
                 Err(QueryError { code: refusal.code, message: refusal.message.clone(), position: None })
             }
@@ -265,26 +265,26 @@ fn the_connection_of_the_xray_withstands_the_same_statements() {
         };
         // This run has another company, so only success is checked.
         let head = if is_answered { "answered".to_owned() } else { attack.head };
-        problems.extend(problem(&Attack { head, sql: attack.sql }, &outcome));
+        problems.extend(outcome_problem(&Attack { head, sql: attack.sql }, &outcome));
     }
     assert!(problems.is_empty(), "{}:\n{}", problems.len(), problems.join("\n"));
 }
 
 #[test]
 fn a_query_that_takes_too_much_memory_is_stopped() {
-    let _alone = alone();
-    let session = Session::create(NewRun { days: Some(60), ..NewRun::default() }, &Configuration::shipped())
+    let _alone = memory_lock();
+    let session = Session::create(NewRun { days: Some(60), ..NewRun::default() }, &Configuration::bundled())
         .expect("a run");
     let connection = session.database().open_connection().expect("a connection");
-    let limits = Limits { steps: None, ..LIMITS };
+    let limits = QueryLimits { steps: None, ..LIMITS };
     let sorted = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n) \
                   SELECT length(z) FROM (SELECT randomblob(1900000) AS z FROM n ORDER BY 1)";
-    let error = connection.ask(sorted, limits).expect_err("too much memory");
+    let error = connection.query(sorted, limits).expect_err("too much memory");
     assert_eq!(error.code, "sql_timeout", "{}", error.message);
     assert!(error.message.contains("memory"), "{}", error.message);
     let wide = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n) SELECT hex(zeroblob(1000000)) FROM n";
-    let error = connection.ask(wide, limits).expect_err("too large a result");
+    let error = connection.query(wide, limits).expect_err("too large a result");
     assert_eq!(error.code, "sql_error", "{}", error.message);
     assert!(error.message.contains("MiB"), "{}", error.message);
-    connection.ask("SELECT 1", limits).expect("an answer");
+    connection.query("SELECT 1", limits).expect("an answer");
 }

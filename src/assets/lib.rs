@@ -4,7 +4,7 @@
 use include_dir::{Dir, include_dir};
 
 /// Name and text of a file.
-pub type Shipped = (&'static str, &'static str);
+pub type BundledFile = (&'static str, &'static str);
 
 static SCENARIOS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../configs/scenarios");
 static THEMES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../configs/themes");
@@ -15,29 +15,29 @@ static LESSONS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../configs/lesson
 static LESSON_TEXTS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../assets/lessons");
 
 /// Returns the scenarios, by name.
-pub fn scenarios() -> Vec<Shipped> {
-    of(&SCENARIOS)
+pub fn scenarios() -> Vec<BundledFile> {
+    bundled_files(&SCENARIOS)
 }
 
 /// Returns the themes, by name.
-pub fn themes() -> Vec<Shipped> {
-    of(&THEMES)
+pub fn themes() -> Vec<BundledFile> {
+    bundled_files(&THEMES)
 }
 
 /// Returns the policies, by name.
-pub fn policies() -> Vec<Shipped> {
-    of(&POLICIES)
+pub fn policies() -> Vec<BundledFile> {
+    bundled_files(&POLICIES)
 }
 
 /// Returns the grids of policies, by name.
-pub fn grids() -> Vec<Shipped> {
-    of(&GRIDS)
+pub fn grids() -> Vec<BundledFile> {
+    bundled_files(&GRIDS)
 }
 
 /// Returns the lessons, by name, in the order of the course.
-pub fn lessons() -> Vec<Shipped> {
-    let mut lessons = of(&LESSONS);
-    let place = |name: &str| COURSE.iter().position(|own| *own == name).unwrap_or(COURSE.len());
+pub fn lessons() -> Vec<BundledFile> {
+    let mut lessons = bundled_files(&LESSONS);
+    let place = |name: &str| LESSON_ORDER.iter().position(|own| *own == name).unwrap_or(LESSON_ORDER.len());
     lessons.sort_by_key(|(name, _)| place(name));
     lessons
 }
@@ -48,7 +48,7 @@ pub fn lesson_texts(name: &str) -> Option<&'static str> {
 }
 
 /// The lessons in the order of the course.
-const COURSE: [&str; 12] = [
+const LESSON_ORDER: [&str; 12] = [
     "price-follows-quality",
     "price-of-the-quarter",
     "ladder",
@@ -63,7 +63,7 @@ const COURSE: [&str; 12] = [
     "capstone",
 ];
 
-fn of(folder: &'static Dir<'static>) -> Vec<Shipped> {
+fn bundled_files(folder: &'static Dir<'static>) -> Vec<BundledFile> {
     let named = |file: &'static include_dir::File<'static>| {
         let name = file.path().file_name()?.to_str()?.strip_suffix(".toml")?;
         Some((name, file.contents_utf8()?))
@@ -76,7 +76,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_file_of_the_folders_is_here_under_its_name() {
+    fn every_file_in_configs_is_bundled() {
         for (folder, held) in
             [("scenarios", scenarios()), ("themes", themes()), ("policies", policies()), ("grids", grids())]
         {

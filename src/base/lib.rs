@@ -1,8 +1,8 @@
 //! Helpers for all crates, independent of the simulation: notation of numbers, statistics of small samples, and
 //! search for similar names.
 
-mod nearest;
-pub mod notation;
+pub mod formatting;
+mod similar_names;
 pub mod statistics;
 
-pub use nearest::nearest;
+pub use similar_names::similar_names;

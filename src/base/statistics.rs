@@ -10,15 +10,15 @@ use rand_chacha::ChaCha8Rng;
 pub const RESAMPLES: usize = 2_000;
 
 /// Share of resamples in an interval.
-pub const LEVEL: f64 = 0.95;
+pub const CONFIDENCE_LEVEL: f64 = 0.95;
 
-/// Minimum sample size for an interval. With fewer values, all signs agree by chance more often than 1 - [`LEVEL`] (with
+/// Minimum sample size for an interval. With fewer values, all signs agree by chance more often than 1 - [`CONFIDENCE_LEVEL`] (with
 /// six: 2 in 64), and resampling shows little more than their range.
-pub const LEAST: usize = 6;
+pub const MIN_SAMPLE_SIZE: usize = 6;
 
 /// Mean and sample standard deviation of a set of numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sample {
+pub struct SampleStatistics {
     /// Number of values.
     pub count: usize,
     /// Mean.
@@ -27,13 +27,13 @@ pub struct Sample {
     pub std: f64,
 }
 
-impl Sample {
+impl SampleStatistics {
     /// Computes the statistics of values in any order.
-    pub fn of(values: &[f64]) -> Sample {
+    pub fn from_values(values: &[f64]) -> SampleStatistics {
         let (count, mean) = (values.len(), mean(values));
         let squares: f64 = values.iter().map(|value| (value - mean) * (value - mean)).sum();
         let std = if count < 2 { 0.0 } else { (squares / (count - 1) as f64).sqrt() };
-        Sample { count, mean, std }
+        SampleStatistics { count, mean, std }
     }
 }
 
@@ -74,7 +74,7 @@ pub struct Quartiles {
 
 impl Quartiles {
     /// Computes the quartiles of values in any order; `None` without values.
-    pub fn of(values: &[f64]) -> Option<Quartiles> {
+    pub fn from_values(values: &[f64]) -> Option<Quartiles> {
         let mut sorted = values.to_vec();
         sorted.sort_by(f64::total_cmp);
         let at = |share| quantile_of_sorted(&sorted, share);
@@ -92,26 +92,26 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// Returns the interval of the mean; `None` for fewer than [`LEAST`] values.
-    pub fn of_mean(values: &[f64]) -> Option<Interval> {
-        bootstrap(values, |drawn| Some(mean(drawn)))
+    /// Returns the interval of the mean; `None` for fewer than [`MIN_SAMPLE_SIZE`] values.
+    pub fn for_mean(values: &[f64]) -> Option<Interval> {
+        bootstrap_interval(values, |drawn| Some(mean(drawn)))
     }
 
-    /// Returns the interval of the median; `None` for fewer than [`LEAST`] values.
-    pub fn of_median(values: &[f64]) -> Option<Interval> {
-        bootstrap(values, |drawn| {
+    /// Returns the interval of the median; `None` for fewer than [`MIN_SAMPLE_SIZE`] values.
+    pub fn for_median(values: &[f64]) -> Option<Interval> {
+        bootstrap_interval(values, |drawn| {
             drawn.sort_by(f64::total_cmp);
             quantile_of_sorted(drawn, 0.5)
         })
     }
 }
 
-/// Returns the percentile bootstrap interval of a statistic: [`LEVEL`] of [`RESAMPLES`] resamples. `None` if the
-/// statistic has no value, or for fewer than [`LEAST`] values.
+/// Returns the percentile bootstrap interval of a statistic: [`CONFIDENCE_LEVEL`] of [`RESAMPLES`] resamples. `None` if the
+/// statistic has no value, or for fewer than [`MIN_SAMPLE_SIZE`] values.
 ///
 /// The statistic may reorder the values.
-pub fn bootstrap(values: &[f64], statistic: impl Fn(&mut [f64]) -> Option<f64>) -> Option<Interval> {
-    let count = u32::try_from(values.len()).ok().filter(|_| values.len() >= LEAST)?;
+pub fn bootstrap_interval(values: &[f64], statistic: impl Fn(&mut [f64]) -> Option<f64>) -> Option<Interval> {
+    let count = u32::try_from(values.len()).ok().filter(|_| values.len() >= MIN_SAMPLE_SIZE)?;
     let mut rng = ChaCha8Rng::seed_from_u64(u64::from(count));
     let mut drawn = vec![0.0; values.len()];
     let mut resample = |_| {
@@ -121,7 +121,7 @@ pub fn bootstrap(values: &[f64], statistic: impl Fn(&mut [f64]) -> Option<f64>) 
     let mut found: Vec<f64> = (0..RESAMPLES).filter_map(&mut resample).collect();
     found.sort_by(f64::total_cmp);
     let at = |share| quantile_of_sorted(&found, share);
-    Some(Interval { low: at((1.0 - LEVEL) / 2.0)?, high: at((1.0 + LEVEL) / 2.0)? })
+    Some(Interval { low: at((1.0 - CONFIDENCE_LEVEL) / 2.0)?, high: at((1.0 + CONFIDENCE_LEVEL) / 2.0)? })
 }
 
 /// Paired difference of two samples on the same seeds.
@@ -129,24 +129,24 @@ pub fn bootstrap(values: &[f64], statistic: impl Fn(&mut [f64]) -> Option<f64>) 
 pub struct PairedDifference {
     /// Mean of the differences.
     pub mean: f64,
-    /// Interval of the mean; `None` for fewer than [`LEAST`] pairs.
+    /// Interval of the mean; `None` for fewer than [`MIN_SAMPLE_SIZE`] pairs.
     pub interval: Option<Interval>,
     /// Number of pairs in which the first value is larger.
-    pub more: u32,
+    pub first_greater: u32,
     /// Number of compared pairs.
-    pub of: u32,
+    pub pair_count: u32,
 }
 
 impl PairedDifference {
     /// Computes the difference of pairs. Skips pairs with a missing value; `None` without pairs.
-    pub fn of(pairs: impl IntoIterator<Item = (f64, f64)>) -> Option<PairedDifference> {
+    pub fn from_pairs(pairs: impl IntoIterator<Item = (f64, f64)>) -> Option<PairedDifference> {
         let differences = pairs.into_iter().map(|(own, other)| own - other);
         let differences: Vec<f64> = differences.filter(|own| !own.is_nan()).collect();
         (!differences.is_empty()).then(|| PairedDifference {
             mean: mean(&differences),
-            interval: Interval::of_mean(&differences),
-            more: differences.iter().filter(|own| **own > 0.0).count() as u32,
-            of: differences.len() as u32,
+            interval: Interval::for_mean(&differences),
+            first_greater: differences.iter().filter(|own| **own > 0.0).count() as u32,
+            pair_count: differences.len() as u32,
         })
     }
 }
@@ -156,47 +156,47 @@ mod tests {
     use super::*;
 
     #[test]
-    fn figures_of_small_sets() {
-        let sample = Sample::of(&[1.0, 2.0, 3.0, 4.0]);
+    fn statistics_of_small_samples() {
+        let sample = SampleStatistics::from_values(&[1.0, 2.0, 3.0, 4.0]);
         assert_eq!((sample.mean, sample.count), (2.5, 4));
         assert!((sample.std - (5.0f64 / 3.0).sqrt()).abs() < 1e-12);
-        assert_eq!(Sample::of(&[7.0]).std, 0.0);
+        assert_eq!(SampleStatistics::from_values(&[7.0]).std, 0.0);
         assert_eq!(median(&[3.0, 1.0, 2.0]), Some(2.0));
         assert_eq!(quantile(&[1.0, 2.0, 3.0, 4.0], 0.25), Some(1.75));
         assert_eq!(median(&[]), None);
         let middle = Quartiles { lower: 2.0, median: 3.0, upper: 4.0 };
-        assert_eq!(Quartiles::of(&[5.0, 1.0, 4.0, 2.0, 3.0]), Some(middle));
-        assert_eq!(Quartiles::of(&[]), None);
+        assert_eq!(Quartiles::from_values(&[5.0, 1.0, 4.0, 2.0, 3.0]), Some(middle));
+        assert_eq!(Quartiles::from_values(&[]), None);
     }
 
     #[test]
-    fn the_interval_of_a_mean_has_the_width_of_its_error() {
+    fn mean_interval_matches_the_standard_error() {
         // With standard deviation 1 and twenty values, the mean is known to ±1.96 / sqrt(20) = 0.44.
         let values: Vec<f64> = (0..20).map(|at| if at % 2 == 0 { 1.0 } else { -1.0 }).collect();
-        let own = Interval::of_mean(&values).expect("values");
+        let own = Interval::for_mean(&values).expect("values");
         assert!((-0.5..-0.35).contains(&own.low) && (0.35..0.5).contains(&own.high), "{own:?}");
-        assert_eq!(Interval::of_mean(&values), Some(own), "the same numbers, the same interval");
-        assert_eq!(Interval::of_mean(&[]), None);
-        assert_eq!(Interval::of_mean(&[3.0; LEAST - 1]), None, "too few values for an interval");
-        assert_eq!(Interval::of_mean(&[3.0; LEAST]), Some(Interval { low: 3.0, high: 3.0 }));
+        assert_eq!(Interval::for_mean(&values), Some(own), "the same numbers, the same interval");
+        assert_eq!(Interval::for_mean(&[]), None);
+        assert_eq!(Interval::for_mean(&[3.0; MIN_SAMPLE_SIZE - 1]), None, "too few values for an interval");
+        assert_eq!(Interval::for_mean(&[3.0; MIN_SAMPLE_SIZE]), Some(Interval { low: 3.0, high: 3.0 }));
     }
 
     #[test]
-    fn the_interval_of_a_median_holds_it_and_shrinks_with_more_numbers() {
+    fn median_interval_contains_the_median_and_narrows() {
         let spread = |count: u32| -> Vec<f64> { (0..count).map(|at| f64::from((at * 37) % count)).collect() };
-        let few = Interval::of_median(&spread(11)).expect("values");
+        let few = Interval::for_median(&spread(11)).expect("values");
         assert!(few.low < 5.0 && few.high > 5.0, "{few:?}");
-        let many = Interval::of_median(&spread(401)).expect("values");
+        let many = Interval::for_median(&spread(401)).expect("values");
         assert!(many.low < 200.0 && many.high > 200.0, "{many:?}");
         assert!((many.high - many.low) / 401.0 < (few.high - few.low) / 11.0, "{many:?} {few:?}");
     }
 
     #[test]
-    fn differences_are_taken_pair_by_pair() {
-        let own = PairedDifference::of([(3.0, 1.0), (12.0, 10.0), (f64::NAN, 1.0)]).expect("pairs");
-        assert_eq!(own, PairedDifference { mean: 2.0, interval: None, more: 2, of: 2 });
-        let own = PairedDifference::of([(3.0, 1.0); LEAST]).expect("pairs");
+    fn paired_difference_compares_pairs() {
+        let own = PairedDifference::from_pairs([(3.0, 1.0), (12.0, 10.0), (f64::NAN, 1.0)]).expect("pairs");
+        assert_eq!(own, PairedDifference { mean: 2.0, interval: None, first_greater: 2, pair_count: 2 });
+        let own = PairedDifference::from_pairs([(3.0, 1.0); MIN_SAMPLE_SIZE]).expect("pairs");
         assert_eq!(own.interval, Some(Interval { low: 2.0, high: 2.0 }));
-        assert_eq!(PairedDifference::of([(f64::NAN, 1.0)]), None);
+        assert_eq!(PairedDifference::from_pairs([(f64::NAN, 1.0)]), None);
     }
 }

@@ -12,8 +12,10 @@ use serde_json::{Value, json};
 
 use super::run::progress_bar;
 use super::{Context, Failure, print};
-use crate::lab::bench::{Bench, BenchFigure, CASES, Case, Samples, Unit, Verdict, calibrate};
-use crate::notation::grouped;
+use crate::formatting::grouped_number;
+use crate::lab::benchmark::{
+    BenchContext, BenchFigure, CASES, Case, Samples, Unit, Verdict, calibration_seconds,
+};
 use crate::statistics::median;
 
 #[derive(Debug, Args)]
@@ -22,7 +24,7 @@ pub struct Options {
     #[arg(long, default_value = "5", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100))]
     runs: u32,
     /// Measure only this case; can be repeated
-    #[arg(long, value_name = "NAME", value_parser = every_case().map(|case| case.name).collect::<Vec<_>>())]
+    #[arg(long, value_name = "NAME", value_parser = all_cases().map(|case| case.name).collect::<Vec<_>>())]
     only: Vec<String>,
     /// Run one repetition, and skip cases that take minutes
     #[arg(long, conflicts_with = "runs")]
@@ -38,7 +40,7 @@ pub struct Options {
     measure: bool,
 }
 
-fn every_case() -> impl Iterator<Item = &'static Case> {
+fn all_cases() -> impl Iterator<Item = &'static Case> {
     #[cfg(feature = "server")]
     let served = http::CASES;
     #[cfg(not(feature = "server"))]
@@ -54,8 +56,8 @@ impl Options {
     fn cases(&self) -> Vec<&'static Case> {
         let named = |case: &&Case| self.only.iter().any(|name| name == case.name);
         let asked_for =
-            |case: &&Case| if self.only.is_empty() { !(self.quick && case.long) } else { named(case) };
-        every_case().filter(asked_for).collect()
+            |case: &&Case| if self.only.is_empty() { !(self.quick && case.is_slow) } else { named(case) };
+        all_cases().filter(asked_for).collect()
     }
 }
 
@@ -66,20 +68,20 @@ struct Row {
 }
 
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
-    let scratch = Scratch::make(options.folder.as_deref())?;
+    let scratch = ScratchFolder::create(options.folder.as_deref())?;
     let cases = options.cases();
     if options.measure {
-        let bench = Bench {
+        let bench = BenchContext {
             repetitions: options.repetitions(),
-            scratch: scratch.0.clone(),
+            scratch_folder: scratch.0.clone(),
             configuration: context.configuration.clone(),
         };
-        return measure_here(&cases, &bench);
+        return measure_in_process(&cases, &bench);
     }
-    let loops: Vec<f64> = (0..options.repetitions()).map(|_| calibrate()).collect();
+    let loops: Vec<f64> = (0..options.repetitions()).map(|_| calibration_seconds()).collect();
     let calibration = median(&loops).unwrap_or(f64::NAN);
     if !options.json {
-        print(&head(calibration, options.repetitions()))?;
+        print(&header(calibration, options.repetitions()))?;
     }
     let progress = progress_bar(cases.len() as u64, "cases");
     let mut rows = Vec::new();
@@ -90,36 +92,36 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         for (figure, samples) in case.figures.iter().zip(measured?) {
             let row = Row { case: case.name, figure, samples };
             if !options.json {
-                progress.suspend(|| print(&line(&row, calibration)))?;
+                progress.suspend(|| print(&format_row(&row, calibration)))?;
             }
             rows.push(row);
         }
     }
     progress.finish_and_clear();
-    if options.json { print(&(as_json(&rows, calibration) + "\n")) } else { Ok(()) }
+    if options.json { print(&(to_json(&rows, calibration) + "\n")) } else { Ok(()) }
 }
 
 /// A temporary folder that is removed when it is dropped.
-struct Scratch(PathBuf);
+struct ScratchFolder(PathBuf);
 
-impl Scratch {
-    fn make(parent: Option<&Path>) -> Result<Scratch, Failure> {
+impl ScratchFolder {
+    fn create(parent: Option<&Path>) -> Result<ScratchFolder, Failure> {
         let parent = parent.map_or_else(std::env::temp_dir, Path::to_owned);
         let folder = parent.join(format!("novamind-bench-{}", std::process::id()));
         std::fs::create_dir_all(&folder)
             .map_err(|error| Failure::failed(format!("{}: {error}", folder.display())))?;
-        Ok(Scratch(folder))
+        Ok(ScratchFolder(folder))
     }
 }
 
-impl Drop for Scratch {
+impl Drop for ScratchFolder {
     fn drop(&mut self) {
         let _ = std::fs::remove_dir_all(&self.0);
     }
 }
 
 /// Measures in this process and prints the samples of each case for the parent process.
-fn measure_here(cases: &[&Case], bench: &Bench) -> Result<(), Failure> {
+fn measure_in_process(cases: &[&Case], bench: &BenchContext) -> Result<(), Failure> {
     for case in cases {
         let samples = (case.measure)(bench).map_err(|error| Failure::failed(error.to_string()))?;
         print(&format!("{}\n", json!(samples)))?;
@@ -129,17 +131,17 @@ fn measure_here(cases: &[&Case], bench: &Bench) -> Result<(), Failure> {
 
 /// Measures a case in child processes, because peak memory is a figure of the whole process.
 fn measure(case: &Case, repetitions: usize, scratch: &Path) -> Result<Samples, Failure> {
-    let (processes, each) = if case.fresh { (repetitions, 1) } else { (1, repetitions) };
+    let (processes, each) = if case.needs_new_process { (repetitions, 1) } else { (1, repetitions) };
     let mut all: Samples = vec![Vec::new(); case.figures.len()];
     for _ in 0..processes {
-        for (samples, more) in all.iter_mut().zip(measure_apart(case, each, scratch)?) {
+        for (samples, more) in all.iter_mut().zip(measure_in_child(case, each, scratch)?) {
             samples.extend(more);
         }
     }
     Ok(all)
 }
 
-fn measure_apart(case: &Case, repetitions: usize, scratch: &Path) -> Result<Samples, Failure> {
+fn measure_in_child(case: &Case, repetitions: usize, scratch: &Path) -> Result<Samples, Failure> {
     let failed = |problem: String| Failure::failed(format!("{}: {problem}", case.name));
     let program = std::env::current_exe().map_err(|error| failed(error.to_string()))?;
     let output = Command::new(program)
@@ -155,17 +157,17 @@ fn measure_apart(case: &Case, repetitions: usize, scratch: &Path) -> Result<Samp
     serde_json::from_slice(&output.stdout).map_err(|error| failed(error.to_string()))
 }
 
-fn threads() -> usize {
+fn thread_count() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-fn head(calibration: f64, repetitions: usize) -> String {
+fn header(calibration: f64, repetitions: usize) -> String {
     let often =
         if repetitions == 1 { "one repetition".to_owned() } else { format!("medians of {repetitions}") };
     format!(
         "novamind {} · {} threads · {often} · calibration loop {calibration:.3} s\n\n{:<54} {:>10} {:>9} {:>9}  {:<14} {:>9}\n",
         env!("CARGO_PKG_VERSION"),
-        threads(),
+        thread_count(),
         "",
         "measured",
         "target",
@@ -175,10 +177,11 @@ fn head(calibration: f64, repetitions: usize) -> String {
     )
 }
 
-fn line(row: &Row, calibration: f64) -> String {
+fn format_row(row: &Row, calibration: f64) -> String {
     let Row { figure, .. } = row;
     let value = median(&row.samples);
-    let written = |value: Option<f64>| value.map_or_else(String::new, |value| amount(value, figure.unit));
+    let written =
+        |value: Option<f64>| value.map_or_else(String::new, |value| format_value(value, figure.unit));
     let ratio =
         ratio(value, figure.unit, calibration).map_or_else(String::new, |ratio| format!("{ratio:.3e}"));
     let text = format!(
@@ -193,17 +196,17 @@ fn line(row: &Row, calibration: f64) -> String {
 }
 
 /// Formats a value with its sign, to about three digits.
-fn amount(value: f64, unit: Unit) -> String {
+fn format_value(value: f64, unit: Unit) -> String {
     let decimals = if value < 10.0 { 2 } else { usize::from(value < 100.0) };
-    format!("{} {}", grouped(value, decimals), unit.sign())
+    format!("{} {}", grouped_number(value, decimals), unit.symbol())
 }
 
 /// Returns a time divided by the time of the calibration loop.
 fn ratio(value: Option<f64>, unit: Unit, calibration: f64) -> Option<f64> {
-    Some(value? * unit.seconds()? / calibration)
+    Some(value? * unit.seconds_per_unit()? / calibration)
 }
 
-fn as_json(rows: &[Row], calibration: f64) -> String {
+fn to_json(rows: &[Row], calibration: f64) -> String {
     let row = |row: &Row| {
         let value = median(&row.samples);
         let verdict: Verdict = row.figure.verdict(value);
@@ -222,7 +225,7 @@ fn as_json(rows: &[Row], calibration: f64) -> String {
     let all: Vec<Value> = rows.iter().map(row).collect();
     let report = json!({
         "version": env!("CARGO_PKG_VERSION"),
-        "threads": threads(),
+        "threads": thread_count(),
         "calibration_seconds": calibration,
         "figures": all,
     });
@@ -235,13 +238,13 @@ mod tests {
 
     #[test]
     fn amounts_have_about_three_digits() {
-        assert_eq!(amount(2.345, Unit::Seconds), "2.35 s");
-        assert_eq!(amount(23.45, Unit::Milliseconds), "23.4 ms");
-        assert_eq!(amount(1288.49, Unit::Megabytes), "1,288 MB");
+        assert_eq!(format_value(2.345, Unit::Seconds), "2.35 s");
+        assert_eq!(format_value(23.45, Unit::Milliseconds), "23.4 ms");
+        assert_eq!(format_value(1288.49, Unit::Megabytes), "1,288 MB");
     }
 
     #[test]
-    fn only_times_are_compared_with_the_loop() {
+    fn only_times_have_a_calibration_ratio() {
         assert_eq!(ratio(Some(500.0), Unit::Milliseconds, 0.25), Some(2.0));
         assert_eq!(ratio(Some(500.0), Unit::Megabytes, 0.25), None);
         assert_eq!(ratio(None, Unit::Seconds, 0.25), None);

@@ -6,22 +6,23 @@ use std::sync::Arc;
 
 use clap::{Args, Subcommand};
 
-use super::lesson::lesson_of;
+use super::lesson::find_lesson;
 use super::output_file::write_text;
 use super::play::show_console;
 use super::run::progress_bar;
-use super::runs::{as_csv, tidy_up_on_signals};
+use super::runs::{remove_partial_files_on_signals, to_csv};
 use super::{Context, Failure, print};
 use crate::console::effect::Effect;
-use crate::lab::answers_to_companies;
-use crate::record::files::write_whole;
+use crate::lab::calls_for_waiting_threads;
+use crate::record::files::write_atomically;
 use crate::record::folder::runs::find_run_to_read;
 use crate::report::class::{
-    ClassView, Shown, as_html, collected_in_words, columns_table, rows, shown_in_words,
+    ClassDisplayOptions, ClassView, class_to_html, class_to_text, column_descriptions, describe_collection,
+    rows,
 };
-use crate::report::count;
+use crate::report::pluralize;
 use crate::worker::request::Request;
-use novamind_course::{Class, ClassCollection, ClassSources, CollectedClass, ToHandOut};
+use novamind_course::{Class, ClassCollection, CollectedClass, CollectionInput, HandoutSource};
 
 #[derive(Debug, Args)]
 pub struct Options {
@@ -83,28 +84,35 @@ pub fn run(options: Options, context: &Context) -> Result<(), Failure> {
     match options.command {
         ClassCommand::New { lesson, from, students, out } => {
             let what = match (lesson, from) {
-                (Some(lesson), _) => ToHandOut::Lesson(Arc::new(lesson_of(&lesson, &context.configuration)?)),
+                (Some(lesson), _) => {
+                    HandoutSource::Lesson(Arc::new(find_lesson(&lesson, &context.configuration)?))
+                }
                 (None, Some(run)) => {
-                    let folder = find_run_to_read(&context.runs()?, &run)?;
-                    context.look(&folder, "class", "hand out")?;
-                    ToHandOut::Run(folder)
+                    let folder = find_run_to_read(&context.runs_folder()?, &run)?;
+                    context.authorize_view(&folder, "class", "hand out")?;
+                    HandoutSource::Run(folder)
                 }
                 (None, None) => return Err(Failure::usage("name a lesson, or a run with --from RUN")),
             };
-            new(&what, students, &out)
+            create_class(&what, students, &out)
         }
-        ClassCommand::Collect { folder, places } => collect(&folder, &places),
+        ClassCommand::Collect { folder, places } => collect_class(&folder, &places),
         ClassCommand::Show { folder, student, decision, figure, hide_names, html, text } => {
-            let shown = Shown { hides_names: hide_names, lit: student, decision, figure };
+            let shown = ClassDisplayOptions {
+                hides_names: hide_names,
+                highlighted_student: student,
+                decision,
+                figure,
+            };
             let is_seen = std::io::stdout().is_terminal() && std::io::stdin().is_terminal();
             let on_screen = is_seen && !text && html.is_none();
-            show(&folder, shown, html.as_deref(), on_screen.then_some(context))
+            show_class(&folder, shown, html.as_deref(), on_screen.then_some(context))
         }
     }
 }
 
-fn new(what: &ToHandOut, students: u32, out: &Path) -> Result<(), Failure> {
-    tidy_up_on_signals();
+fn create_class(what: &HandoutSource, students: u32, out: &Path) -> Result<(), Failure> {
+    remove_partial_files_on_signals();
     let class = Class::create(out, what, students)?;
     let (first, last) = (class.students.first(), class.students.last());
     let names = first.zip(last).map(|(first, last)| format!("{}.nm to {}.nm", first.label, last.label));
@@ -113,57 +121,62 @@ fn new(what: &ToHandOut, students: u32, out: &Path) -> Result<(), Failure> {
          novamind class collect {} PLACES\n",
         class.class,
         names.unwrap_or_default(),
-        count(students, "student"),
+        pluralize(students, "student"),
         out.display(),
         first.map_or("S01", |first| &first.label),
         out.display()
     ))
 }
 
-fn collect(folder: &Path, places: &[PathBuf]) -> Result<(), Failure> {
-    tidy_up_on_signals();
+fn collect_class(folder: &Path, places: &[PathBuf]) -> Result<(), Failure> {
+    remove_partial_files_on_signals();
     let class = Class::read(folder)?;
     let own = [folder.to_owned()];
     let sources =
-        ClassSources { class: &class, folder, places: if places.is_empty() { &own } else { places } };
+        CollectionInput { class: &class, folder, places: if places.is_empty() { &own } else { places } };
     let mut bar = None;
-    let collection = ClassCollection::collect(&sources, answers_to_companies, &mut |done, all| {
+    let collection = ClassCollection::collect(&sources, calls_for_waiting_threads, &mut |done, all| {
         bar.get_or_insert_with(|| progress_bar(all as u64, "runs")).set_position(done as u64);
     })?;
     if let Some(bar) = bar {
         bar.finish_and_clear();
     }
-    let lesson = class.lesson_kept(folder)?;
+    let lesson = class.stored_lesson(folder)?;
     let view = ClassView {
         class: &class,
         lesson: lesson.as_ref(),
         collection: &collection,
-        shown: Shown::default(),
+        display: ClassDisplayOptions::default(),
     };
-    for (file, table) in [("class.csv", rows(&view)), ("class-columns.csv", columns_table(&view))] {
-        write_whole(&folder.join(file), as_csv(&table)?.as_bytes())?;
+    for (file, table) in [("class.csv", rows(&view)), ("class-columns.csv", column_descriptions(&view))] {
+        write_atomically(&folder.join(file), to_csv(&table)?.as_bytes())?;
     }
     print(&format!(
         "{}class.csv and class-columns.csv are in {}; `novamind class show {}` shows the results\n",
-        collected_in_words(&view),
+        describe_collection(&view),
         folder.display(),
         folder.display()
     ))?;
     match collection.findings.len() as u32 {
         0 => Ok(()),
-        findings => Err(Failure::failed(format!("{} to check", count(findings, "finding")))),
+        findings => Err(Failure::failed(format!("{} to check", pluralize(findings, "finding")))),
     }
 }
 
-fn show(folder: &Path, shown: Shown, html: Option<&Path>, screen: Option<&Context>) -> Result<(), Failure> {
+fn show_class(
+    folder: &Path,
+    shown: ClassDisplayOptions,
+    html: Option<&Path>,
+    screen: Option<&Context>,
+) -> Result<(), Failure> {
     let class = CollectedClass::read(folder)?;
-    let view = ClassView::of(&class, shown);
+    let view = ClassView::new(&class, shown);
     view.check().map_err(Failure::usage)?;
     if let Some(context) = screen {
-        let start = Effect::Request(Request::ReadClass(folder.to_owned(), view.shown));
+        let start = Effect::Request(Request::ReadClass(folder.to_owned(), view.display));
         return show_console(&super::play::Options::default(), Some(start), context);
     }
-    let Some(path) = html else { return print(&shown_in_words(&view)) };
-    write_text(path, &as_html(&view))?;
+    let Some(path) = html else { return print(&class_to_text(&view)) };
+    write_text(path, &class_to_html(&view))?;
     print(&format!("written: {}\n", path.display()))
 }

@@ -4,7 +4,7 @@ use std::fmt;
 
 use crate::lab;
 use crate::record::error::RunError;
-use crate::tools::Refusal;
+use crate::tools::Rejection;
 
 /// The reason why a command failed, with its exit code. An empty message prints nothing.
 #[derive(Debug)]
@@ -41,7 +41,7 @@ impl Failure {
     }
 
     /// The reader of standard output has gone away: exit code 0, no message.
-    pub fn quiet() -> Failure {
+    pub fn silent() -> Failure {
         Failure { code: 0, message: String::new() }
     }
 
@@ -52,7 +52,7 @@ impl Failure {
     }
 
     /// Prefixes the message with its subject.
-    pub fn about(self, subject: &str) -> Failure {
+    pub fn with_subject(self, subject: &str) -> Failure {
         Failure { message: format!("{subject}: {}", self.message), ..self }
     }
 
@@ -73,17 +73,17 @@ impl std::error::Error for Failure {}
 impl From<RunError> for Failure {
     fn from(error: RunError) -> Failure {
         match error {
-            RunError::NotPossible(_) | RunError::NoScenario { .. } | RunError::NoLesson { .. } => {
-                Failure::usage(error.to_string())
-            }
-            RunError::InUse { .. } | RunError::Exists(_) => Failure::failed(error.to_string()),
+            RunError::InvalidRequest(_)
+            | RunError::UnknownScenario { .. }
+            | RunError::UnknownLesson { .. } => Failure::usage(error.to_string()),
+            RunError::InUse { .. } | RunError::AlreadyExists(_) => Failure::failed(error.to_string()),
             _ => Failure::unreadable(error.to_string()),
         }
     }
 }
 
-impl From<Refusal> for Failure {
-    fn from(refusal: Refusal) -> Failure {
+impl From<Rejection> for Failure {
+    fn from(refusal: Rejection) -> Failure {
         Failure::failed(refusal.to_string())
     }
 }

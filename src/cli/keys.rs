@@ -3,7 +3,7 @@
 use clap::Args;
 
 use super::{Context, Failure, print};
-use crate::console::keys::Keys;
+use crate::console::keys::KeyBindings;
 use crate::console::manual;
 
 #[derive(Debug, Args)]
@@ -14,6 +14,6 @@ pub struct Options {
 }
 
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
-    let keys = Keys::of_user(&context.configuration).map_err(Failure::unreadable)?;
-    print(&if options.markdown { manual::markdown(&keys) } else { manual::text(&keys) })
+    let keys = KeyBindings::with_user_file(&context.configuration).map_err(Failure::unreadable)?;
+    print(&if options.markdown { manual::to_markdown(&keys) } else { manual::to_text(&keys) })
 }

@@ -8,19 +8,19 @@ mod comparison;
 mod consistency;
 mod curves;
 mod difference;
+mod distributions;
 mod experiments;
 mod forecasts;
-mod laws;
 mod metrics;
 mod opponents;
 mod output;
-mod read_runs;
 mod results;
+mod runs;
 mod study;
 mod world;
 
 #[cfg(feature = "server")]
-pub use experiments::stopped_by_signals;
+pub use experiments::stop_flag_on_signals;
 #[cfg(feature = "server")]
 pub use output::OutputOptions;
 
@@ -29,20 +29,21 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Subcommand};
 use rayon::prelude::*;
 
-use super::run::{Seeds, parse_seeds, progress_bar, thread_pool};
+use super::run::{SeedRange, parse_seeds, progress_bar, thread_pool};
 use super::{Context, Failure, print};
 use crate::lab::{
-    Collector, Figure, GoldenComparison, Policy, Reference, RunSpec, compare, play, read_reference,
+    Collector, GoldenComparison, MetricValue, Policy, ReferenceFigures, RunSpec, compare_with_reference,
+    play, read_reference,
 };
 
 #[derive(Debug, Args)]
 pub struct Options {
     #[command(subcommand)]
-    command: Laboratory,
+    command: LabCommand,
 }
 
 #[derive(Debug, Subcommand)]
-enum Laboratory {
+enum LabCommand {
     /// Play the paper's 24 rule-based configurations, or another grid, over many seeds
     Baseline(baseline::Options),
     /// Play a policy against competitors that copy more and more, and show the cost of each step
@@ -51,11 +52,11 @@ enum Laboratory {
     Bound(bound::Options),
     /// Show every distribution that the simulator draws from: parameters, sample draws, moments
     #[command(name = "distributions", alias = "laws")]
-    Laws(laws::Options),
+    Laws(distributions::Options),
     /// Draw participation curves: the quality that customers require at a price
     Curves(curves::Options),
     /// Run the policies of a reference folder over many seeds and compare with its figures
-    Golden(Golden),
+    Golden(GoldenOptions),
     /// Play policies and measure the coverage of naive forecasts
     Forecasts(forecasts::Options),
     /// Compare runs: cash by week, decisions, behavior measures, and the paper's published figures
@@ -80,7 +81,7 @@ enum Laboratory {
 }
 
 #[derive(Debug, Args)]
-struct Golden {
+struct GoldenOptions {
     /// Folder with one <policy>.csv per policy
     folder: PathBuf,
     /// Folder of policy files [default: the reference folder, otherwise the bundled policies]
@@ -88,7 +89,7 @@ struct Golden {
     policies: Option<PathBuf>,
     /// Seeds, at least 24; suspicious figures are rerun on the same number of subsequent seeds
     #[arg(long, default_value = "1..24", value_name = "A..B", value_parser = parse_seeds)]
-    seeds: Seeds,
+    seeds: SeedRange,
     /// Only this policy; can be repeated
     #[arg(long, value_name = "NAME")]
     only: Vec<String>,
@@ -104,28 +105,28 @@ struct Golden {
 }
 
 /// Lowest accepted share of |z| < 3 in one policy.
-const SHARE_OF_POLICY: f64 = 0.95;
+const MIN_POLICY_SHARE: f64 = 0.95;
 /// Lowest accepted share of |z| < 3 over all policies.
-const SHARE_OF_ALL: f64 = 0.97;
+const MIN_TOTAL_SHARE: f64 = 0.97;
 
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     match &options.command {
-        Laboratory::Baseline(options) => baseline::run(options, context),
-        Laboratory::Ablate(options) => ablate::run(options, context),
-        Laboratory::Bound(options) => bound::run(options, context),
-        Laboratory::Laws(options) => laws::run(options, context),
-        Laboratory::Curves(options) => curves::run(options, context),
-        Laboratory::Golden(golden) => run_golden(golden, context),
-        Laboratory::Forecasts(options) => forecasts::run(options, context),
-        Laboratory::Compare(options) => comparison::run(options, context),
-        Laboratory::Table(options) => results::run(options, context),
-        Laboratory::Behaviour(options) => behaviour::run(options, context),
-        Laboratory::Consistency(options) => consistency::run(options, context),
-        Laboratory::Metrics(options) => metrics::run(options, context),
-        Laboratory::Opponents(options) => opponents::run(options, context),
-        Laboratory::Study(options) => study::run(options, context),
-        Laboratory::Merge(options) => study::merge(options),
-        Laboratory::Diff(options) => difference::run(options, context),
+        LabCommand::Baseline(options) => baseline::run(options, context),
+        LabCommand::Ablate(options) => ablate::run(options, context),
+        LabCommand::Bound(options) => bound::run(options, context),
+        LabCommand::Laws(options) => distributions::run(options, context),
+        LabCommand::Curves(options) => curves::run(options, context),
+        LabCommand::Golden(golden) => run_golden(golden, context),
+        LabCommand::Forecasts(options) => forecasts::run(options, context),
+        LabCommand::Compare(options) => comparison::run(options, context),
+        LabCommand::Table(options) => results::run(options, context),
+        LabCommand::Behaviour(options) => behaviour::run(options, context),
+        LabCommand::Consistency(options) => consistency::run(options, context),
+        LabCommand::Metrics(options) => metrics::run(options, context),
+        LabCommand::Opponents(options) => opponents::run(options, context),
+        LabCommand::Study(options) => study::run(options, context),
+        LabCommand::Merge(options) => study::merge_shards(options),
+        LabCommand::Diff(options) => difference::run(options, context),
     }
 }
 
@@ -136,19 +137,19 @@ struct Verdict {
 
 impl Verdict {
     fn passes(&self) -> bool {
-        self.comparison.share_below(3.0) >= SHARE_OF_POLICY
+        self.comparison.share_below(3.0) >= MIN_POLICY_SHARE
             && self.biased.is_empty()
             && self.comparison.missing.is_empty()
     }
 }
 
-fn run_golden(golden: &Golden, context: &Context) -> Result<(), Failure> {
-    let names = policies_of(&golden.folder, &golden.only)?;
+fn run_golden(golden: &GoldenOptions, context: &Context) -> Result<(), Failure> {
+    let names = policy_names(&golden.folder, &golden.only)?;
     let pool = thread_pool(golden.jobs)?;
     let (mut verdicts, mut unplayed) = (Vec::new(), Vec::new());
     for name in &names {
         let mut reference = read_reference(&golden.folder, name)?;
-        reference.cells.retain(|(figure, group, _), _| !left_out(&golden.without, figure, group));
+        reference.cells.retain(|(figure, group, _), _| !is_excluded(&golden.without, figure, group));
         // A policy that cannot be played does not hide the results of the others.
         let policy = match find_policy(golden, context, name) {
             Ok(policy) => policy,
@@ -159,16 +160,17 @@ fn run_golden(golden: &Golden, context: &Context) -> Result<(), Failure> {
             }
         };
         let seeds = &golden.seeds;
-        let comparison = compare(&reference, &figures(&policy, &reference, seeds, context, &pool)?);
-        let biased = confirm(&comparison, &policy, &reference, seeds, context, &pool)?;
+        let comparison =
+            compare_with_reference(&reference, &figures(&policy, &reference, seeds, context, &pool)?);
+        let biased = confirm_bias(&comparison, &policy, &reference, seeds, context, &pool)?;
         let verdict = Verdict { comparison, biased };
         print(&describe(&verdict, golden.all))?;
         verdicts.push(verdict);
     }
-    conclude(&verdicts, &unplayed, &golden.seeds)
+    summarize(&verdicts, &unplayed, &golden.seeds)
 }
 
-fn left_out(without: &[String], figure: &str, group: &str) -> bool {
+fn is_excluded(without: &[String], figure: &str, group: &str) -> bool {
     let full = if group.is_empty() { figure.to_owned() } else { format!("{figure}:{group}") };
     without.iter().any(|pattern| match pattern.strip_suffix('*') {
         Some(start) => full.starts_with(start),
@@ -176,7 +178,7 @@ fn left_out(without: &[String], figure: &str, group: &str) -> bool {
     })
 }
 
-fn policies_of(folder: &Path, only: &[String]) -> Result<Vec<String>, Failure> {
+fn policy_names(folder: &Path, only: &[String]) -> Result<Vec<String>, Failure> {
     let entries = std::fs::read_dir(folder)
         .map_err(|error| Failure::unreadable(format!("{}: {error}", folder.display())))?;
     let mut names: Vec<String> = entries
@@ -191,7 +193,7 @@ fn policies_of(folder: &Path, only: &[String]) -> Result<Vec<String>, Failure> {
     Ok(names)
 }
 
-fn find_policy(golden: &Golden, context: &Context, name: &str) -> Result<Policy, Failure> {
+fn find_policy(golden: &GoldenOptions, context: &Context, name: &str) -> Result<Policy, Failure> {
     for folder in [golden.policies.as_ref(), Some(&golden.folder)].into_iter().flatten() {
         let file = folder.join(format!("{name}.toml"));
         if file.exists() {
@@ -204,19 +206,19 @@ fn find_policy(golden: &Golden, context: &Context, name: &str) -> Result<Policy,
 /// Returns the figures of every seed at the checkpoint days of a reference.
 fn figures(
     policy: &Policy,
-    reference: &Reference,
-    seeds: &Seeds,
+    reference: &ReferenceFigures,
+    seeds: &SeedRange,
     context: &Context,
     pool: &rayon::ThreadPool,
-) -> Result<Vec<Vec<Figure>>, Failure> {
+) -> Result<Vec<Vec<MetricValue>>, Failure> {
     let progress = progress_bar(seeds.last - seeds.first + 1, "runs");
     let until = reference.last_day();
     let one = |seed: u64| {
         let spec = RunSpec {
             days: policy.start.days.or(Some(500)),
-            until: Some(until),
+            stop_after_day: Some(until),
             surges: Some(policy.start.surges == Some(true)),
-            ..RunSpec::of_seed(seed)
+            ..RunSpec::for_seed(seed)
         };
         let mut collector = Collector::new(Some(reference.days()));
         let played = play(policy, &spec, &context.configuration, &mut collector);
@@ -231,21 +233,22 @@ fn figures(
 
 /// Reruns suspicious figures on the subsequent seeds. Returns (figure, first median, second median) of those that deviate in the
 /// same direction again.
-fn confirm(
+fn confirm_bias(
     comparison: &GoldenComparison,
     policy: &Policy,
-    reference: &Reference,
-    seeds: &Seeds,
+    reference: &ReferenceFigures,
+    seeds: &SeedRange,
     context: &Context,
     pool: &rayon::ThreadPool,
 ) -> Result<Vec<(String, f64, f64)>, Failure> {
-    let suspects = comparison.suspects();
+    let suspects = comparison.suspect_figures();
     if suspects.is_empty() {
         return Ok(Vec::new());
     }
     let count = seeds.last - seeds.first + 1;
-    let following = Seeds { first: seeds.last + 1, last: seeds.last + count };
-    let again = compare(reference, &figures(policy, reference, &following, context, pool)?).suspects();
+    let following = SeedRange { first: seeds.last + 1, last: seeds.last + count };
+    let again = compare_with_reference(reference, &figures(policy, reference, &following, context, pool)?)
+        .suspect_figures();
     let confirmed = suspects.into_iter().filter_map(|(figure, first)| {
         let (_, second) =
             again.iter().find(|(other, second)| *other == figure && second.signum() == first.signum())?;
@@ -264,19 +267,19 @@ fn describe(verdict: &Verdict, all: bool) -> String {
         100.0 * comparison.share_below(3.0),
         if verdict.passes() { "passes" } else { "FAILS" },
     );
-    for line in comparison.by_figure() {
+    for line in comparison.figure_lines() {
         text += &format!("  {line}\n");
     }
     let (head, listed): (_, Vec<_>) = match all {
         true => ("all cells", comparison.cells.iter().collect()),
-        false => ("the ten worst cells", comparison.worst(10)),
+        false => ("the ten worst cells", comparison.most_different(10)),
     };
     text += &format!("  {head}:\n");
     listed.into_iter().for_each(|cell| text += &format!("    {cell}\n"));
-    for cell in &comparison.shown {
+    for cell in &comparison.unjudged {
         text += &format!("  shown only: {cell}\n");
     }
-    for (figure, first) in comparison.suspects() {
+    for (figure, first) in comparison.suspect_figures() {
         let again = verdict.biased.iter().find(|(biased, ..)| *biased == figure);
         text += &match again {
             Some((.., second)) => {
@@ -293,7 +296,7 @@ fn describe(verdict: &Verdict, all: bool) -> String {
     text
 }
 
-fn conclude(verdicts: &[Verdict], unplayed: &[&str], seeds: &Seeds) -> Result<(), Failure> {
+fn summarize(verdicts: &[Verdict], unplayed: &[&str], seeds: &SeedRange) -> Result<(), Failure> {
     let cells: usize = verdicts.iter().map(|verdict| verdict.comparison.cells.len()).sum();
     let below = |bound: f64| {
         let counts = verdicts
@@ -315,8 +318,8 @@ fn conclude(verdicts: &[Verdict], unplayed: &[&str], seeds: &Seeds) -> Result<()
     let mut problems: Vec<String> =
         failing.map(|verdict| format!("{} differs from the reference", verdict.comparison.policy)).collect();
     problems.extend(unplayed.iter().map(|name| format!("{name} cannot be played")));
-    if below(3.0) < SHARE_OF_ALL {
-        problems.push(format!("over all policies, less than {:.0} % have |z| < 3", 100.0 * SHARE_OF_ALL));
+    if below(3.0) < MIN_TOTAL_SHARE {
+        problems.push(format!("over all policies, less than {:.0} % have |z| < 3", 100.0 * MIN_TOTAL_SHARE));
     }
     if problems.is_empty() { Ok(()) } else { Err(Failure::failed(problems.join("; "))) }
 }

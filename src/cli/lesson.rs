@@ -8,13 +8,13 @@ use clap::{Args, Subcommand};
 use super::output_file::write_text;
 use super::{Context, Failure, print};
 use crate::course::{Lesson, MEASURED_SEEDS, PlayedPart};
+use crate::formatting::compact_number;
 use crate::lab::{LessonCheck, PlayResult, check_lesson};
-use crate::notation::compact;
 use crate::record::folder::configuration::Configuration;
 use crate::record::folder::runs::find_run_to_read;
-use crate::report::debrief::in_words;
-use crate::report::{debrief_as_html, debrief_as_markdown};
-use crate::rules::answers_to_companies;
+use crate::report::debrief::debrief_paragraphs;
+use crate::report::{debrief_to_html, debrief_to_markdown};
+use crate::rules::calls_for_waiting_threads;
 use crate::session::Session;
 
 #[derive(Debug, Args)]
@@ -69,22 +69,22 @@ pub fn run(options: Options, context: &Context) -> Result<(), Failure> {
     let configuration = &context.configuration;
     match options.command {
         LessonCommand::Play { name, play } => {
-            super::play::run(super::play::Options::of_lesson(name, *play), context)
+            super::play::run(super::play::Options::for_lesson(name, *play), context)
         }
-        LessonCommand::Debrief { run, html, markdown } => debrief(&run, html, markdown, context),
-        LessonCommand::List => list(configuration),
-        LessonCommand::Show { lesson } => print(&shown(&lesson_of(&lesson, configuration)?)),
-        LessonCommand::Copy { lesson, to } => copy(&lesson, &to, configuration),
-        LessonCommand::Check { lesson: Some(lesson) } => check(&[lesson], configuration),
-        LessonCommand::Check { lesson: None } => check(&configuration.lessons(), configuration),
+        LessonCommand::Debrief { run, html, markdown } => write_debrief(&run, html, markdown, context),
+        LessonCommand::List => list_lessons(configuration),
+        LessonCommand::Show { lesson } => print(&describe_lesson(&find_lesson(&lesson, configuration)?)),
+        LessonCommand::Copy { lesson, to } => copy_lesson(&lesson, &to, configuration),
+        LessonCommand::Check { lesson: Some(lesson) } => check_lessons(&[lesson], configuration),
+        LessonCommand::Check { lesson: None } => check_lessons(&configuration.lesson_names(), configuration),
     }
 }
 
-fn copy(lesson: &str, to: &str, configuration: &Configuration) -> Result<(), Failure> {
-    let from = lesson_of(lesson, configuration)?;
-    let path = match is_file(to) {
+fn copy_lesson(lesson: &str, to: &str, configuration: &Configuration) -> Result<(), Failure> {
+    let from = find_lesson(lesson, configuration)?;
+    let path = match is_file_path(to) {
         true => PathBuf::from(to),
-        false if configuration.lessons().iter().any(|known| known == to) => {
+        false if configuration.lesson_names().iter().any(|known| known == to) => {
             return Err(Failure::usage(format!("lesson {to} already exists: choose another name")));
         }
         false
@@ -94,7 +94,7 @@ fn copy(lesson: &str, to: &str, configuration: &Configuration) -> Result<(), Fai
                 "{to:?}: a lesson name may contain letters, digits, - and _"
             )));
         }
-        false => configuration.own_lesson(to).ok_or_else(|| {
+        false => configuration.user_lesson_file(to).ok_or_else(|| {
             Failure::usage("this system has no configuration folder: give the path of a file")
         })?,
     };
@@ -102,7 +102,7 @@ fn copy(lesson: &str, to: &str, configuration: &Configuration) -> Result<(), Fai
         return Err(Failure::usage(format!("{to}: the name of a lesson file must end in .toml")));
     }
     from.copy_to(&path)?;
-    let name = if is_file(to) { path.display().to_string() } else { to.to_owned() };
+    let name = if is_file_path(to) { path.display().to_string() } else { to.to_owned() };
     print(&format!(
         "wrote {} and {}\nedit them, then run: novamind lesson check {name}\n",
         path.display(),
@@ -111,19 +111,23 @@ fn copy(lesson: &str, to: &str, configuration: &Configuration) -> Result<(), Fai
 }
 
 /// Returns whether a word is the path of a file rather than a name.
-fn is_file(name: &str) -> bool {
+fn is_file_path(name: &str) -> bool {
     Path::new(name).components().count() > 1 || name.ends_with(".toml")
 }
 
 /// Finds a lesson by its name or by the path of its file.
-pub(super) fn lesson_of(name: &str, configuration: &Configuration) -> Result<Lesson, Failure> {
-    Ok(if is_file(name) { Lesson::of_file(Path::new(name))? } else { Lesson::named(name, configuration)? })
+pub(super) fn find_lesson(name: &str, configuration: &Configuration) -> Result<Lesson, Failure> {
+    Ok(if is_file_path(name) {
+        Lesson::from_file(Path::new(name))?
+    } else {
+        Lesson::load(name, configuration)?
+    })
 }
 
-fn list(configuration: &Configuration) -> Result<(), Failure> {
+fn list_lessons(configuration: &Configuration) -> Result<(), Failure> {
     let (mut text, mut unreadable) = (String::new(), Vec::new());
-    for name in configuration.lessons() {
-        match Lesson::named(&name, configuration) {
+    for name in configuration.lesson_names() {
+        match Lesson::load(&name, configuration) {
             Ok(lesson) => {
                 let plan = &lesson.plan;
                 text += &format!("{name:<24}  {:>3} min  {}\n", plan.minutes, plan.title);
@@ -137,58 +141,58 @@ fn list(configuration: &Configuration) -> Result<(), Failure> {
 }
 
 /// Prints the debrief of a run, or writes it to a file. Does not modify the run.
-fn debrief(
+fn write_debrief(
     run: &str,
     html: Option<PathBuf>,
     markdown: Option<PathBuf>,
     context: &Context,
 ) -> Result<(), Failure> {
-    let folder = find_run_to_read(&context.runs()?, run)?;
-    context.look(&folder, "lesson", "debrief")?;
+    let folder = find_run_to_read(&context.runs_folder()?, run)?;
+    context.authorize_view(&folder, "lesson", "debrief")?;
     let session = Session::open_to_read(&folder, true)?;
-    let played = PlayedPart::of(&session).map_err(|refusal| Failure::failed(refusal.message))?;
-    let debrief = played.debrief(answers_to_companies);
+    let played = PlayedPart::from_session(&session).map_err(|refusal| Failure::failed(refusal.message))?;
+    let debrief = played.debrief(calls_for_waiting_threads);
     let (path, text) = match (html, markdown) {
-        (Some(path), _) => (path, debrief_as_html(&debrief)),
-        (None, Some(path)) => (path, debrief_as_markdown(&debrief)),
-        (None, None) => return print(&(in_words(&debrief).join("\n") + "\n")),
+        (Some(path), _) => (path, debrief_to_html(&debrief)),
+        (None, Some(path)) => (path, debrief_to_markdown(&debrief)),
+        (None, None) => return print(&(debrief_paragraphs(&debrief).join("\n") + "\n")),
     };
     write_text(&path, &text)?;
     print(&format!("written: {}\n", path.display()))
 }
 
 /// Returns a lesson with its notes for the instructor.
-fn shown(lesson: &Lesson) -> String {
+fn describe_lesson(lesson: &Lesson) -> String {
     let plan = &lesson.plan;
     let mut text = format!("{}\n{} minutes. {}\n", plan.title, plan.minutes, plan.learning_goal);
     for part in &plan.parts {
         for step in &part.steps {
-            let weeks = crate::report::count(step.weeks, "week");
-            text += &format!("\n{} ({weeks})\n{}\n", step.title, lesson.filled(&step.text));
+            let weeks = crate::report::pluralize(step.weeks, "week");
+            text += &format!("\n{} ({weeks})\n{}\n", step.title, lesson.fill_figures(&step.text));
             for goal in &step.goals {
-                text += &format!("  goal: {}\n", lesson.filled(&goal.text));
+                text += &format!("  goal: {}\n", lesson.fill_figures(&goal.text));
             }
             for hint in &step.hints {
-                text += &format!("  hint: {}\n", lesson.filled(hint));
+                text += &format!("  hint: {}\n", lesson.fill_figures(hint));
             }
         }
     }
     text += &format!("\nReference play: {}\nPitfall play: {}\n", plan.good.text, plan.bad.text);
-    for (heading, own) in [("Debrief", &lesson.debrief), ("For the instructor", &lesson.for_teachers)] {
-        text += &format!("\n{heading}\n\n{}\n", lesson.filled(own));
+    for (heading, own) in [("Debrief", &lesson.debrief), ("For the instructor", &lesson.instructor_notes)] {
+        text += &format!("\n{heading}\n\n{}\n", lesson.fill_figures(own));
     }
     text
 }
 
-fn check(names: &[String], configuration: &Configuration) -> Result<(), Failure> {
+fn check_lessons(names: &[String], configuration: &Configuration) -> Result<(), Failure> {
     let mut failed = 0;
     for name in names {
-        let lesson = Arc::new(lesson_of(name, configuration)?);
-        let check =
-            check_lesson(&lesson).map_err(|error| Failure::from(error).about(&format!("lesson {name}")))?;
-        let problems = check.problems();
+        let lesson = Arc::new(find_lesson(name, configuration)?);
+        let check = check_lesson(&lesson)
+            .map_err(|error| Failure::from(error).with_subject(&format!("lesson {name}")))?;
+        let problems = check.describe_problems();
         failed += usize::from(!problems.is_empty());
-        print(&checked(&lesson, &check, &problems))?;
+        print(&describe_check(&lesson, &check, &problems))?;
     }
     match failed {
         0 => Ok(()),
@@ -196,7 +200,7 @@ fn check(names: &[String], configuration: &Configuration) -> Result<(), Failure>
     }
 }
 
-fn checked(lesson: &Lesson, check: &LessonCheck, problems: &[String]) -> String {
+fn describe_check(lesson: &Lesson, check: &LessonCheck, problems: &[String]) -> String {
     let verdict = if problems.is_empty() { "passed" } else { "FAILED" };
     let mut text = format!(
         "{}: {verdict} on seeds {} to {}\n",
@@ -204,18 +208,23 @@ fn checked(lesson: &Lesson, check: &LessonCheck, problems: &[String]) -> String 
         MEASURED_SEEDS.start(),
         MEASURED_SEEDS.end()
     );
-    for (name, plays) in [("good", &check.good), ("bad", &check.bad)] {
+    for (name, plays) in [("good", &check.reference_results), ("bad", &check.pitfall_results)] {
         for (at, goal) in plays.iter().take(1).flat_map(|play| play.goals.iter().enumerate()) {
-            text += &format!("  {name:<4}  {:<44}  {}\n", goal.text, values(plays, at));
+            text += &format!("  {name:<4}  {:<44}  {}\n", goal.text, goal_values(plays, at));
         }
     }
-    let plays = check.good.iter().chain(&check.bad);
-    if plays.flat_map(|play| &play.goals).any(|goal| !goal.met) {
+    let plays = check.reference_results.iter().chain(&check.pitfall_results);
+    if plays.flat_map(|play| &play.goals).any(|goal| !goal.is_met) {
         text += "  (in parentheses: not reached)\n";
     }
     for figure in &check.figures {
         let stated = &figure.stated;
-        text += &format!("  {}: {} (stated {})\n", stated.text, stated.write(figure.mean), stated.written());
+        text += &format!(
+            "  {}: {} (stated {})\n",
+            stated.text,
+            stated.format_value(figure.mean),
+            stated.formatted_value()
+        );
     }
     for problem in problems {
         text += &format!("  ! {problem}\n");
@@ -224,10 +233,10 @@ fn checked(lesson: &Lesson, check: &LessonCheck, problems: &[String]) -> String 
 }
 
 /// Returns the values of a goal in the plays, by seed.
-fn values(plays: &[PlayResult], at: usize) -> String {
+fn goal_values(plays: &[PlayResult], at: usize) -> String {
     let written = plays.iter().filter_map(|play| play.goals.get(at)).map(|goal| {
-        let value = goal.value.map_or_else(|| "-".to_owned(), compact);
-        if goal.met { value } else { format!("({value})") }
+        let value = goal.value.map_or_else(|| "-".to_owned(), compact_number);
+        if goal.is_met { value } else { format!("({value})") }
     });
     written.collect::<Vec<String>>().join(" ")
 }

@@ -19,6 +19,8 @@ mod query;
 mod replay;
 mod report;
 mod run;
+#[cfg(feature = "server")]
+mod run_selection;
 mod runs;
 mod scenario;
 #[cfg(feature = "server")]
@@ -26,8 +28,6 @@ mod serve;
 mod study;
 mod tables;
 mod tools;
-#[cfg(feature = "server")]
-mod which_run;
 
 use std::path::{Path, PathBuf};
 
@@ -37,12 +37,12 @@ pub use failure::Failure;
 
 use crate::record::error::RunError;
 use crate::record::folder::configuration::Configuration;
-use crate::record::folder::derived::manifest_of;
 use crate::record::folder::manifest::Manifest;
+use crate::record::folder::manifest_check::read_manifest;
 use crate::record::folder::runs::participant_folder;
 use crate::record::trajectory::Trajectory;
-use crate::session::{LabKey, ModelSettings, SealKey, record_look};
-use novamind_study::{STUDY_FILE, Study, lab_key_of, record_refused_code, seal_key_of};
+use crate::session::{LabKey, ModelSettings, SealKey, record_external_read};
+use novamind_study::{STUDY_FILE, Study, load_lab_key, load_seal_key, record_rejected_code};
 
 /// Run a simulated AI subscription company for 500 days
 ///
@@ -155,7 +155,7 @@ pub struct Context {
     /// Label of the player whose runs are used, from `--as`.
     pub participant: Option<String>,
     /// Whether the folder of runs was given on the command line.
-    names_runs: bool,
+    has_explicit_runs_folder: bool,
     /// Folder of the study whose keys are used: the one given, or the working directory if it is a study.
     pub study_folder: Option<PathBuf>,
     /// Whether the command has the experimenter's code of the study.
@@ -164,24 +164,24 @@ pub struct Context {
 
 impl Context {
     /// Returns the command that continues the newest run of this folder.
-    pub fn again(&self) -> String {
-        let mut words = self.first_words();
+    pub fn resume_command(&self) -> String {
+        let mut words = self.command_prefix();
         words.extend(self.participant.as_ref().map(|label| format!("--as {label}")));
         words.push("--run latest".to_owned());
         words.join(" ")
     }
 
     /// Returns the command that continues a study; participants enter their label again.
-    pub fn again_in_study(&self, study: &Path) -> String {
-        let mut words = self.first_words();
-        words.push(format!("--study {}", for_shell(study)));
+    pub fn study_command(&self, study: &Path) -> String {
+        let mut words = self.command_prefix();
+        words.push(format!("--study {}", shell_quoted(study)));
         words.join(" ")
     }
 
-    fn first_words(&self) -> Vec<String> {
+    fn command_prefix(&self) -> Vec<String> {
         let mut words = vec!["novamind".to_owned()];
-        let named = self.runs.as_ref().filter(|_| self.names_runs);
-        words.extend(named.map(|folder| format!("--runs-dir {}", for_shell(folder))));
+        let named = self.runs.as_ref().filter(|_| self.has_explicit_runs_folder);
+        words.extend(named.map(|folder| format!("--runs-dir {}", shell_quoted(folder))));
         words
     }
 
@@ -189,7 +189,7 @@ impl Context {
     ///
     /// # Errors
     /// `--as` names another student.
-    pub fn of_student(&self, label: &str) -> Result<Context, Failure> {
+    pub fn for_student(&self, label: &str) -> Result<Context, Failure> {
         match &self.participant {
             Some(whose) if whose != label => Err(Failure::usage(format!(
                 "this handout belongs to {label}, not to {whose}: leave out --as {whose}"
@@ -205,7 +205,7 @@ impl Context {
     pub fn with_voice(&self, file: Option<&Path>) -> Result<Context, Failure> {
         let Some(file) = file else { return Ok(self.clone()) };
         let text = std::fs::read_to_string(file).map_err(RunError::io(file))?;
-        let voice = ModelSettings::read(&file.display().to_string(), &text).map_err(RunError::from)?;
+        let voice = ModelSettings::parse(&file.display().to_string(), &text).map_err(RunError::from)?;
         let configuration = Configuration { voice: Some(voice), ..self.configuration.clone() };
         Ok(Context { configuration, ..self.clone() })
     }
@@ -226,13 +226,13 @@ impl Context {
     /// Returns the named folders of runs, or the folder of this machine if none is named.
     ///
     /// # Errors
-    /// A named folder does not exist; otherwise as [`Context::runs`].
-    fn machines(&self, named: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
+    /// A named folder does not exist; otherwise as [`Context::runs_folder`].
+    fn machine_folders(&self, named: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
         if let Some(missing) = named.iter().find(|folder| !folder.is_dir()) {
             let problem = format!("{} is not a folder; nothing was read", missing.display());
             return Err(Failure::failed(problem));
         }
-        if named.is_empty() { Ok(vec![self.runs()?]) } else { Ok(named.to_vec()) }
+        if named.is_empty() { Ok(vec![self.runs_folder()?]) } else { Ok(named.to_vec()) }
     }
 
     /// Returns the key that seals snapshots of the study's runs.
@@ -240,7 +240,7 @@ impl Context {
     /// # Errors
     /// The key exists and cannot be read.
     fn seal_key(&self) -> Result<SealKey, Failure> {
-        Ok(self.study_folder.as_deref().map(seal_key_of).transpose()?.unwrap_or_default())
+        Ok(self.study_folder.as_deref().map(load_seal_key).transpose()?.unwrap_or_default())
     }
 
     /// Returns the key that signs archives, from a file or from the study.
@@ -250,7 +250,7 @@ impl Context {
     fn lab_key(&self, named: Option<&Path>) -> Result<Option<LabKey>, Failure> {
         match (named, &self.study_folder) {
             (Some(file), _) => Ok(Some(LabKey::read(file)?)),
-            (None, Some(folder)) => Ok(lab_key_of(folder)?),
+            (None, Some(folder)) => Ok(load_lab_key(folder)?),
             (None, None) => Ok(None),
         }
     }
@@ -259,12 +259,12 @@ impl Context {
     ///
     /// # Errors
     /// The results are hidden and no code was given, or the manifest cannot be read.
-    pub fn check_look(&self, folder: &Path) -> Result<(), Failure> {
-        self.check_results_of(&manifest_of(folder)?)
+    pub fn check_view_allowed(&self, folder: &Path) -> Result<(), Failure> {
+        self.check_results_allowed(&read_manifest(folder)?)
     }
 
-    fn check_results_of(&self, manifest: &Manifest) -> Result<(), Failure> {
-        if self.is_experimenter || manifest.study.is_none() || !manifest.session_rules().hides_results() {
+    fn check_results_allowed(&self, manifest: &Manifest) -> Result<(), Failure> {
+        if self.is_experimenter || manifest.study.is_none() || !manifest.session_rules().withholds_results() {
             return Ok(());
         }
         Err(Failure::usage(format!(
@@ -273,24 +273,24 @@ impl Context {
         )))
     }
 
-    /// Checks access as [`Context::check_look`] does, and records that the run was read.
+    /// Checks access as [`Context::check_view_allowed`] does, and records that the run was read.
     ///
     /// # Errors
-    /// As [`Context::check_look`] and [`record_look`].
-    pub fn look(&self, folder: &Path, command: &str, detail: &str) -> Result<(), Failure> {
-        self.check_look(folder)?;
-        Ok(record_look(folder, command, detail)?)
+    /// As [`Context::check_view_allowed`] and [`record_external_read`].
+    pub fn authorize_view(&self, folder: &Path, command: &str, detail: &str) -> Result<(), Failure> {
+        self.check_view_allowed(folder)?;
+        Ok(record_external_read(folder, command, detail)?)
     }
 
     /// Checks that a run is not an unfinished run of a study, which can only be played or watched within the study.
     ///
     /// # Errors
     /// It is one and no code was given, or the manifest cannot be read.
-    pub fn check_play(&self, folder: &Path) -> Result<(), Failure> {
-        let manifest = manifest_of(folder)?;
+    pub fn check_play_allowed(&self, folder: &Path) -> Result<(), Failure> {
+        let manifest = read_manifest(folder)?;
         let Some(study) = manifest.study.as_ref().filter(|_| !self.is_experimenter) else { return Ok(()) };
-        if Trajectory::read(&folder.join("trajectory.jsonl"))?.end().is_some() {
-            return self.check_results_of(&manifest);
+        if Trajectory::read(&folder.join("trajectory.jsonl"))?.end_line().is_some() {
+            return self.check_results_allowed(&manifest);
         }
         Err(Failure::usage(format!(
             "run {} belongs to the study {}: continue it with `novamind --study DIR`",
@@ -302,7 +302,7 @@ impl Context {
     ///
     /// # Errors
     /// The platform has no data folder and none was given.
-    fn base_of_runs(&self) -> Result<PathBuf, Failure> {
+    fn runs_root(&self) -> Result<PathBuf, Failure> {
         self.runs.clone().ok_or_else(|| {
             Failure::usage("this system has no data folder; give one with --runs-dir or NOVAMIND_RUNS")
         })
@@ -311,17 +311,17 @@ impl Context {
     /// Returns the folder of cached experiment results. It is hidden in the folder of runs, where no list shows it.
     ///
     /// # Errors
-    /// As [`Context::runs`].
-    pub fn laboratory(&self) -> Result<PathBuf, Failure> {
-        Ok(self.base_of_runs()?.join(".lab"))
+    /// As [`Context::runs_folder`].
+    pub fn laboratory_folder(&self) -> Result<PathBuf, Failure> {
+        Ok(self.runs_root()?.join(".lab"))
     }
 
     /// Returns the folder of the runs, of the participant if one was given.
     ///
     /// # Errors
     /// The platform has no data folder and none was given, or the label is invalid.
-    pub fn runs(&self) -> Result<PathBuf, Failure> {
-        let base = self.base_of_runs()?;
+    pub fn runs_folder(&self) -> Result<PathBuf, Failure> {
+        let base = self.runs_root()?;
         match &self.participant {
             None => Ok(base),
             Some(label) => participant_folder(&base, label).map_err(Failure::usage),
@@ -330,30 +330,30 @@ impl Context {
 }
 
 /// Quotes a path for a shell.
-fn for_shell(path: &Path) -> String {
+fn shell_quoted(path: &Path) -> String {
     let text = path.display().to_string();
     let plain = |letter: char| letter.is_alphanumeric() || "/._-".contains(letter);
     if text.chars().all(plain) { text } else { format!("'{}'", text.replace('\'', r"'\''")) }
 }
 
 /// Returns the working directory if it is a study.
-fn study_here() -> Option<PathBuf> {
+fn study_in_current_folder() -> Option<PathBuf> {
     Path::new(STUDY_FILE).is_file().then(|| PathBuf::from("."))
 }
 
 /// Turns a write beyond the file size limit into an error like that of a full disk. Unhandled, the signal would end the program.
-fn take_full_files_as_errors() {
+fn ignore_file_size_signal() {
     #[cfg(unix)]
     let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, std::sync::Arc::default());
 }
 
 /// Passes `--code` on to the tool that an agent calls if no study is given, because tools have arguments of that name, too.
 #[cfg(feature = "server")]
-fn with_code_for_tool(mut arguments: Arguments) -> Arguments {
+fn pass_code_to_tool(mut arguments: Arguments) -> Arguments {
     let own = arguments.code.clone().filter(|code| std::env::var("NOVAMIND_CODE").as_ref() != Ok(code));
     if let (None, Some(Command::Agent(options)), Some(code)) = (&arguments.study, &mut arguments.command, own)
     {
-        options.take_code(code);
+        options.restore_code_argument(code);
     }
     arguments
 }
@@ -373,30 +373,30 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         )));
     }
     #[cfg(feature = "server")]
-    let arguments = with_code_for_tool(arguments);
-    take_full_files_as_errors();
+    let arguments = pass_code_to_tool(arguments);
+    ignore_file_size_signal();
     let from_environment = std::env::var_os("NOVAMIND_RUNS").map(PathBuf::from);
     let mut context = Context {
-        configuration: Configuration::of_user(),
-        names_runs: arguments.runs_dir.is_some() && arguments.runs_dir != from_environment,
-        runs: arguments.runs_dir.or_else(Configuration::runs_folder),
+        configuration: Configuration::from_environment(),
+        has_explicit_runs_folder: arguments.runs_dir.is_some() && arguments.runs_dir != from_environment,
+        runs: arguments.runs_dir.or_else(Configuration::default_runs_folder),
         participant: arguments.whose.filter(|label| !label.is_empty()),
-        study_folder: arguments.study.clone().or_else(study_here),
+        study_folder: arguments.study.clone().or_else(study_in_current_folder),
         is_experimenter: false,
     };
     if let Some(folder) = &arguments.study {
         let is_visit = matches!(arguments.command, None | Some(Command::Play(_)));
-        let study = Study::read(folder)?;
-        let has_code = study.protocol.opens_with(arguments.code.as_deref());
+        let study = Study::load(folder)?;
+        let has_code = study.protocol.accepts_code(arguments.code.as_deref());
         if let (false, Some(_)) = (has_code, &arguments.code) {
-            record_refused_code(&study, &context.runs()?);
+            record_rejected_code(&study, &context.runs_folder()?);
         }
         if is_visit && !has_code {
             let options = match arguments.command {
                 Some(Command::Play(options)) => options,
                 _ => arguments.play,
             };
-            return play::lead(folder, &options, &context);
+            return play::lead_participant(folder, &options, &context);
         }
         context.is_experimenter = has_code;
         if !has_code {
@@ -441,7 +441,7 @@ pub fn print(text: &str) -> Result<(), Failure> {
     use std::io::Write;
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Err(Failure::quiet()),
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Err(Failure::silent()),
         Err(error) => Err(Failure::failed(format!("standard output: {error}"))),
         Ok(()) => Ok(()),
     }
@@ -452,21 +452,24 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_command_that_goes_on_can_be_typed_as_it_is() {
+    fn resume_command_is_quoted_for_a_shell() {
         let context = |runs: &str, names_runs| Context {
-            configuration: Configuration::shipped(),
+            configuration: Configuration::bundled(),
             runs: Some(PathBuf::from(runs)),
             participant: None,
-            names_runs,
+            has_explicit_runs_folder: names_runs,
             study_folder: None,
             is_experimenter: false,
         };
         let study = Path::new("pilot");
-        assert_eq!(context("/data/runs", false).again_in_study(study), "novamind --study pilot");
+        assert_eq!(context("/data/runs", false).study_command(study), "novamind --study pilot");
         assert_eq!(
-            context("/data/my runs", true).again_in_study(Path::new("Jo's study")),
+            context("/data/my runs", true).study_command(Path::new("Jo's study")),
             r"novamind --runs-dir '/data/my runs' --study 'Jo'\''s study'"
         );
-        assert_eq!(context("/data/runs", true).again(), "novamind --runs-dir /data/runs --run latest");
+        assert_eq!(
+            context("/data/runs", true).resume_command(),
+            "novamind --runs-dir /data/runs --run latest"
+        );
     }
 }

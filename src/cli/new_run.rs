@@ -41,9 +41,9 @@ pub struct NewRunOptions {
 }
 
 fn parse_mode(text: &str) -> Result<Mode, String> {
-    let mode = Mode::parse(text).filter(|mode| Mode::OFFERED.contains(mode));
+    let mode = Mode::parse(text).filter(|mode| Mode::SELECTABLE.contains(mode));
     mode.ok_or_else(|| {
-        let offered = Mode::OFFERED.map(Mode::id).join(", ");
+        let offered = Mode::SELECTABLE.map(Mode::id).join(", ");
         format!("{text} is not a mode; the modes are {offered}")
     })
 }
@@ -56,19 +56,19 @@ fn parse_fault(text: &str) -> Result<Fault, String> {
 
 impl NewRunOptions {
     /// Returns whether any of these options is given.
-    pub fn ask_for_one(&self) -> bool {
+    pub fn is_specified(&self) -> bool {
         NewRunOptions { consent: false, ..self.clone() } != NewRunOptions::default()
     }
 
     /// Returns whether a scenario is given.
     #[cfg(feature = "server")]
-    pub fn names_scenario(&self) -> bool {
+    pub fn has_scenario(&self) -> bool {
         self.scenario.is_some()
     }
 
     /// Returns the options with a default label for the player.
     #[cfg(feature = "server")]
-    pub fn played_by(&self, label: &str) -> NewRunOptions {
+    pub fn with_participant(&self, label: &str) -> NewRunOptions {
         NewRunOptions {
             participant: Some(self.participant.clone().unwrap_or_else(|| label.to_owned())),
             ..self.clone()
@@ -78,14 +78,14 @@ impl NewRunOptions {
     /// Returns the run of a program, and a remark if days, cash or scenario make it a sandbox run.
     ///
     /// # Errors
-    /// As [`NewRunOptions::new_run`].
+    /// As [`NewRunOptions::new_run_options`].
     #[cfg(feature = "server")]
-    pub fn new_run_of_program(&self, context: &Context) -> Result<(NewRun, Option<String>), Failure> {
+    pub fn program_run(&self, context: &Context) -> Result<(NewRun, Option<String>), Failure> {
         let sandbox = self.new_run(Mode::Sandbox, context)?;
         if self.mode.is_some() {
             return Ok((sandbox, None));
         }
-        let other = sandbox.other_terms(&context.configuration)?;
+        let other = sandbox.deviating_terms(&context.configuration)?;
         if other.is_empty() {
             return Ok((self.new_run(Mode::Baseline, context)?, None));
         }
@@ -112,9 +112,9 @@ impl NewRunOptions {
             handout: None,
             mode: self.mode.unwrap_or(mode),
             participant: self.participant.clone(),
-            agreed: self.consent.then(|| ConsentGiven::on_paper().now()),
+            agreed: self.consent.then(|| ConsentGiven::on_paper().given_now()),
             study: None,
-            storage: Storage::Runs(context.runs()?),
+            storage: Storage::Runs(context.runs_folder()?),
             projection: true,
             sync_calls: true,
             seal_key: standard.seal_key,

@@ -6,12 +6,13 @@ use std::io::{self, BufWriter, Read, Write};
 use std::path::Path;
 
 use super::Failure;
-use crate::record::files::folder_of;
+use crate::record::files::parent_folder;
 
 /// Number of leading bytes that identify the kind of a file.
-const BEGINNING: u64 = 8;
+const SIGNATURE_BYTES: u64 = 8;
 
-const OTHER: &str = "the file exists and was not written by this command: choose another name, or delete it";
+const OTHER_FILE_MESSAGE: &str =
+    "the file exists and was not written by this command: choose another name, or delete it";
 
 /// Writes a text to a file.
 ///
@@ -32,9 +33,9 @@ pub fn write_file(
 ) -> Result<(), Failure> {
     let is_special = std::fs::metadata(place).is_ok_and(|found| !found.is_file());
     let written = if is_special {
-        File::options().write(true).open(place).and_then(|file| filled(file, write).map(drop))
+        File::options().write(true).open(place).and_then(|file| write_and_sync(file, write).map(drop))
     } else {
-        replaced(place, write)
+        replace_file(place, write)
     };
     written.map_err(|error| {
         let safe = safe.map_or(String::new(), |safe| format!(", {safe}"));
@@ -43,12 +44,12 @@ pub fn write_file(
 }
 
 /// Writes a temporary file next to the target and renames it when it is complete.
-fn replaced(place: &Path, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> io::Result<()> {
+fn replace_file(place: &Path, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> io::Result<()> {
     let name = place.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let draft = place.with_file_name(format!(".{name}.draft"));
     let written = File::create(&draft)
-        .and_then(|file| filled(file, write)?.sync_all())
-        .and_then(|()| refuse_other(place, &draft))
+        .and_then(|file| write_and_sync(file, write)?.sync_all())
+        .and_then(|()| check_same_kind(place, &draft))
         .and_then(|()| std::fs::rename(&draft, place));
     if written.is_err() {
         let _ = std::fs::remove_file(&draft);
@@ -60,33 +61,38 @@ fn replaced(place: &Path, write: impl FnOnce(&mut BufWriter<File>) -> io::Result
 ///
 /// # Errors
 /// It begins differently or cannot be read.
-pub fn check_beginning(place: &Path, expected: &str) -> Result<(), Failure> {
+pub fn check_signature(place: &Path, expected: &str) -> Result<(), Failure> {
     let is_file = std::fs::metadata(place).is_ok_and(|found| found.is_file());
-    let there = if is_file { beginning(place) } else { Ok(Vec::new()) };
-    let own: Vec<u8> = expected.bytes().take(BEGINNING as usize).collect();
+    let there = if is_file { read_signature(place) } else { Ok(Vec::new()) };
+    let own: Vec<u8> = expected.bytes().take(SIGNATURE_BYTES as usize).collect();
     match there {
         Ok(there) if there.is_empty() || there == own => Ok(()),
-        Ok(_) => Err(Failure::failed(format!("{}: {OTHER}", place.display()))),
+        Ok(_) => Err(Failure::failed(format!("{}: {OTHER_FILE_MESSAGE}", place.display()))),
         Err(error) => Err(Failure::failed(format!("{}: {error}", place.display()))),
     }
 }
 
-fn beginning(path: &Path) -> io::Result<Vec<u8>> {
+fn read_signature(path: &Path) -> io::Result<Vec<u8>> {
     let mut first = Vec::new();
-    File::open(path)?.take(BEGINNING).read_to_end(&mut first)?;
+    File::open(path)?.take(SIGNATURE_BYTES).read_to_end(&mut first)?;
     Ok(first)
 }
 
 /// Returns an error if the existing file begins differently from the new one.
-fn refuse_other(place: &Path, draft: &Path) -> io::Result<()> {
-    match beginning(place) {
-        Ok(there) if !there.is_empty() && there != beginning(draft)? => Err(io::Error::other(OTHER)),
+fn check_same_kind(place: &Path, draft: &Path) -> io::Result<()> {
+    match read_signature(place) {
+        Ok(there) if !there.is_empty() && there != read_signature(draft)? => {
+            Err(io::Error::other(OTHER_FILE_MESSAGE))
+        }
         Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
         _ => Ok(()),
     }
 }
 
-fn filled(file: File, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> io::Result<File> {
+fn write_and_sync(
+    file: File,
+    write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+) -> io::Result<File> {
     let mut file = BufWriter::new(file);
     write(&mut file)?;
     Ok(file.into_inner()?)
@@ -97,7 +103,7 @@ pub fn is_same_file(one: &Path, other: &Path) -> bool {
     let place = |path: &Path| {
         path.canonicalize()
             .ok()
-            .or_else(|| Some(folder_of(path).canonicalize().ok()?.join(path.file_name()?)))
+            .or_else(|| Some(parent_folder(path).canonicalize().ok()?.join(path.file_name()?)))
     };
     place(one).is_some_and(|one| place(other) == Some(one))
 }
@@ -107,7 +113,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_file_is_replaced_when_the_new_one_is_whole() {
+    fn write_replaces_a_file_only_when_complete() {
         let folder = tempfile::tempdir().expect("a folder");
         let place = folder.path().join("report.md");
         write_text(&place, "# report one").expect("written");
@@ -124,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn what_begins_otherwise_is_not_replaced() {
+    fn files_of_another_kind_are_not_replaced() {
         let folder = tempfile::tempdir().expect("a folder");
         let place = folder.path().join("trajectory.jsonl");
         for there in ["{\"seq\":0}\n", "name = \"mine\"\n", "run,policy\n"] {
@@ -140,7 +146,7 @@ mod tests {
 
     #[test]
     #[cfg(unix)]
-    fn a_device_stays_a_device() {
+    fn devices_are_not_replaced() {
         use std::os::unix::fs::{FileTypeExt, symlink};
         let folder = tempfile::tempdir().expect("a folder");
         let link = folder.path().join("out");
@@ -151,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn one_file_has_many_names() {
+    fn is_same_file_resolves_paths() {
         let folder = tempfile::tempdir().expect("a folder");
         let (there, not_yet) = (folder.path().join("a"), folder.path().join("b"));
         write_text(&there, "").expect("written");

@@ -8,14 +8,14 @@ use super::{Context, Failure, print};
 use crate::console::app::Settings;
 use crate::console::context::ScreenId;
 use crate::console::headless::Headless;
-use crate::console::keys::Keys;
+use crate::console::keys::KeyBindings;
 use crate::console::themes;
 use crate::lab::play_opponents;
 use crate::record::folder::runs::find_run_to_read;
-use crate::session::Goal;
+use crate::session::SeekTarget;
+use crate::tui::frame_export::{self, TerminalColors};
 use crate::tui::glyphs::Glyphs;
-use crate::tui::photograph::{self, Paper};
-use crate::worker::request::Recorded;
+use crate::worker::request::RecordSource;
 
 #[derive(Debug, Args)]
 pub struct Options {
@@ -32,7 +32,7 @@ pub struct Options {
     #[arg(long, value_name = "WEEK")]
     replay: Option<u32>,
     /// Columns and rows of the window
-    #[arg(long, default_value = "120x40", value_parser = size)]
+    #[arg(long, default_value = "120x40", value_parser = parse_size)]
     size: (u16, u16),
     /// Theme
     #[arg(long, default_value = "dark")]
@@ -55,32 +55,37 @@ enum PictureFormat {
 }
 
 /// Largest number of columns or rows; larger values are mistakes.
-const LARGEST: u16 = 500;
+const MAX_WINDOW_SIZE: u16 = 500;
 
-pub(super) fn size(text: &str) -> Result<(u16, u16), String> {
+pub(super) fn parse_size(text: &str) -> Result<(u16, u16), String> {
     let parts = text.split_once(['x', '×']);
-    let number = |part: &str| part.trim().parse::<u16>().ok().filter(|number| (1..=LARGEST).contains(number));
+    let number =
+        |part: &str| part.trim().parse::<u16>().ok().filter(|number| (1..=MAX_WINDOW_SIZE).contains(number));
     parts
         .and_then(|(columns, rows)| Some((number(columns)?, number(rows)?)))
-        .ok_or_else(|| format!("give columns and rows up to {LARGEST}, for example 120x40"))
+        .ok_or_else(|| format!("give columns and rows up to {MAX_WINDOW_SIZE}, for example 120x40"))
 }
 
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
-    let runs = context.runs()?;
+    let runs = context.runs_folder()?;
     let folder = find_run_to_read(&runs, &options.run)?;
-    context.look(&folder, "pictures", &options.keys.clone().unwrap_or_else(|| options.screens.join(" ")))?;
+    context.authorize_view(
+        &folder,
+        "pictures",
+        &options.keys.clone().unwrap_or_else(|| options.screens.join(" ")),
+    )?;
     let id = folder.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned());
     let settings = Settings {
-        theme: themes::find(&options.theme, &context.configuration).map_err(Failure::usage)?,
-        keys: Keys::of_user(&context.configuration).map_err(Failure::usage)?,
+        theme: themes::find_theme(&options.theme, &context.configuration).map_err(Failure::usage)?,
+        keys: KeyBindings::with_user_file(&context.configuration).map_err(Failure::usage)?,
         glyphs: if options.ascii { Glyphs::Ascii } else { Glyphs::Braille },
         configuration: context.configuration.clone(),
         runs,
-        again: context.again(),
-        lists_everybody: false,
+        resume_command: context.resume_command(),
+        lists_all_participants: false,
         opponents: play_opponents,
     };
-    let places = places(options, &settings.keys)?;
+    let places = picture_places(options, &settings.keys)?;
     let mut console = Headless::new(settings, options.size);
     let taken = take_pictures(&mut console, &id, &places, options);
     console.finish();
@@ -88,11 +93,11 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
 }
 
 /// Returns the names of the pictures and the keys to press for each.
-fn places(options: &Options, keys: &Keys) -> Result<Vec<(String, String)>, Failure> {
+fn picture_places(options: &Options, keys: &KeyBindings) -> Result<Vec<(String, String)>, Failure> {
     if let Some(keys) = &options.keys {
         return Ok(vec![("keys".to_owned(), keys.clone())]);
     }
-    let known = ScreenId::ALL.map(ScreenId::id);
+    let known = ScreenId::ALL.map(ScreenId::record_name);
     if let Some(wrong) = options.screens.iter().find(|name| !known.contains(&name.as_str())) {
         return Err(Failure::usage(format!(
             "there is no screen {wrong}; the screens are {}",
@@ -100,12 +105,12 @@ fn places(options: &Options, keys: &Keys) -> Result<Vec<(String, String)>, Failu
         )));
     }
     let wanted = |screen: &ScreenId| {
-        options.screens.is_empty() || options.screens.iter().any(|name| name == screen.id())
+        options.screens.is_empty() || options.screens.iter().any(|name| name == screen.record_name())
     };
     // Letters and digits would be typed into a statement; esc leaves the editor first.
     let place = |screen: ScreenId| {
         let key = keys.label(screen.action()).unwrap_or_default();
-        (screen.id().to_owned(), format!("esc {key}"))
+        (screen.record_name().to_owned(), format!("esc {key}"))
     };
     Ok(ScreenId::ALL.into_iter().filter(wanted).map(place).collect())
 }
@@ -118,27 +123,27 @@ fn take_pictures(
 ) -> Result<(), Failure> {
     let failed = |error: std::io::Error| Failure::failed(error.to_string());
     match options.replay {
-        Some(week) => console.replay(Recorded::Run(run.to_owned()), Goal::Week(week), false),
-        None => console.look_at(run),
+        Some(week) => console.replay(RecordSource::Run(run.to_owned()), SeekTarget::Week(week), false),
+        None => console.open_read_only(run),
     }
     .map_err(failed)?;
     for (name, keys) in places {
-        console.press(keys).map_err(|error| Failure::usage(error.to_string()))?;
+        console.press_keys(keys).map_err(|error| Failure::usage(error.to_string()))?;
         let frame = console.draw();
-        let paper = if options.theme == "light" { Paper::LIGHT } else { Paper::DARK };
+        let paper = if options.theme == "light" { TerminalColors::LIGHT } else { TerminalColors::DARK };
         let (picture, ending) = match options.format {
-            PictureFormat::Text => (photograph::text(&frame), "txt"),
-            PictureFormat::Svg => (photograph::svg(&frame, paper), "svg"),
+            PictureFormat::Text => (frame_export::frame_text(&frame), "txt"),
+            PictureFormat::Svg => (frame_export::frame_svg(&frame, paper), "svg"),
         };
         match &options.out {
             None => print(&picture)?,
-            Some(folder) => write(&folder.join(format!("{name}.{ending}")), &picture)?,
+            Some(folder) => write_picture(&folder.join(format!("{name}.{ending}")), &picture)?,
         }
     }
     Ok(())
 }
 
-fn write(path: &Path, picture: &str) -> Result<(), Failure> {
+fn write_picture(path: &Path, picture: &str) -> Result<(), Failure> {
     let written =
         path.parent().map_or(Ok(()), std::fs::create_dir_all).and_then(|()| std::fs::write(path, picture));
     written.map_err(|error| Failure::failed(format!("{}: {error}", path.display())))

@@ -10,21 +10,21 @@ use super::new_run::NewRunOptions;
 use super::{Context, Failure};
 use crate::console::app::Settings;
 use crate::console::effect::Effect;
-use crate::console::keys::Keys;
+use crate::console::keys::KeyBindings;
 use crate::console::themes;
 use crate::lab::play_opponents;
-use crate::record::clock::steady;
+use crate::record::clock::monotonic_time;
 use crate::record::consent::{ConsentGiven, ConsentMeans};
 use crate::record::error::RunError;
 use crate::record::folder::configuration::Configuration;
-use crate::record::folder::library::Library;
+use crate::record::folder::query_library::QueryLibrary;
 use crate::record::folder::runs::find_run;
 use crate::record::mode::Mode;
-use crate::session::{Access, Goal, LessonEntry, NewRun, Session};
+use crate::session::{Access, LessonEntry, NewRun, SeekTarget, Session};
 use crate::tui::glyphs::Glyphs;
 use crate::tui::theme::Theme;
 use crate::worker::preferences::Preferences;
-use crate::worker::request::{Recorded, Request};
+use crate::worker::request::{RecordSource, Request};
 use novamind_course::Handout;
 use novamind_study::Study;
 
@@ -74,8 +74,8 @@ pub struct Options {
 }
 
 impl Options {
-    fn asks_for_new_run(&self) -> bool {
-        self.new || self.made_of.ask_for_one() || self.lesson.is_some() || self.handout.is_some()
+    fn requests_new_run(&self) -> bool {
+        self.new || self.made_of.is_specified() || self.lesson.is_some() || self.handout.is_some()
     }
 
     fn new_run(&self, context: &Context) -> Result<NewRun, Failure> {
@@ -87,13 +87,13 @@ impl Options {
 
 impl Options {
     /// Returns the options that start a lesson.
-    pub fn of_lesson(name: String, options: Options) -> Options {
+    pub fn for_lesson(name: String, options: Options) -> Options {
         Options { lesson: Some(name), ..options }
     }
 
     fn lesson_entry(&self, context: &Context) -> Result<Option<LessonEntry>, Failure> {
         let Some(name) = &self.lesson else { return Ok(None) };
-        let lesson = super::lesson::lesson_of(name, &context.configuration)?;
+        let lesson = super::lesson::find_lesson(name, &context.configuration)?;
         Ok(Some(LessonEntry { lesson: Arc::new(lesson), part: 0, is_judged: true }))
     }
 }
@@ -101,25 +101,25 @@ impl Options {
 pub fn run(options: Options, context: &Context) -> Result<(), Failure> {
     if let Some(path) = &options.handout {
         let handout = Handout::read(path)?;
-        let own = context.of_student(&handout.label)?;
-        let run = Some(handout.place(&context.base_of_runs()?)?);
+        let own = context.for_student(&handout.label)?;
+        let run = Some(handout.ensure_run(&context.runs_root()?)?);
         return self::run(Options { run, handout: None, ..options }, &own);
     }
     let context = &context.with_voice(options.voice.as_deref())?;
     if let Some(id) = &options.run {
-        context.check_play(&find_run(&context.runs()?, id)?)?;
+        context.check_play_allowed(&find_run(&context.runs_folder()?, id)?)?;
     }
-    if asks_for_lines(&options) { play_plain(&options, context) } else { play_console(&options, context) }
+    if uses_plain_mode(&options) { play_plain(&options, context) } else { play_console(&options, context) }
 }
 
 /// Returns whether the game is played line by line.
-fn asks_for_lines(options: &Options) -> bool {
+fn uses_plain_mode(options: &Options) -> bool {
     options.plain || !std::io::stdout().is_terminal() || !std::io::stdin().is_terminal()
 }
 
 /// Guides a participant through a study. The protocol determines the runs, so options of a run are rejected.
-pub fn lead(folder: &Path, options: &Options, context: &Context) -> Result<(), Failure> {
-    if options.run.is_some() || options.voice.is_some() || options.asks_for_new_run() {
+pub fn lead_participant(folder: &Path, options: &Options, context: &Context) -> Result<(), Failure> {
+    if options.run.is_some() || options.voice.is_some() || options.requests_new_run() {
         return Err(Failure::usage(
             "the protocol of the study determines the runs: leave out --run, --voice and the options of a new run",
         ));
@@ -129,38 +129,43 @@ pub fn lead(folder: &Path, options: &Options, context: &Context) -> Result<(), F
             "participants of a study enter their label on the first page: leave out --as {label}"
         )));
     }
-    let study = Study::read(folder)?;
-    let again = context.again_in_study(folder);
-    if !asks_for_lines(options) {
-        return show_console_again(options, Some(Effect::Receive(Box::new(study))), context, again);
+    let study = Study::load(folder)?;
+    let again = context.study_command(folder);
+    if !uses_plain_mode(options) {
+        return show_console_with_resume_command(
+            options,
+            Some(Effect::Receive(Box::new(study))),
+            context,
+            again,
+        );
     }
-    let style = crate::plain::Style { json: options.json, echo: options.echo, strict: options.strict };
-    let base = context.runs()?;
+    let style = crate::plain::OutputStyle { json: options.json, echo: options.echo, strict: options.strict };
+    let base = context.runs_folder()?;
     let again = if options.plain { format!("{again} --plain") } else { again };
-    match crate::plain::visit(study, &base, &context.configuration, style, &again)? {
+    match crate::plain::run_participant_session(study, &base, &context.configuration, style, &again)? {
         0 => Ok(()),
         code => Err(Failure::code_only(code)),
     }
 }
 
-fn open(options: &Options, context: &Context) -> Result<Session, Failure> {
+fn open_run(options: &Options, context: &Context) -> Result<Session, Failure> {
     match &options.run {
         Some(id) => {
-            let folder = find_run(&context.runs()?, id)?;
+            let folder = find_run(&context.runs_folder()?, id)?;
             Ok(match options.watch {
                 true => Session::open_to_read(&folder, true)?,
                 false => Session::open_to_play(&folder, &context.configuration)?,
             })
         }
-        None => create(options.new_run(context)?, context),
+        None => create_run(options.new_run(context)?, context),
     }
 }
 
 /// Creates a run. At a terminal, a participant is asked for consent if it is needed.
-fn create(new: NewRun, context: &Context) -> Result<Session, Failure> {
+fn create_run(new: NewRun, context: &Context) -> Result<Session, Failure> {
     match Session::create(new.clone(), &context.configuration) {
         Err(RunError::ConsentNeeded(text)) if std::io::stdin().is_terminal() => {
-            let shown = steady();
+            let shown = monotonic_time();
             eprint!("{}\n\nType yes to agree: ", text.text.trim_end());
             let mut answer = String::new();
             let read = std::io::stdin().read_line(&mut answer);
@@ -172,33 +177,34 @@ fn create(new: NewRun, context: &Context) -> Result<Session, Failure> {
             let given = ConsentGiven {
                 means: ConsentMeans::Prompt,
                 scrolled_to_end: true,
-                read_ms: steady().saturating_sub(shown).as_millis() as u64,
+                read_ms: monotonic_time().saturating_sub(shown).as_millis() as u64,
             };
-            Ok(Session::create(NewRun { agreed: Some(given.now()), ..new }, &context.configuration)?)
+            Ok(Session::create(NewRun { agreed: Some(given.given_now()), ..new }, &context.configuration)?)
         }
         created => Ok(created?),
     }
 }
 
 fn play_plain(options: &Options, context: &Context) -> Result<(), Failure> {
-    let style = crate::plain::Style { json: options.json, echo: options.echo, strict: options.strict };
-    let code = crate::plain::play(open(options, context)?, Library::of(&context.configuration), style)
-        .map_err(|error| Failure::failed(error.to_string()))?;
+    let style = crate::plain::OutputStyle { json: options.json, echo: options.echo, strict: options.strict };
+    let code =
+        crate::plain::play(open_run(options, context)?, QueryLibrary::load(&context.configuration), style)
+            .map_err(|error| Failure::failed(error.to_string()))?;
     if code == 0 { Ok(()) } else { Err(Failure::code_only(code)) }
 }
 
 fn play_console(options: &Options, context: &Context) -> Result<(), Failure> {
     let start = match &options.run {
         Some(id) if options.watch => {
-            let recorded = Recorded::Run(id.clone());
+            let recorded = RecordSource::Run(id.clone());
             Some(if options.big {
                 Effect::Project(recorded)
             } else {
-                Effect::Request(Request::Replay { recorded, goal: Goal::Last, follow: true })
+                Effect::Request(Request::Replay { recorded, goal: SeekTarget::Last, follow: true })
             })
         }
         Some(id) => Some(Effect::Request(Request::Open(id.clone(), Access::Write))),
-        None if options.asks_for_new_run() => {
+        None if options.requests_new_run() => {
             Some(Effect::Request(Request::Create(Box::new(options.new_run(context)?))))
         }
         None => None,
@@ -207,7 +213,7 @@ fn play_console(options: &Options, context: &Context) -> Result<(), Failure> {
 }
 
 /// Returns the theme: the one given, otherwise none if the terminal disables color, otherwise the one last chosen.
-fn theme(
+fn select_theme(
     options: &Options,
     no_colour: bool,
     chosen: &Preferences,
@@ -216,39 +222,39 @@ fn theme(
     let asked = options.theme.as_deref().or(no_colour.then_some("mono"));
     let remembered = chosen.theme.as_deref().filter(|_| asked.is_none());
     // A chosen theme that no longer exists must not prevent playing.
-    if let Some(theme) = remembered.and_then(|name| themes::find(name, configuration).ok()) {
+    if let Some(theme) = remembered.and_then(|name| themes::find_theme(name, configuration).ok()) {
         return Ok(theme);
     }
-    themes::find(asked.unwrap_or("dark"), configuration).map_err(Failure::usage)
+    themes::find_theme(asked.unwrap_or("dark"), configuration).map_err(Failure::usage)
 }
 
 /// Opens the console with an initial effect.
 pub fn show_console(options: &Options, start: Option<Effect>, context: &Context) -> Result<(), Failure> {
-    show_console_again(options, start, context, context.again())
+    show_console_with_resume_command(options, start, context, context.resume_command())
 }
 
 /// Opens the console and prints `again`, the command that continues later.
-fn show_console_again(
+fn show_console_with_resume_command(
     options: &Options,
     start: Option<Effect>,
     context: &Context,
     again: String,
 ) -> Result<(), Failure> {
     let no_colour = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
-    let chosen = Preferences::of(&context.configuration);
-    let theme = theme(options, no_colour, &chosen, &context.configuration)?;
-    let keys = Keys::of_user(&context.configuration).map_err(Failure::unreadable)?;
+    let chosen = Preferences::load(&context.configuration);
+    let theme = select_theme(options, no_colour, &chosen, &context.configuration)?;
+    let keys = KeyBindings::with_user_file(&context.configuration).map_err(Failure::unreadable)?;
     let settings = Settings {
         theme,
         keys,
         glyphs: if options.ascii { Glyphs::Ascii } else { chosen.marker.unwrap_or(Glyphs::Braille) },
         configuration: context.configuration.clone(),
-        runs: context.runs()?,
-        again,
-        lists_everybody: context.is_experimenter,
+        runs: context.runs_folder()?,
+        resume_command: again,
+        lists_all_participants: context.is_experimenter,
         opponents: play_opponents,
     };
-    let (code, farewell) = crate::console::play(settings, start)
+    let (code, farewell) = crate::console::run_console(settings, start)
         .map_err(|error| Failure::failed(format!("the terminal: {error}")))?;
     if let Some(text) = farewell {
         println!("{text}");

@@ -6,18 +6,18 @@ use clap::{Args, ValueEnum};
 
 use super::run::progress_bar;
 use super::{Context, Failure, print};
-use crate::database::{Cell, Rows};
+use crate::database::{Cell, QueryResult};
+use crate::formatting::{escape_control_characters, escape_csv_cell};
 use crate::insight::Inspect;
-use crate::notation::{csv_cell, printable};
 use crate::record::error::RunError;
-use crate::record::folder::derived::manifest_of;
-use crate::record::folder::library::Library;
+use crate::record::folder::manifest_check::read_manifest;
+use crate::record::folder::query_library::QueryLibrary;
 use crate::record::folder::runs::find_run_to_read;
 use crate::record::trajectory::record::Outcome;
 use crate::record::trajectory::{Line, Record, Trajectory};
 use crate::session::{
-    Access, SealKey, Session, connection_to_file, may_look_inside, query_refusal, rebuild_database,
-    rows_as_json, with_the_way_to_hidden_tables,
+    Access, SealKey, Session, can_inspect, open_database_file, query_rejection, rebuild_database,
+    rows_to_json, with_hidden_table_hint,
 };
 
 #[derive(Debug, Args)]
@@ -53,31 +53,31 @@ pub enum RowFormat {
 }
 
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
-    let folder = find_run_to_read(&context.runs()?, &options.run)?;
+    let folder = find_run_to_read(&context.runs_folder()?, &options.run)?;
     let rows = if options.xray {
-        ask_xray(&folder, options, context)?
+        query_hidden_tables(&folder, options, context)?
     } else {
-        let statement = statement(&options.sql, context)?;
-        context.look(&folder, "query", &statement)?;
-        ask(&folder, &statement, &context.seal_key()?)?
+        let statement = resolve_statement(&options.sql, context)?;
+        context.authorize_view(&folder, "query", &statement)?;
+        query_run(&folder, &statement, &context.seal_key()?)?
     };
     match options.format {
-        RowFormat::Table => print(&printable(&crate::plain::table(&rows))),
-        RowFormat::Csv => print(&as_csv(&rows)?),
-        RowFormat::Md => print(&as_markdown(&rows)),
-        RowFormat::Json => print(&format!("{}\n", serde_json::Value::Object(rows_as_json(&rows)))),
+        RowFormat::Table => print(&escape_control_characters(&crate::plain::format_result(&rows))),
+        RowFormat::Csv => print(&to_csv(&rows)?),
+        RowFormat::Md => print(&to_markdown(&rows)),
+        RowFormat::Json => print(&format!("{}\n", serde_json::Value::Object(rows_to_json(&rows)))),
     }
 }
 
 /// Returns the statement. A single name, which is never a statement, selects a query of the library.
-fn statement(given: &str, context: &Context) -> Result<String, Failure> {
+fn resolve_statement(given: &str, context: &Context) -> Result<String, Failure> {
     let is_name =
         given.contains('-') && given.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'-');
-    let library = Library::of(&context.configuration);
+    let library = QueryLibrary::load(&context.configuration);
     match library.find(given) {
         Some(query) => Ok(query.body().to_owned()),
         None if is_name && !given.starts_with('-') => {
-            let near = library.near(given);
+            let near = library.similar_names(given);
             let near =
                 if near.is_empty() { String::new() } else { format!("; did you mean {}?", near.join(", ")) };
             Err(Failure::usage(format!("there is no query {given}{near}")))
@@ -87,20 +87,20 @@ fn statement(given: &str, context: &Context) -> Result<String, Failure> {
 }
 
 /// Queries with the hidden tables. The run is opened for writing because the inspection is recorded.
-fn ask_xray(folder: &Path, options: &Options, context: &Context) -> Result<Rows, Failure> {
-    context.check_look(folder)?;
+fn query_hidden_tables(folder: &Path, options: &Options, context: &Context) -> Result<QueryResult, Failure> {
+    context.check_view_allowed(folder)?;
     let mut session = Session::open_sealed(folder, Access::Write, true, context.seal_key()?)?;
-    session.refuse_to_look_inside()?;
-    let statement = statement(&options.sql, context)?;
-    let rows = session.inspect().xray_query(&statement, options.day)?;
+    session.check_inspection()?;
+    let statement = resolve_statement(&options.sql, context)?;
+    let rows = session.inspect().query_hidden_tables(&statement, options.day)?;
     session.save()?;
     Ok(rows)
 }
 
 /// Queries the database of the run, which is completed on disk first if necessary. If the run is being played or its folder is
 /// read-only, the database is built in memory from the trajectory.
-fn ask(folder: &Path, sql: &str, key: &SealKey) -> Result<Rows, Failure> {
-    if let Some(rows) = ask_file(folder, sql, key)? {
+fn query_run(folder: &Path, sql: &str, key: &SealKey) -> Result<QueryResult, Failure> {
+    if let Some(rows) = query_database_file(folder, sql, key)? {
         return Ok(rows);
     }
     let mut progress = None;
@@ -113,7 +113,7 @@ fn ask(folder: &Path, sql: &str, key: &SealKey) -> Result<Rows, Failure> {
     }
     match rebuilt {
         Ok(()) => {
-            if let Some(rows) = ask_file(folder, sql, key)? {
+            if let Some(rows) = query_database_file(folder, sql, key)? {
                 return Ok(rows);
             }
         }
@@ -125,32 +125,32 @@ fn ask(folder: &Path, sql: &str, key: &SealKey) -> Result<Rows, Failure> {
 }
 
 /// Queries the database file. Returns `None` if it is incomplete.
-fn ask_file(folder: &Path, sql: &str, key: &SealKey) -> Result<Option<Rows>, Failure> {
+fn query_database_file(folder: &Path, sql: &str, key: &SealKey) -> Result<Option<QueryResult>, Failure> {
     // Both read long files, so each has its own thread.
     let (trajectory, opened) = std::thread::scope(|scope| {
-        let opened = scope.spawn(|| connection_to_file(folder, key));
+        let opened = scope.spawn(|| open_database_file(folder, key));
         (Trajectory::read(&folder.join("trajectory.jsonl")), opened.join())
     });
     let (trajectory, opened) = (trajectory?, opened.unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
     // Only lines that change the company count; queries and views do not.
-    let last = trajectory.lines.iter().rev().find(|line| moves_database(line));
+    let last = trajectory.lines.iter().rev().find(|line| changes_database(line));
     if let (Ok((connection, position)), Some(last)) = (opened, last)
         && position.seq >= last.seq
         && trajectory.lines.get(position.seq as usize).is_some_and(|line| line.hash == position.line_hash)
     {
         let time = std::time::Duration::from_secs(120);
-        let limits = crate::database::query::Limits { rows: 5000, time, steps: None };
-        let answer = connection.ask(sql, limits);
-        if !connection.found_damage() {
+        let limits = crate::database::query::QueryLimits { rows: 5000, time, steps: None };
+        let answer = connection.query(sql, limits);
+        if !connection.has_found_damage() {
             let may_look = || {
-                let ended = trajectory.end().and_then(|line| match &line.record {
+                let ended = trajectory.end_line().and_then(|line| match &line.record {
                     Record::End(end) => Some(end.reason),
                     _ => None,
                 });
-                manifest_of(folder).is_ok_and(|manifest| may_look_inside(&manifest, ended, Some(folder)))
+                read_manifest(folder).is_ok_and(|manifest| can_inspect(&manifest, ended, Some(folder)))
             };
-            return answer.map(Some).map_err(|error| match query_refusal(error) {
-                refusal if may_look() => with_the_way_to_hidden_tables(refusal).into(),
+            return answer.map(Some).map_err(|error| match query_rejection(error) {
+                refusal if may_look() => with_hidden_table_hint(refusal).into(),
                 refusal => refusal.into(),
             });
         }
@@ -158,10 +158,10 @@ fn ask_file(folder: &Path, sql: &str, key: &SealKey) -> Result<Option<Rows>, Fai
     Ok(None)
 }
 
-fn moves_database(line: &Line) -> bool {
+fn changes_database(line: &Line) -> bool {
     match &line.record {
         Record::Call(call) => {
-            let acts = call.tool.known().is_some_and(|tool| tool.spec().kind.acts());
+            let acts = call.tool.tool_id().is_some_and(|tool| tool.spec().kind.changes_company());
             acts && matches!(call.outcome, Outcome::Accepted(_))
         }
         Record::Start(_) | Record::Week(_) | Record::Step(_) | Record::End(_) => true,
@@ -169,7 +169,7 @@ fn moves_database(line: &Line) -> bool {
     }
 }
 
-fn as_markdown(rows: &Rows) -> String {
+fn to_markdown(rows: &QueryResult) -> String {
     let escaped = |text: &str| text.replace('|', "\\|").replace(['\n', '\r'], " ");
     let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
     let is_number = |at: usize| {
@@ -182,23 +182,23 @@ fn as_markdown(rows: &Rows) -> String {
     for row in &rows.rows {
         let cell = |cell: &Cell| match cell {
             Cell::Null => String::new(),
-            other => escaped(&crate::plain::cell_text(other)),
+            other => escaped(&crate::plain::format_cell(other)),
         };
         text += &line(row.iter().map(cell).collect());
     }
-    printable(&text).into_owned()
+    escape_control_characters(&text).into_owned()
 }
 
 /// Formats a result as comma-separated values with a header.
-pub fn as_csv(rows: &Rows) -> Result<String, Failure> {
+pub fn to_csv(rows: &QueryResult) -> Result<String, Failure> {
     let wrong = |error: String| Failure::failed(format!("cannot write the result as CSV: {error}"));
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(&rows.columns).map_err(|error| wrong(error.to_string()))?;
     for row in &rows.rows {
         let cells = row.iter().map(|cell| match cell {
             Cell::Null => String::new(),
-            Cell::Text(text) => csv_cell(text).into_owned(),
-            other => crate::plain::cell_text(other),
+            Cell::Text(text) => escape_csv_cell(text).into_owned(),
+            other => crate::plain::format_cell(other),
         });
         writer.write_record(cells).map_err(|error| wrong(error.to_string()))?;
     }

@@ -10,10 +10,10 @@ use clap::Args;
 use super::play::show_console;
 use super::{Context, Failure, play, print};
 use crate::console::effect::Effect;
-use crate::insight::open_to_look_inside;
+use crate::insight::open_for_inspection;
 use crate::record::folder::runs::find_run_to_read;
-use crate::session::{Goal, record_look, verify_sealed};
-use crate::worker::request::{Recorded, Request};
+use crate::session::{SeekTarget, record_external_read, verify_sealed};
+use crate::worker::request::{RecordSource, Request};
 
 #[derive(Debug, Args)]
 pub struct Options {
@@ -23,7 +23,7 @@ pub struct Options {
     #[arg(long)]
     verify: bool,
     /// Start after this week; with --cast: record this week, or the weeks A..B
-    #[arg(long, value_name = "N|A..B", conflicts_with = "verify", value_parser = weeks)]
+    #[arg(long, value_name = "N|A..B", conflicts_with = "verify", value_parser = parse_weeks)]
     week: Option<(u32, Option<u32>)>,
     /// Open the X-ray screen, at the end of the record unless --week is given; for debug runs and finished runs
     #[arg(long, conflicts_with = "verify")]
@@ -36,7 +36,7 @@ pub struct Options {
 }
 
 /// Parses a week, or a range of weeks.
-fn weeks(text: &str) -> Result<(u32, Option<u32>), String> {
+fn parse_weeks(text: &str) -> Result<(u32, Option<u32>), String> {
     let number = |text: &str| text.parse::<u32>().map_err(|_| format!("{text} is not a week number"));
     match text.split_once("..") {
         None => Ok((number(text)?, None)),
@@ -51,16 +51,18 @@ fn weeks(text: &str) -> Result<(u32, Option<u32>), String> {
 
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     match &options.cast {
-        Some(file) => cast::record(file, recorded(&options.run), options.week, &options.recording, context),
-        None if options.verify => check(options, context),
-        None => show(options, context),
+        Some(file) => {
+            cast::record_cast(file, find_recorded(&options.run), options.week, &options.recording, context)
+        }
+        None if options.verify => verify(options, context),
+        None => show_replay(options, context),
     }
 }
 
-fn show(options: &Options, context: &Context) -> Result<(), Failure> {
-    let recorded = recorded(&options.run);
+fn show_replay(options: &Options, context: &Context) -> Result<(), Failure> {
+    let recorded = find_recorded(&options.run);
     if options.xray {
-        check_inside(&recorded, context)?;
+        check_inspection(&recorded, context)?;
     }
     if !std::io::stdout().is_terminal() || !std::io::stdin().is_terminal() {
         return Err(Failure::usage(
@@ -72,11 +74,11 @@ fn show(options: &Options, context: &Context) -> Result<(), Failure> {
         (Some((_, Some(_))), _) => {
             return Err(Failure::usage("a replay starts after one week; a range of weeks needs --cast"));
         }
-        (Some((week, None)), _) => (Goal::Week(week), format!("week {week}")),
-        (None, true) => (Goal::Last, "the end".to_owned()),
-        (None, false) => (Goal::Week(0), "week 0".to_owned()),
+        (Some((week, None)), _) => (SeekTarget::Week(week), format!("week {week}")),
+        (None, true) => (SeekTarget::Last, "the end".to_owned()),
+        (None, false) => (SeekTarget::Week(0), "week 0".to_owned()),
     };
-    note_look(&recorded, &from, context)?;
+    record_view(&recorded, &from, context)?;
     let effect = match options.xray {
         true => Effect::ReplayInside(recorded, goal),
         false => Effect::Request(Request::Replay { recorded, goal, follow: false }),
@@ -85,52 +87,52 @@ fn show(options: &Options, context: &Context) -> Result<(), Failure> {
 }
 
 /// Checks that the hidden state of a record may be inspected.
-fn check_inside(recorded: &Recorded, context: &Context) -> Result<(), Failure> {
+fn check_inspection(recorded: &RecordSource, context: &Context) -> Result<(), Failure> {
     let folder = match recorded {
-        Recorded::Run(id) => Some(find_run_to_read(&context.runs()?, id)?),
-        Recorded::File(path) => folder_around(path),
+        RecordSource::Run(id) => Some(find_run_to_read(&context.runs_folder()?, id)?),
+        RecordSource::File(path) => containing_run_folder(path),
     };
     let folder = folder.ok_or_else(|| {
         Failure::usage("the x-ray needs the folder of the run; this trajectory is a single file")
     })?;
-    context.check_look(&folder)?;
-    Ok(open_to_look_inside(&folder, context.seal_key()?).map(drop)?)
+    context.check_view_allowed(&folder)?;
+    Ok(open_for_inspection(&folder, context.seal_key()?).map(drop)?)
 }
 
 /// Returns the run folder that a path names or that contains it.
-fn folder_around(path: &Path) -> Option<PathBuf> {
+fn containing_run_folder(path: &Path) -> Option<PathBuf> {
     let is_run = |folder: &&Path| folder.join("run.toml").is_file();
     Some(path).filter(is_run).or_else(|| path.parent().filter(is_run)).map(Path::to_owned)
 }
 
 /// Records that a run was read.
-fn note_look(recorded: &Recorded, detail: &str, context: &Context) -> Result<(), Failure> {
+fn record_view(recorded: &RecordSource, detail: &str, context: &Context) -> Result<(), Failure> {
     let folder = match recorded {
-        Recorded::Run(id) => find_run_to_read(&context.runs()?, id)?,
-        Recorded::File(path) => match folder_around(path) {
+        RecordSource::Run(id) => find_run_to_read(&context.runs_folder()?, id)?,
+        RecordSource::File(path) => match containing_run_folder(path) {
             Some(folder) => folder,
             None => return Ok(()),
         },
     };
     // Verification shows nothing of the run.
     if detail == "verify" {
-        return Ok(record_look(&folder, "replay", detail)?);
+        return Ok(record_external_read(&folder, "replay", detail)?);
     }
-    context.look(&folder, "replay", detail)
+    context.authorize_view(&folder, "replay", detail)
 }
 
 /// Returns a record by path if there is such a file or folder, otherwise by run id.
-fn recorded(name: &str) -> Recorded {
+fn find_recorded(name: &str) -> RecordSource {
     let path = PathBuf::from(name);
-    if path.exists() { Recorded::File(path) } else { Recorded::Run(name.to_owned()) }
+    if path.exists() { RecordSource::File(path) } else { RecordSource::Run(name.to_owned()) }
 }
 
-fn check(options: &Options, context: &Context) -> Result<(), Failure> {
-    let recorded = recorded(&options.run);
-    note_look(&recorded, "verify", context)?;
+fn verify(options: &Options, context: &Context) -> Result<(), Failure> {
+    let recorded = find_recorded(&options.run);
+    record_view(&recorded, "verify", context)?;
     let place = match recorded {
-        Recorded::File(path) => path,
-        Recorded::Run(id) => find_run_to_read(&context.runs()?, &id)?,
+        RecordSource::File(path) => path,
+        RecordSource::Run(id) => find_run_to_read(&context.runs_folder()?, &id)?,
     };
     let found = verify_sealed(&place, &context.seal_key()?)?;
     print(&format!(

@@ -9,9 +9,10 @@ use super::{Context, Failure, print};
 use crate::record::folder::runs::find_run_to_read;
 use crate::record::trajectory::Trajectory;
 use crate::report::{
-    Logbook, Story, as_html, as_markdown, card_as_svg, card_as_text, session_as_html, session_as_markdown,
+    Logbook, RunReport, card_to_svg, card_to_text, report_to_html, report_to_markdown, session_to_html,
+    session_to_markdown,
 };
-use crate::session::{Session, lines_afterwards};
+use crate::session::{Session, read_afterwards};
 
 #[derive(Debug, Args)]
 pub struct Options {
@@ -47,14 +48,14 @@ pub enum ReportFormat {
 }
 
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
-    let folder = find_run_to_read(&context.runs()?, &options.run)?;
+    let folder = find_run_to_read(&context.runs_folder()?, &options.run)?;
     let usual = if options.card { ReportFormat::Text } else { ReportFormat::Markdown };
     let format = options.format.unwrap_or(usual);
-    context.look(&folder, "report", if options.session { "session" } else { "run" })?;
+    context.authorize_view(&folder, "report", if options.session { "session" } else { "run" })?;
     let text = match options.session {
-        _ if options.card => card_of(&folder, format)?,
-        true => session_of(&folder, format)?,
-        false => report_of(&folder, format)?,
+        _ if options.card => render_card(&folder, format)?,
+        true => render_session(&folder, format)?,
+        false => render_report(&folder, format)?,
     };
     let Some(path) = &options.out else {
         return print(&text);
@@ -64,51 +65,51 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
 }
 
 /// Returns the report on the run in a folder. Does not modify the run.
-fn report_of(folder: &Path, format: ReportFormat) -> Result<String, Failure> {
-    let told = |write: fn(&Story) -> String| -> Result<String, Failure> {
-        Ok(write(&Story::of(&Session::open_to_read(folder, true)?)))
+fn render_report(folder: &Path, format: ReportFormat) -> Result<String, Failure> {
+    let told = |write: fn(&RunReport) -> String| -> Result<String, Failure> {
+        Ok(write(&RunReport::from_session(&Session::open_to_read(folder, true)?)))
     };
     match format {
-        ReportFormat::Markdown => told(as_markdown),
-        ReportFormat::Html => told(as_html),
+        ReportFormat::Markdown => told(report_to_markdown),
+        ReportFormat::Html => told(report_to_html),
         ReportFormat::Json => Err(Failure::usage(
             "a report is markdown or html; json needs --session. For figures, use `novamind query`",
         )),
-        ReportFormat::Text | ReportFormat::Svg => Err(only_of_cards()),
+        ReportFormat::Text | ReportFormat::Svg => Err(only_for_cards()),
     }
 }
 
 /// Returns the card of the run in a folder. Does not modify the run.
-fn card_of(folder: &Path, format: ReportFormat) -> Result<String, Failure> {
+fn render_card(folder: &Path, format: ReportFormat) -> Result<String, Failure> {
     let write = match format {
-        ReportFormat::Text => card_as_text,
-        ReportFormat::Svg => card_as_svg,
+        ReportFormat::Text => card_to_text,
+        ReportFormat::Svg => card_to_svg,
         _ => return Err(Failure::usage("a card is text or svg")),
     };
-    Ok(write(&Story::of(&Session::open_to_read(folder, true)?)))
+    Ok(write(&RunReport::from_session(&Session::open_to_read(folder, true)?)))
 }
 
-fn only_of_cards() -> Failure {
+fn only_for_cards() -> Failure {
     Failure::usage("text and svg need --card")
 }
 
 /// Returns the report on how the run in a folder was played. Does not modify the run.
-fn session_of(folder: &Path, format: ReportFormat) -> Result<String, Failure> {
-    let logbook = logbook_of(folder)?;
+fn render_session(folder: &Path, format: ReportFormat) -> Result<String, Failure> {
+    let logbook = read_logbook(folder)?;
     Ok(match format {
-        ReportFormat::Markdown => session_as_markdown(&logbook),
-        ReportFormat::Html => session_as_html(&logbook),
+        ReportFormat::Markdown => session_to_markdown(&logbook),
+        ReportFormat::Html => session_to_html(&logbook),
         ReportFormat::Json => serde_json::to_string_pretty(&logbook).unwrap_or_default() + "\n",
-        ReportFormat::Text | ReportFormat::Svg => return Err(only_of_cards()),
+        ReportFormat::Text | ReportFormat::Svg => return Err(only_for_cards()),
     })
 }
 
 /// Reads the logbook of the run in a folder.
-pub fn logbook_of(folder: &Path) -> Result<Logbook, Failure> {
+pub fn read_logbook(folder: &Path) -> Result<Logbook, Failure> {
     let session = Session::open_to_read(folder, true)?;
     let trajectory = Trajectory::read(&folder.join("trajectory.jsonl"))?;
-    let afterwards = lines_afterwards(folder, &trajectory)?;
-    Ok(Logbook::of(&session, &trajectory.lines, &afterwards.lines))
+    let afterwards = read_afterwards(folder, &trajectory)?;
+    Ok(Logbook::new(&session, &trajectory.lines, &afterwards.lines))
 }
 
 #[cfg(test)]
@@ -119,20 +120,20 @@ mod tests {
     use crate::session::{NewRun, Storage};
 
     #[test]
-    fn a_run_on_the_disk_is_told_in_both_formats() {
+    fn report_renders_markdown_and_html() {
         let runs = tempfile::tempdir().expect("a folder");
         let new =
             NewRun { days: Some(21), storage: Storage::Runs(runs.path().to_owned()), ..NewRun::default() };
-        let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+        let mut session = Session::create(new, &Configuration::bundled()).expect("a run");
         let forecasts = session.company().naive_forecasts();
         session.advance("wait and see", &forecasts, Via::Script, &mut |_| {}).expect("a week");
         let id = session.manifest().id.clone();
         drop(session);
         let context = Context {
-            configuration: Configuration::shipped(),
+            configuration: Configuration::bundled(),
             runs: Some(runs.path().to_owned()),
             participant: None,
-            names_runs: true,
+            has_explicit_runs_folder: true,
             study_folder: None,
             is_experimenter: false,
         };

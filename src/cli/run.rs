@@ -10,10 +10,10 @@ use std::sync::mpsc::{Receiver, channel};
 use clap::{Args, ValueEnum};
 use rayon::prelude::*;
 
-use super::output_file::check_beginning;
+use super::output_file::check_signature;
 use super::{Context, Failure, print};
-use crate::lab::{Collector, Figure, Outcome, Policy, RunEnd, RunError, RunSpec, play};
-pub use crate::lab::{Seeds, parse_seeds};
+use crate::lab::{Collector, MetricValue, Policy, PolicyRunOutcome, RunEnd, RunError, RunSpec, play};
+pub use crate::lab::{SeedRange, parse_seeds};
 
 #[derive(Debug, Args)]
 pub struct Options {
@@ -22,7 +22,7 @@ pub struct Options {
     policy: String,
     /// Seed, or a range including both ends: 1..24
     #[arg(long, default_value = "42", value_name = "N|A..B", value_parser = parse_seeds)]
-    seed: Seeds,
+    seed: SeedRange,
     /// Last day of the run; affects the mechanics [default: that of the policy or scenario, otherwise 500]
     #[arg(long, value_name = "N")]
     days: Option<u32>,
@@ -79,26 +79,29 @@ pub fn parse_override(text: &str) -> Result<(String, String), String> {
 
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let policy = Policy::find(&options.policy, &context.configuration)?;
-    let save = if options.save { Some(context.runs()?) } else { None };
+    let save = if options.save { Some(context.runs_folder()?) } else { None };
     let spec = RunSpec {
         seed: 0,
         days: options.days,
-        until: options.until,
+        stop_after_day: options.until,
         surges: options.surges.map(|switch| switch == Switch::On),
         cash: options.cash,
         scenario: options.scenario.clone(),
         overrides: options.set.clone(),
-        projection: save.is_some(),
-        save,
+        saves_database: save.is_some(),
+        save_folder: save,
     };
-    let mut book =
-        Book { metrics: options.metrics.as_ref().map(open_metrics).transpose()?, options, bankrupt: false };
+    let mut book = ResultWriter {
+        metrics: options.metrics.as_ref().map(open_metrics).transpose()?,
+        options,
+        bankrupt: false,
+    };
     let seeds: Vec<u64> = (options.seed.first..=options.seed.last).collect();
     let progress = progress_bar(seeds.len() as u64, "runs");
-    let results = start(&policy, &spec, seeds, options, context)?;
+    let results = play_seeds(&policy, &spec, seeds, options, context)?;
     let results = results.into_iter().inspect(|_| progress.inc(1));
-    let write = |(_, outcome, collector): Played| progress.suspend(|| book.write(&outcome?, collector));
-    let failure = in_order(results, options.seed.first..=options.seed.last, write).err();
+    let write = |(_, outcome, collector): PlayedSeed| progress.suspend(|| book.write(&outcome?, collector));
+    let failure = write_in_order(results, options.seed.first..=options.seed.last, write).err();
     progress.finish_and_clear();
     if let Some(mut file) = book.metrics {
         file.flush().map_err(|error| Failure::failed(format!("cannot write the figures: {error}")))?;
@@ -111,16 +114,16 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
 }
 
 /// Seed, outcome and figures of a run.
-type Played = (u64, Result<Outcome, RunError>, Collector);
+type PlayedSeed = (u64, Result<PolicyRunOutcome, RunError>, Collector);
 
 /// Plays all seeds on a thread pool. Results arrive in any order.
-fn start(
+fn play_seeds(
     policy: &Policy,
     spec: &RunSpec,
     seeds: Vec<u64>,
     options: &Options,
     context: &Context,
-) -> Result<Receiver<Played>, Failure> {
+) -> Result<Receiver<PlayedSeed>, Failure> {
     let pool = thread_pool(options.jobs)?;
     let (done, results) = channel();
     let (policy, spec, configuration) = (policy.clone(), spec.clone(), context.configuration.clone());
@@ -129,7 +132,7 @@ fn start(
         pool.install(|| {
             seeds.into_par_iter().with_max_len(1).for_each_with(done, |done, seed| {
                 let own = RunSpec { seed, ..spec.clone() };
-                let mut collector = if wanted { Collector::new(days.clone()) } else { Collector::idle() };
+                let mut collector = if wanted { Collector::new(days.clone()) } else { Collector::disabled() };
                 let outcome = play(&policy, &own, &configuration, &mut collector);
                 // The receiver is gone after an earlier seed has failed.
                 let _ = done.send((seed, outcome, collector));
@@ -143,10 +146,10 @@ fn start(
 ///
 /// # Errors
 /// A result cannot be written, or a seed has no result because its thread panicked.
-fn in_order(
-    results: impl IntoIterator<Item = Played>,
+fn write_in_order(
+    results: impl IntoIterator<Item = PlayedSeed>,
     seeds: RangeInclusive<u64>,
-    mut write: impl FnMut(Played) -> Result<(), Failure>,
+    mut write: impl FnMut(PlayedSeed) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     let mut waiting = BTreeMap::new();
     let mut next = *seeds.start();
@@ -166,14 +169,14 @@ fn in_order(
 }
 
 /// Destinations of the results.
-struct Book<'a> {
+struct ResultWriter<'a> {
     metrics: Option<BufWriter<File>>,
     options: &'a Options,
     bankrupt: bool,
 }
 
-impl Book<'_> {
-    fn write(&mut self, outcome: &Outcome, collector: Collector) -> Result<(), Failure> {
+impl ResultWriter<'_> {
+    fn write(&mut self, outcome: &PolicyRunOutcome, collector: Collector) -> Result<(), Failure> {
         self.bankrupt |= outcome.ended == RunEnd::Bankruptcy;
         if let Some(file) = &mut self.metrics {
             let until = self.options.until.unwrap_or(outcome.days).min(outcome.days);
@@ -183,7 +186,7 @@ impl Book<'_> {
     }
 }
 
-fn summary(outcome: &Outcome, json: bool) -> String {
+fn summary(outcome: &PolicyRunOutcome, json: bool) -> String {
     if json {
         serde_json::to_string(outcome).expect("an outcome holds plain values") + "\n"
     } else {
@@ -191,24 +194,24 @@ fn summary(outcome: &Outcome, json: bool) -> String {
     }
 }
 
-const HEAD: &str = "seed,day,figure,group,value";
+const CSV_HEADER: &str = "seed,day,figure,group,value";
 
 fn open_metrics(path: &PathBuf) -> Result<BufWriter<File>, Failure> {
     let failed = |error: std::io::Error| Failure::failed(format!("{}: {error}", path.display()));
-    check_beginning(path, HEAD)?;
+    check_signature(path, CSV_HEADER)?;
     let mut file = BufWriter::new(File::create(path).map_err(failed)?);
-    writeln!(file, "{HEAD}").map_err(failed)?;
+    writeln!(file, "{CSV_HEADER}").map_err(failed)?;
     Ok(file)
 }
 
 /// Formats the figures of a run as rows for `--metrics`.
-pub fn figure_rows(seed: &str, figures: &[Figure]) -> String {
-    let row = |own: &Figure| format!("{seed},{},{},{},{}\n", own.day, own.figure, own.group, own.value);
-    format!("{HEAD}\n{}", figures.iter().map(row).collect::<String>())
+pub fn figure_rows(seed: &str, figures: &[MetricValue]) -> String {
+    let row = |own: &MetricValue| format!("{seed},{},{},{},{}\n", own.day, own.figure, own.group, own.value);
+    format!("{CSV_HEADER}\n{}", figures.iter().map(row).collect::<String>())
 }
 
-fn write_figures(file: &mut BufWriter<File>, seed: u64, figures: &[Figure]) -> Result<(), Failure> {
-    for Figure { day, figure, group, value } in figures {
+fn write_figures(file: &mut BufWriter<File>, seed: u64, figures: &[MetricValue]) -> Result<(), Failure> {
+    for MetricValue { day, figure, group, value } in figures {
         writeln!(file, "{seed},{day},{figure},{group},{value}")
             .map_err(|error| Failure::failed(format!("cannot write the figures: {error}")))?;
     }
@@ -216,13 +219,13 @@ fn write_figures(file: &mut BufWriter<File>, seed: u64, figures: &[Figure]) -> R
 }
 
 /// Upper limit of `--jobs`, above the number of processors of any machine.
-const MOST_JOBS: usize = 1024;
+const MAX_JOBS: usize = 1024;
 
 /// Creates a pool of worker threads.
 pub fn thread_pool(jobs: Option<usize>) -> Result<rayon::ThreadPool, Failure> {
-    if jobs.is_some_and(|jobs| !(1..=MOST_JOBS).contains(&jobs)) {
+    if jobs.is_some_and(|jobs| !(1..=MAX_JOBS).contains(&jobs)) {
         return Err(Failure::usage(format!(
-            "--jobs must be 1 to {MOST_JOBS}; the default is the number of processors"
+            "--jobs must be 1 to {MAX_JOBS}; the default is the number of processors"
         )));
     }
     rayon::ThreadPoolBuilder::new()
@@ -246,19 +249,19 @@ pub fn progress_bar(length: u64, what: &'static str) -> indicatif::ProgressBar {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tools::Refusal;
+    use crate::tools::Rejection;
 
     #[test]
     fn a_seed_without_a_result_is_an_error() {
         let played = |seed| {
-            let refusal = Refusal::new("no_play", "nothing was played");
+            let refusal = Rejection::new("no_play", "nothing was played");
             let error =
                 RunError::Refused { seed, day: 0, tool: "test".to_owned(), refusal: Box::new(refusal) };
-            (seed, Err(error), Collector::idle())
+            (seed, Err(error), Collector::disabled())
         };
         let written = |seeds: &[u64]| {
             let mut written = Vec::new();
-            let done = in_order(seeds.iter().copied().map(played), 3..=5, |result| {
+            let done = write_in_order(seeds.iter().copied().map(played), 3..=5, |result| {
                 written.push(result.0);
                 Ok(())
             });

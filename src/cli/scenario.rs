@@ -26,8 +26,8 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     match &options.command {
         ScenarioCommand::List => {
             let (mut text, mut unreadable) = (String::new(), Vec::new());
-            for name in configuration.scenarios() {
-                match configuration.scenario(&name) {
+            for name in configuration.scenario_names() {
+                match configuration.load_scenario(&name) {
                     Ok(scenario) => text += &format!("{name:<24}  {}\n", scenario.description),
                     // One invalid file does not hide the others.
                     Err(error) => unreadable.push(error.to_string()),
@@ -37,16 +37,16 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
             if unreadable.is_empty() { Ok(()) } else { Err(Failure::unreadable(unreadable.join("\n"))) }
         }
         ScenarioCommand::Show { name } => {
-            let scenario = configuration.scenario(name)?;
-            let params = configuration.parameters(&scenario, &[], true)?;
+            let scenario = configuration.load_scenario(name)?;
+            let params = configuration.load_parameters(&scenario, &[], true)?;
             let table = toml::to_string(&params)
                 .map_err(|error| Failure::failed(format!("cannot write the parameters: {error}")))?;
-            let (days, cash) = scenario.terms(&params);
+            let (days, cash) = scenario.days_and_cash_with(&params);
             print(&format!(
                 "# {}: {}\n# {days} days, {} at the start; digest {}\n\n{table}",
                 scenario.title,
                 scenario.description,
-                crate::notation::dollars(cash),
+                crate::formatting::dollars(cash),
                 params.digest()
             ))
         }

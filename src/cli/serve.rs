@@ -5,14 +5,14 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::json;
 
-use super::which_run::WhichRun;
+use super::run_selection::RunSelection;
 use super::{Context, Failure, print};
-use crate::server::{HeldPort, HttpOptions, serve_http, write_client};
+use crate::server::{BoundPort, HttpOptions, serve_http, write_client};
 
 #[derive(Debug, Args)]
 pub struct Options {
     #[command(flatten)]
-    which: WhichRun,
+    which: RunSelection,
     /// Port on 127.0.0.1 [default: any free port]
     #[arg(long, value_name = "N")]
     port: Option<u16>,
@@ -31,11 +31,11 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
             "the client is in {}: install it with pip, or add the folder to PYTHONPATH",
             folder.display()
         );
-        if !options.which.names_one() {
+        if !options.which.is_specified() {
             return Ok(());
         }
     }
-    let held = HeldPort::take(options.port)?;
+    let held = BoundPort::bind(options.port)?;
     let session = options.which.open(context)?;
     let http = HttpOptions { token: options.token.clone() };
     let mut told = Ok(());

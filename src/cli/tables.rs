@@ -24,7 +24,8 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         }
         (Some(name), json) => {
             let table = table(name).ok_or_else(|| {
-                let near = novamind_base::nearest(name, tables().iter().map(|table| table.name.as_str()));
+                let near =
+                    novamind_base::similar_names(name, tables().iter().map(|table| table.name.as_str()));
                 let help = if near.is_empty() {
                     "`novamind tables` lists them".to_owned()
                 } else {

@@ -4,8 +4,8 @@ use clap::Args;
 use serde_json::json;
 
 use super::{Failure, print};
-use crate::tools::describe::{ToolDocument, document};
-use crate::tools::{CATALOGUE, Numbers, catalogue, describe, find};
+use crate::tools::describe::{ToolDocument, document_tool};
+use crate::tools::{CATALOGUE, ParameterNumbers, catalogue, describe, find};
 
 #[derive(Debug, Args)]
 pub struct Options {
@@ -17,17 +17,17 @@ pub struct Options {
 }
 
 pub fn run(options: &Options) -> Result<(), Failure> {
-    let numbers = Numbers::shipped();
+    let numbers = ParameterNumbers::bundled();
     let text = match (&options.name, options.json) {
-        (None, false) => catalogue::overview(),
+        (None, false) => catalogue::list_by_module(),
         (None, true) => {
             let all: Vec<ToolDocument> =
-                CATALOGUE.iter().map(|tool| document(tool.spec(), &numbers)).collect();
+                CATALOGUE.iter().map(|tool| document_tool(tool.spec(), &numbers)).collect();
             format!("{:#}\n", json!(all))
         }
         (Some(name), json) => {
             let tool = find(name).or_else(|| catalogue::find_code(name)).ok_or_else(|| {
-                Failure::usage(match catalogue::nearest(name) {
+                Failure::usage(match catalogue::similar_tools(name) {
                     near if near.is_empty() => {
                         format!("there is no tool {name}; `novamind tools` lists them")
                     }
@@ -35,9 +35,9 @@ pub fn run(options: &Options) -> Result<(), Failure> {
                 })
             })?;
             if json {
-                format!("{:#}\n", json!(document(tool.spec(), &numbers)))
+                format!("{:#}\n", json!(document_tool(tool.spec(), &numbers)))
             } else {
-                describe::manual(tool.spec(), &numbers)
+                describe::format_manual(tool.spec(), &numbers)
             }
         }
     };

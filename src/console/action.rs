@@ -1,6 +1,6 @@
 //! Actions of the console: the one table from which the palette, the footer, the help and the key file are derived.
 
-use novamind_tui::canvas::Command;
+use novamind_tui::canvas::CommandId;
 use novamind_tui::widgets::ListAction;
 
 /// A part of the console in which key bindings apply. A focused place has several scopes, the innermost first.
@@ -31,21 +31,21 @@ pub enum Scope {
     /// Negotiations.
     Inbox,
     /// The next-week dialog.
-    Filing,
+    NextWeek,
     /// Small dialogs, such as confirmations.
     Dialog,
     /// The page at the end of a run.
-    Final,
+    FinalPage,
     /// The notes in the journal.
-    Memo,
+    Notes,
     /// The social feed.
     Social,
     /// Groups and market studies.
     Market,
     /// Playback of a recorded run.
-    Viewer,
+    Playback,
     /// Pages of a study for its participant.
-    Visit,
+    Study,
     /// The decisions list of a what-if.
     Decisions,
     /// The figures of a what-if.
@@ -57,9 +57,9 @@ pub enum Scope {
     /// The x-ray: hidden state of the run.
     Xray,
     /// The offer to restore drafts.
-    Unsent,
+    Drafts,
     /// The screen shown while the clock is stopped.
-    Cover,
+    Paused,
 }
 
 impl Scope {
@@ -73,10 +73,10 @@ impl Scope {
         Scope::Chart,
         Scope::Export,
         Scope::Inbox,
-        Scope::Filing,
+        Scope::NextWeek,
         Scope::Editor,
         Scope::Field,
-        Scope::Memo,
+        Scope::Notes,
         Scope::Social,
         Scope::Market,
         Scope::Curve,
@@ -84,14 +84,14 @@ impl Scope {
         Scope::Dialog,
         Scope::Menu,
         Scope::Class,
-        Scope::Final,
+        Scope::FinalPage,
         Scope::Lesson,
-        Scope::Viewer,
+        Scope::Playback,
         Scope::Decisions,
         Scope::Branches,
-        Scope::Visit,
-        Scope::Unsent,
-        Scope::Cover,
+        Scope::Study,
+        Scope::Drafts,
+        Scope::Paused,
     ];
 
     /// Returns the name in the key file.
@@ -109,21 +109,21 @@ impl Scope {
             Scope::Chart => "chart",
             Scope::Export => "export",
             Scope::Inbox => "inbox",
-            Scope::Filing => "filing",
+            Scope::NextWeek => "filing",
             Scope::Dialog => "dialog",
-            Scope::Final => "final",
-            Scope::Memo => "memo",
+            Scope::FinalPage => "final",
+            Scope::Notes => "memo",
             Scope::Social => "social",
             Scope::Market => "market",
-            Scope::Viewer => "viewer",
-            Scope::Visit => "visit",
+            Scope::Playback => "viewer",
+            Scope::Study => "visit",
             Scope::Decisions => "decisions",
             Scope::Branches => "branches",
             Scope::Curve => "curve",
             Scope::Lesson => "lesson",
             Scope::Xray => "xray",
-            Scope::Unsent => "unsent",
-            Scope::Cover => "cover",
+            Scope::Drafts => "unsent",
+            Scope::Paused => "cover",
         }
     }
 
@@ -142,21 +142,21 @@ impl Scope {
             Scope::Chart => "Result chart",
             Scope::Export => "Result export",
             Scope::Inbox => "Inbox",
-            Scope::Filing => "Next week",
+            Scope::NextWeek => "Next week",
             Scope::Dialog => "Dialogs",
-            Scope::Final => "Final page",
-            Scope::Memo => "Notes",
+            Scope::FinalPage => "Final page",
+            Scope::Notes => "Notes",
             Scope::Social => "Social",
             Scope::Market => "Market",
-            Scope::Viewer => "Replay",
-            Scope::Visit => "Study pages",
+            Scope::Playback => "Replay",
+            Scope::Study => "Study pages",
             Scope::Decisions => "What if: decisions",
             Scope::Branches => "What if: figures",
             Scope::Curve => "Participation curve",
             Scope::Lesson => "Lesson",
             Scope::Xray => "X-ray",
-            Scope::Unsent => "Unsent text",
-            Scope::Cover => "While the clock is stopped",
+            Scope::Drafts => "Unsent text",
+            Scope::Paused => "While the clock is stopped",
         }
     }
 
@@ -168,14 +168,14 @@ impl Scope {
 
 impl Action {
     /// Returns the action of a command, or `None` if no action has its number.
-    pub fn of(command: Command) -> Option<Action> {
+    pub fn from_command(command: CommandId) -> Option<Action> {
         ACTIONS.get(usize::from(command.0)).map(|entry| entry.action)
     }
 }
 
-impl From<Action> for Command {
-    fn from(action: Action) -> Command {
-        Command(action as u16)
+impl From<Action> for CommandId {
+    fn from(action: Action) -> CommandId {
+        CommandId(action as u16)
     }
 }
 
@@ -299,7 +299,7 @@ actions! {
     Form {
         Apply "apply" "apply" "Submit the form."
         EditCell "edit" "edit" "Type a value; in a number cell, typing a digit starts editing."
-        SameDown "same-down" "copy down" "Copy the value to the cells below; right after you accept a value, that value."
+        CopyDown "same-down" "copy down" "Copy the value to the cells below; right after you accept a value, that value."
         ClearCell "clear-cell" "0" "Clear the cell."
         ResetForm "reset-form" "reset" "Discard the draft and show the current values; press again to restore the draft."
         CopyCall "copy-call" "copy call" "Copy the equivalent call."
@@ -315,7 +315,7 @@ actions! {
         ClearQuery "clear-query" "clear" "Empty the editor."
     }
     Result {
-        WholeCell "whole-cell" "full value" "Show the full value of the cell."
+        ShowCell "whole-cell" "full value" "Show the full value of the cell."
         CopyCell "copy-cell" "copy cell" "Copy the value of the cell."
         CopyRow "copy-row" "copy row" "Copy the row."
         Chart "chart" "chart" "Draw the result as lines or bars."
@@ -345,23 +345,23 @@ actions! {
     }
     Inbox {
         SendOffer "send-offer" "send" "Send the offer to the marked enterprises, or to the selected one."
-        TakeAsk "take-their-price" "match their price" "Offer the price that the enterprise asks for the plan it named."
+        MatchAskedPrice "take-their-price" "match their price" "Offer the price that the enterprise asks for the plan it named."
         Mark "mark" "mark" "Mark or unmark the thread for a bulk offer."
         MarkAll "mark-all" "mark all" "Mark every thread shown; again to unmark them."
         OfferPlan "plan" "plan" "Choose another plan for this line of the offer."
         OfferBasis "basis" "basis" "Price as a percentage of the list price, as a percentage of the asked price, or in dollars."
         OfferPrice "price" "price" "Enter the price of this line of the offer."
-        OtherThreads "other-threads" "other threads" "Switch between threads that wait for you, threads that wait for the enterprise, and closed threads."
+        NextThreadView "other-threads" "other threads" "Switch between threads that wait for you, threads that wait for the enterprise, and closed threads."
         InboxRules "rules" "rules" "Answer waiting threads with rules that you type; nothing is sent until you confirm."
         InboxOutcomes "outcomes" "outcomes" "Switch between the outcomes of threads by first offer and week, and the threads."
         RejectOffer "reject" "reject" "End the threads without a deal, after confirmation."
         InboxGroup "group" "group" "Show the group of the enterprise."
         InboxSql "thread-sql" "SQL" "Query the thread in SQL."
     }
-    Filing {
+    NextWeek {
         NextStep "next-step" "next step" "Go to the next step; on the last one, run the week."
         PreviousStep "previous-step" "previous step" "Go back to the previous step."
-        FillNaively "fill-naively" "fill with projection" "Fill empty forecasts with the projection; the record marks them. On the review, fill in everything (not in baseline runs)."
+        FillNaiveForecasts "fill-naively" "fill with projection" "Fill empty forecasts with the projection; the record marks them. On the review, fill in everything (not in baseline runs)."
         FillRationale "fill-rationale" "fill in" "Fill in the rationale with the list of changes; not in baseline runs."
     }
     Editor {
@@ -374,16 +374,16 @@ actions! {
         CommitPrevious "commit-previous" "accept, previous" "Accept what you typed and move to the previous field."
         Discard "discard" "cancel" "Discard what you typed."
     }
-    Memo {
-        EditMemo "edit-memo" "edit notes" "Edit the notes of the run."
+    Notes {
+        EditNotes "edit-memo" "edit notes" "Edit the notes of the run."
         ShowTree "tree" "tree" "Show the branches related to the run."
-        SaveMemo "save-memo" "save notes" "Save the notes with the run."
+        SaveNotes "save-memo" "save notes" "Save the notes with the run."
     }
     Social {
         Compose "compose" "write" "Write a post as the company."
         Reply "reply" "reply" "Reply to the selected post."
         SendPost "send-post" "publish" "Publish the post, after confirmation."
-        Unreply "unreply" "not a reply" "Turn the reply into a new post."
+        ClearReply "unreply" "not a reply" "Turn the reply into a new post."
         NextKind "next-kind" "kind" "Filter by author: customers, press, comments, your posts, then all."
         EarlierWeek "earlier-week" "earlier week" "Show one week only: the latest, then earlier ones."
         LaterWeek "later-week" "later week" "Show a later week; after the latest, all weeks."
@@ -402,14 +402,14 @@ actions! {
         ResetCurve "reset-curve" "reset" "Reset the plans to their current values."
     }
     Xray {
-        TypeChoice "type" "type" "Type a group or customer number with an optional day, for example S2 84 or 1372 304; or a day, a part, or a breakpoint condition."
+        TypeTarget "type" "type" "Type a group or customer number with an optional day, for example S2 84 or 1372 304; or a day, a part, or a breakpoint condition."
         SeekDay "seek-day" "day …" "Go to a day by number."
         DayWeekBefore "week-before" "week earlier" "Show the day a week earlier; left shows the previous day."
         DayWeekAfter "week-after" "week later" "Show the day a week later, at most the last day; right shows the next day."
         HoldFactor "hold" "fix" "Fix the selected factor of the leads at a value and show the expected leads, or release it."
-        AskWords "ask" "command" "Type a plain-mode command: find, who, diff or set. set changes a parameter of a debug run, after confirmation."
+        TypeCommand "ask" "command" "Type a plain-mode command: find, who, diff or set. set changes a parameter of a debug run, after confirmation."
         RunDays "run-days" "run" "Type how many days of a debug run to simulate; it stops on the first day on which a breakpoint becomes true."
-        LookBack "look-back" "history" "Show since when the condition of each breakpoint has been true or false."
+        BreakpointHistory "look-back" "history" "Show since when the condition of each breakpoint has been true or false."
         RemoveBreakpoint "remove-breakpoint" "remove" "Remove the selected breakpoint."
     }
     Dialog {
@@ -437,71 +437,71 @@ actions! {
         ClassPart "class-part" "part" "Show the next part of the lesson."
         HideNames "hide-names" "names" "Show ranks in place of the names of students, or show the names."
     }
-    Final {
+    FinalPage {
         ToMenu "to-menu" "start menu" "Go to the start menu."
-        ReportOfRun "report-of-run" "report" "Write the report into the run folder, as Markdown and HTML."
-        CardOfRun "card-of-run" "card" "Write a summary card to share into the run folder, as text and as SVG."
-        ReplayOfRun "replay-of-run" "replay" "Replay the run from its first day."
+        WriteRunReport "report-of-run" "report" "Write the report into the run folder, as Markdown and HTML."
+        WriteRunCard "card-of-run" "card" "Write a summary card to share into the run folder, as text and as SVG."
+        ReplayFromStart "replay-of-run" "replay" "Replay the run from its first day."
         Opponents "opponents" "opponents" "Play the strong policies and the baseline with the scenario and seed of this run, and rank the run among them."
         WhatIf "what-if" "what if" "Simulate the last twelve weeks again with other decisions."
         StayInRun "stay" "view run" "Close this page and view the run."
     }
     Lesson {
-        LessonOn "lesson-on" "continue" "Answer the open question; after the end of a part, start the next part or open the debrief."
+        ContinueLesson "lesson-on" "continue" "Answer the open question; after the end of a part, start the next part or open the debrief."
         AnswerQuestion "answer" "guess" "Answer the question of the step."
         NextHint "next-hint" "hint" "Show the next hint of the step; the record notes it."
         TryAgain "try-again" "try again" "Try the step again from its start, in a new run, after confirmation."
         NextPart "next-part" "next part" "Start the next part of the lesson after this one has ended."
         Debrief "debrief" "debrief" "Compare a finished part with the good and the bad play."
         LessonWeek "lesson-week" "next week" "Close the page and run the next week."
-        WeekUnanswered "week-unanswered" "week only" "Run the week without answering the waiting messages."
+        SkipAnswers "week-unanswered" "week only" "Run the week without answering the waiting messages."
     }
-    Viewer {
+    Playback {
         WeekBack "week-back" "previous week" "Go to the end of the previous week."
         WeekForward "week-forward" "next week" "Go to the end of the next week."
         LineBack "line-back" "previous action" "Step back by one action."
         LineForward "line-forward" "next action" "Replay the next action: a tool call, a query or a screen view."
-        ReelStart "reel-start" "first" "Go to the first day, before any action."
-        ReelEnd "reel-end" "last" "Go to the end of the record."
+        SeekStart "reel-start" "first" "Go to the first day, before any action."
+        SeekEnd "reel-end" "last" "Go to the end of the record."
         SeekWeek "seek-week" "week …" "Go to a week by number."
         PlayPause "play-pause" "play" "Play week after week, or pause."
         Faster "faster" "faster" "Play faster."
         Slower "slower" "slower" "Play slower."
         Decisions "decisions" "decisions" "Show or hide the decisions of the week next to the screen; in a small window, open them as text."
-        DecisionsWhole "decisions-whole" "in full" "Show the decisions of the week in full, with arguments, statements and results."
+        DecisionsInFull "decisions-whole" "in full" "Show the decisions of the week in full, with arguments, statements and results."
         DecisionsUp "decisions-up" "decisions up" "Scroll the decisions up."
         DecisionsDown "decisions-down" "decisions down" "Scroll the decisions down."
         TakeOver "take-over" "take over" "Continue from this moment in your own branch."
-        LeaveViewer "leave-viewer" "leave" "Leave the replay for the start menu; nothing is changed."
+        LeavePlayback "leave-viewer" "leave" "Leave the replay for the start menu; nothing is changed."
     }
     Decisions {
-        DropDecision "drop-decision" "leave out" "Omit the selected call, or restore it; remove an added decision."
+        OmitDecision "drop-decision" "leave out" "Omit the selected call, or restore it; remove an added decision."
         AddDecision "add-decision" "add decision" "Add a decision: a call, a factor for a call, or a tool whose settings stay unchanged."
         NextAlternative "next-alternative" "next alternative" "Go to the next alternative, or add one; up to three are compared."
         SimulateBranches "simulate-branches" "simulate" "Simulate the run with your decisions unchanged and with each alternative."
     }
     Branches {
         NextFigure "next-figure" "next figure" "Show the next figure."
-        DrawFutures "draw-futures" "futures" "Simulate every branch with twenty new sets of random draws, the same sets for each branch."
+        SimulateFutures "draw-futures" "futures" "Simulate every branch with twenty new sets of random draws, the same sets for each branch."
         AdoptBranch "adopt-branch" "adopt" "Create a run from the selected branch, simulate it to the current day, and continue in it."
     }
-    Visit {
-        GoOn "go-on" "continue" "Continue to the next question or page; after the last question, send the answers."
-        GoBack "go-back" "previous question" "Go back to the previous question; you can change its answer until you send the page."
+    Study {
+        Continue "go-on" "continue" "Continue to the next question or page; after the last question, send the answers."
+        PreviousQuestion "go-back" "previous question" "Go back to the previous question; you can change its answer until you send the page."
         MarkOption "mark-option" "mark" "Mark or unmark the option; you can mark several."
         Agree "agree" "agree" "Agree to the text, after scrolling to its end."
         Decline "decline" "do not agree" "Do not agree to the text."
-        PassPractice "pass-practice" "skip" "Skip the practice."
+        SkipPractice "pass-practice" "skip" "Skip the practice."
         Withdraw "withdraw" "withdraw" "Withdraw from the study: erase everything you did in it, after two confirmations."
         Experimenter "experimenter" "experimenter" "Enter the experimenter's code to open the start menu."
     }
-    Unsent {
-        RestoreTexts "restore-texts" "restore" "Restore the drafts where you typed them."
-        DropTexts "drop-texts" "discard" "Discard the drafts."
+    Drafts {
+        RestoreDrafts "restore-texts" "restore" "Restore the drafts where you typed them."
+        DiscardDrafts "drop-texts" "discard" "Discard the drafts."
     }
-    Cover {
+    Paused {
         StartClock "start-clock" "start" "Start the clock again."
-        QuitStopped "quit-stopped" "quit" "Save and quit; the clock starts when you open the run again."
+        QuitWhilePaused "quit-stopped" "quit" "Save and quit; the clock starts when you open the run again."
     }
 }
 
@@ -512,7 +512,7 @@ impl Action {
     }
 
     /// Returns the action with a name in a scope.
-    pub fn named(scope: Scope, name: &str) -> Option<Action> {
+    pub fn by_name(scope: Scope, name: &str) -> Option<Action> {
         ACTIONS.iter().find(|entry| entry.scope == scope && entry.name == name).map(|entry| entry.action)
     }
 }

@@ -1,25 +1,25 @@
 //! State of the console: messages become actions, actions change the state and produce orders for the worker.
 //!
-//! Nothing here blocks, reads a file or draws. Slow work is an [`Order`]; its result returns as a message.
+//! Nothing here blocks, reads a file or draws. Slow work is an [`RowOrder`]; its result returns as a message.
 
+mod activity_log;
+mod breadcrumbs;
 mod busy;
+mod drafts;
+mod exit;
 mod guide;
 mod input;
 mod layers;
-mod leaving;
 mod lesson;
-mod limits;
-mod news;
 mod orders;
 mod overlay;
 mod pages;
-mod record;
+mod pause_screen;
+mod playback;
+mod responses;
 mod settings;
-mod stopped;
-mod trail;
-mod unsent;
-mod viewer;
-mod visit;
+mod study;
+mod time_limits;
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -30,21 +30,21 @@ use std::time::Duration;
 use ratatui::layout::Rect;
 
 use super::action::{Action, Scope};
-use super::attention::{Edit, PresenceWatch, Stopwatch, Typing};
-use super::context::{Look, ScreenId};
+use super::attention::{EditSource, PresenceWatch, Stopwatch, TypingLog};
+use super::context::{ScreenContext, ScreenId};
 use super::dialogs::Dialog;
-use super::dialogs::filing::FilingDialog;
+use super::dialogs::next_week::NextWeekDialog;
 use super::effect::Effect;
-use super::keys::Keys;
-use super::screens::menu::Menu;
+use super::keys::KeyBindings;
+use super::playback::PlaybackViewer;
+use super::screens::menu::StartMenu;
 use super::screens::{Screen, Screens};
+use super::study_pages::{StudyPage, StudyState};
 use super::tour::Tour;
-use super::viewer::Viewer;
-use super::visit::{VisitPage, VisitState};
 use novamind_record::folder::configuration::Configuration;
-use novamind_record::folder::library::Library;
-use novamind_report::Story;
-use novamind_report::opponents::PlayOpponents;
+use novamind_record::folder::query_library::QueryLibrary;
+use novamind_report::RunReport;
+use novamind_report::opponents::PlayOpponentsFn;
 use novamind_session::TimeLeft;
 use novamind_study::CodeCheck;
 use novamind_tui::canvas::Click;
@@ -52,27 +52,27 @@ use novamind_tui::chord::Chord;
 use novamind_tui::glyphs::Glyphs;
 use novamind_tui::theme::Theme;
 use novamind_worker::Job;
-use novamind_worker::asking::{Ask, Pending};
-use novamind_worker::company::Company;
-use novamind_worker::message::{DayTold, Message};
+use novamind_worker::company::DisplayedCompany;
+use novamind_worker::message::{Message, SimulatedDay};
+use novamind_worker::question::{OutgoingQuestion, Pending};
 use novamind_worker::readings::Reading;
 use novamind_worker::request::Request;
 
-pub use busy::Busy;
+pub use busy::BusyState;
+use exit::ExitTarget;
 pub use layers::Layer;
 use layers::Layers;
-use leaving::Closing;
+pub use pause_screen::PauseScreen;
 pub use settings::Settings;
-pub use stopped::Cover;
 
-const SCREENS_KEPT: usize = 50;
+const MAX_SCREEN_HISTORY: usize = 50;
 
 /// Work outside the console state.
 pub enum Order {
     /// Work for the session thread.
     Job(Job),
     /// A question of a page, and whether days are being simulated: queries do not wait for the simulation.
-    Ask(Ask, bool),
+    Ask(OutgoingQuestion, bool),
     /// Stop the user's query and other running work of the user.
     CancelQuery,
     /// Copy text to the clipboard of the terminal.
@@ -91,89 +91,89 @@ pub enum Order {
 
 /// A status message in the footer.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Note {
+pub struct StatusMessage {
     /// The text.
     pub text: String,
     /// Whether it reports an error or a rejection.
-    pub bad: bool,
+    pub is_error: bool,
 }
 
 /// Progress of a simulation of several days.
 #[derive(Debug, Clone, Copy)]
-pub struct DaysRun {
+pub struct SimulationProgress {
     /// The day before the first simulated day.
     pub from: u32,
     /// Last day.
     pub to: u32,
     /// The day that was simulated last.
-    pub now: u32,
+    pub current: u32,
     /// Figures of that day, if it was simulated for the first time.
-    pub told: Option<DayTold>,
+    pub figures: Option<SimulatedDay>,
 }
 
-impl DaysRun {
+impl SimulationProgress {
     /// Returns the progress before the first day.
-    pub fn between(from: u32, to: u32) -> DaysRun {
-        DaysRun { from, to, now: from, told: None }
+    pub fn new(from: u32, to: u32) -> SimulationProgress {
+        SimulationProgress { from, to, current: from, figures: None }
     }
 }
 
 /// The part of the program that the user is in.
 pub enum Stage {
     /// The start menu.
-    Menu(Box<Menu>),
+    Menu(Box<StartMenu>),
     /// A run.
     Run(Box<Run>),
     /// A page of a study.
-    Visit(Box<VisitPage>),
+    Study(Box<StudyPage>),
 }
 
 /// A run that is open in the console.
 pub struct Run {
     /// The company as displayed.
-    pub company: Arc<Company>,
+    pub company: Arc<DisplayedCompany>,
     /// The current screen.
-    pub here: ScreenId,
+    pub screen: ScreenId,
     /// Screens shown before, the latest last.
-    pub before: Vec<ScreenId>,
+    pub back_history: Vec<ScreenId>,
     /// Places from which the current one was opened, the latest last.
-    trail: Vec<trail::Stop>,
+    breadcrumbs: Vec<breadcrumbs::Breadcrumb>,
     /// Screens that were left with `back`, the latest last.
-    pub after: Vec<ScreenId>,
+    pub forward_history: Vec<ScreenId>,
     /// Whether the focused pane fills the screen.
     pub zoomed: bool,
-    shown: Option<Duration>,
-    came_from: Option<ScreenId>,
+    shown_since: Option<Duration>,
+    previous_screen: Option<ScreenId>,
     /// The open object: its screen, kind and name.
     selected: Option<(ScreenId, &'static str, String)>,
     /// All screens.
     pub screens: Screens,
     /// The next-week dialog.
-    pub filing: FilingDialog,
+    pub next_week: NextWeekDialog,
     /// The run report, after the run has ended and the report was built.
-    pub story: Option<Arc<Story>>,
+    pub story: Option<Arc<RunReport>>,
     /// Readings requested since the run last changed.
-    pub asked: BTreeMap<Reading, Pending<Reading>>,
+    pub requested_readings: BTreeMap<Reading, Pending<Reading>>,
     /// The tour, while it is shown.
     pub tour: Option<Tour>,
     /// Playback state, if the run is a recorded one.
-    pub viewer: Option<Viewer>,
+    pub playback: Option<PlaybackViewer>,
     /// State of the lesson that the run belongs to.
-    pub lesson: lesson::LessonView,
-    overlay: overlay::Overlay,
+    pub lesson: lesson::LessonState,
+    overlay: overlay::HiddenValuesOverlay,
     /// Time left until each time limit.
     pub time_left: Vec<TimeLeft>,
     /// Why the database is behind, if it is.
-    pub behind: Option<String>,
+    pub database_error: Option<String>,
 }
 
 impl Run {
     /// Both screens count as viewed.
-    fn go_to(&mut self, screen: ScreenId) {
-        self.screens.get_mut(self.here).looked_at();
-        self.here = screen;
+    fn set_screen(&mut self, screen: ScreenId) {
+        self.screens.get_mut(self.screen).mark_seen();
+        self.screen = screen;
         self.zoomed = false;
-        self.screens.get_mut(screen).looked_at();
+        self.screens.get_mut(screen).mark_seen();
     }
 }
 
@@ -182,49 +182,49 @@ pub struct App {
     /// Colors.
     pub theme: Theme,
     /// Keys.
-    pub keys: Keys,
+    pub keys: KeyBindings,
     /// Characters that charts are drawn with.
     pub glyphs: Glyphs,
     /// Whether the console captures the mouse.
     pub mouse: bool,
     themes: Vec<Theme>,
     configuration: Configuration,
-    library: Library,
-    again: String,
+    library: QueryLibrary,
+    resume_command: String,
     /// The part of the program that the user is in.
     pub stage: Stage,
     /// Dialogs, the topmost last.
     pub layers: Layers,
     /// The screen shown while the clock is stopped.
-    pub cover: Option<Cover>,
+    pub pause_screen: Option<PauseScreen>,
     /// Measures active time.
     pub stopwatch: Stopwatch,
     presence: PresenceWatch,
-    typing: Typing,
-    edit: Edit,
-    term: Option<String>,
+    typing_log: TypingLog,
+    edit_source: EditSource,
+    explained_term: Option<String>,
     /// Checks the experimenter's code; `None` outside a study with a code.
     pub code_check: Option<CodeCheck>,
-    unsent: unsent::TextsKept,
+    drafts: drafts::DraftState,
     /// The status message.
-    pub note: Option<Note>,
+    pub status: Option<StatusMessage>,
     /// Work that the user waits for.
-    pub busy: Option<Busy>,
+    pub busy: Option<BusyState>,
     /// Chords of an unfinished key sequence.
-    pub pending: Vec<Chord>,
-    opponents: PlayOpponents,
-    closing: Option<Closing>,
+    pub pending_chords: Vec<Chord>,
+    opponents: PlayOpponentsFn,
+    exit_target: Option<ExitTarget>,
     /// The initial screen of the run that is being opened, if not the default.
-    opens_on: Option<ScreenId>,
+    initial_screen: Option<ScreenId>,
     /// Whether the run is drawn for a projector.
     pub is_projected: bool,
-    tour_planned: bool,
-    visit: Option<VisitState>,
-    limit: limits::LimitTold,
+    starts_tour: bool,
+    study: Option<StudyState>,
+    time_limit: time_limits::TimeLimitState,
     /// Clickable areas of the last frame.
     pub clicks: Vec<(Rect, Click)>,
     /// Rows of the focused list in the last frame.
-    pub page: u16,
+    pub page_rows: u16,
     /// Columns and rows of the window in the last frame.
     pub window: (u16, u16),
     orders: Vec<Order>,
@@ -233,70 +233,70 @@ pub struct App {
 impl App {
     /// Returns a console in its start menu.
     pub fn new(settings: Settings) -> App {
-        let menu = Box::new(Menu::new(&settings.configuration));
-        let library = Library::of(&settings.configuration);
+        let menu = Box::new(StartMenu::new(&settings.configuration));
+        let library = QueryLibrary::load(&settings.configuration);
         App {
             library,
             theme: settings.theme,
             keys: settings.keys,
             glyphs: settings.glyphs,
             mouse: true,
-            themes: crate::themes::all(&settings.configuration),
+            themes: crate::themes::all_themes(&settings.configuration),
             configuration: settings.configuration,
-            again: settings.again,
+            resume_command: settings.resume_command,
             stage: Stage::Menu(menu),
             layers: Layers::default(),
-            cover: None,
+            pause_screen: None,
             stopwatch: Stopwatch::default(),
             presence: PresenceWatch::default(),
-            typing: Typing::default(),
-            edit: Edit::Typed,
-            term: None,
+            typing_log: TypingLog::default(),
+            edit_source: EditSource::Typed,
+            explained_term: None,
             code_check: None,
-            unsent: unsent::TextsKept::default(),
-            note: None,
+            drafts: drafts::DraftState::default(),
+            status: None,
             busy: None,
-            pending: Vec::new(),
+            pending_chords: Vec::new(),
             opponents: settings.opponents,
-            closing: None,
-            opens_on: None,
+            exit_target: None,
+            initial_screen: None,
             is_projected: false,
-            tour_planned: false,
-            visit: None,
-            limit: limits::LimitTold::default(),
+            starts_tour: false,
+            study: None,
+            time_limit: time_limits::TimeLimitState::default(),
             clicks: Vec::new(),
-            page: 10,
+            page_rows: 10,
             window: (0, 0),
-            orders: vec![Order::Job(Job::Do(Request::ListRuns))],
+            orders: vec![Order::Job(Job::Execute(Request::ListRuns))],
         }
     }
 
     /// Opens or creates a run in place of the start menu.
-    pub fn start_with(&mut self, effect: Effect) {
+    pub fn start(&mut self, effect: Effect) {
         self.follow(vec![effect]);
     }
 
     /// Handles a message. Outside work is collected for [`App::take_orders`].
-    pub fn update(&mut self, message: Message) {
+    pub fn handle_message(&mut self, message: Message) {
         match message {
-            Message::Input(event) => self.take_input(event),
-            Message::News(news) => self.news(news),
+            Message::Input(event) => self.handle_input(event),
+            Message::Response(news) => self.news(news),
             Message::Arrived(delivery) => {
                 delivery.deliver();
                 self.take_answers();
             }
-            Message::Signal(number) => self.leave(Closing::BySignal(number)),
-            Message::Time => {
-                if self.busy.as_ref().is_some_and(|busy| busy.stops_script) {
+            Message::Signal(number) => self.exit_run(ExitTarget::Signal(number)),
+            Message::TimePassed => {
+                if self.busy.as_ref().is_some_and(|busy| busy.is_stopping_script) {
                     self.orders.push(Order::CancelQuery);
                 }
-                self.pass_time();
+                self.handle_time();
             }
         }
-        self.settle_tour();
-        self.settle_limit();
-        self.settle_visit();
-        self.settle_record();
+        self.advance_tour();
+        self.enforce_week_limit();
+        self.show_due_questions();
+        self.record_user_state();
     }
 
     /// Returns the orders since the last call.
@@ -316,7 +316,7 @@ impl App {
     pub fn run(&self) -> Option<&Run> {
         match &self.stage {
             Stage::Run(run) => Some(run),
-            Stage::Menu(_) | Stage::Visit(_) => None,
+            Stage::Menu(_) | Stage::Study(_) => None,
         }
     }
 
@@ -327,11 +327,11 @@ impl App {
 
     /// Returns the scopes of the focused place, the innermost first.
     pub fn scopes(&self) -> Vec<Scope> {
-        let mut scopes = match (self.layers.last(), &self.stage) {
+        let mut scopes = match (self.layers.top(), &self.stage) {
             (Some(Layer::Dialog(dialog)), _) => return dialog.scopes(),
-            (Some(Layer::Filing), Stage::Run(run)) => return run.filing.scopes(),
+            (Some(Layer::NextWeek), Stage::Run(run)) => return run.next_week.scopes(),
             (_, Stage::Menu(menu)) => return menu.scopes(),
-            (_, Stage::Visit(page)) => return page.scopes(),
+            (_, Stage::Study(page)) => return page.scopes(),
             (None, Stage::Run(run)) => run.scopes(),
         };
         scopes.push(Scope::Global);
@@ -340,94 +340,96 @@ impl App {
 
     /// Returns the actions to show in the footer.
     pub fn hints(&self) -> Vec<Action> {
-        match (self.layers.last(), &self.stage) {
-            (Some(Layer::Dialog(dialog)), Stage::Run(run)) => {
-                dialog.hints_here(&Look { company: &run.company, keys: &self.keys, page: self.page })
-            }
+        match (self.layers.top(), &self.stage) {
+            (Some(Layer::Dialog(dialog)), Stage::Run(run)) => dialog.hints_in_context(&ScreenContext {
+                company: &run.company,
+                keys: &self.keys,
+                page_rows: self.page_rows,
+            }),
             (Some(Layer::Dialog(dialog)), _) => dialog.hints(),
-            (Some(Layer::Filing), Stage::Run(run)) => run.filing.hints(),
+            (Some(Layer::NextWeek), Stage::Run(run)) => run.next_week.hints(),
             (_, Stage::Menu(menu)) => menu.hints(),
-            (_, Stage::Visit(page)) => page.hints(),
+            (_, Stage::Study(page)) => page.hints(),
             (None, Stage::Run(run)) => run.hints(),
         }
     }
 
-    fn say(&mut self, text: impl Into<String>) {
-        self.note = Some(Note { text: text.into(), bad: false });
+    fn show_status(&mut self, text: impl Into<String>) {
+        self.status = Some(StatusMessage { text: text.into(), is_error: false });
     }
 
-    fn complain(&mut self, text: impl Into<String>) {
-        self.note = Some(Note { text: text.into(), bad: true });
+    fn show_error(&mut self, text: impl Into<String>) {
+        self.status = Some(StatusMessage { text: text.into(), is_error: true });
     }
 
-    fn show(&mut self, screen: ScreenId) {
-        if self.is_kept_shut(screen) {
+    fn show_screen(&mut self, screen: ScreenId) {
+        if self.reject_closed_screen(screen) {
             return;
         }
         let Stage::Run(run) = &mut self.stage else { return };
-        if run.here != screen {
-            run.before.push(run.here);
-            if run.before.len() > SCREENS_KEPT {
-                run.before.remove(0);
+        if run.screen != screen {
+            run.back_history.push(run.screen);
+            if run.back_history.len() > MAX_SCREEN_HISTORY {
+                run.back_history.remove(0);
             }
-            run.after.clear();
-            self.move_to(screen);
+            run.forward_history.clear();
+            self.switch_screen(screen);
         }
-        self.load();
+        self.request_screen_data();
     }
 
-    fn back(&mut self) {
+    fn go_back(&mut self) {
         let Stage::Run(run) = &mut self.stage else { return };
-        run.forget_trail();
-        match run.before.pop() {
+        run.clear_breadcrumbs();
+        match run.back_history.pop() {
             Some(screen) => {
-                run.after.push(run.here);
-                self.move_to(screen);
-                self.load();
+                run.forward_history.push(run.screen);
+                self.switch_screen(screen);
+                self.request_screen_data();
             }
-            None => self.complain("nothing to go back to"),
+            None => self.show_error("nothing to go back to"),
         }
     }
 
-    fn forward(&mut self) {
+    fn go_forward(&mut self) {
         let Stage::Run(run) = &mut self.stage else { return };
-        run.forget_trail();
-        match run.after.pop() {
+        run.clear_breadcrumbs();
+        match run.forward_history.pop() {
             Some(screen) => {
-                run.before.push(run.here);
-                self.move_to(screen);
-                self.load();
+                run.back_history.push(run.screen);
+                self.switch_screen(screen);
+                self.request_screen_data();
             }
-            None => self.complain("nothing to go forward to"),
+            None => self.show_error("nothing to go forward to"),
         }
     }
 
-    fn move_to(&mut self, screen: ScreenId) {
-        self.close_view();
+    fn switch_screen(&mut self, screen: ScreenId) {
+        self.record_view();
         if let Stage::Run(run) = &mut self.stage {
-            run.came_from = Some(run.here);
-            run.go_to(screen);
+            run.previous_screen = Some(run.screen);
+            run.set_screen(screen);
         }
     }
 
     /// Requests the data of the current screen that is missing or outdated.
-    fn load(&mut self) {
+    fn request_screen_data(&mut self) {
         let Stage::Run(run) = &mut self.stage else { return };
-        for reading in run.screens.get(run.here).readings() {
-            if let Entry::Vacant(place) = run.asked.entry(*reading) {
+        for reading in run.screens.get(run.screen).readings() {
+            if let Entry::Vacant(place) = run.requested_readings.entry(*reading) {
                 let ask = place.insert(Pending::default()).ask(*reading);
                 self.orders.push(Order::Ask(ask, self.busy.is_some()));
             }
         }
-        let asks = self.with_screen(|screen, look| screen.ask_run(look)).unwrap_or_default();
+        let asks = self.with_screen(|screen, look| screen.request_data(look)).unwrap_or_default();
         self.follow(asks);
-        self.ask_hidden_values();
+        self.request_hidden_values();
     }
 
-    fn with_screen<T>(&mut self, work: impl FnOnce(&mut dyn Screen, &Look<'_>) -> T) -> Option<T> {
+    fn with_screen<T>(&mut self, work: impl FnOnce(&mut dyn Screen, &ScreenContext<'_>) -> T) -> Option<T> {
         let Stage::Run(run) = &mut self.stage else { return None };
         let company = run.company.clone();
-        let look = Look { company: &company, keys: &self.keys, page: self.page };
-        Some(work(run.screens.get_mut(run.here), &look))
+        let look = ScreenContext { company: &company, keys: &self.keys, page_rows: self.page_rows };
+        Some(work(run.screens.get_mut(run.screen), &look))
     }
 }

@@ -1,9 +1,9 @@
 //! Types that screens, dialogs and effects share: screen identifiers, the context of a view, and explainable figures.
 
 use super::action::{Action, Scope};
-use super::keys::Keys;
+use super::keys::KeyBindings;
 use novamind_insight::WeekQuantity;
-use novamind_worker::company::Company;
+use novamind_worker::company::DisplayedCompany;
 
 /// Placeholder of charts and tables before the first week.
 pub const NO_DATA: &str = "no data yet: run a week (n)";
@@ -54,28 +54,28 @@ screen_ids! {
 
 impl ScreenId {
     /// Returns the name in the trajectory.
-    pub fn id(self) -> &'static str {
+    pub fn record_name(self) -> &'static str {
         self.action().entry().name
     }
 
     /// Returns whether the screen is available: the x-ray requires permission to view hidden state.
-    pub fn is_shown_in(self, company: &Company) -> bool {
-        self != ScreenId::Xray || company.may_look_inside
+    pub fn is_available_in(self, company: &DisplayedCompany) -> bool {
+        self != ScreenId::Xray || company.can_inspect
     }
 }
 
 /// Context that a screen reads.
 #[derive(Clone, Copy)]
-pub struct Look<'a> {
+pub struct ScreenContext<'a> {
     /// The company.
-    pub company: &'a Company,
+    pub company: &'a DisplayedCompany,
     /// Keys, for labels.
-    pub keys: &'a Keys,
+    pub keys: &'a KeyBindings,
     /// Rows that the focused list showed last, for paging.
-    pub page: u16,
+    pub page_rows: u16,
 }
 
-impl Look<'_> {
+impl ScreenContext<'_> {
     /// Returns an action with its key, for borders: `ctrl-s apply`.
     pub fn hint(&self, action: Action) -> String {
         match self.keys.label(action) {
@@ -95,19 +95,19 @@ impl Look<'_> {
 pub struct Figure {
     /// Its title: `cancellations of S1`.
     pub title: String,
-    /// Term that explains it: a glossary entry (`churn`), a tool or an argument (`set_prices`, `set_prices.A`), or a
+    /// Term that explains it: a glossary entry (`churn`), a tool or an argument (`set_prices_validates_and_updates`, `set_prices_validates_and_updates.A`), or a
     /// column (`ledger.amount`).
     pub term: &'static str,
     /// Query for the source rows, if it has any.
     pub sql: Option<String>,
     /// The weekly quantity that it shows and its week, if its change can be explained.
-    pub why: Option<(WeekQuantity, u32)>,
+    pub week_quantity: Option<(WeekQuantity, u32)>,
 }
 
 impl Figure {
     /// Returns the figure with a weekly quantity, if it has one.
-    pub fn of_week(self, quantity: Option<WeekQuantity>, week: u32) -> Figure {
-        Figure { why: quantity.map(|quantity| (quantity, week)), ..self }
+    pub fn with_week_quantity(self, quantity: Option<WeekQuantity>, week: u32) -> Figure {
+        Figure { week_quantity: quantity.map(|quantity| (quantity, week)), ..self }
     }
 }
 

@@ -5,13 +5,13 @@ use serde_json::Value;
 use super::action::Action;
 use super::context::{Figure, ScreenId};
 use novamind_glossary::Subject;
-use novamind_session::Goal;
+use novamind_session::SeekTarget;
 use novamind_session::identifiers::Group;
 use novamind_study::Study;
 use novamind_tools::ToolId;
-use novamind_worker::asking::Ask;
+use novamind_worker::question::OutgoingQuestion;
 use novamind_worker::readings::Reading;
-use novamind_worker::request::{Recorded, Request};
+use novamind_worker::request::{RecordSource, Request};
 
 impl Effect {
     /// Returns whether it would change the run.
@@ -38,13 +38,13 @@ pub enum Effect {
     /// Send a request to the session thread.
     Request(Request),
     /// Replay a recorded run from a position, with its hidden state.
-    ReplayInside(Recorded, Goal),
+    ReplayInside(RecordSource, SeekTarget),
     /// Follow a run that another program plays, drawn for a projector.
-    Project(Recorded),
+    Project(RecordSource),
     /// Seek in the playback.
-    Go(Goal),
+    Go(SeekTarget),
     /// Send a question to the worker; the page that asks keeps the pending answer.
-    Ask(Ask),
+    Ask(OutgoingQuestion),
     /// A draft of the screen was sent; its place in the record.
     SentText(&'static str),
     /// Show the causes of the change of a weekly figure.

@@ -6,39 +6,39 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::Sender;
 
 use novamind_record::folder::configuration::Configuration;
-use novamind_record::folder::library;
-use novamind_record::folder::library::Library;
-use novamind_tools::Refusal;
+use novamind_record::folder::query_library;
+use novamind_record::folder::query_library::QueryLibrary;
+use novamind_tools::Rejection;
 use novamind_worker::answer_on_thread;
-use novamind_worker::message::{Message, News};
+use novamind_worker::message::{Message, Response};
 
 /// Writes files in the background and reports their paths.
-pub fn write_behind(files: Vec<(PathBuf, Vec<u8>)>, news: Sender<Message>) {
+pub fn write_in_background(files: Vec<(PathBuf, Vec<u8>)>, news: Sender<Message>) {
     let write = |(path, contents): (PathBuf, Vec<u8>)| {
-        let refused = |error| Refusal::new("io_error", format!("{}: {error}", path.display()));
-        write_beside(&path, &contents).map_err(refused)
+        let refused = |error| Rejection::new("io_error", format!("{}: {error}", path.display()));
+        write_to_free_name(&path, &contents).map_err(refused)
     };
     let work = move || files.into_iter().map(write).collect::<Result<Vec<PathBuf>, _>>().map(Some);
     answer_on_thread(news, work, |written| {
-        News::Written(written.map(|paths| in_words(&paths)).map_err(|refusal| refusal.message))
+        Response::FilesWritten(written.map(|paths| format_paths(&paths)).map_err(|refusal| refusal.message))
     });
 }
 
 /// Saves a query of the user in the background and reports the new library.
-pub fn save_query_behind(
+pub fn save_query_in_background(
     configuration: Configuration,
     [name, title, sql]: [String; 3],
     news: Sender<Message>,
 ) {
-    let work = move || match library::save(&configuration, &name, &title, &sql) {
-        Ok(path) => Ok(Some((format!("saved: {}", path.display()), Library::of(&configuration)))),
-        Err(error) => Err(Refusal::new("io_error", error.to_string())),
+    let work = move || match query_library::save_query(&configuration, &name, &title, &sql) {
+        Ok(path) => Ok(Some((format!("saved: {}", path.display()), QueryLibrary::load(&configuration)))),
+        Err(error) => Err(Rejection::new("io_error", error.to_string())),
     };
-    answer_on_thread(news, work, |saved| News::QuerySaved(saved.map_err(|refusal| refusal.message)));
+    answer_on_thread(news, work, |saved| Response::QuerySaved(saved.map_err(|refusal| refusal.message)));
 }
 
 /// Formats the full path of the first file and the names of the others.
-fn in_words(paths: &[PathBuf]) -> String {
+fn format_paths(paths: &[PathBuf]) -> String {
     let name = |path: &PathBuf| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let mut words: Vec<String> = paths.iter().map(name).collect();
     if let Some((first, path)) = words.first_mut().zip(paths.first()) {
@@ -51,7 +51,7 @@ fn in_words(paths: &[PathBuf]) -> String {
 ///
 /// # Errors
 /// The file cannot be written.
-fn write_beside(path: &Path, contents: &[u8]) -> io::Result<PathBuf> {
+fn write_to_free_name(path: &Path, contents: &[u8]) -> io::Result<PathBuf> {
     let mut path = path.to_owned();
     loop {
         match File::options().write(true).create_new(true).open(&path) {
@@ -77,17 +77,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nothing_is_overwritten() {
+    fn writing_never_overwrites_a_file() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("query-0001.csv");
         for (number, text) in [(1, "a"), (2, "b"), (3, "c")] {
-            let written = write_beside(&path, text.as_bytes()).expect("written");
+            let written = write_to_free_name(&path, text.as_bytes()).expect("written");
             assert_eq!(written, folder.path().join(format!("query-{number:04}.csv")));
             assert_eq!(std::fs::read_to_string(written).expect("text"), text);
         }
         assert_eq!(next_name(Path::new("/x/note.txt")), Path::new("/x/note-0002.txt"));
         assert_eq!(next_name(Path::new("/x/my-note")), Path::new("/x/my-note-0002"));
-        assert!(write_beside(Path::new("/nowhere/at/all.csv"), b"").is_err());
-        assert_eq!(in_words(&["/x/a.md".into(), "/x/a.html".into()]), "written: /x/a.md, a.html");
+        assert!(write_to_free_name(Path::new("/nowhere/at/all.csv"), b"").is_err());
+        assert_eq!(format_paths(&["/x/a.md".into(), "/x/a.html".into()]), "written: /x/a.md, a.html");
     }
 }

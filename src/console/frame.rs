@@ -5,140 +5,143 @@ use ratatui::layout::{Position, Rect};
 use unicode_width::UnicodeWidthStr;
 
 use super::action::Action;
-use super::app::{App, Busy, Layer, Run, Stage};
-use super::context::{Look, ScreenId};
-use super::viewer::EntriesShown;
-use novamind_base::notation::{compact, dollars, grouped, short_dollars};
-use novamind_record::trajectory::record::Ended;
+use super::app::{App, BusyState, Layer, Run, Stage};
+use super::context::{ScreenContext, ScreenId};
+use super::playback::EntryFilter;
+use novamind_base::formatting::{compact_number, dollars, grouped_number, short_dollars};
+use novamind_record::trajectory::record::RunEndReason;
 use novamind_session::TimeLeft;
 use novamind_tui::ascii;
-use novamind_tui::canvas::{Align, Canvas, Click, rows_of};
-use novamind_tui::chord::written;
+use novamind_tui::canvas::{Align, Canvas, Click, row_rects};
+use novamind_tui::chord::format_sequence;
 use novamind_tui::glyphs::Glyphs;
-use novamind_tui::text::{arrow, wrapped};
+use novamind_tui::text::{format_change, wrap};
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::spark::bar;
-use novamind_worker::company::Company;
+use novamind_tui::widgets::sparkline::bar;
+use novamind_worker::company::DisplayedCompany;
 
 /// Minimum window size: columns, rows.
-pub const LEAST: (u16, u16) = (60, 16);
+pub const MIN_WINDOW: (u16, u16) = (60, 16);
 
 /// Data of a drawn frame.
-pub struct Drawn {
+pub struct DrawnFrame {
     /// Clickable areas.
     pub clicks: Vec<(Rect, Click)>,
     /// Position of the cursor.
     pub cursor: Option<Position>,
     /// Rows that the focused list showed.
-    pub page: u16,
+    pub page_rows: u16,
     /// Columns and rows of the window.
     pub window: (u16, u16),
 }
 
 /// Draws a frame.
-pub fn draw(app: &App, buffer: &mut Buffer) -> Drawn {
+pub fn draw_frame(app: &App, buffer: &mut Buffer) -> DrawnFrame {
     let area = buffer.area;
     let mut canvas = Canvas::new(buffer, &app.theme);
     canvas.marker = app.glyphs.marker();
-    canvas.no_data = super::context::NO_DATA;
+    canvas.empty_chart_text = super::context::NO_DATA;
     canvas.clear(area, Role::Text);
-    if area.width < LEAST.0 || area.height < LEAST.1 {
-        let text =
-            format!("NovaMind needs {}×{} or more; this is {}×{}", LEAST.0, LEAST.1, area.width, area.height);
-        canvas.text(Rect { height: 1.min(area.height), ..area }, &text, Role::Warning);
+    if area.width < MIN_WINDOW.0 || area.height < MIN_WINDOW.1 {
+        let text = format!(
+            "NovaMind needs {}×{} or more; this is {}×{}",
+            MIN_WINDOW.0, MIN_WINDOW.1, area.width, area.height
+        );
+        canvas.draw_text(Rect { height: 1.min(area.height), ..area }, &text, Role::Warning);
     } else {
-        draw_all(app, &mut canvas, area);
+        draw_stage(app, &mut canvas, area);
     }
-    let drawn = Drawn {
+    let drawn = DrawnFrame {
         clicks: std::mem::take(&mut canvas.clicks),
         cursor: canvas.cursor,
-        page: canvas.page,
+        page_rows: canvas.page_rows,
         window: (area.width, area.height),
     };
     if app.glyphs == Glyphs::Ascii {
-        ascii::plain(buffer);
+        ascii::replace_non_ascii(buffer);
     }
     drawn
 }
 
-fn draw_all(app: &App, canvas: &mut Canvas<'_>, area: Rect) {
-    if let Some(cover) = &app.cover {
+fn draw_stage(app: &App, canvas: &mut Canvas<'_>, area: Rect) {
+    if let Some(cover) = &app.pause_screen {
         return cover.draw(&app.keys, canvas, area);
     }
     let last = Rect { y: area.bottom() - 1, height: 1, ..area };
     match &app.stage {
         Stage::Menu(menu) => menu.draw(canvas, Rect { height: area.height - 1, ..area }),
-        Stage::Visit(page) => page.draw(canvas, Rect { height: area.height - 1, ..area }, &app.keys),
+        Stage::Study(page) => page.draw(canvas, Rect { height: area.height - 1, ..area }, &app.keys),
         Stage::Run(run) => draw_run(app, run, canvas, area),
     }
-    draw_last_line(app, canvas, last);
-    if !app.pending.is_empty() {
-        draw_continuations(app, canvas, Rect { height: area.height - 1, ..area });
+    draw_footer(app, canvas, last);
+    if !app.pending_chords.is_empty() {
+        draw_pending_keys(app, canvas, Rect { height: area.height - 1, ..area });
     }
 }
 
 /// Lists the chords that can complete a key sequence, in the lower right corner.
-fn draw_continuations(app: &App, canvas: &mut Canvas<'_>, area: Rect) {
-    let following = app.keys.continuations(&app.scopes(), &app.pending);
+fn draw_pending_keys(app: &App, canvas: &mut Canvas<'_>, area: Rect) {
+    let following = app.keys.completions(&app.scopes(), &app.pending_chords);
     let keys = following.iter().map(|(keys, _)| keys.width()).max().unwrap_or(0) as u16;
     let titles = following.iter().map(|(_, action)| action.entry().title.width()).max().unwrap_or(0) as u16;
     let (width, height) = ((keys + titles + 7).max(20), following.len() as u16 + 2);
     let (width, height) = (width.min(area.width), height.min(area.height));
     let own = Rect { x: area.right() - width, y: area.bottom() - height, width, height };
     canvas.clear(own, Role::Text);
-    let inside = canvas.pane(own, &format!("{} …", written(&app.pending)), "", true);
-    for (row, (chords, action)) in rows_of(inside).zip(following) {
-        canvas.text(Rect { x: row.x + 1, width: keys, ..row }, &chords, Role::Key);
+    let inside =
+        canvas.draw_pane_frame(own, &format!("{} …", format_sequence(&app.pending_chords)), "", true);
+    for (row, (chords, action)) in row_rects(inside).zip(following) {
+        canvas.draw_text(Rect { x: row.x + 1, width: keys, ..row }, &chords, Role::Key);
         let title = Rect { x: row.x + keys + 3, width: row.width.saturating_sub(keys + 3), ..row };
-        canvas.text(title, action.entry().title, Role::Text);
-        canvas.click(row, Click::Do(action.into()));
+        canvas.draw_text(title, action.entry().title, Role::Text);
+        canvas.register_click(row, Click::Command(action.into()));
     }
-    canvas.pane_keys(own, "esc cancel");
+    canvas.draw_pane_keys(own, "esc cancel");
 }
 
 fn draw_run(app: &App, run: &Run, canvas: &mut Canvas<'_>, area: Rect) {
-    if let (true, Some(viewer)) = (app.is_projected, &run.viewer) {
-        let look = Look { company: &run.company, keys: &app.keys, page: app.page };
+    if let (true, Some(viewer)) = (app.is_projected, &run.playback) {
+        let look = ScreenContext { company: &run.company, keys: &app.keys, page_rows: app.page_rows };
         let body = Rect { height: area.height - 1, ..area };
         super::projector::draw(canvas, body, viewer, &look);
         return draw_layers(app, run, canvas, body, &look);
     }
-    draw_top(app, canvas, Rect { height: 1, ..area }, &run.company);
+    draw_header(app, canvas, Rect { height: 1, ..area }, &run.company);
     draw_tabs(app, run, canvas, Rect { y: area.y + 1, height: 1, ..area });
-    let banner = u16::from(run.behind.is_some());
-    if run.behind.is_some() {
-        draw_behind(canvas, Rect { y: area.y + 2, height: 1, ..area }, run);
+    let banner = u16::from(run.database_error.is_some());
+    if run.database_error.is_some() {
+        draw_database_warning(canvas, Rect { y: area.y + 2, height: 1, ..area }, run);
     }
-    let warned = draw_limit(app, canvas, Rect { y: area.y + 2 + banner, height: 2, ..area });
+    let warned = draw_time_limit(app, canvas, Rect { y: area.y + 2 + banner, height: 2, ..area });
     let banner = banner + warned;
     let body = Rect { y: area.y + 2 + banner, height: area.height - 3 - banner, ..area };
     let tour = run.tour.as_ref().map(|tour| (tour, tour.height(&app.keys, &run.company.numbers, area.width)));
-    let strip = u16::from(run.viewer.is_some());
+    let strip = u16::from(run.playback.is_some());
     let below = tour.as_ref().map_or(0, |(_, height)| *height) + strip;
     let body = Rect { height: body.height.saturating_sub(below), ..body };
-    let look = Look { company: &run.company, keys: &app.keys, page: app.page };
+    let look = ScreenContext { company: &run.company, keys: &app.keys, page_rows: app.page_rows };
     canvas.zoomed = run.zoomed;
-    let beside = run.viewer.as_ref().filter(|_| !run.zoomed).map_or(0, |viewer| viewer.columns(body));
-    let lesson = run.lesson_beside(area.width);
-    let beside = if lesson.is_some() { super::lesson::COLUMNS } else { beside };
+    let beside = run.playback.as_ref().filter(|_| !run.zoomed).map_or(0, |viewer| viewer.columns(body));
+    let lesson = run.side_task(area.width);
+    let beside = if lesson.is_some() { super::lesson::TASK_WIDTH } else { beside };
     let screen = Rect { width: body.width - beside, ..body };
     canvas.stale = is_stale(run);
-    canvas.path = run.path(&look);
-    run.screens.get(run.here).draw(canvas, screen, &look);
+    canvas.breadcrumbs = run.breadcrumb_titles(&look);
+    run.screens.get(run.screen).draw(canvas, screen, &look);
     canvas.stale = false;
-    canvas.path.clear();
+    canvas.breadcrumbs.clear();
     if let Some(page) = lesson {
-        super::lesson::draw_beside(canvas, Rect { x: screen.right(), width: beside, ..body }, page, &look);
+        super::lesson::draw_side_task(canvas, Rect { x: screen.right(), width: beside, ..body }, page, &look);
     }
-    if let Some(viewer) = &run.viewer {
+    if let Some(viewer) = &run.playback {
         // A list in the side pane does not determine the page size.
-        let page = canvas.page;
+        let page = canvas.page_rows;
         if beside > 0 {
             let own = Rect { x: screen.right(), width: beside, ..body };
-            viewer.draw_decisions(canvas, own, &look, EntriesShown::All);
+            viewer.draw_decisions(canvas, own, &look, EntryFilter::All);
         }
-        canvas.page = page;
-        viewer.draw_strip(canvas, Rect { y: body.bottom(), height: 1, ..area });
+        canvas.page_rows = page;
+        viewer.draw_status_line(canvas, Rect { y: body.bottom(), height: 1, ..area });
     }
     draw_layers(app, run, canvas, body, &look);
     if let Some((tour, height)) = tour {
@@ -146,13 +149,13 @@ fn draw_run(app: &App, run: &Run, canvas: &mut Canvas<'_>, area: Rect) {
     }
 }
 
-fn draw_layers(app: &App, run: &Run, canvas: &mut Canvas<'_>, body: Rect, look: &Look<'_>) {
+fn draw_layers(app: &App, run: &Run, canvas: &mut Canvas<'_>, body: Rect, look: &ScreenContext<'_>) {
     for layer in app.layers.iter() {
         // The screen below a dialog is visible but not clickable.
         canvas.clicks.clear();
         canvas.cursor = None;
         match layer {
-            Layer::Filing => super::dialogs::Dialog::draw(&run.filing, canvas, body, look),
+            Layer::NextWeek => super::dialogs::Dialog::draw(&run.next_week, canvas, body, look),
             Layer::Dialog(dialog) => dialog.draw(canvas, body, look),
         }
     }
@@ -160,34 +163,35 @@ fn draw_layers(app: &App, run: &Run, canvas: &mut Canvas<'_>, body: Rect, look: 
 
 /// Returns whether the screen shows data from before the database fell behind.
 fn is_stale(run: &Run) -> bool {
-    run.behind.is_some() && (run.here == ScreenId::Sql || !run.screens.get(run.here).readings().is_empty())
+    run.database_error.is_some()
+        && (run.screen == ScreenId::Sql || !run.screens.get(run.screen).readings().is_empty())
 }
 
-fn draw_behind(canvas: &mut Canvas<'_>, row: Rect, run: &Run) {
+fn draw_database_warning(canvas: &mut Canvas<'_>, row: Rect, run: &Run) {
     let here = if is_stale(run) { "Panes marked stale show older figures; it" } else { "It" };
-    let problem = run.behind.as_deref().unwrap_or_default();
+    let problem = run.database_error.as_deref().unwrap_or_default();
     let text = format!(" ! The database is behind: {problem}. {here} is retried every few seconds.");
     canvas.clear(row, Role::Bad);
-    canvas.text(row, &text, Role::Bad);
+    canvas.draw_text(row, &text, Role::Bad);
 }
 
 /// Draws the time limit notice above everything else. Returns the rows that it takes.
-fn draw_limit(app: &App, canvas: &mut Canvas<'_>, area: Rect) -> u16 {
+fn draw_time_limit(app: &App, canvas: &mut Canvas<'_>, area: Rect) -> u16 {
     let Some(text) = app.limit_notice() else { return 0 };
-    let lines = wrapped(&text, usize::from(area.width.saturating_sub(4)));
+    let lines = wrap(&text, usize::from(area.width.saturating_sub(4)));
     let taken = (lines.len() as u16).min(area.height);
-    for (at, (row, line)) in rows_of(area).zip(lines).enumerate() {
+    for (at, (row, line)) in row_rects(area).zip(lines).enumerate() {
         let sign = if at == 0 { "!" } else { " " };
         canvas.clear(row, Role::Warning);
-        canvas.text(row, &format!(" {sign} {line}"), Role::Warning);
+        canvas.draw_text(row, &format!(" {sign} {line}"), Role::Warning);
     }
     taken
 }
 
-fn draw_top(app: &App, canvas: &mut Canvas<'_>, row: Rect, company: &Company) {
-    let seen = &company.seen;
+fn draw_header(app: &App, canvas: &mut Canvas<'_>, row: Rect, company: &DisplayedCompany) {
+    let seen = &company.observation;
     let change = seen.cash_change;
-    let runway = match seen.weeks_of_cash() {
+    let runway = match seen.whole_runway_weeks() {
         // ASCII has no unambiguous symbol for it.
         None if app.glyphs == Glyphs::Ascii => "endless".to_owned(),
         None => "∞".to_owned(),
@@ -196,8 +200,10 @@ fn draw_top(app: &App, canvas: &mut Canvas<'_>, row: Rect, company: &Company) {
     let poor = seen.runway_weeks.is_some_and(|weeks| weeks < 8.0);
     let wide = row.width >= 110;
     let money = |value: f64| if wide { dollars(value) } else { short_dollars(value) };
-    let count = |value: u32| if wide { grouped(f64::from(value), 0) } else { compact(f64::from(value)) };
-    let moved = arrow(change, &money(change.abs()));
+    let count = |value: u32| {
+        if wide { grouped_number(f64::from(value), 0) } else { compact_number(f64::from(value)) }
+    };
+    let moved = format_change(change, &money(change.abs()));
     let pieces = [
         (" NovaMind".to_owned(), Role::Title),
         (format!("  day {}/{}", seen.day, seen.last_day), Role::Text),
@@ -208,20 +214,20 @@ fn draw_top(app: &App, canvas: &mut Canvas<'_>, row: Rect, company: &Company) {
         (format!("   subs {}", count(seen.subscribers)), Role::Text),
         (format!("   seats {}", count(seen.seats)), Role::Text),
     ];
-    let hides_result = company.rules.hide_result(seen.ended.is_some());
+    let hides_result = company.rules.hides_result(seen.ended.is_some());
     let state = match seen.ended {
         _ if hides_result => "OVER".to_owned(),
-        _ if company.replayed => "REPLAY".to_owned(),
+        _ if company.is_playback => "REPLAY".to_owned(),
         None => match &company.study {
             Some(study) => if study.practice { "PRACTICE" } else { "SESSION" }.to_owned(),
             None => seen.mode.id().to_uppercase(),
         },
-        Some(Ended::Horizon) => "FINISHED".to_owned(),
-        Some(Ended::Bankruptcy) => "BANKRUPT".to_owned(),
-        Some(Ended::Abandoned) => "GIVEN UP".to_owned(),
-        Some(Ended::Lesson) => "LESSON ENDED".to_owned(),
+        Some(RunEndReason::Horizon) => "FINISHED".to_owned(),
+        Some(RunEndReason::Bankruptcy) => "BANKRUPT".to_owned(),
+        Some(RunEndReason::Abandoned) => "GIVEN UP".to_owned(),
+        Some(RunEndReason::Lesson) => "LESSON ENDED".to_owned(),
     };
-    let state = format!("{}{state} ", time_left(app));
+    let state = format!("{}{state} ", time_left_label(app));
     let width = (state.width() as u16).min(row.width);
     let mut left = Rect { width: row.width - width, ..row };
     // If the result is hidden, the header ends with the day.
@@ -232,14 +238,14 @@ fn draw_top(app: &App, canvas: &mut Canvas<'_>, row: Rect, company: &Company) {
         if taken + 1 > left.width {
             break;
         }
-        canvas.text(left, &piece, role);
+        canvas.draw_text(left, &piece, role);
         left = Rect { x: left.x + taken, width: left.width - taken, ..left };
     }
-    canvas.aligned(Rect { x: row.right() - width, width, ..row }, &state, Role::Title, Align::Right);
+    canvas.draw_aligned(Rect { x: row.right() - width, width, ..row }, &state, Role::Title, Align::Right);
 }
 
 /// Returns the least time left to any limit.
-fn time_left(app: &App) -> String {
+fn time_left_label(app: &App) -> String {
     let running = app.run().filter(|run| run.company.is_running());
     let left = running.map_or(&[][..], |run| run.time_left.as_slice());
     let minutes = left.iter().map(TimeLeft::whole_minutes).min();
@@ -247,32 +253,32 @@ fn time_left(app: &App) -> String {
 }
 
 /// Formats a tab from key, title and badge of a screen, and whether it is the current one.
-type Way = fn(&str, &str, &str, bool) -> String;
+type TabFormat = fn(&str, &str, &str, bool) -> String;
 
 fn draw_tabs(app: &App, run: &Run, canvas: &mut Canvas<'_>, row: Rect) {
     // The first format in which every tab fits, or else the last one. In the narrowest windows only the current
     // screen has its name.
-    let ways: [Way; 6] = [
+    let ways: [TabFormat; 6] = [
         |key, title, badge, _| format!(" {key} {title}{badge} "),
         |key, title, badge, _| format!(" {key} {title}{badge}"),
-        |key, title, badge, _| format!(" {key} {}{badge}", short(title)),
-        |key, title, badge, _| format!(" {key} {}{}", short(title), badge.trim()),
+        |key, title, badge, _| format!(" {key} {}{badge}", short_title(title)),
+        |key, title, badge, _| format!(" {key} {}{}", short_title(title), badge.trim()),
         |key, title, badge, _| {
-            format!(" {key} {}{}", short(title), badge.trim().get(.."●".len()).unwrap_or_default())
+            format!(" {key} {}{}", short_title(title), badge.trim().get(.."●".len()).unwrap_or_default())
         },
         |key, title, badge, here| {
             if here { format!(" {key} {title} ") } else { format!(" {key}{}", badge.trim()) }
         },
     ];
-    let is_shown = |screen: &ScreenId| screen.is_shown_in(&run.company);
+    let is_shown = |screen: &ScreenId| screen.is_available_in(&run.company);
     let all: Vec<ScreenId> = ScreenId::ALL.into_iter().filter(is_shown).collect();
     // The x-ray tab is shortened before the others.
-    let others = |screen: &ScreenId| *screen != ScreenId::Xray || run.here == ScreenId::Xray;
+    let others = |screen: &ScreenId| *screen != ScreenId::Xray || run.screen == ScreenId::Xray;
     let fewer: Vec<ScreenId> = all.iter().copied().filter(others).collect();
-    let texts = |screens: &[ScreenId], way: &Way| {
+    let texts = |screens: &[ScreenId], way: &TabFormat| {
         let text = |screen: &ScreenId| {
             let key = app.keys.label(screen.action()).unwrap_or_default();
-            way(&key, screen.action().entry().title, &badge(run, *screen), *screen == run.here)
+            way(&key, screen.action().entry().title, &tab_badge(run, *screen), *screen == run.screen)
         };
         screens.iter().map(|screen| (*screen, text(screen))).collect::<Vec<(ScreenId, String)>>()
     };
@@ -288,8 +294,8 @@ fn draw_tabs(app: &App, run: &Run, canvas: &mut Canvas<'_>, row: Rect) {
             break;
         }
         let place = Rect { x, width, ..row };
-        canvas.text(place, &text, if screen == run.here { Role::TabHere } else { Role::Tab });
-        canvas.click(place, Click::Do(screen.action().into()));
+        canvas.draw_text(place, &text, if screen == run.screen { Role::ActiveTab } else { Role::Tab });
+        canvas.register_click(place, Click::Command(screen.action().into()));
         x += width;
     }
     if run.zoomed {
@@ -297,12 +303,12 @@ fn draw_tabs(app: &App, run: &Run, canvas: &mut Canvas<'_>, row: Rect) {
         let text = format!("{key} all panes ");
         let left = Rect { x, width: row.right() - x, ..row };
         if text.width() <= left.width as usize {
-            canvas.aligned(left, &text, Role::Warning, Align::Right);
+            canvas.draw_aligned(left, &text, Role::Warning, Align::Right);
         }
     }
 }
 
-fn short(title: &str) -> &str {
+fn short_title(title: &str) -> &str {
     match title {
         "Overview" => "Over",
         "Customers" => "Cust",
@@ -312,40 +318,40 @@ fn short(title: &str) -> &str {
     }
 }
 
-fn badge(run: &Run, screen: ScreenId) -> String {
+fn tab_badge(run: &Run, screen: ScreenId) -> String {
     let count = match screen {
-        ScreenId::Product => run.company.seen.running_research as usize,
-        ScreenId::Inbox => run.company.seen.waiting.len(),
-        ScreenId::Tools => run.company.seen.changes.len(),
+        ScreenId::Product => run.company.observation.running_research as usize,
+        ScreenId::Inbox => run.company.observation.waiting.len(),
+        ScreenId::Tools => run.company.observation.changes.len(),
         // Items that arrive on the current screen are not new.
-        _ if screen == run.here => 0,
-        _ => run.screens.get(screen).unseen(),
+        _ if screen == run.screen => 0,
+        _ => run.screens.get(screen).unseen_count(),
     };
     if count > 0 { format!(" ●{count}") } else { String::new() }
 }
 
-fn draw_last_line(app: &App, canvas: &mut Canvas<'_>, row: Rect) {
-    let right = match (&app.busy, &app.note) {
+fn draw_footer(app: &App, canvas: &mut Canvas<'_>, row: Rect) {
+    let right = match (&app.busy, &app.status) {
         // An action was rejected because a script runs.
-        (Some(busy), Some(note)) if busy.is_script() && note.bad => {
+        (Some(busy), Some(note)) if busy.is_script() && note.is_error => {
             Some((format!("! {}", note.text), Role::Bad))
         }
         (Some(busy), _) => {
             let stop = app.keys.label(Action::Close).unwrap_or_default();
-            Some((waiting(busy, row.width, &stop), Role::Warning))
+            Some((progress_text(busy, row.width, &stop), Role::Warning))
         }
-        (None, Some(note)) if note.bad => Some((format!("! {}", note.text), Role::Bad)),
+        (None, Some(note)) if note.is_error => Some((format!("! {}", note.text), Role::Bad)),
         (None, Some(note)) => Some((note.text.clone(), Role::Good)),
         (None, None) => None,
     };
     // Two spaces before a message, one after it.
     let taken = right.as_ref().map_or(0, |(text, _)| text.width() as u16 + 3).min(row.width);
     let mut x = row.x + 1;
-    let mut actions = actions_shown(app).into_iter().peekable();
+    let mut actions = footer_actions(app).into_iter().peekable();
     while let Some(action) = actions.next() {
         let Some(mut key) = app.keys.label(action) else { continue };
         // An arrow key is labeled with its action; both arrows together are labeled as choosing.
-        let mut title = Some(title_of(app, action)).filter(|title| *title != key).unwrap_or_default();
+        let mut title = Some(action_title(app, action)).filter(|title| *title != key).unwrap_or_default();
         if action == Action::Left && actions.next_if_eq(&Action::Right).is_some() {
             key = format!("{key} {}", app.keys.label(Action::Right).unwrap_or_default());
             title = "choose";
@@ -354,21 +360,21 @@ fn draw_last_line(app: &App, canvas: &mut Canvas<'_>, row: Rect) {
         if x + width + taken > row.right() {
             break;
         }
-        canvas.text(Rect { x, width: key.width() as u16, ..row }, &key, Role::Key);
+        canvas.draw_text(Rect { x, width: key.width() as u16, ..row }, &key, Role::Key);
         let after = Rect { x: x + key.width() as u16 + 1, width: title.width() as u16, ..row };
-        canvas.text(after, title, Role::Dim);
-        canvas.click(Rect { x, width, ..row }, Click::Do(action.into()));
+        canvas.draw_text(after, title, Role::Dim);
+        canvas.register_click(Rect { x, width, ..row }, Click::Command(action.into()));
         x += width + 3;
     }
     if let Some((text, role)) = right {
         let place = Rect { x: row.right() - taken + 2.min(taken), width: taken.saturating_sub(2), ..row };
-        canvas.text(place, &text, role);
+        canvas.draw_text(place, &text, role);
     }
 }
 
 /// Returns the title of an action in the current state. After the end of a run, the next-week key opens the final
 /// page; after a lesson, the next part or the debrief.
-fn title_of(app: &App, action: Action) -> &'static str {
+fn action_title(app: &App, action: Action) -> &'static str {
     match app.run() {
         Some(run) if action == Action::NextWeek && !run.company.is_running() => match &run.company.lesson {
             Some(page) if page.next_part.is_some() => "next part",
@@ -380,7 +386,7 @@ fn title_of(app: &App, action: Action) -> &'static str {
 }
 
 /// Returns the actions for the footer: those of the focused place, then general ones.
-fn actions_shown(app: &App) -> Vec<Action> {
+fn footer_actions(app: &App) -> Vec<Action> {
     let mut actions = app.hints();
     if app.layers.is_empty() && matches!(app.stage, Stage::Run(_)) {
         let typing = app.scopes().first().is_some_and(|scope| scope.is_text());
@@ -393,7 +399,7 @@ fn actions_shown(app: &App) -> Vec<Action> {
             Action::Quit,
         ];
         let of_players = [Action::NextWeek, Action::Changes];
-        let replay = app.run().is_some_and(|run| run.viewer.is_some());
+        let replay = app.run().is_some_and(|run| run.playback.is_some());
         let over = app.run().is_some_and(|run| !run.company.is_running());
         let left_out = |action: &Action| match action {
             Action::Changes if over => true,
@@ -410,45 +416,49 @@ fn actions_shown(app: &App) -> Vec<Action> {
 }
 
 /// Describes running work and its progress, with figures in wide windows. A script shows the key that stops it.
-fn waiting(busy: &Busy, width: u16, stop: &str) -> String {
-    let seconds = busy.since.elapsed().as_secs_f64();
-    let Some(days) = busy.days else {
+fn progress_text(busy: &BusyState, width: u16, stop: &str) -> String {
+    let seconds = busy.started_at.elapsed().as_secs_f64();
+    let Some(days) = busy.progress else {
         return match busy.is_script() {
-            true => format!("{} {seconds:.0} s · {stop} stops it", busy.what),
-            false => format!("{} …", busy.what),
+            true => format!("{} {seconds:.0} s · {stop} stops it", busy.label),
+            false => format!("{} …", busy.label),
         };
     };
-    let (done, all) = (days.now.saturating_sub(days.from), days.to.saturating_sub(days.from).max(1));
+    let (done, all) = (days.current.saturating_sub(days.from), days.to.saturating_sub(days.from).max(1));
     let gauge = bar(f64::from(done) / f64::from(all), 10);
-    let came_to = days.told.filter(|_| width >= 80).map_or(String::new(), |told| {
-        format!(" cash {} · subs {}", short_dollars(told.cash), compact(f64::from(told.subscribers)))
+    let came_to = days.figures.filter(|_| width >= 80).map_or(String::new(), |told| {
+        format!(" cash {} · subs {}", short_dollars(told.cash), compact_number(f64::from(told.subscribers)))
     });
-    format!("{} day {done} of {all} {gauge}{came_to} {seconds:.1} s", busy.what)
+    format!("{} day {done} of {all} {gauge}{came_to} {seconds:.1} s", busy.label)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::DaysRun;
-    use novamind_worker::message::DayTold;
+    use crate::app::SimulationProgress;
+    use novamind_worker::message::SimulatedDay;
 
     #[test]
-    fn a_week_that_runs_tells_its_days() {
-        let told = Some(DayTold { cash: 1_234_567.0, subscribers: 12_345 });
-        let days = DaysRun { from: 70, to: 77, now: 73, told };
-        let busy = |days| Busy { days: Some(days), ..Busy::with("the week runs") };
-        let text = waiting(&busy(days), 80, "esc");
+    fn progress_text_counts_simulated_days() {
+        let told = Some(SimulatedDay { cash: 1_234_567.0, subscribers: 12_345 });
+        let days = SimulationProgress { from: 70, to: 77, current: 73, figures: told };
+        let busy = |days| BusyState { progress: Some(days), ..BusyState::new("the week runs") };
+        let text = progress_text(&busy(days), 80, "esc");
         assert!(text.starts_with("the week runs day 3 of 7 "), "{text}");
         assert!(text.contains(" cash $1.23M · subs 12.3k "), "{text}");
         assert!(text.width() < 76, "{text}");
-        assert!(!waiting(&busy(days), 60, "esc").contains("cash"));
+        assert!(!progress_text(&busy(days), 60, "esc").contains("cash"));
         // Figures appear after the first day.
-        let begun = waiting(&busy(DaysRun::between(70, 77)), 120, "esc");
+        let begun = progress_text(&busy(SimulationProgress::new(70, 77)), 120, "esc");
         assert!(begun.contains("day 0 of 7") && !begun.contains("cash"), "{begun}");
         // The last week is shorter.
         assert!(
-            waiting(&busy(DaysRun { now: 500, ..DaysRun::between(497, 500) }), 80, "esc")
-                .contains("day 3 of 3")
+            progress_text(
+                &busy(SimulationProgress { current: 500, ..SimulationProgress::new(497, 500) }),
+                80,
+                "esc"
+            )
+            .contains("day 3 of 3")
         );
     }
 }

@@ -14,14 +14,14 @@ use super::effect::Effect;
 use super::files;
 use super::frame;
 use novamind_record::trajectory::record::LeavingCause;
-use novamind_session::{Access, Goal, PlaybackPosition};
+use novamind_session::{Access, PlaybackPosition, SeekTarget};
 use novamind_study::Study;
 use novamind_tui::chord::Chord;
-use novamind_worker::message::{Message, News, VisitNews};
-use novamind_worker::request::{Recorded, Request, VisitRequest};
+use novamind_worker::message::{Message, Response, StudyResponse};
+use novamind_worker::request::{RecordSource, Request, StudyRequest};
 use novamind_worker::{Job, Workers};
 
-const PATIENCE: Duration = Duration::from_secs(120);
+const RESPONSE_TIMEOUT: Duration = Duration::from_secs(120);
 
 /// A console without a terminal.
 pub struct Headless {
@@ -30,16 +30,16 @@ pub struct Headless {
     /// Columns and rows of the window.
     pub size: (u16, u16),
     /// Exit code and final text, after it has exited.
-    pub left: Option<(u8, Option<String>)>,
+    pub exit: Option<(u8, Option<String>)>,
     /// Texts that were copied to the clipboard.
-    pub copied: Vec<String>,
+    pub clipboard: Vec<String>,
     /// Cursor position in the last frame.
     pub cursor: Option<Position>,
     workers: Workers,
     sender: Sender<Message>,
     messages: Receiver<Message>,
     /// Number of awaited responses.
-    waiting: u32,
+    pending_responses: u32,
 }
 
 impl Headless {
@@ -50,20 +50,20 @@ impl Headless {
             sender.clone(),
             settings.configuration.clone(),
             settings.runs.clone(),
-            settings.lists_everybody,
+            settings.lists_all_participants,
         );
         let mut app = App::new(settings);
         app.window = size;
         Headless {
             app,
             size,
-            left: None,
-            copied: Vec::new(),
+            exit: None,
+            clipboard: Vec::new(),
             cursor: None,
             workers,
             sender,
             messages,
-            waiting: 0,
+            pending_responses: 0,
         }
     }
 
@@ -79,9 +79,9 @@ impl Headless {
     ///
     /// # Errors
     /// The page does not arrive.
-    pub fn lead(&mut self, study: Study) -> io::Result<()> {
-        self.app.start_with(Effect::Receive(Box::new(study)));
-        self.settle()
+    pub fn start_study(&mut self, study: Study) -> io::Result<()> {
+        self.app.start(Effect::Receive(Box::new(study)));
+        self.wait_until_idle()
     }
 
     /// Sends a request as a screen would, and waits for its consequences.
@@ -89,15 +89,15 @@ impl Headless {
     /// # Errors
     /// A response does not arrive.
     pub fn request(&mut self, request: Request) -> io::Result<()> {
-        self.app.start_with(Effect::Request(request));
-        self.settle()
+        self.app.start(Effect::Request(request));
+        self.wait_until_idle()
     }
 
     /// Opens a run read-only and waits until all its data has arrived.
     ///
     /// # Errors
     /// The run does not open.
-    pub fn look_at(&mut self, run: &str) -> io::Result<()> {
+    pub fn open_read_only(&mut self, run: &str) -> io::Result<()> {
         self.open_with(Effect::Request(Request::Open(run.to_owned(), Access::Read)))
     }
 
@@ -105,7 +105,7 @@ impl Headless {
     ///
     /// # Errors
     /// The run does not open.
-    pub fn replay(&mut self, recorded: Recorded, goal: Goal, follow: bool) -> io::Result<()> {
+    pub fn replay(&mut self, recorded: RecordSource, goal: SeekTarget, follow: bool) -> io::Result<()> {
         self.open_with(Effect::Request(Request::Replay { recorded, goal, follow }))
     }
 
@@ -113,20 +113,20 @@ impl Headless {
     ///
     /// # Errors
     /// The position is not reached.
-    pub fn go(&mut self, goal: Goal) -> io::Result<()> {
+    pub fn seek(&mut self, goal: SeekTarget) -> io::Result<()> {
         self.open_with(Effect::Go(goal))
     }
 
     /// Returns the position of the playback, or `None` if nothing is replayed.
-    pub fn place(&self) -> Option<&PlaybackPosition> {
-        self.app.run()?.viewer.as_ref().map(|viewer| &viewer.place)
+    pub fn playback_position(&self) -> Option<&PlaybackPosition> {
+        self.app.run()?.playback.as_ref().map(|viewer| &viewer.position)
     }
 
     /// Replays a recorded run from a position, with its hidden state if permitted.
     ///
     /// # Errors
     /// The run does not open.
-    pub fn replay_inside(&mut self, recorded: Recorded, goal: Goal) -> io::Result<()> {
+    pub fn replay_with_xray(&mut self, recorded: RecordSource, goal: SeekTarget) -> io::Result<()> {
         self.open_with(Effect::ReplayInside(recorded, goal))
     }
 
@@ -134,14 +134,14 @@ impl Headless {
     ///
     /// # Errors
     /// The run does not open.
-    pub fn project(&mut self, recorded: Recorded) -> io::Result<()> {
+    pub fn open_projector(&mut self, recorded: RecordSource) -> io::Result<()> {
         self.open_with(Effect::Project(recorded))
     }
 
     fn open_with(&mut self, effect: Effect) -> io::Result<()> {
-        self.app.start_with(effect);
-        self.settle()?;
-        match (self.app.run(), &self.app.note) {
+        self.app.start(effect);
+        self.wait_until_idle()?;
+        match (self.app.run(), &self.app.status) {
             (Some(_), _) => Ok(()),
             (None, Some(note)) => Err(io::Error::other(note.text.clone())),
             (None, None) => Err(io::Error::other("the run did not open")),
@@ -158,11 +158,11 @@ impl Headless {
     ///
     /// # Errors
     /// A key does not exist, or a response does not arrive.
-    pub fn press(&mut self, keys: &str) -> io::Result<()> {
+    pub fn press_keys(&mut self, keys: &str) -> io::Result<()> {
         for word in keys.split(' ').filter(|word| !word.is_empty()) {
             match word.strip_prefix('\'').and_then(|rest| rest.strip_suffix('\'')) {
-                Some(text) => text.chars().try_for_each(|letter| self.key(&letter.to_string()))?,
-                None => self.key(word)?,
+                Some(text) => text.chars().try_for_each(|letter| self.press_key(&letter.to_string()))?,
+                None => self.press_key(word)?,
             }
         }
         Ok(())
@@ -172,38 +172,38 @@ impl Headless {
     ///
     /// # Errors
     /// The key does not exist, or a response does not arrive.
-    pub fn key(&mut self, key: &str) -> io::Result<()> {
-        let event = event(if key == "_" { "space" } else { key })?;
-        self.send(event)
+    pub fn press_key(&mut self, key: &str) -> io::Result<()> {
+        let event = key_event(if key == "_" { "space" } else { key })?;
+        self.handle_event(event)
     }
 
     /// Draws a frame, handles an event in it, and waits for the consequences.
     ///
     /// # Errors
     /// A response does not arrive.
-    pub fn send(&mut self, event: Event) -> io::Result<()> {
+    pub fn handle_event(&mut self, event: Event) -> io::Result<()> {
         self.draw();
-        self.app.update(Message::Input(event));
-        self.settle()
+        self.app.handle_message(Message::Input(event));
+        self.wait_until_idle()
     }
 
     /// Waits until no response is awaited.
     ///
     /// # Errors
     /// A response does not arrive.
-    pub fn settle(&mut self) -> io::Result<()> {
-        self.hand_over();
-        while self.waiting > 0 && self.left.is_none() {
+    pub fn wait_until_idle(&mut self) -> io::Result<()> {
+        self.dispatch_orders();
+        while self.pending_responses > 0 && self.exit.is_none() {
             let message = self.receive()?;
-            self.app.update(message);
-            self.hand_over();
+            self.app.handle_message(message);
+            self.dispatch_orders();
         }
         Ok(())
     }
 
     /// Waits until jobs without a response are done too, such as recorded activity.
-    pub fn finish_notes(&self) {
-        self.workers.settle(PATIENCE);
+    pub fn flush_notes(&self) {
+        self.workers.wait_for_jobs(RESPONSE_TIMEOUT);
     }
 
     /// Returns the next message, waiting for it.
@@ -211,74 +211,76 @@ impl Headless {
     /// # Errors
     /// No message arrives.
     pub fn receive(&mut self) -> io::Result<Message> {
-        let message =
-            self.messages.recv_timeout(PATIENCE).map_err(|_| io::Error::other("no response arrived"))?;
-        self.count(&message);
+        let message = self
+            .messages
+            .recv_timeout(RESPONSE_TIMEOUT)
+            .map_err(|_| io::Error::other("no response arrived"))?;
+        self.count_response(&message);
         Ok(message)
     }
 
     /// Returns the next message if one has arrived.
-    pub fn received(&mut self) -> Option<Message> {
+    pub fn try_receive(&mut self) -> Option<Message> {
         let message = self.messages.try_recv().ok()?;
-        self.count(&message);
+        self.count_response(&message);
         Some(message)
     }
 
-    fn count(&mut self, message: &Message) {
+    fn count_response(&mut self, message: &Message) {
         let is_answer = match message {
             Message::Arrived(delivery) => delivery.is_answer,
-            Message::News(news) => !matches!(
+            Message::Response(news) => !matches!(
                 news,
-                News::Held
-                    | News::HandedOut(_)
-                    | News::Unsent(_)
-                    | News::TimeLeft(_)
-                    | News::Limit(_)
-                    | News::Day(..)
-                    | News::WentOn(_)
-                    | News::Changed(_)
-                    | News::DatabaseBehind(_)
-                    | News::DatabaseWhole
-                    | News::Visit(VisitNews::Due(_))
+                Response::ClockStopped
+                    | Response::HandoutOpened(_)
+                    | Response::Drafts(_)
+                    | Response::TimeLeft(_)
+                    | Response::Limit(_)
+                    | Response::DaySimulated(..)
+                    | Response::PlaybackAdvanced(_)
+                    | Response::RunChanged(_)
+                    | Response::DatabaseBehind(_)
+                    | Response::DatabaseCurrent
+                    | Response::Study(StudyResponse::QuestionsDue(_))
             ),
-            Message::Input(_) | Message::Signal(_) | Message::Time => false,
+            Message::Input(_) | Message::Signal(_) | Message::TimePassed => false,
         };
-        self.waiting -= u32::from(is_answer).min(self.waiting);
+        self.pending_responses -= u32::from(is_answer).min(self.pending_responses);
     }
 
     /// Executes the orders of the application.
-    pub fn hand_over(&mut self) {
+    pub fn dispatch_orders(&mut self) {
         for order in self.app.take_orders() {
             match order {
                 Order::Job(job) => {
                     let silent = matches!(
                         job,
-                        Job::NoteQuery(..)
-                            | Job::Note(_)
-                            | Job::TakeUp(_)
+                        Job::RecordQuery(..)
+                            | Job::RecordActivity(_)
+                            | Job::Attach(_)
                             | Job::StartClock
-                            | Job::GoOn(_)
-                            | Job::Hold
-                            | Job::Remember(_)
-                            | Job::Do(Request::Visit(VisitRequest::Ask(_)))
+                            | Job::ScheduleNextWeek(_)
+                            | Job::CancelNextWeek
+                            | Job::SavePreferences(_)
+                            | Job::Execute(Request::Study(StudyRequest::RecordShownQuestion(_)))
                     );
-                    self.waiting += u32::from(!silent);
+                    self.pending_responses += u32::from(!silent);
                     self.workers.send(job);
                 }
                 Order::Ask(ask, is_busy) => {
-                    self.waiting += 1;
+                    self.pending_responses += 1;
                     self.workers.ask(&ask, is_busy);
                 }
                 Order::Write(written) => {
-                    self.waiting += 1;
-                    files::write_behind(written, self.sender.clone());
+                    self.pending_responses += 1;
+                    files::write_in_background(written, self.sender.clone());
                 }
                 Order::SaveQuery(configuration, query) => {
-                    self.waiting += 1;
-                    files::save_query_behind(configuration, query, self.sender.clone());
+                    self.pending_responses += 1;
+                    files::save_query_in_background(configuration, query, self.sender.clone());
                 }
-                Order::Copy(text) => self.copied.push(text),
-                Order::Exit(code, text) => self.left = Some((code, text)),
+                Order::Copy(text) => self.clipboard.push(text),
+                Order::Exit(code, text) => self.exit = Some((code, text)),
                 Order::CancelQuery | Order::Redraw | Order::Mouse(_) => {}
             }
         }
@@ -293,9 +295,9 @@ impl Headless {
 
     /// Draws a frame into a buffer.
     pub fn draw_into(&mut self, buffer: &mut Buffer) {
-        let drawn = frame::draw(&self.app, buffer);
+        let drawn = frame::draw_frame(&self.app, buffer);
         self.app.clicks = drawn.clicks;
-        self.app.page = drawn.page;
+        self.app.page_rows = drawn.page_rows;
         self.app.window = drawn.window;
         self.cursor = drawn.cursor;
     }
@@ -304,16 +306,16 @@ impl Headless {
     ///
     /// # Errors
     /// A response does not arrive.
-    pub fn pass(&mut self, time: Duration) -> io::Result<()> {
-        self.app.stopwatch.turn_on(time);
-        self.app.update(Message::Time);
-        self.settle()
+    pub fn advance_time(&mut self, time: Duration) -> io::Result<()> {
+        self.app.stopwatch.advance(time);
+        self.app.handle_message(Message::TimePassed);
+        self.wait_until_idle()
     }
 
     /// Saves the run and ends the threads.
     pub fn finish(self) {
         self.workers.send(Job::Close(LeavingCause::Quit));
-        self.workers.finish();
+        self.workers.shut_down();
     }
 }
 
@@ -321,6 +323,6 @@ impl Headless {
 ///
 /// # Errors
 /// The key does not exist.
-pub fn event(key: &str) -> io::Result<Event> {
-    Chord::parse(key).map(|chord| Event::Key(chord.event())).map_err(io::Error::other)
+pub fn key_event(key: &str) -> io::Result<Event> {
+    Chord::parse(key).map(|chord| Event::Key(chord.to_event())).map_err(io::Error::other)
 }

@@ -8,30 +8,30 @@ use std::collections::BTreeMap;
 use toml::Table;
 
 use super::action::{Action, Scope};
-use novamind_tui::chord::{Chord, sequence, written};
+use novamind_tui::chord::{Chord, format_sequence, parse_sequence};
 
 /// The meaning of chords in the focused place.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Meaning {
+pub enum KeyMeaning {
     /// The chords trigger an action.
     Action(Action),
     /// The chords are the start of a sequence.
-    Begin,
+    Prefix,
     /// The chords are not bound.
-    Nothing,
+    Unbound,
 }
 
 /// The bindings of every scope.
 #[derive(Debug, Clone)]
-pub struct Keys(BTreeMap<Scope, Vec<(Vec<Chord>, Action)>>);
+pub struct KeyBindings(BTreeMap<Scope, Vec<(Vec<Chord>, Action)>>);
 
-const SHIPPED: &str = include_str!("../../configs/keys.toml");
+const BUNDLED_KEYS: &str = include_str!("../../configs/keys.toml");
 
-impl Keys {
+impl KeyBindings {
     /// Returns the bundled bindings.
-    pub fn shipped() -> Keys {
-        let mut keys = Keys(BTreeMap::new());
-        keys.patch(SHIPPED).expect("a test parses the bundled keys");
+    pub fn bundled() -> KeyBindings {
+        let mut keys = KeyBindings(BTreeMap::new());
+        keys.patch(BUNDLED_KEYS).expect("a test parses the bundled keys");
         keys
     }
 
@@ -39,11 +39,11 @@ impl Keys {
     ///
     /// # Errors
     /// The file is invalid; the error contains its name.
-    pub fn of_user(
+    pub fn with_user_file(
         configuration: &novamind_record::folder::configuration::Configuration,
-    ) -> Result<Keys, String> {
-        let mut keys = Keys::shipped();
-        if let Some(source) = configuration.file("keys.toml").map_err(|error| error.to_string())? {
+    ) -> Result<KeyBindings, String> {
+        let mut keys = KeyBindings::bundled();
+        if let Some(source) = configuration.read_file("keys.toml").map_err(|error| error.to_string())? {
             keys.patch(&source.text).map_err(|problem| format!("{}: {problem}", source.name))?;
         }
         Ok(keys)
@@ -60,7 +60,7 @@ impl Keys {
             let actions = actions.as_table().ok_or_else(|| format!("[{name}] is not a table"))?;
             for (own, chords) in actions {
                 let action =
-                    Action::named(scope, own).ok_or_else(|| format!("[{name}] has no action {own}"))?;
+                    Action::by_name(scope, own).ok_or_else(|| format!("[{name}] has no action {own}"))?;
                 self.bind(scope, action, chords).map_err(|problem| format!("[{name}] {own}: {problem}"))?;
             }
         }
@@ -71,14 +71,14 @@ impl Keys {
         let list = chords.as_array().ok_or("expected a list of keys, for example [\"n\"]")?;
         let parsed: Result<Vec<Vec<Chord>>, String> = list
             .iter()
-            .map(|chords| sequence(chords.as_str().ok_or("expected a key as text, for example \"n\"")?))
+            .map(|chords| parse_sequence(chords.as_str().ok_or("expected a key as text, for example \"n\"")?))
             .collect();
         let bindings = self.0.entry(scope).or_default();
         bindings.retain(|(_, own)| *own != action);
         for chords in parsed? {
             let clash = |bound: &[Chord]| bound.starts_with(&chords) || chords.starts_with(bound);
             if let Some((bound, other)) = bindings.iter().find(|(bound, _)| clash(bound)) {
-                return Err(format!("{} already means {}", written(bound), other.entry().name));
+                return Err(format!("{} already means {}", format_sequence(bound), other.entry().name));
             }
             bindings.push((chords, action));
         }
@@ -86,20 +86,20 @@ impl Keys {
     }
 
     /// Returns the meaning of a chord sequence in the innermost scope that binds it.
-    pub fn meaning(&self, scopes: &[Scope], pressed: &[Chord]) -> Meaning {
+    pub fn meaning(&self, scopes: &[Scope], pressed: &[Chord]) -> KeyMeaning {
         let in_scope = |scope: &Scope| {
             let mut begins = self.0.get(scope)?.iter().filter(|(bound, _)| bound.starts_with(pressed));
             let (bound, action) = begins.next()?;
-            Some(if bound.len() == pressed.len() { Meaning::Action(*action) } else { Meaning::Begin })
+            Some(if bound.len() == pressed.len() { KeyMeaning::Action(*action) } else { KeyMeaning::Prefix })
         };
-        scopes.iter().find_map(in_scope).unwrap_or(Meaning::Nothing)
+        scopes.iter().find_map(in_scope).unwrap_or(KeyMeaning::Unbound)
     }
 
     /// Returns the possible continuations of a sequence: the next chords and the final action.
-    pub fn continuations(&self, scopes: &[Scope], pressed: &[Chord]) -> Vec<(String, Action)> {
+    pub fn completions(&self, scopes: &[Scope], pressed: &[Chord]) -> Vec<(String, Action)> {
         let longer = |(bound, action): &(Vec<Chord>, Action)| {
             let rest = bound.strip_prefix(pressed).filter(|rest| !rest.is_empty());
-            rest.map(|rest| (written(rest), *action))
+            rest.map(|rest| (format_sequence(rest), *action))
         };
         let mut following: Vec<(String, Action)> = Vec::new();
         for found in scopes.iter().filter_map(|scope| self.0.get(scope)).flatten().filter_map(longer) {
@@ -113,14 +113,14 @@ impl Keys {
     /// Returns the action of a single chord in the innermost scope that binds it.
     pub fn action(&self, scopes: &[Scope], chord: Chord) -> Option<Action> {
         match self.meaning(scopes, &[chord]) {
-            Meaning::Action(action) => Some(action),
+            KeyMeaning::Action(action) => Some(action),
             _ => None,
         }
     }
 
     /// Returns the first binding of an action, as labels show it.
     pub fn label(&self, action: Action) -> Option<String> {
-        self.chords(action).next().map(written)
+        self.chords(action).next().map(format_sequence)
     }
 
     /// Returns all bindings of an action.
@@ -130,9 +130,9 @@ impl Keys {
     }
 
     /// Returns the bindings of an action that work in these scopes, without those that an inner scope overrides.
-    pub fn working(&self, action: Action, scopes: &[Scope]) -> Vec<String> {
-        let works = |chords: &&[Chord]| self.meaning(scopes, chords) == Meaning::Action(action);
-        self.chords(action).filter(works).map(written).collect()
+    pub fn working_keys(&self, action: Action, scopes: &[Scope]) -> Vec<String> {
+        let works = |chords: &&[Chord]| self.meaning(scopes, chords) == KeyMeaning::Action(action);
+        self.chords(action).filter(works).map(format_sequence).collect()
     }
 }
 
@@ -143,7 +143,7 @@ mod tests {
 
     #[test]
     fn every_action_is_in_the_key_file_and_names_are_unique() {
-        let file: Table = SHIPPED.parse().expect("TOML");
+        let file: Table = BUNDLED_KEYS.parse().expect("TOML");
         for entry in ACTIONS {
             let bound = file.get(entry.scope.id()).and_then(|scope| scope.get(entry.name));
             assert!(bound.is_some(), "{}.{} is missing in keys.toml", entry.scope.id(), entry.name);
@@ -153,8 +153,8 @@ mod tests {
     }
 
     #[test]
-    fn a_file_patches_single_actions_and_errors_name_the_place() {
-        let mut keys = Keys::shipped();
+    fn user_file_patches_single_actions_and_errors_name_the_line() {
+        let mut keys = KeyBindings::bundled();
         keys.patch("[global]\nquit = [\"ctrl-q\"]").expect("a patch");
         assert_eq!(keys.label(Action::Quit).as_deref(), Some("ctrl-q"));
         assert_eq!(keys.label(Action::NextWeek).as_deref(), Some("n"));
@@ -166,33 +166,33 @@ mod tests {
             ("[global]\nquit = [\"n\"]", "already means next-week"),
             ("[global", "expected"),
         ] {
-            let problem = Keys::shipped().patch(file).expect_err(file);
+            let problem = KeyBindings::bundled().patch(file).expect_err(file);
             assert!(problem.contains(part), "{problem}");
         }
     }
 
     #[test]
-    fn keys_that_begin_something_name_what_may_follow() {
-        let mut keys = Keys::shipped();
+    fn prefix_keys_list_their_completions() {
+        let mut keys = KeyBindings::bundled();
         keys.patch("[global]\nquit = [\", q\", \", x y\"]").expect("a patch");
-        let pressed = |text: &str| sequence(text).expect("keys");
+        let pressed = |text: &str| parse_sequence(text).expect("keys");
         let scopes = [Scope::List, Scope::Global];
-        assert_eq!(keys.meaning(&scopes, &pressed(",")), Meaning::Begin);
-        assert_eq!(keys.meaning(&scopes, &pressed(", q")), Meaning::Action(Action::Quit));
-        assert_eq!(keys.meaning(&scopes, &pressed(", x")), Meaning::Begin);
-        assert_eq!(keys.meaning(&scopes, &pressed(", n")), Meaning::Nothing);
+        assert_eq!(keys.meaning(&scopes, &pressed(",")), KeyMeaning::Prefix);
+        assert_eq!(keys.meaning(&scopes, &pressed(", q")), KeyMeaning::Action(Action::Quit));
+        assert_eq!(keys.meaning(&scopes, &pressed(", x")), KeyMeaning::Prefix);
+        assert_eq!(keys.meaning(&scopes, &pressed(", n")), KeyMeaning::Unbound);
         let following = [("q".to_owned(), Action::Quit), ("x y".to_owned(), Action::Quit)];
-        assert_eq!(keys.continuations(&scopes, &pressed(",")), following);
+        assert_eq!(keys.completions(&scopes, &pressed(",")), following);
         assert_eq!(keys.label(Action::Quit).as_deref(), Some(", q"));
         let clash = keys.patch("[global]\nundo = [\",\"]").expect_err("a clash");
         assert!(clash.contains("already means quit"), "{clash}");
     }
 
     #[test]
-    fn the_innermost_scope_counts() {
-        let keys = Keys::shipped();
+    fn innermost_scope_takes_precedence() {
+        let keys = KeyBindings::bundled();
         let enter = Chord::parse("enter").expect("a key");
-        assert_eq!(keys.action(&[Scope::Result, Scope::List], enter), Some(Action::WholeCell));
+        assert_eq!(keys.action(&[Scope::Result, Scope::List], enter), Some(Action::ShowCell));
         assert_eq!(keys.action(&[Scope::List, Scope::Global], enter), Some(Action::Open));
         assert_eq!(keys.action(&[Scope::Global], enter), None);
     }

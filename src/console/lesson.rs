@@ -4,32 +4,33 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 use super::action::Action;
-use super::context::{Look, ScreenId};
-use novamind_course::{GoalPage, LessonPage, LessonQuestion};
-use novamind_report::lesson::{goal_at, guess_and_outcome};
+use super::context::{ScreenContext, ScreenId};
+use novamind_course::{GoalStatus, LessonQuestion, LessonStatus};
+use novamind_report::lesson::{describe_goal_progress, describe_guess_and_outcome};
 use novamind_tools::ToolId;
 use novamind_tui::canvas::Canvas;
-use novamind_tui::text::wrapped;
+use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::spark::bar;
-use novamind_worker::company::Company;
+use novamind_tui::widgets::sparkline::bar;
+use novamind_worker::company::DisplayedCompany;
 
 /// Width of the side pane, in columns.
-pub const COLUMNS: u16 = 38;
+pub const TASK_WIDTH: u16 = 38;
 /// Minimum window width for the side pane, in columns.
-pub const WIDE: u16 = 118;
+pub const MIN_WIDTH_FOR_TASK: u16 = 118;
 
 /// Screens that are open in every lesson.
-const ALWAYS: [ScreenId; 3] = [ScreenId::Overview, ScreenId::Tools, ScreenId::Journal];
+const ALWAYS_OPEN_SCREENS: [ScreenId; 3] = [ScreenId::Overview, ScreenId::Tools, ScreenId::Journal];
 
 /// Returns why a screen is closed in the current lesson, or `None` if it is open.
-pub fn why_closed(screen: ScreenId, company: &Company) -> Option<String> {
+pub fn closed_reason(screen: ScreenId, company: &DisplayedCompany) -> Option<String> {
     let lesson = company.running_lesson()?;
     let screens = lesson.screens.as_ref()?;
     let queries = lesson.tools.as_ref().is_none_or(|tools| tools.contains(&ToolId::Query));
     let open = |own: ScreenId| {
         let asks = own == ScreenId::Sql && queries;
-        asks || ALWAYS.contains(&own) || screens.iter().any(|name| name.eq_ignore_ascii_case(own.id()))
+        asks || ALWAYS_OPEN_SCREENS.contains(&own)
+            || screens.iter().any(|name| name.eq_ignore_ascii_case(own.record_name()))
     };
     // Hidden state has its own permission.
     if screen == ScreenId::Xray || open(screen) {
@@ -41,19 +42,19 @@ pub fn why_closed(screen: ScreenId, company: &Company) -> Option<String> {
 }
 
 /// Draws the task next to the screen. The lesson page shows all of it.
-pub fn draw_beside(canvas: &mut Canvas<'_>, area: Rect, page: &LessonPage, look: &Look<'_>) {
+pub fn draw_side_task(canvas: &mut Canvas<'_>, area: Rect, page: &LessonStatus, look: &ScreenContext<'_>) {
     canvas.clear(area, Role::Text);
     let note = format!("week {} of {}", (page.weeks.0 + 1).min(page.weeks.1), page.weeks.1);
-    let inside = canvas.pane(area, "Lesson", &note, false);
+    let inside = canvas.draw_pane_frame(area, "Lesson", &note, false);
     let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
-    let lines = lines_of(page, look, (inside.width as usize, Where::Beside));
+    let lines = lines_of(page, look, (inside.width as usize, TaskPlace::SidePane));
     let cut = lines.len() > inside.height as usize;
     draw_lines(canvas, inside, &lines, 0);
     let keys = match cut {
         true => format!("{} for more", look.hint(Action::LessonPage)),
         false => look.hints(&[Action::LessonPage, Action::Lesson]),
     };
-    canvas.pane_keys(area, &keys);
+    canvas.draw_pane_keys(area, &keys);
 }
 
 /// Draws lines from an index.
@@ -61,79 +62,83 @@ pub fn draw_lines(canvas: &mut Canvas<'_>, area: Rect, lines: &[(String, Role)],
     let shown = lines.iter().skip(from).take(area.height as usize);
     let shown: Vec<Line<'_>> =
         shown.map(|(text, role)| Line::from(canvas.span(text.as_str(), *role))).collect();
-    canvas.lines(area, &shown);
+    canvas.draw_lines(area, &shown);
 }
 
-struct Lines {
+struct StyledLines {
     width: usize,
-    all: Vec<(String, Role)>,
+    lines: Vec<(String, Role)>,
 }
 
-impl Lines {
-    fn say(&mut self, text: &str, role: Role) {
-        self.all.extend(wrapped(text, self.width).into_iter().map(|line| (line, role)));
+impl StyledLines {
+    fn push_text(&mut self, text: &str, role: Role) {
+        self.lines.extend(wrap(text, self.width).into_iter().map(|line| (line, role)));
     }
 
-    fn gap(&mut self) {
-        if self.all.last().is_some_and(|(text, _)| !text.is_empty()) {
-            self.all.push((String::new(), Role::Text));
+    fn push_blank(&mut self) {
+        if self.lines.last().is_some_and(|(text, _)| !text.is_empty()) {
+            self.lines.push((String::new(), Role::Text));
         }
     }
 }
 
 /// Where the task is drawn, which determines its keys.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Where {
+pub enum TaskPlace {
     /// Next to the screen.
-    Beside,
+    SidePane,
     /// On the lesson page.
-    OnPage,
+    FullPage,
 }
 
 /// Formats the task as lines of a width.
-pub fn lines_of(page: &LessonPage, look: &Look<'_>, (width, place): (usize, Where)) -> Vec<(String, Role)> {
-    let mut lines = Lines { width, all: Vec::new() };
-    lines.say(&page.title, Role::Title);
+pub fn lines_of(
+    page: &LessonStatus,
+    look: &ScreenContext<'_>,
+    (width, place): (usize, TaskPlace),
+) -> Vec<(String, Role)> {
+    let mut lines = StyledLines { width, lines: Vec::new() };
+    lines.push_text(&page.title, Role::Title);
     if let Some(part) = &page.part {
-        lines.say(part, Role::Dim);
+        lines.push_text(part, Role::Dim);
     }
-    if let Some(before) = &page.before {
-        lines.gap();
-        lines.say(&format!("Step {} is complete: {}", page.step, before.title), Role::Header);
-        say_outcome(&mut lines, before.question.as_ref(), &before.goals);
+    if let Some(before) = &page.previous_step {
+        lines.push_blank();
+        lines.push_text(&format!("Step {} is complete: {}", page.step, before.title), Role::Header);
+        push_outcome(&mut lines, before.question.as_ref(), &before.goals);
     }
-    lines.gap();
+    lines.push_blank();
     let again = if page.try_number > 1 { format!(", try {}", page.try_number) } else { String::new() };
     let step = format!("Step {} of {}: {}{again}", page.step + 1, page.steps, page.step_title);
-    lines.say(&step, Role::Strong);
-    if page.is_over {
-        lines.gap();
-        say_outcome(&mut lines, page.question.as_ref(), &page.goals);
-        say_pitfalls(&mut lines, page);
-        lines.gap();
-        lines.say(&what_follows(page, look, place), Role::Key);
-        return lines.all;
+    lines.push_text(&step, Role::Strong);
+    if page.is_finished {
+        lines.push_blank();
+        push_outcome(&mut lines, page.question.as_ref(), &page.goals);
+        push_pitfalls(&mut lines, page);
+        lines.push_blank();
+        lines.push_text(&next_steps_text(page, look, place), Role::Key);
+        return lines.lines;
     }
     // Goals come first, because small windows truncate the end.
     for goal in &page.goals {
-        say_goal(&mut lines, goal);
+        push_goal(&mut lines, goal);
     }
     if !page.goals.is_empty() {
-        lines.gap();
+        lines.push_blank();
     }
-    lines.say(&unwrapped(&page.text), Role::Text);
+    lines.push_text(&unwrap_paragraphs(&page.text), Role::Text);
     if let Some(question) = &page.question {
-        lines.gap();
-        say_question(&mut lines, question, look);
+        lines.push_blank();
+        push_question(&mut lines, question, look);
     }
-    say_pitfalls(&mut lines, page);
-    say_hints(&mut lines, page, look);
-    say_locked(&mut lines, look);
-    lines.all
+    push_pitfalls(&mut lines, page);
+    push_hints(&mut lines, page, look);
+    push_available_features(&mut lines, look);
+    lines.lines
 }
 
-fn what_follows(page: &LessonPage, look: &Look<'_>, place: Where) -> String {
-    if place == Where::Beside {
+fn next_steps_text(page: &LessonStatus, look: &ScreenContext<'_>, place: TaskPlace) -> String {
+    if place == TaskPlace::SidePane {
         let key = look.keys.label(Action::NextWeek).unwrap_or_default();
         return match page.next_part {
             Some(_) => format!("This part has ended: {key} opens the page with the next part."),
@@ -149,94 +154,96 @@ fn what_follows(page: &LessonPage, look: &Look<'_>, place: Where) -> String {
 }
 
 /// Returns the step that a retry starts with, counted from 0: the current one, or the one that has just ended.
-pub fn step_to_try(page: &LessonPage) -> usize {
-    page.step - usize::from(page.before.is_some())
+pub fn retry_step(page: &LessonStatus) -> usize {
+    page.step - usize::from(page.previous_step.is_some())
 }
 
 /// Joins the wrapped lines of each paragraph.
-fn unwrapped(text: &str) -> String {
+fn unwrap_paragraphs(text: &str) -> String {
     let paragraphs = text.trim().split("\n\n");
     let joined = paragraphs.map(|own| own.split_whitespace().collect::<Vec<_>>().join(" "));
     joined.collect::<Vec<_>>().join("\n\n")
 }
 
-fn say_question(lines: &mut Lines, question: &LessonQuestion, look: &Look<'_>) {
-    lines.say(&format!("Your guess: {}", question.text), Role::Strong);
+fn push_question(lines: &mut StyledLines, question: &LessonQuestion, look: &ScreenContext<'_>) {
+    lines.push_text(&format!("Your guess: {}", question.text), Role::Strong);
     match question.guess {
-        Some(_) => guess_and_outcome(question).iter().for_each(|line| lines.say(line, Role::Text)),
+        Some(_) => {
+            describe_guess_and_outcome(question).iter().for_each(|line| lines.push_text(line, Role::Text))
+        }
         None => {
             for (at, choice) in question.choices.iter().enumerate() {
-                lines.say(&format!("{}) {choice}", at + 1), Role::Text);
+                lines.push_text(&format!("{}) {choice}", at + 1), Role::Text);
             }
-            lines.say(&format!("{} asks for your guess", look.hint(Action::NextWeek)), Role::Key);
+            lines.push_text(&format!("{} asks for your guess", look.hint(Action::NextWeek)), Role::Key);
         }
     }
 }
 
-fn say_outcome(lines: &mut Lines, question: Option<&LessonQuestion>, goals: &[GoalPage]) {
+fn push_outcome(lines: &mut StyledLines, question: Option<&LessonQuestion>, goals: &[GoalStatus]) {
     if let Some(question) = question {
-        lines.say(&question.text, Role::Dim);
-        guess_and_outcome(question).iter().for_each(|line| lines.say(line, Role::Strong));
+        lines.push_text(&question.text, Role::Dim);
+        describe_guess_and_outcome(question).iter().for_each(|line| lines.push_text(line, Role::Strong));
     }
     for goal in goals {
-        say_goal(lines, goal);
+        push_goal(lines, goal);
     }
 }
 
 /// Adds a goal with a progress bar.
-fn say_goal(lines: &mut Lines, goal: &GoalPage) {
+fn push_goal(lines: &mut StyledLines, goal: &GoalStatus) {
     let (mark, role) = match goal.met {
         Some(true) => ("reached: ", Role::Good),
         Some(false) => ("missed: ", Role::Bad),
         None => ("Goal: ", Role::Strong),
     };
-    lines.say(&format!("{mark}{}", goal.text), role);
-    let Some(at) = goal_at(goal) else { return };
+    lines.push_text(&format!("{mark}{}", goal.text), role);
+    let Some(at) = describe_goal_progress(goal) else { return };
     let room = lines.width.saturating_sub(at.chars().count() + 1).min(16);
     match goal.value.zip(goal.bound).filter(|(_, bound)| *bound > 0.0 && room > 3) {
         Some((value, bound)) => {
             // A bar is full only if the goal is reached.
             let most = if goal.met == Some(true) || value >= bound { 1.0 } else { 1.0 - 1.0 / room as f64 };
-            lines.say(&format!("{} {at}", bar((value / bound).min(most), room)), Role::Text);
+            lines.push_text(&format!("{} {at}", bar((value / bound).min(most), room)), Role::Text);
         }
-        None => lines.say(&at, Role::Text),
+        None => lines.push_text(&at, Role::Text),
     }
 }
 
-fn say_pitfalls(lines: &mut Lines, page: &LessonPage) {
+fn push_pitfalls(lines: &mut StyledLines, page: &LessonStatus) {
     for (day, say) in &page.pitfalls {
-        lines.gap();
-        lines.say(&format!("! Day {day}: {say}"), Role::Warning);
+        lines.push_blank();
+        lines.push_text(&format!("! Day {day}: {say}"), Role::Warning);
     }
 }
 
-fn say_hints(lines: &mut Lines, page: &LessonPage, look: &Look<'_>) {
-    lines.gap();
+fn push_hints(lines: &mut StyledLines, page: &LessonStatus, look: &ScreenContext<'_>) {
+    lines.push_blank();
     for (at, hint) in page.hints.iter().enumerate() {
-        lines.say(&format!("Hint {}: {hint}", at + 1), Role::Text);
+        lines.push_text(&format!("Hint {}: {hint}", at + 1), Role::Text);
     }
-    let count = format!("hints {}/{}", page.hints.len(), page.hints_in_all);
-    let more = page.hints.len() < page.hints_in_all;
+    let count = format!("hints {}/{}", page.hints.len(), page.hint_count);
+    let more = page.hints.len() < page.hint_count;
     let keys = || {
         let key = |action| look.keys.label(action).unwrap_or_default();
         format!(" · {} {} shows one", key(Action::LessonPage), key(Action::NextHint))
     };
-    lines.say(&if more { count + &keys() } else { count }, Role::Dim);
+    lines.push_text(&if more { count + &keys() } else { count }, Role::Dim);
 }
 
-fn say_locked(lines: &mut Lines, look: &Look<'_>) {
+fn push_available_features(lines: &mut StyledLines, look: &ScreenContext<'_>) {
     let Some(lesson) = look.company.running_lesson() else { return };
-    lines.gap();
+    lines.push_blank();
     if let Some(tools) = &lesson.tools {
         let names: Vec<&str> = tools.iter().map(|tool| tool.name()).collect();
-        lines.say(&format!("Tools in this lesson: {}.", names.join(", ")), Role::Dim);
+        lines.push_text(&format!("Tools in this lesson: {}.", names.join(", ")), Role::Dim);
     }
     if lesson.screens.is_some() {
-        let is_closed = |screen: &ScreenId| why_closed(*screen, look.company).is_some();
+        let is_closed = |screen: &ScreenId| closed_reason(*screen, look.company).is_some();
         let closed = ScreenId::ALL.into_iter().filter(is_closed);
         let closed: Vec<&str> = closed.map(|screen| screen.action().entry().title).collect();
         if !closed.is_empty() {
-            lines.say(&format!("Closed in this lesson: {}.", closed.join(", ")), Role::Dim);
+            lines.push_text(&format!("Closed in this lesson: {}.", closed.join(", ")), Role::Dim);
         }
     }
 }

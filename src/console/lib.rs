@@ -5,28 +5,28 @@
 //! from tool results, the weekly dashboard or guarded queries.
 
 mod action;
-mod agreement;
 pub mod app;
 mod attention;
+pub mod benchmark;
+mod consent;
 pub mod context;
 mod dialogs;
 pub mod effect;
-mod fan;
 mod files;
+mod forecast_fan;
 mod frame;
 pub mod headless;
 pub mod keys;
 mod lesson;
 pub mod manual;
+mod playback;
 mod projector;
 pub mod screens;
-pub mod speed;
+mod study_pages;
 #[cfg(test)]
 mod test_kit;
 pub mod themes;
 mod tour;
-mod viewer;
-mod visit;
 
 use std::io;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -39,48 +39,48 @@ use novamind_worker::Workers;
 use novamind_worker::message::Message;
 
 /// Frame interval while only elapsed times change.
-const BETWEEN_SECONDS: Duration = Duration::from_millis(500);
+const BUSY_FRAME_INTERVAL: Duration = Duration::from_millis(500);
 /// Timeout for a message while nothing on the screen depends on the time.
-const FOREVER: Duration = Duration::from_secs(3600);
+const IDLE_TIMEOUT: Duration = Duration::from_secs(3600);
 
 /// Maximum delay of a suspension for recording it, in case a week is being simulated.
 #[cfg(unix)]
-const BEFORE_SUSPENSION: Duration = Duration::from_millis(500);
+const SUSPEND_TIMEOUT: Duration = Duration::from_millis(500);
 
 /// Runs the console. Returns the exit code and the text to print on exit.
 ///
 /// # Errors
 /// The terminal fails.
-pub fn play(settings: Settings, start: Option<Effect>) -> io::Result<(u8, Option<String>)> {
+pub fn run_console(settings: Settings, start: Option<Effect>) -> io::Result<(u8, Option<String>)> {
     let (sender, messages) = channel();
     let workers = Workers::start(
         sender.clone(),
         settings.configuration.clone(),
         settings.runs.clone(),
-        settings.lists_everybody,
+        settings.lists_all_participants,
     );
-    let again = settings.again.clone();
+    let again = settings.resume_command.clone();
     let mut app = App::new(settings);
     app.window = crossterm::terminal::size().unwrap_or_default();
     if let Some(effect) = start {
-        app.start_with(effect);
+        app.start(effect);
     }
-    let screen = TerminalScreen::take()?;
-    listen(sender.clone());
+    let screen = TerminalScreen::open()?;
+    spawn_input_threads(sender.clone());
     let mut console = Console {
         app,
         workers,
         screen,
         messages,
         sender,
-        again,
+        resume_command: again,
         #[cfg(unix)]
         has_resumed: false,
     };
     let end = console.run();
     let Console { screen, workers, .. } = console;
     drop(screen);
-    workers.finish();
+    workers.shut_down();
     end
 }
 
@@ -90,7 +90,7 @@ struct Console {
     screen: TerminalScreen,
     messages: Receiver<Message>,
     sender: Sender<Message>,
-    again: String,
+    resume_command: String,
     /// Whether the program has resumed and the message of the continue signal is still to come.
     #[cfg(unix)]
     has_resumed: bool,
@@ -99,31 +99,32 @@ struct Console {
 impl Console {
     fn run(&mut self) -> io::Result<(u8, Option<String>)> {
         loop {
-            if let Some(end) = self.carry_out()? {
+            if let Some(end) = self.execute_orders()? {
                 return Ok(end);
             }
             self.screen.draw(|buffer| {
-                let drawn = frame::draw(&self.app, buffer);
-                (self.app.clicks, self.app.page, self.app.window) = (drawn.clicks, drawn.page, drawn.window);
+                let drawn = frame::draw_frame(&self.app, buffer);
+                (self.app.clicks, self.app.page_rows, self.app.window) =
+                    (drawn.clicks, drawn.page_rows, drawn.window);
                 drawn.cursor
             })?;
-            let patience = if self.app.is_waiting() { BETWEEN_SECONDS } else { FOREVER };
+            let patience = if self.app.is_waiting() { BUSY_FRAME_INTERVAL } else { IDLE_TIMEOUT };
             match self
                 .messages
-                .recv_timeout(self.app.wakes_after().map_or(patience, |wake| wake.min(patience)))
+                .recv_timeout(self.app.time_until_wake().map_or(patience, |wake| wake.min(patience)))
             {
-                Ok(message) => self.hear(message)?,
-                Err(RecvTimeoutError::Timeout) => self.app.update(Message::Time),
+                Ok(message) => self.handle_message(message)?,
+                Err(RecvTimeoutError::Timeout) => self.app.handle_message(Message::TimePassed),
                 Err(RecvTimeoutError::Disconnected) => return Ok((1, None)),
             }
             // Draws once after all messages that have arrived.
             while let Ok(message) = self.messages.try_recv() {
-                self.hear(message)?;
+                self.handle_message(message)?;
             }
         }
     }
 
-    fn hear(&mut self, message: Message) -> io::Result<()> {
+    fn handle_message(&mut self, message: Message) -> io::Result<()> {
         #[cfg(debug_assertions)]
         fail_on_purpose(&message);
         match message {
@@ -133,7 +134,7 @@ impl Console {
                 for job in self.app.take_jobs() {
                     self.workers.send(job);
                 }
-                self.workers.settle(BEFORE_SUSPENSION);
+                self.workers.wait_for_jobs(SUSPEND_TIMEOUT);
                 self.screen.suspend(self.app.mouse)?;
                 // Recorded here, because a key that ends the program could be handled before the continue signal.
                 self.app.resume();
@@ -146,33 +147,36 @@ impl Console {
                 }
                 self.screen.resume(self.app.mouse)?;
             }
-            message => self.app.update(message),
+            message => self.app.handle_message(message),
         }
         Ok(())
     }
 
-    fn carry_out(&mut self) -> io::Result<Option<(u8, Option<String>)>> {
+    fn execute_orders(&mut self) -> io::Result<Option<(u8, Option<String>)>> {
         for order in self.app.take_orders() {
             match order {
                 Order::Job(job) => self.workers.send(job),
                 Order::Ask(ask, is_busy) => self.workers.ask(&ask, is_busy),
-                Order::CancelQuery => self.workers.stop_what_runs(),
-                Order::Copy(text) => self.screen.copy(&text),
-                Order::Write(files) => files::write_behind(files, self.sender.clone()),
+                Order::CancelQuery => self.workers.stop_running_work(),
+                Order::Copy(text) => self.screen.copy_to_clipboard(&text),
+                Order::Write(files) => files::write_in_background(files, self.sender.clone()),
                 Order::SaveQuery(configuration, query) => {
-                    files::save_query_behind(configuration, query, self.sender.clone());
+                    files::save_query_in_background(configuration, query, self.sender.clone());
                 }
                 Order::Redraw => self.screen.clear()?,
-                Order::Mouse(taken) => self.screen.mouse(taken),
+                Order::Mouse(taken) => self.screen.set_mouse_capture(taken),
                 Order::Exit(code, text) => return Ok(Some((code, text))),
             }
         }
         let folder = match &self.app.stage {
             Stage::Run(run) => run.company.folder.as_ref().map(|folder| folder.display().to_string()),
-            Stage::Menu(_) | Stage::Visit(_) => None,
+            Stage::Menu(_) | Stage::Study(_) => None,
         };
         set_panic_note(folder.map(|folder| {
-            format!("novamind: all confirmed actions are saved in {folder}; resume with `{}`", self.again)
+            format!(
+                "novamind: all confirmed actions are saved in {folder}; resume with `{}`",
+                self.resume_command
+            )
         }));
         Ok(None)
     }
@@ -189,7 +193,7 @@ fn fail_on_purpose(message: &Message) {
 }
 
 /// Receives keys and signals on two threads that end with the program.
-fn listen(sender: Sender<Message>) {
+fn spawn_input_threads(sender: Sender<Message>) {
     let keys = sender.clone();
     std::thread::spawn(move || {
         while let Ok(event) = crossterm::event::read() {

@@ -1,23 +1,25 @@
 //! The list of all key bindings as text, for the terminal and the documentation.
 
 use super::action::{ACTIONS, ActionEntry, Scope};
-use super::keys::Keys;
-use novamind_tui::chord::written;
+use super::keys::KeyBindings;
+use novamind_tui::chord::format_sequence;
 
-fn places(keys: &Keys) -> impl Iterator<Item = (Scope, Vec<(&'static ActionEntry, Vec<String>)>)> + '_ {
+fn actions_by_scope(
+    keys: &KeyBindings,
+) -> impl Iterator<Item = (Scope, Vec<(&'static ActionEntry, Vec<String>)>)> + '_ {
     Scope::ALL.into_iter().filter_map(move |scope| {
         let own = ACTIONS.iter().filter(|entry| entry.scope == scope);
         let with_keys =
-            |entry: &'static ActionEntry| (entry, keys.chords(entry.action).map(written).collect());
+            |entry: &'static ActionEntry| (entry, keys.chords(entry.action).map(format_sequence).collect());
         let rows: Vec<(&ActionEntry, Vec<String>)> = own.map(with_keys).collect();
         (!rows.is_empty()).then_some((scope, rows))
     })
 }
 
 /// Formats the list in aligned columns.
-pub fn text(keys: &Keys) -> String {
+pub fn to_text(keys: &KeyBindings) -> String {
     let mut text = String::new();
-    for (scope, rows) in places(keys) {
+    for (scope, rows) in actions_by_scope(keys) {
         text.push_str(&format!("{}\n", scope.title()));
         let shown: Vec<(String, &ActionEntry)> =
             rows.into_iter().map(|(entry, chords)| (chords.join(", "), entry)).collect();
@@ -31,9 +33,9 @@ pub fn text(keys: &Keys) -> String {
 }
 
 /// Formats the list as Markdown, a table per scope.
-pub fn markdown(keys: &Keys) -> String {
+pub fn to_markdown(keys: &KeyBindings) -> String {
     let mut text = String::new();
-    for (scope, rows) in places(keys) {
+    for (scope, rows) in actions_by_scope(keys) {
         text.push_str(&format!("**{}**\n\n| keys | |\n|---|---|\n", scope.title()));
         for (entry, chords) in rows {
             let chords: Vec<String> =
@@ -51,22 +53,22 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_action_is_in_the_manual_once() {
-        let keys = Keys::shipped();
-        for manual in [text(&keys), markdown(&keys)] {
+    fn manual_lists_every_action_once() {
+        let keys = KeyBindings::bundled();
+        for manual in [to_text(&keys), to_markdown(&keys)] {
             for entry in ACTIONS {
                 assert!(manual.contains(entry.doc), "{}", entry.name);
             }
         }
-        assert!(text(&keys).contains("  n "), "{}", text(&keys));
-        assert!(markdown(&keys).contains("| `n` | Review the changes"), "{}", markdown(&keys));
+        assert!(to_text(&keys).contains("  n "), "{}", to_text(&keys));
+        assert!(to_markdown(&keys).contains("| `n` | Review the changes"), "{}", to_markdown(&keys));
     }
 
     #[test]
-    fn documents_have_the_keys_that_the_program_has() {
+    fn documentation_matches_the_key_bindings() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/interfaces/keys.md");
         let page = std::fs::read_to_string(path).expect("the page of keys");
-        let shipped = format!("{}\n", markdown(&Keys::shipped()).trim_end());
+        let shipped = format!("{}\n", to_markdown(&KeyBindings::bundled()).trim_end());
         if page.ends_with(&shipped) {
             return;
         }

@@ -8,29 +8,29 @@ use ratatui::layout::Rect;
 
 use super::action::Action;
 use super::app::Settings;
-use super::context::Look;
-use super::dialogs::{Dialog, Outcome};
+use super::context::ScreenContext;
+use super::dialogs::{Dialog, DialogResponse};
 use super::effect::Effect;
-use super::keys::Keys;
+use super::keys::KeyBindings;
 use super::screens::Screen;
-use novamind_database::Rows;
+use novamind_database::QueryResult;
 use novamind_record::folder::configuration::Configuration;
 use novamind_session::Session;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::glyphs::Glyphs;
 use novamind_tui::theme::Theme;
-use novamind_worker::asking::{Ask, Question};
-use novamind_worker::company::Company;
+use novamind_worker::company::DisplayedCompany;
+use novamind_worker::question::{OutgoingQuestion, Question};
 use novamind_worker::readings::Reading;
-pub use novamind_worker::test_kit::{courted, played, session};
+pub use novamind_worker::test_kit::{new_session, played_session, session_with_negotiations};
 
 /// Returns a company on its first day.
-pub fn company() -> Company {
-    Company::of(&session())
+pub fn new_company() -> DisplayedCompany {
+    DisplayedCompany::from_session(&new_session())
 }
 
 /// Returns the query results for the readings of a screen.
-pub fn answers(session: &mut Session, screen: &dyn Screen) -> Vec<(Reading, Rows)> {
+pub fn query_readings(session: &mut Session, screen: &dyn Screen) -> Vec<(Reading, QueryResult)> {
     let ask = |reading: &Reading| {
         let rows = session.query(reading.sql());
         (*reading, rows.unwrap_or_else(|refusal| panic!("{reading:?}: {refusal}")))
@@ -39,41 +39,41 @@ pub fn answers(session: &mut Session, screen: &dyn Screen) -> Vec<(Reading, Rows
 }
 
 /// Returns a screen with all data of a company.
-pub fn shown<S: Screen + Default>(session: &mut Session, company: &Company) -> S {
+pub fn loaded_screen<S: Screen + Default>(session: &mut Session, company: &DisplayedCompany) -> S {
     let mut screen = S::default();
-    let keys = Keys::shipped();
-    let look = Look { company, keys: &keys, page: 5 };
-    screen.renew(&look);
-    for (reading, rows) in answers(session, &screen) {
-        screen.take(reading, &rows, &look);
+    let keys = KeyBindings::bundled();
+    let look = ScreenContext { company, keys: &keys, page_rows: 5 };
+    screen.on_company_change(&look);
+    for (reading, rows) in query_readings(session, &screen) {
+        screen.apply_rows(reading, &rows, &look);
     }
     screen
 }
 
 /// Plays a run for some weeks. Returns it with its company and a screen with all data.
-pub fn on_screen<S: Screen + Default>(weeks: usize) -> (Session, Company, S) {
-    let mut session = played(weeks);
-    let company = Company::of(&session);
-    let screen = shown(&mut session, &company);
+pub fn played_screen<S: Screen + Default>(weeks: usize) -> (Session, DisplayedCompany, S) {
+    let mut session = played_session(weeks);
+    let company = DisplayedCompany::from_session(&session);
+    let screen = loaded_screen(&mut session, &company);
     (session, company, screen)
 }
 
 /// Lets a screen handle an action.
-pub fn act(screen: &mut dyn Screen, action: Action, company: &Company) -> Vec<Effect> {
-    let keys = Keys::shipped();
-    screen.act(action, &Look { company, keys: &keys, page: 5 })
+pub fn handle_action(screen: &mut dyn Screen, action: Action, company: &DisplayedCompany) -> Vec<Effect> {
+    let keys = KeyBindings::bundled();
+    screen.handle_action(action, &ScreenContext { company, keys: &keys, page_rows: 5 })
 }
 
 /// Returns the settings of test consoles.
 pub fn settings(runs: &Path) -> Settings {
     Settings {
         theme: Theme::bundled("dark").expect("a theme"),
-        keys: Keys::shipped(),
+        keys: KeyBindings::bundled(),
         glyphs: Glyphs::Braille,
-        configuration: Configuration::shipped(),
+        configuration: Configuration::bundled(),
         runs: runs.to_owned(),
-        again: "novamind --run latest".to_owned(),
-        lists_everybody: false,
+        resume_command: "novamind --run latest".to_owned(),
+        lists_all_participants: false,
         opponents: |_, _, _| Ok(None),
     }
 }
@@ -84,73 +84,74 @@ pub fn asked<Q: Question>(effects: &[Effect]) -> &Q {
         Effect::Ask(ask) => Some(ask),
         _ => None,
     });
-    match (asks.next().and_then(Ask::question), asks.next()) {
+    match (asks.next().and_then(OutgoingQuestion::question), asks.next()) {
         (Some(question), None) => question,
         _ => panic!("{effects:?}"),
     }
 }
 
 /// Draws a screen and returns the lines of text.
-pub fn picture(screen: &dyn Screen, company: &Company, width: u16, height: u16) -> Vec<String> {
-    pictured(screen, company, (width, height), false)
+pub fn screen_rows(screen: &dyn Screen, company: &DisplayedCompany, width: u16, height: u16) -> Vec<String> {
+    render_screen(screen, company, (width, height), false)
 }
 
 /// Draws the focused pane of a screen zoomed and returns the text.
-pub fn zoomed(screen: &dyn Screen, company: &Company, width: u16, height: u16) -> String {
-    pictured(screen, company, (width, height), true).join("\n")
+pub fn zoomed_text(screen: &dyn Screen, company: &DisplayedCompany, width: u16, height: u16) -> String {
+    render_screen(screen, company, (width, height), true).join("\n")
 }
 
-fn pictured(
+fn render_screen(
     screen: &dyn Screen,
-    company: &Company,
+    company: &DisplayedCompany,
     (width, height): (u16, u16),
     zoomed: bool,
 ) -> Vec<String> {
-    let keys = Keys::shipped();
-    painted(width, height, |canvas, area| {
+    let keys = KeyBindings::bundled();
+    render_rows(width, height, |canvas, area| {
         canvas.zoomed = zoomed;
-        screen.draw(canvas, area, &Look { company, keys: &keys, page: 5 });
+        screen.draw(canvas, area, &ScreenContext { company, keys: &keys, page_rows: 5 });
     })
 }
 
 /// Draws a screen and returns the text.
-pub fn drawn(screen: &dyn Screen, company: &Company, width: u16, height: u16) -> String {
-    picture(screen, company, width, height).join("\n")
+pub fn screen_text(screen: &dyn Screen, company: &DisplayedCompany, width: u16, height: u16) -> String {
+    screen_rows(screen, company, width, height).join("\n")
 }
 
 /// Draws a screen in some small and large windows, with the focus on each pane. `tests/console/sizes.rs` covers more
 /// sizes.
-pub fn sweep(screen: &mut dyn Screen, company: &Company) {
-    for focus in 0..screen.panes() {
+pub fn draw_at_all_sizes(screen: &mut dyn Screen, company: &DisplayedCompany) {
+    for focus in 0..screen.pane_count() {
         screen.set_focus(focus);
         let small = (0..=70).flat_map(|width| (0..=25).map(move |height| (width, height)));
         let small = small.filter(|(width, height)| (width + 3 * height) % 151 == 0);
         for (width, height) in small.chain([(80, 21), (110, 37), (200, 57), (300, 3), (3, 200), (140, 90)]) {
-            drawn(screen, company, width, height);
+            screen_text(screen, company, width, height);
             // A few of these sizes suffice for zoomed panes.
             if height % 6 == 0 || height == 37 {
-                zoomed(screen, company, width, height);
+                zoomed_text(screen, company, width, height);
             }
         }
     }
 }
 
 /// Lets a dialog handle an action.
-pub fn in_dialog(dialog: &mut dyn Dialog, action: Action, company: &Company) -> Outcome {
-    let keys = Keys::shipped();
-    dialog.act(action, &Look { company, keys: &keys, page: 5 })
+pub fn dialog_action(dialog: &mut dyn Dialog, action: Action, company: &DisplayedCompany) -> DialogResponse {
+    let keys = KeyBindings::bundled();
+    dialog.handle_action(action, &ScreenContext { company, keys: &keys, page_rows: 5 })
 }
 
 /// Draws a dialog and returns the text.
-pub fn dialog_picture(dialog: &dyn Dialog, company: &Company, width: u16, height: u16) -> String {
-    let keys = Keys::shipped();
-    let draw =
-        |canvas: &mut Canvas<'_>, area| dialog.draw(canvas, area, &Look { company, keys: &keys, page: 5 });
-    painted(width, height, draw).join("\n")
+pub fn dialog_text(dialog: &dyn Dialog, company: &DisplayedCompany, width: u16, height: u16) -> String {
+    let keys = KeyBindings::bundled();
+    let draw = |canvas: &mut Canvas<'_>, area| {
+        dialog.draw(canvas, area, &ScreenContext { company, keys: &keys, page_rows: 5 })
+    };
+    render_rows(width, height, draw).join("\n")
 }
 
 /// Draws into a window and returns the lines of text.
-pub fn painted(width: u16, height: u16, draw: impl FnOnce(&mut Canvas<'_>, Rect)) -> Vec<String> {
+pub fn render_rows(width: u16, height: u16, draw: impl FnOnce(&mut Canvas<'_>, Rect)) -> Vec<String> {
     let area = Rect::new(0, 0, width, height);
     let mut buffer = Buffer::empty(area);
     let theme = Theme::bundled("mono").expect("a theme");

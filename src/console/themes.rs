@@ -7,27 +7,27 @@ use novamind_tui::theme::Theme;
 ///
 /// # Errors
 /// There is no theme of this name, or its file is invalid.
-pub fn find(name: &str, configuration: &Configuration) -> Result<Theme, String> {
-    let own = configuration.file(format!("themes/{name}.toml")).map_err(|error| error.to_string())?;
+pub fn find_theme(name: &str, configuration: &Configuration) -> Result<Theme, String> {
+    let own = configuration.read_file(format!("themes/{name}.toml")).map_err(|error| error.to_string())?;
     if let Some(source) = own {
         return Theme::parse(name, &source.text).map_err(|problem| format!("{}: {problem}", source.name));
     }
     Theme::bundled(name).ok_or_else(|| {
-        let own = configuration.names("themes");
-        let known: Vec<&str> = bundled().chain(own.iter().map(String::as_str)).collect();
+        let own = configuration.toml_names("themes");
+        let known: Vec<&str> = bundled_names().chain(own.iter().map(String::as_str)).collect();
         format!("there is no theme {name}; there are {}", known.join(", "))
     })
 }
 
-/// Returns every theme that can be parsed, the bundled ones first. An invalid file of the user is left out; [`find`]
+/// Returns every theme that can be parsed, the bundled ones first. An invalid file of the user is left out; [`find_theme`]
 /// reports what is wrong with it.
-pub fn all(configuration: &Configuration) -> Vec<Theme> {
-    let own = configuration.names("themes");
-    let others = own.iter().map(String::as_str).filter(|own| bundled().all(|name| name != *own));
-    bundled().chain(others).filter_map(|name| find(name, configuration).ok()).collect()
+pub fn all_themes(configuration: &Configuration) -> Vec<Theme> {
+    let own = configuration.toml_names("themes");
+    let others = own.iter().map(String::as_str).filter(|own| bundled_names().all(|name| name != *own));
+    bundled_names().chain(others).filter_map(|name| find_theme(name, configuration).ok()).collect()
 }
 
-fn bundled<'a>() -> impl Iterator<Item = &'a str> {
+fn bundled_names<'a>() -> impl Iterator<Item = &'a str> {
     novamind_assets::themes().into_iter().map(|(name, _)| name)
 }
 
@@ -36,8 +36,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_unknown_theme_names_the_known_ones() {
-        let problem = find("pink", &Configuration::shipped()).expect_err("no theme");
+    fn unknown_theme_error_lists_the_known_themes() {
+        let problem = find_theme("pink", &Configuration::bundled()).expect_err("no theme");
         assert!(problem.contains("dark, high-contrast, light, mono"), "{problem}");
     }
 }

@@ -9,18 +9,18 @@ use unicode_width::UnicodeWidthStr;
 
 use super::action::{ACTIONS, Action};
 use super::context::ScreenId;
-use super::keys::Keys;
+use super::keys::KeyBindings;
 use novamind_session::NewRun;
-use novamind_tools::{Numbers, ToolId};
-use novamind_tui::canvas::{Canvas, Click, rows_of};
-use novamind_tui::text::wrapped;
+use novamind_tools::{ParameterNumbers, ToolId};
+use novamind_tui::canvas::{Canvas, Click, row_rects};
+use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
-use novamind_worker::company::Company;
+use novamind_worker::company::DisplayedCompany;
 
 /// Completion condition of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-enum Done {
+enum StepCondition {
     CustomersShown,
     GroupOpen,
     PriceSet,
@@ -47,140 +47,147 @@ struct TourStep {
     title: String,
     look: String,
     press: String,
-    done: Done,
+    done: StepCondition,
 }
 
 /// The steps of the tour, and its run.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Course {
+struct TourDefinition {
     scenario: String,
     seed: u64,
     step: Vec<TourStep>,
 }
 
-static COURSE: LazyLock<Course> = LazyLock::new(|| {
+static TOUR: LazyLock<TourDefinition> = LazyLock::new(|| {
     let text = include_str!("../../assets/tour.toml");
     toml::from_str(text).expect("a test parses the bundled tour")
 });
 
 fn steps() -> &'static [TourStep] {
-    &COURSE.step
+    &TOUR.step
 }
 
 /// Returns the scenario of the tour.
 pub fn scenario() -> &'static str {
-    &COURSE.scenario
+    &TOUR.scenario
 }
 
 /// Returns the definition of the practice run.
 pub fn practice_run() -> NewRun {
-    NewRun { seed: Some(COURSE.seed), scenario: COURSE.scenario.clone(), ..NewRun::default() }
+    NewRun { seed: Some(TOUR.seed), scenario: TOUR.scenario.clone(), ..NewRun::default() }
 }
 
 /// State that completion conditions depend on.
 pub struct TourFacts<'a> {
     /// The company.
-    pub company: &'a Company,
+    pub company: &'a DisplayedCompany,
     /// The current screen.
-    pub here: ScreenId,
+    pub screen: ScreenId,
     /// Screens shown before.
-    pub before: &'a [ScreenId],
+    pub back_history: &'a [ScreenId],
     /// Step of the next-week dialog, from 1, while it is open.
-    pub filing: Option<usize>,
+    pub next_week_step: Option<usize>,
     /// Whether a dialog is open.
-    pub dialog: bool,
+    pub has_dialog: bool,
     /// Whether a group is open on the Customers screen.
-    pub group_open: bool,
+    pub is_group_open: bool,
 }
 
-impl Done {
-    fn holds(self, facts: &TourFacts<'_>) -> bool {
+impl StepCondition {
+    fn is_met(self, facts: &TourFacts<'_>) -> bool {
         let company = facts.company;
         let weeks = company.weeks.len();
-        let any = |tool: ToolId| company.settings.get(&tool).is_some_and(spends);
+        let any = |tool: ToolId| company.settings.get(&tool).is_some_and(has_positive_number);
         let plans = ["A", "B", "C"];
         let has_tier = plans.iter().any(|plan| company.setting(ToolId::SetModelTiers, plan) > 1.0);
         match self {
-            Done::CustomersShown => facts.here == ScreenId::Customers || any(ToolId::SetPrices),
-            Done::GroupOpen => facts.group_open || any(ToolId::SetPrices),
-            Done::PriceSet => any(ToolId::SetPrices),
-            Done::TierSet => weeks > 0 || has_tier,
-            Done::QuotaSet => any(ToolId::SetUsageQuotas),
-            Done::OperationsSet => weeks > 0 || company.setting(ToolId::SetDailySpend, "operations") > 0.0,
-            Done::AdsSet => any(ToolId::SetTargetedAdSpend),
-            Done::Filing => weeks > 0 || facts.filing.is_some(),
-            Done::Rationale => weeks > 0 || facts.filing == Some(3),
-            Done::WeekRun => weeks > 0,
-            Done::ReportRead => weeks > 1 || weeks > 0 && !facts.dialog,
-            Done::GroupOpenAgain => weeks > 1 || !company.seen.changes.is_empty() || facts.group_open,
-            Done::Changed => weeks > 1 || !company.seen.changes.is_empty(),
-            Done::Developed => weeks > 1 || any(ToolId::SetTargetedDevSpend),
-            Done::SecondWeek => weeks > 1,
-            Done::Asked => weeks > 2 || facts.here == ScreenId::Sql || facts.before.contains(&ScreenId::Sql),
-            Done::ThirdWeek => weeks > 2,
-            Done::FourthWeek => weeks > 3,
+            StepCondition::CustomersShown => facts.screen == ScreenId::Customers || any(ToolId::SetPrices),
+            StepCondition::GroupOpen => facts.is_group_open || any(ToolId::SetPrices),
+            StepCondition::PriceSet => any(ToolId::SetPrices),
+            StepCondition::TierSet => weeks > 0 || has_tier,
+            StepCondition::QuotaSet => any(ToolId::SetUsageQuotas),
+            StepCondition::OperationsSet => {
+                weeks > 0 || company.setting(ToolId::SetDailySpend, "operations") > 0.0
+            }
+            StepCondition::AdsSet => any(ToolId::SetTargetedAdSpend),
+            StepCondition::Filing => weeks > 0 || facts.next_week_step.is_some(),
+            StepCondition::Rationale => weeks > 0 || facts.next_week_step == Some(3),
+            StepCondition::WeekRun => weeks > 0,
+            StepCondition::ReportRead => weeks > 1 || weeks > 0 && !facts.has_dialog,
+            StepCondition::GroupOpenAgain => {
+                weeks > 1 || !company.observation.changes.is_empty() || facts.is_group_open
+            }
+            StepCondition::Changed => weeks > 1 || !company.observation.changes.is_empty(),
+            StepCondition::Developed => weeks > 1 || any(ToolId::SetTargetedDevSpend),
+            StepCondition::SecondWeek => weeks > 1,
+            StepCondition::Asked => {
+                weeks > 2 || facts.screen == ScreenId::Sql || facts.back_history.contains(&ScreenId::Sql)
+            }
+            StepCondition::ThirdWeek => weeks > 2,
+            StepCondition::FourthWeek => weeks > 3,
         }
     }
 }
 
 /// Returns whether the arguments contain a number above 0.
-fn spends(arguments: &serde_json::Map<String, Value>) -> bool {
-    fn holds(value: &Value) -> bool {
+fn has_positive_number(arguments: &serde_json::Map<String, Value>) -> bool {
+    fn contains_positive_number(value: &Value) -> bool {
         match value {
-            Value::Object(map) => map.values().any(holds),
+            Value::Object(map) => map.values().any(contains_positive_number),
             other => other.as_f64().is_some_and(|amount| amount > 0.0),
         }
     }
-    arguments.values().any(holds)
+    arguments.values().any(contains_positive_number)
 }
 
-const MOST_LINES: usize = 4;
+const MAX_LINES: usize = 4;
 
 /// Progress in the tour.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Tour {
-    at: usize,
+    step: usize,
 }
 
 impl Tour {
     /// Advances past completed steps. Returns false if none is left.
-    pub fn settle(&mut self, facts: &TourFacts<'_>) -> bool {
-        while steps().get(self.at).is_some_and(|step| step.done.holds(facts)) {
-            self.at += 1;
+    pub fn skip_finished_steps(&mut self, facts: &TourFacts<'_>) -> bool {
+        while steps().get(self.step).is_some_and(|step| step.done.is_met(facts)) {
+            self.step += 1;
         }
-        self.at < steps().len()
+        self.step < steps().len()
     }
 
     /// Skips the current step.
-    pub fn skip(&mut self) {
-        self.at += 1;
+    pub fn skip_step(&mut self) {
+        self.step += 1;
     }
 
     /// Returns the height in a window of a width: a rule and the lines.
-    pub fn height(&self, keys: &Keys, numbers: &Numbers, width: u16) -> u16 {
+    pub fn height(&self, keys: &KeyBindings, numbers: &ParameterNumbers, width: u16) -> u16 {
         1 + self.lines(keys, numbers, width).len() as u16
     }
 
     /// Returns the lines below the rule, and whether each names keys to press.
-    fn lines(&self, keys: &Keys, numbers: &Numbers, width: u16) -> Vec<(String, bool)> {
-        let Some(step) = steps().get(self.at) else { return Vec::new() };
+    fn lines(&self, keys: &KeyBindings, numbers: &ParameterNumbers, width: u16) -> Vec<(String, bool)> {
+        let Some(step) = steps().get(self.step) else { return Vec::new() };
         let room = width.saturating_sub(2) as usize;
-        let look =
-            wrapped(&with_keys(&numbers.fill(&step.look), keys), room).into_iter().map(|line| (line, false));
-        let press = wrapped(&format!("→ {}", with_keys(&step.press, keys)), room);
+        let look = wrap(&insert_keys(&numbers.substitute(&step.look), keys), room)
+            .into_iter()
+            .map(|line| (line, false));
+        let press = wrap(&format!("→ {}", insert_keys(&step.press, keys)), room);
         let press = press.into_iter().map(|line| (line, true));
-        look.chain(press).take(MOST_LINES).collect()
+        look.chain(press).take(MAX_LINES).collect()
     }
 
     /// Draws the step.
-    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, keys: &Keys, numbers: &Numbers) {
-        let Some(step) = steps().get(self.at) else { return };
+    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, keys: &KeyBindings, numbers: &ParameterNumbers) {
+        let Some(step) = steps().get(self.step) else { return };
         canvas.clear(area, Role::Text);
-        canvas.text(area, &"─".repeat(area.width as usize), Role::Focus);
-        let title = format!(" Tour · {} of {} · {} ", self.at + 1, steps().len(), step.title);
+        canvas.draw_text(area, &"─".repeat(area.width as usize), Role::Focus);
+        let title = format!(" Tour · {} of {} · {} ", self.step + 1, steps().len(), step.title);
         let place = Rect { x: area.x + 2, width: area.width.saturating_sub(2), ..area };
-        canvas.text(Rect { height: 1, ..place }, &title, Role::Title);
+        canvas.draw_text(Rect { height: 1, ..place }, &title, Role::Title);
         let mut right = area.right().saturating_sub(2);
         for action in [Action::TourClose, Action::TourSkip] {
             let Some(key) = keys.label(action) else { continue };
@@ -191,19 +198,19 @@ impl Tour {
             }
             right -= width;
             let button = Rect { x: right, width, height: 1, ..area };
-            canvas.text(button, &words, Role::Key);
-            canvas.click(button, Click::Do(action.into()));
+            canvas.draw_text(button, &words, Role::Key);
+            canvas.register_click(button, Click::Command(action.into()));
         }
         let below = Rect { y: area.y + 1, height: area.height.saturating_sub(1), ..area };
-        for (row, (line, press)) in rows_of(below).zip(self.lines(keys, numbers, area.width)) {
+        for (row, (line, press)) in row_rects(below).zip(self.lines(keys, numbers, area.width)) {
             let row = Rect { x: row.x + 1, width: row.width.saturating_sub(1), ..row };
-            canvas.text(row, &line, if press { Role::Strong } else { Role::Text });
+            canvas.draw_text(row, &line, if press { Role::Strong } else { Role::Text });
         }
     }
 }
 
 /// Replaces action names in braces with their keys, or with the palette if an action has none.
-fn with_keys(text: &str, keys: &Keys) -> String {
+fn insert_keys(text: &str, keys: &KeyBindings) -> String {
     let mut words = String::new();
     let mut rest = text;
     while let Some((before, after)) = rest.split_once('{') {
@@ -229,100 +236,108 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::test_kit::{company, painted, played};
+    use crate::test_kit::{new_company, played_session, render_rows};
     use novamind_record::folder::configuration::Configuration;
     use novamind_record::trajectory::record::Via;
-    use novamind_report::fit::Beside;
-    use novamind_report::needs::Place;
+    use novamind_report::action_items::ActionTarget;
+    use novamind_report::fit::RangePosition;
     use novamind_session::Session;
     use novamind_session::identifiers::Group;
-    use novamind_worker::company::Company;
+    use novamind_worker::company::DisplayedCompany;
 
-    fn facts(company: &Company) -> TourFacts<'_> {
+    fn facts(company: &DisplayedCompany) -> TourFacts<'_> {
         TourFacts {
             company,
-            here: ScreenId::Overview,
-            before: &[],
-            filing: None,
-            dialog: false,
-            group_open: false,
+            screen: ScreenId::Overview,
+            back_history: &[],
+            next_week_step: None,
+            has_dialog: false,
+            is_group_open: false,
         }
     }
 
     #[test]
-    fn steps_name_actions_and_numbers_that_exist_and_are_short() {
-        let keys = Keys::shipped();
-        let numbers = Numbers::shipped();
+    fn steps_name_existing_actions_and_numbers_and_are_short() {
+        let keys = KeyBindings::bundled();
+        let numbers = ParameterNumbers::bundled();
         for (at, step) in steps().iter().enumerate() {
             for text in [&step.look, &step.press] {
-                let filled = numbers.fill(text);
+                let filled = numbers.substitute(text);
                 for name in
                     filled.split('{').skip(1).filter_map(|rest| rest.split_once('}')).map(|(name, _)| name)
                 {
                     assert!(ACTIONS.iter().any(|entry| entry.name == name), "{}: {name}", step.title);
                 }
             }
-            let tour = Tour { at };
+            let tour = Tour { step: at };
             let lines = tour.lines(&keys, &numbers, 80);
             assert!(tour.height(&keys, &numbers, 80) <= 4, "{}: {lines:?}", step.title);
             assert!(tour.height(&keys, &numbers, 60) <= 5, "{}", step.title);
             let narrow: Vec<String> =
                 tour.lines(&keys, &numbers, 60).into_iter().map(|(line, _)| line).collect();
-            let press = format!("→ {}", with_keys(&numbers.fill(&step.press), &keys));
+            let press = format!("→ {}", insert_keys(&numbers.substitute(&step.press), &keys));
             assert!(narrow.join(" ").ends_with(&press), "{}: {narrow:?}", step.title);
-            let shown = painted(80, 4, |canvas, area| tour.draw(canvas, area, &keys, &numbers)).join("\n");
+            let shown =
+                render_rows(80, 4, |canvas, area| tour.draw(canvas, area, &keys, &numbers)).join("\n");
             assert!(shown.contains(&format!("Tour · {} of {}", at + 1, steps().len())), "{shown}");
             assert!(!shown.contains('{') && shown.contains("→ ") && !shown.contains('…'), "{shown}");
         }
     }
 
     #[test]
-    fn a_new_company_begins_at_the_first_step_and_a_played_one_near_the_end() {
-        let fresh = company();
+    fn tour_starts_at_the_first_unfinished_step() {
+        let fresh = new_company();
         let mut tour = Tour::default();
-        assert!(tour.settle(&facts(&fresh)));
-        assert_eq!(tour.at, 0);
-        assert!(tour.settle(&TourFacts { here: ScreenId::Customers, ..facts(&fresh) }));
-        assert_eq!(steps()[tour.at].done, Done::GroupOpen);
-        assert!(tour.settle(&TourFacts { group_open: true, ..facts(&fresh) }));
-        assert_eq!(steps()[tour.at].done, Done::PriceSet);
-        let played = Company::of(&played(2));
+        assert!(tour.skip_finished_steps(&facts(&fresh)));
+        assert_eq!(tour.step, 0);
+        assert!(tour.skip_finished_steps(&TourFacts { screen: ScreenId::Customers, ..facts(&fresh) }));
+        assert_eq!(steps()[tour.step].done, StepCondition::GroupOpen);
+        assert!(tour.skip_finished_steps(&TourFacts { is_group_open: true, ..facts(&fresh) }));
+        assert_eq!(steps()[tour.step].done, StepCondition::PriceSet);
+        let played = DisplayedCompany::from_session(&played_session(2));
         let mut tour = Tour::default();
-        assert!(tour.settle(&facts(&played)));
-        assert_eq!(steps()[tour.at].done, Done::Asked, "a returning user continues near the end");
-        assert!(tour.settle(&TourFacts { here: ScreenId::Sql, ..facts(&played) }));
-        assert_eq!(steps()[tour.at].done, Done::ThirdWeek);
-        tour.skip();
-        tour.skip();
-        assert!(!tour.settle(&facts(&played)), "the tour is complete");
+        assert!(tour.skip_finished_steps(&facts(&played)));
+        assert_eq!(steps()[tour.step].done, StepCondition::Asked, "a returning user continues near the end");
+        assert!(tour.skip_finished_steps(&TourFacts { screen: ScreenId::Sql, ..facts(&played) }));
+        assert_eq!(steps()[tour.step].done, StepCondition::ThirdWeek);
+        tour.skip_step();
+        tour.skip_step();
+        assert!(!tour.skip_finished_steps(&facts(&played)), "the tour is complete");
     }
 
     #[test]
     fn every_step_can_be_skipped_and_drawn_in_any_window() {
-        let fresh = company();
-        let keys = Keys::shipped();
-        let numbers = Numbers::shipped();
+        let fresh = new_company();
+        let keys = KeyBindings::bundled();
+        let numbers = ParameterNumbers::bundled();
         let mut tour = Tour::default();
         for _ in 0..steps().len() {
-            assert!(tour.settle(&facts(&fresh)));
+            assert!(tour.skip_finished_steps(&facts(&fresh)));
             for (width, height) in [(0, 0), (1, 1), (20, 3), (60, 5), (200, 4)] {
-                painted(width, height, |canvas, area| tour.draw(canvas, area, &keys, &numbers));
+                render_rows(width, height, |canvas, area| tour.draw(canvas, area, &keys, &numbers));
             }
-            tour.skip();
+            tour.skip_step();
         }
-        assert!(!tour.settle(&facts(&fresh)));
+        assert!(!tour.skip_finished_steps(&facts(&fresh)));
         assert_eq!(tour.height(&keys, &numbers, 80), 1);
     }
 
     #[test]
-    fn the_practice_run_is_what_the_steps_say() {
-        let mut run = Session::create(practice_run(), &Configuration::shipped()).expect("a practice run");
+    fn practice_run_matches_the_steps() {
+        let mut run = Session::create(practice_run(), &Configuration::bundled()).expect("a practice run");
         let s2 = |run: &Session| {
-            Company::of(run).fit(Group::parse("S2").expect("a group")).expect("S2 is known").clone()
+            DisplayedCompany::from_session(run)
+                .fit(Group::parse("S2").expect("a group"))
+                .expect("S2 is known")
+                .clone()
         };
         let wanted = s2(&run);
-        assert!(wanted.budget.beside(45.0) == Beside::Below, "well below what S2 pays: {:?}", wanted.budget);
-        assert!(wanted.usage.beside(400.0) == Beside::Above, "400 covers S2: {:?}", wanted.usage);
+        assert!(
+            wanted.budget.position_of(45.0) == RangePosition::Below,
+            "well below what S2 pays: {:?}",
+            wanted.budget
+        );
+        assert!(wanted.usage.position_of(400.0) == RangePosition::Above, "400 covers S2: {:?}", wanted.usage);
         for (tool, arguments) in [
             ("set_prices", json!({"B": 45})),
             ("set_model_tiers", json!({"B": 2})),
@@ -339,9 +354,9 @@ mod tests {
         let first = week(&mut run);
         let (leads, signed) = (first.new_individual_leads, first.new_individual_subscribers);
         assert!(leads > 100 && signed > 0 && signed * 5 < leads, "few signed: {signed} of {leads}");
-        let company = Company::of(&run);
-        let need = company.needs.first().expect("an action item");
-        let Place::Call(tool, arguments) = &need.place else { panic!("{need:?}") };
+        let company = DisplayedCompany::from_session(&run);
+        let need = company.action_items.first().expect("an action item");
+        let ActionTarget::Call(tool, arguments) = &need.target else { panic!("{need:?}") };
         assert_eq!((*tool, arguments), (ToolId::SetModelTiers, &json!({"B": 3})), "a better model for B");
         run.call("set_model_tiers", arguments, Via::Script).expect("the call of the need");
         run.call("set_targeted_dev_spend", &json!({"targeted_spend": {"S2": 1100}}), Via::Script)
@@ -353,7 +368,8 @@ mod tests {
             left += week(&mut run).cancellations;
         }
         assert!(left > 0, "a subscriber leaves before the end");
-        let numbers = Company::of(&run).numbers.fill("{billing.billing_period_days}");
+        let numbers =
+            DisplayedCompany::from_session(&run).numbers.substitute("{billing.billing_period_days}");
         assert_eq!(numbers, "30");
     }
 }

@@ -5,23 +5,24 @@
 mod class;
 mod lesson;
 
-pub use class::class_file::{Class, ToHandOut};
+pub use class::class_file::{Class, HandoutSource};
 pub use class::collected_class::CollectedClass;
-pub use class::collecting::{ClassCollection, ClassSources};
+pub use class::collection::{ClassCollection, CollectionInput};
 pub use class::evidence::{ClassRun, Evidence, RunVerdict, StepEvidence};
 pub use class::finding::ClassFinding;
 pub use class::handout::Handout;
-pub use class::reference::{ClassReference, ranked_goal, share_of_good};
-pub use lesson::answers::{guess_in_lesson, measure_over_part, take_hint};
+pub use class::reference::{ClassReference, ranked_goal, share_of_reference};
+pub use lesson::answers::{measure_over_part, submit_guess, take_hint};
 pub use lesson::debrief::{
-    Debrief, DebriefStep, DecisionComparison, DecisionEffect, FirstDifference, JudgedFigure, PartingEffect,
-    PlayedPart, ReferenceCurve,
+    Debrief, DebriefStep, DecisionComparison, DecisionEffect, FirstDifference, JudgedFigure, PlayedPart,
+    ReferenceCurve, ReferenceEffect,
 };
-pub use lesson::decisions::{DecisionContrast, PartedDecision, SettingContrast};
-pub use lesson::page::{GoalPage, LessonPage, LessonQuestion};
-pub use lesson::runs::{begin_part, try_step_again};
+pub use lesson::decisions::{DecisionDifference, DifferentDecision, SettingDifference};
+pub use lesson::runs::{retry_step, start_part};
+pub use lesson::status::{GoalStatus, LessonQuestion, LessonStatus};
 pub use novamind_record::lesson::{
-    CapacityMover, ForecastsAsked, GoalBound, Guess, GuessForm, Lesson, LessonAccess, LessonCall, LessonGoal,
-    LessonPart, LessonPlan, LessonStanding, LessonStep, MEASURED_SEEDS, MeasuredFigure, Measurement,
-    NumberSource, Over, Pitfall, PitfallBound, RationaleAsked, ReferencePlay, ScheduledCalls,
+    CapacityControl, ForecastRequirement, GoalBound, Guess, GuessForm, Lesson, LessonAccess, LessonCall,
+    LessonGoal, LessonPart, LessonPlan, LessonProgress, LessonStep, MEASURED_SEEDS, MeasuredFigure,
+    Measurement, NumberSource, Pitfall, PitfallBound, RationaleRequirement, ReferencePlay, ScheduledCalls,
+    WeekAggregation,
 };

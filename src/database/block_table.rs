@@ -19,15 +19,15 @@ use rusqlite::vtab::{
     VTabCursor,
 };
 
-use super::blocks::{AdsRow, AdsRun, BlockStore, Seen};
-use super::by_customer::{ByCustomer, Indexes};
-use super::day_table::number_of;
+use super::blocks::{AdsRow, AdsRun, BlockStore, QueryView};
+use super::customer_index::{CustomerIndex, CustomerIndexes};
+use super::day_table::comparison_number;
 use super::issues::{self, IssueRow, IssueRun};
-use super::packing::{PackedDay, Run};
+use super::packing::{PackedDay, RowRun};
 use novamind_world::events::UsageRows;
 use novamind_world::identifiers::Group;
 
-pub(super) fn register(connection: &Connection, seen: &Arc<Seen>) -> rusqlite::Result<()> {
+pub(super) fn register(connection: &Connection, seen: &Arc<QueryView>) -> rusqlite::Result<()> {
     const USAGE: Module<'static, BlockTable<Usage>> = Module::eponymous_only_module();
     const ADS: Module<'static, BlockTable<Ads>> = Module::eponymous_only_module();
     connection.create_module(c"daily_usage", &USAGE, Some(seen.clone()))?;
@@ -37,8 +37,8 @@ pub(super) fn register(connection: &Connection, seen: &Arc<Seen>) -> rusqlite::R
 }
 
 /// The properties in which the tables differ. Column 1 is always customer_id.
-trait BlockKind: Send + Sync + Sized + 'static {
-    type Run: Run;
+trait BlockTableDefinition: Send + Sync + Sized + 'static {
+    type Run: RowRun;
     const DECLARATION: &'static CStr;
     /// Column of the day.
     const DAY: c_int = 0;
@@ -46,30 +46,30 @@ trait BlockKind: Send + Sync + Sized + 'static {
     const NUMBER: Option<c_int> = None;
 
     fn days(store: &BlockStore) -> &[Arc<PackedDay>];
-    fn indexes(seen: &Seen) -> &Indexes<Self::Run>;
+    fn indexes(seen: &QueryView) -> &CustomerIndexes<Self::Run>;
     /// Sets the result to another column of a row.
     fn column(
         at: (&BlockStore, u32),
-        row: RowOf<Self>,
+        row: RowData<Self>,
         column: c_int,
         context: &mut Context,
     ) -> rusqlite::Result<()>;
     /// Returns the position of the day that may have the row with a number.
-    fn day_of(_store: &BlockStore, _number: f64) -> Option<usize> {
+    fn day_index_of_row(_store: &BlockStore, _number: f64) -> Option<usize> {
         None
     }
     /// Returns the stored number of a row, if any.
-    fn number(_row: RowOf<Self>) -> Option<i64> {
+    fn row_number(_row: RowData<Self>) -> Option<i64> {
         None
     }
 }
 
 /// The columns of a row besides day and customer.
-type RowOf<K> = <<K as BlockKind>::Run as Run>::Row;
+type RowData<K> = <<K as BlockTableDefinition>::Run as RowRun>::Row;
 
 /// The position of a row: day in the store, run of the day, index in the run.
 #[derive(Clone, Copy, Default)]
-struct RowPlace {
+struct RowPosition {
     day: usize,
     run: usize,
     at: usize,
@@ -77,7 +77,7 @@ struct RowPlace {
 
 struct Usage;
 
-impl BlockKind for Usage {
+impl BlockTableDefinition for Usage {
     type Run = UsageRows;
     const DECLARATION: &'static CStr =
         c"CREATE TABLE x(day INTEGER, customer_id INTEGER, usage_units INTEGER)";
@@ -86,7 +86,7 @@ impl BlockKind for Usage {
         &store.usage
     }
 
-    fn indexes(seen: &Seen) -> &Indexes<UsageRows> {
+    fn indexes(seen: &QueryView) -> &CustomerIndexes<UsageRows> {
         &seen.usage
     }
 
@@ -97,7 +97,7 @@ impl BlockKind for Usage {
 
 struct Ads;
 
-impl BlockKind for Ads {
+impl BlockTableDefinition for Ads {
     type Run = AdsRun;
     const DECLARATION: &'static CStr =
         c"CREATE TABLE x(day INTEGER, customer_id INTEGER, group_id TEXT, ads_strength REAL, revenue REAL)";
@@ -106,7 +106,7 @@ impl BlockKind for Ads {
         &store.ads
     }
 
-    fn indexes(seen: &Seen) -> &Indexes<AdsRun> {
+    fn indexes(seen: &QueryView) -> &CustomerIndexes<AdsRun> {
         &seen.ads
     }
 
@@ -126,7 +126,7 @@ impl BlockKind for Ads {
 
 struct Issues;
 
-impl BlockKind for Issues {
+impl BlockTableDefinition for Issues {
     type Run = IssueRun;
     const DECLARATION: &'static CStr =
         c"CREATE TABLE x(issue_id INTEGER, customer_id INTEGER, group_id TEXT, open_day INTEGER,
@@ -138,7 +138,7 @@ impl BlockKind for Issues {
         &store.issues
     }
 
-    fn indexes(seen: &Seen) -> &Indexes<IssueRun> {
+    fn indexes(seen: &QueryView) -> &CustomerIndexes<IssueRun> {
         &seen.issues
     }
 
@@ -148,29 +148,31 @@ impl BlockKind for Issues {
         column: c_int,
         context: &mut Context,
     ) -> rusqlite::Result<()> {
-        issues::show((&at.0.issue_clock, at.1), row, column, context)
+        issues::write_column((&at.0.issue_clock, at.1), row, column, context)
     }
 
-    fn day_of(store: &BlockStore, number: f64) -> Option<usize> {
-        issues::day_of(&store.issues, number as u32)
+    fn day_index_of_row(store: &BlockStore, number: f64) -> Option<usize> {
+        issues::day_index_of_issue(&store.issues, number as u32)
     }
 
-    fn number(row: IssueRow) -> Option<i64> {
+    fn row_number(row: IssueRow) -> Option<i64> {
         Some(row.issue.into())
     }
 }
 
-const CUSTOMER: c_int = 1;
+const CUSTOMER_COLUMN: c_int = 1;
 /// SQLite's column number of the rowid.
-const ROW: c_int = -1;
-const _: () = assert!(issues::column::CUSTOMER == CUSTOMER);
+const ROWID_COLUMN: c_int = -1;
+const _: () = assert!(issues::column::CUSTOMER == CUSTOMER_COLUMN);
 
 /// Returns the letter of a constraint in the index text, if the table handles the constraint.
-fn letter<K: BlockKind>(column: c_int, operator: IndexConstraintOp) -> Option<char> {
+fn constraint_code<K: BlockTableDefinition>(column: c_int, operator: IndexConstraintOp) -> Option<char> {
     use IndexConstraintOp::*;
     match operator {
-        SQLITE_INDEX_CONSTRAINT_EQ if column == CUSTOMER => Some('c'),
-        SQLITE_INDEX_CONSTRAINT_EQ if K::NUMBER.is_some_and(|own| column == own || column == ROW) => {
+        SQLITE_INDEX_CONSTRAINT_EQ if column == CUSTOMER_COLUMN => Some('c'),
+        SQLITE_INDEX_CONSTRAINT_EQ
+            if K::NUMBER.is_some_and(|own| column == own || column == ROWID_COLUMN) =>
+        {
             Some('n')
         }
         _ if column != K::DAY => None,
@@ -184,21 +186,21 @@ fn letter<K: BlockKind>(column: c_int, operator: IndexConstraintOp) -> Option<ch
 }
 
 #[repr(C)]
-struct BlockTable<K: BlockKind> {
+struct BlockTable<K: BlockTableDefinition> {
     /// Base class; must be first.
     base: ffi::sqlite3_vtab,
-    seen: Arc<Seen>,
+    seen: Arc<QueryView>,
     kind: PhantomData<K>,
 }
 
 // SAFETY: the struct is `repr(C)` and starts with `sqlite3_vtab`, as the trait requires.
-unsafe impl<'vtab, K: BlockKind> VTab<'vtab> for BlockTable<K> {
-    type Aux = Arc<Seen>;
+unsafe impl<'vtab, K: BlockTableDefinition> VTab<'vtab> for BlockTable<K> {
+    type Aux = Arc<QueryView>;
     type Cursor = BlockCursor<'vtab, K>;
 
     fn connect(
         db: &mut VTabConnection,
-        seen: Option<&Arc<Seen>>,
+        seen: Option<&Arc<QueryView>>,
         _: &[u8],
         _: &[u8],
         _: &[u8],
@@ -216,7 +218,7 @@ unsafe impl<'vtab, K: BlockKind> VTab<'vtab> for BlockTable<K> {
             .enumerate()
             .filter(|(_, constraint)| constraint.is_usable())
             .filter_map(|(at, constraint)| {
-                Some((at, letter::<K>(constraint.column(), constraint.operator())?))
+                Some((at, constraint_code::<K>(constraint.column(), constraint.operator())?))
             })
             .collect();
         for (argument, (at, _)) in (1..).zip(&handled) {
@@ -247,26 +249,26 @@ unsafe impl<'vtab, K: BlockKind> VTab<'vtab> for BlockTable<K> {
             base: ffi::sqlite3_vtab_cursor::default(),
             store: self.seen.store(),
             seen: self.seen.clone(),
-            place: RowPlace::default(),
+            position: RowPosition::default(),
             run: None,
             days: 0..0,
             customer: None,
-            found: None,
+            indexed_rows: None,
             kind: PhantomData,
         })
     }
 }
 
 /// The remaining rows of one customer in an index.
-type Found<K> = (Arc<ByCustomer<<K as BlockKind>::Run>>, Range<usize>);
+type IndexedRows<K> = (Arc<CustomerIndex<<K as BlockTableDefinition>::Run>>, Range<usize>);
 
 #[repr(C)]
-struct BlockCursor<'vtab, K: BlockKind> {
+struct BlockCursor<'vtab, K: BlockTableDefinition> {
     /// Base class; must be first.
     base: ffi::sqlite3_vtab_cursor,
     store: BlockStore,
-    seen: Arc<Seen>,
-    place: RowPlace,
+    seen: Arc<QueryView>,
+    position: RowPosition,
     /// The run of the current place, unpacked on first use.
     run: Option<K::Run>,
     /// Requested days in the store.
@@ -274,90 +276,92 @@ struct BlockCursor<'vtab, K: BlockKind> {
     /// Requested customer.
     customer: Option<f64>,
     /// Rows in an index; replaces `place`.
-    found: Option<Found<K>>,
+    indexed_rows: Option<IndexedRows<K>>,
     kind: PhantomData<&'vtab K>,
 }
 
-impl<K: BlockKind> BlockCursor<'_, K> {
+impl<K: BlockTableDefinition> BlockCursor<'_, K> {
     /// Advances to the first requested row at or after the place.
-    fn settle(&mut self) {
+    fn advance_to_match(&mut self) {
         let days = K::days(&self.store);
-        while let Some(day) = days.get(self.place.day).filter(|_| self.days.contains(&self.place.day)) {
-            while self.place.run < day.len() {
+        while let Some(day) = days.get(self.position.day).filter(|_| self.days.contains(&self.position.day)) {
+            while self.position.run < day.run_count() {
                 if self.run.is_none()
-                    && self.customer.is_none_or(|wanted| day.may_hold(self.place.run, wanted))
+                    && self.customer.is_none_or(|wanted| day.may_contain_customer(self.position.run, wanted))
                 {
-                    self.run = day.open(self.place.run);
+                    self.run = day.unpack_run(self.position.run);
                 }
-                let customers = self.run.as_ref().map_or(&[][..], Run::customers);
+                let customers = self.run.as_ref().map_or(&[][..], RowRun::customers);
                 if let Some(wanted) = self.customer {
-                    K::indexes(&self.seen).looked_through(&self.days, customers.len());
+                    K::indexes(&self.seen).record_scanned_rows(&self.days, customers.len());
                     let at = customers.partition_point(|customer| f64::from(*customer) < wanted);
-                    self.place.at = self.place.at.max(at);
-                    let found =
-                        customers.get(self.place.at).is_some_and(|customer| f64::from(*customer) == wanted);
+                    self.position.at = self.position.at.max(at);
+                    let found = customers
+                        .get(self.position.at)
+                        .is_some_and(|customer| f64::from(*customer) == wanted);
                     if found {
                         return;
                     }
-                } else if self.place.at < customers.len() {
+                } else if self.position.at < customers.len() {
                     return;
                 }
-                (self.place.run, self.place.at, self.run) = (self.place.run + 1, 0, None);
+                (self.position.run, self.position.at, self.run) = (self.position.run + 1, 0, None);
             }
-            self.place = RowPlace { day: self.place.day + 1, run: 0, at: 0 };
+            self.position = RowPosition { day: self.position.day + 1, run: 0, at: 0 };
         }
     }
 
     /// Returns whether the place is in the open run and all rows are requested: a fast path for most rows.
     fn is_within_run(&self) -> bool {
-        self.customer.is_none() && self.run.as_ref().is_some_and(|run| self.place.at < run.customers().len())
+        self.customer.is_none()
+            && self.run.as_ref().is_some_and(|run| self.position.at < run.customers().len())
     }
 
     /// Returns the number of the row, or `None` after the last row.
-    fn number(&self) -> Option<i64> {
-        match &self.found {
+    fn row_number(&self) -> Option<i64> {
+        match &self.indexed_rows {
             Some((index, rest)) => index.numbers.get(rest.start).copied(),
             None => {
-                let day = K::days(&self.store).get(self.place.day)?;
-                Some(day.row_number(self.place.run, self.place.at))
+                let day = K::days(&self.store).get(self.position.day)?;
+                Some(day.row_number(self.position.run, self.position.at))
             }
         }
     }
 
-    fn day(&self) -> Option<u32> {
-        match &self.found {
+    fn row_day(&self) -> Option<u32> {
+        match &self.indexed_rows {
             Some((index, rest)) => u32::try_from(index.numbers.get(rest.start)? >> 32).ok(),
-            None => K::days(&self.store).get(self.place.day).map(|day| day.day),
+            None => K::days(&self.store).get(self.position.day).map(|day| day.day),
         }
     }
 
-    fn customer(&self) -> Option<u32> {
-        match &self.found {
+    fn row_customer(&self) -> Option<u32> {
+        match &self.indexed_rows {
             Some(_) => self.customer.map(|customer| customer as u32),
-            None => self.run.as_ref()?.customers().get(self.place.at).copied(),
+            None => self.run.as_ref()?.customers().get(self.position.at).copied(),
         }
     }
 
-    fn row(&self) -> Option<RowOf<K>> {
-        match &self.found {
+    fn row_data(&self) -> Option<RowData<K>> {
+        match &self.indexed_rows {
             Some((index, rest)) => index.rows.get(rest.start).copied(),
-            None => self.run.as_ref().map(|run| run.row(self.place.at)),
+            None => self.run.as_ref().map(|run| run.row(self.position.at)),
         }
     }
 }
 
 // SAFETY: the struct is `repr(C)` and starts with `sqlite3_vtab_cursor`, as the trait requires.
-unsafe impl<K: BlockKind> VTabCursor for BlockCursor<'_, K> {
+unsafe impl<K: BlockTableDefinition> VTabCursor for BlockCursor<'_, K> {
     fn filter(&mut self, _: c_int, plan: Option<&str>, values: &Filters<'_>) -> rusqlite::Result<()> {
         let (mut first_day, mut last_day) = (f64::NEG_INFINITY, f64::INFINITY);
         let mut only_day = None;
-        (self.customer, self.found, self.run) = (None, None, None);
+        (self.customer, self.indexed_rows, self.run) = (None, None, None);
         for ((at, value), letter) in values.iter().enumerate().zip(plan.unwrap_or_default().chars()) {
             let number = match value.data_type() {
                 Type::Integer | Type::Real => values.get::<f64>(at)?,
                 // NULL equals no value.
                 Type::Null => f64::NAN,
-                Type::Text => number_of(&values.get::<String>(at)?),
+                Type::Text => comparison_number(&values.get::<String>(at)?),
                 _ => continue,
             };
             if number.is_nan() {
@@ -367,7 +371,7 @@ unsafe impl<K: BlockKind> VTabCursor for BlockCursor<'_, K> {
                 '=' => (first_day, last_day) = (first_day.max(number), last_day.min(number)),
                 '>' | 'g' => first_day = first_day.max(number),
                 '<' | 'l' => last_day = last_day.min(number),
-                'n' => only_day = Some(K::day_of(&self.store, number)),
+                'n' => only_day = Some(K::day_index_of_row(&self.store, number)),
                 _ => self.customer = Some(number),
             }
         }
@@ -381,22 +385,22 @@ unsafe impl<K: BlockKind> VTabCursor for BlockCursor<'_, K> {
         if let Some(customer) = self.customer
             && let Some(index) = K::indexes(&self.seen).get(days, &self.days)
         {
-            let rows = index.rows_of(customer);
-            self.found = Some((index, rows));
+            let rows = index.row_range(customer);
+            self.indexed_rows = Some((index, rows));
             return Ok(());
         }
-        self.place = RowPlace { day: self.days.start, run: 0, at: 0 };
-        self.settle();
+        self.position = RowPosition { day: self.days.start, run: 0, at: 0 };
+        self.advance_to_match();
         Ok(())
     }
 
     fn next(&mut self) -> rusqlite::Result<()> {
-        match &mut self.found {
+        match &mut self.indexed_rows {
             Some((_, rest)) => rest.start += 1,
             None => {
-                self.place.at += 1;
+                self.position.at += 1;
                 if !self.is_within_run() {
-                    self.settle();
+                    self.advance_to_match();
                 }
             }
         }
@@ -404,26 +408,26 @@ unsafe impl<K: BlockKind> VTabCursor for BlockCursor<'_, K> {
     }
 
     fn eof(&self) -> bool {
-        match &self.found {
+        match &self.indexed_rows {
             Some((_, rest)) => rest.is_empty(),
-            None => !self.days.contains(&self.place.day),
+            None => !self.days.contains(&self.position.day),
         }
     }
 
     fn column(&self, context: &mut Context, column: c_int) -> rusqlite::Result<()> {
         match column {
-            CUSTOMER => context.set_result(self.customer()),
-            day if day == K::DAY => context.set_result(self.day()),
+            CUSTOMER_COLUMN => context.set_result(self.row_customer()),
+            day if day == K::DAY => context.set_result(self.row_day()),
             other => {
-                let at = (&self.store, self.day().unwrap_or(0));
-                self.row().map_or(Ok(()), |row| K::column(at, row, other, context))
+                let at = (&self.store, self.row_day().unwrap_or(0));
+                self.row_data().map_or(Ok(()), |row| K::column(at, row, other, context))
             }
         }
     }
 
     fn rowid(&self) -> rusqlite::Result<i64> {
-        let own = self.row().and_then(K::number);
-        Ok(own.or_else(|| self.number()).unwrap_or_default())
+        let own = self.row_data().and_then(K::row_number);
+        Ok(own.or_else(|| self.row_number()).unwrap_or_default())
     }
 }
 
@@ -434,11 +438,11 @@ mod tests {
     use novamind_world::identifiers::Group;
 
     fn connection() -> Connection {
-        seen_by(&Arc::new(Seen::default()))
+        connection_with_view(&Arc::new(QueryView::default()))
     }
 
     /// Returns a connection to five days of six rows and one ad row.
-    fn seen_by(seen: &Arc<Seen>) -> Connection {
+    fn connection_with_view(seen: &Arc<QueryView>) -> Connection {
         let rows = |first: u32| {
             let customers = vec![first, first + 2, first + 4];
             UsageRows { customers, units: vec![first, 10, 20] }
@@ -447,16 +451,16 @@ mod tests {
             (1..=5).map(|day| Arc::new(PackedDay::pack(day, &[rows(2), rows(100)]))).collect();
         let group = Group::parse("S2").expect("a group");
         let ads_row = AdsRevenueRow { customer: 2, group, strength: 0.5, revenue: 0.25 };
-        let ads = vec![Arc::new(PackedDay::pack(3, &AdsRun::runs_of(&[ads_row])))];
+        let ads = vec![Arc::new(PackedDay::pack(3, &AdsRun::runs_from_rows(&[ads_row])))];
         let store = BlockStore { usage: Arc::new(usage), ads: Arc::new(ads), ..BlockStore::default() };
         let connection = Connection::open_in_memory().expect("memory");
-        seen.see(store);
+        seen.set_store(store);
         register(&connection, seen).expect("modules");
         connection
     }
 
     #[test]
-    fn questions_are_answered_as_by_an_ordinary_table() {
+    fn queries_return_what_an_ordinary_table_returns() {
         let connection = connection();
         connection
             .execute_batch("CREATE TEMP TABLE plain AS SELECT day, customer_id, usage_units FROM daily_usage")
@@ -489,7 +493,7 @@ mod tests {
     }
 
     #[test]
-    fn looking_up_many_customers_finds_what_looking_up_one_does() {
+    fn indexed_lookups_match_single_lookups() {
         let connection = connection();
         let sql = "WITH RECURSIVE n(x) AS (SELECT 0 UNION ALL SELECT x + 1 FROM n WHERE x < 300)
                    SELECT count(u.rowid), sum(u.rowid), sum(u.usage_units), sum(u.day), sum(u.customer_id)
@@ -509,17 +513,17 @@ mod tests {
     }
 
     #[test]
-    fn looking_up_many_customers_soon_stops_looking_through_rows() {
-        let seen = Arc::new(Seen::default());
-        let connection = seen_by(&seen);
+    fn repeated_lookups_build_an_index() {
+        let seen = Arc::new(QueryView::default());
+        let connection = connection_with_view(&seen);
         let ask = |lookups: u32| -> (usize, i64) {
-            seen.see(seen.store());
+            seen.set_store(seen.store());
             let sql = format!(
                 "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n WHERE x < {lookups})
                  SELECT count(u.rowid) FROM n LEFT JOIN daily_usage u ON u.customer_id = 2 + 0 * n.x"
             );
             let found = connection.query_row(&sql, [], |row| row.get(0)).expect("an answer");
-            (seen.usage.rows_looked_through(), found)
+            (seen.usage.scanned_rows(), found)
         };
         let (once, found) = ask(1);
         assert!(
@@ -535,7 +539,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_are_numbered_as_they_stand_whatever_is_asked_for() {
+    fn row_numbers_do_not_depend_on_the_query() {
         let connection = connection();
         let numbers = |condition: &str| -> Vec<i64> {
             let sql = format!("SELECT rowid FROM daily_usage WHERE {condition}");
@@ -567,7 +571,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_can_be_written() {
+    fn block_tables_are_read_only() {
         assert!(connection().execute("DELETE FROM daily_usage", []).is_err());
         assert!(connection().execute("INSERT INTO daily_usage VALUES (1, 2, 3)", []).is_err());
     }

@@ -2,12 +2,12 @@
 
 use std::sync::{Arc, RwLock};
 
-use super::by_customer::Indexes;
-use super::by_text::TextIndexes;
+use super::customer_index::CustomerIndexes;
 use super::issues::IssueRun;
 use super::ledger::LedgerDay;
 use super::notices::Inbox;
-use super::packing::{LONGEST_RUN, PackedDay, Packer, Run, Unpacker};
+use super::packing::{MAX_RUN_ROWS, PackedDay, Packer, RowRun, Unpacker};
+use super::text_index::TextIndexes;
 use novamind_world::events::{AdsRevenueRow, UsageRows};
 use novamind_world::identifiers::Group;
 
@@ -45,18 +45,18 @@ pub(super) type SharedStore = Arc<RwLock<BlockStore>>;
 
 /// The store of the running statement, with its indexes.
 #[derive(Default)]
-pub(super) struct Seen {
+pub(super) struct QueryView {
     store: RwLock<BlockStore>,
-    pub usage: Indexes<UsageRows>,
-    pub ads: Indexes<AdsRun>,
-    pub issues: Indexes<IssueRun>,
+    pub usage: CustomerIndexes<UsageRows>,
+    pub ads: CustomerIndexes<AdsRun>,
+    pub issues: CustomerIndexes<IssueRun>,
     pub ledger_notes: TextIndexes,
     pub notice_texts: TextIndexes,
 }
 
-impl Seen {
+impl QueryView {
     /// Sets the store.
-    pub fn see(&self, store: BlockStore) {
+    pub fn set_store(&self, store: BlockStore) {
         *self.store.write().unwrap_or_else(|poisoned| poisoned.into_inner()) = store;
         self.usage.clear();
         self.ads.clear();
@@ -72,12 +72,12 @@ impl Seen {
 }
 
 impl AdsRun {
-    pub fn runs_of(rows: &[AdsRevenueRow]) -> Vec<AdsRun> {
+    pub fn runs_from_rows(rows: &[AdsRevenueRow]) -> Vec<AdsRun> {
         let mut runs: Vec<AdsRun> = Vec::new();
         for row in rows {
             let continues = |run: &AdsRun| {
                 run.group == row.group
-                    && run.customers.len() < LONGEST_RUN
+                    && run.customers.len() < MAX_RUN_ROWS
                     && run.customers.last() < Some(&row.customer)
             };
             if !runs.last().is_some_and(continues) {
@@ -93,7 +93,7 @@ impl AdsRun {
     }
 }
 
-impl Run for UsageRows {
+impl RowRun for UsageRows {
     type Row = u32;
 
     fn customers(&self) -> &[u32] {
@@ -105,18 +105,18 @@ impl Run for UsageRows {
     }
 
     fn pack(&self, packer: &mut Packer) {
-        packer.ascending(&self.customers);
-        self.units.iter().for_each(|units| packer.number(u64::from(*units)));
+        packer.push_ascending(&self.customers);
+        self.units.iter().for_each(|units| packer.push_number(u64::from(*units)));
     }
 
     fn unpack(unpacker: &mut Unpacker<'_>) -> Option<UsageRows> {
-        let customers = unpacker.ascending()?;
-        let units = customers.iter().map(|_| unpacker.small()).collect::<Option<_>>()?;
+        let customers = unpacker.read_ascending()?;
+        let units = customers.iter().map(|_| unpacker.read_u32()).collect::<Option<_>>()?;
         Some(UsageRows { customers, units })
     }
 }
 
-impl Run for AdsRun {
+impl RowRun for AdsRun {
     type Row = AdsRow;
 
     fn customers(&self) -> &[u32] {
@@ -128,33 +128,33 @@ impl Run for AdsRun {
     }
 
     fn pack(&self, packer: &mut Packer) {
-        packer.number(self.group.index() as u64);
-        packer.ascending(&self.customers);
-        for (length, strength) in lengths(&self.strengths) {
-            packer.number(length);
-            packer.float(strength);
+        packer.push_number(self.group.index() as u64);
+        packer.push_ascending(&self.customers);
+        for (length, strength) in run_lengths(&self.strengths) {
+            packer.push_number(length);
+            packer.push_float(strength);
         }
-        self.revenues.iter().for_each(|revenue| packer.float(*revenue));
+        self.revenues.iter().for_each(|revenue| packer.push_float(*revenue));
     }
 
     fn unpack(unpacker: &mut Unpacker<'_>) -> Option<AdsRun> {
-        let group = Group::at(unpacker.number()? as usize)?;
-        let customers = unpacker.ascending()?;
+        let group = Group::at(unpacker.read_number()? as usize)?;
+        let customers = unpacker.read_ascending()?;
         let mut strengths = Vec::with_capacity(customers.len());
         while strengths.len() < customers.len() {
-            let (length, strength) = (unpacker.number()? as usize, unpacker.float()?);
+            let (length, strength) = (unpacker.read_number()? as usize, unpacker.read_float()?);
             if length == 0 || length > customers.len() - strengths.len() {
                 return None;
             }
             strengths.extend(std::iter::repeat_n(strength, length));
         }
-        let revenues = customers.iter().map(|_| unpacker.float()).collect::<Option<_>>()?;
+        let revenues = customers.iter().map(|_| unpacker.read_float()).collect::<Option<_>>()?;
         Some(AdsRun { group, customers, strengths, revenues })
     }
 }
 
 /// Returns runs of equal values as (count, value).
-fn lengths(values: &[f64]) -> impl Iterator<Item = (u64, f64)> + '_ {
+fn run_lengths(values: &[f64]) -> impl Iterator<Item = (u64, f64)> + '_ {
     values.chunk_by(|left, right| left.to_bits() == right.to_bits()).map(|run| (run.len() as u64, run[0]))
 }
 
@@ -169,29 +169,29 @@ mod tests {
 
     proptest! {
         #[test]
-        fn usage_comes_back_as_it_went(runs in proptest::collection::vec(ascending(), 0..5), seed in any::<u32>()) {
+        fn usage_runs_round_trip(runs in proptest::collection::vec(ascending(), 0..5), seed in any::<u32>()) {
             let runs = runs.into_iter().map(|customers| {
                 let units = customers.iter().map(|customer| customer.wrapping_mul(seed)).collect();
                 UsageRows { customers, units }
             });
             let runs: Vec<UsageRows> = runs.collect();
             let day = PackedDay::pack(9, &runs);
-            prop_assert_eq!(PackedDay::read::<UsageRows>(9, day.bytes().to_vec()), Some(day.clone()));
+            prop_assert_eq!(PackedDay::from_bytes::<UsageRows>(9, day.as_bytes().to_vec()), Some(day.clone()));
             for (at, run) in runs.into_iter().enumerate() {
-                prop_assert!(run.customers.iter().all(|customer| day.may_hold(at, f64::from(*customer))));
-                prop_assert_eq!(day.open(at), Some(run));
+                prop_assert!(run.customers.iter().all(|customer| day.may_contain_customer(at, f64::from(*customer))));
+                prop_assert_eq!(day.unpack_run(at), Some(run));
             }
         }
 
         #[test]
         fn damaged_bytes_never_panic(bytes in proptest::collection::vec(any::<u8>(), 0..60)) {
-            let _ = PackedDay::read::<UsageRows>(1, bytes.clone());
-            let _ = PackedDay::read::<AdsRun>(1, bytes);
+            let _ = PackedDay::from_bytes::<UsageRows>(1, bytes.clone());
+            let _ = PackedDay::from_bytes::<AdsRun>(1, bytes);
         }
     }
 
     #[test]
-    fn ad_revenue_comes_back_as_it_went() {
+    fn ads_runs_round_trip() {
         let row = |customer, group, strength| AdsRevenueRow {
             customer,
             group: Group::at(group).expect("a group"),
@@ -199,12 +199,18 @@ mod tests {
             revenue: f64::from(customer) / 7.0,
         };
         let rows = [row(2, 0, 0.5), row(9, 0, 0.5), row(11, 0, 0.7), row(3, 1, 0.5), row(4, 1, 0.5)];
-        let runs = AdsRun::runs_of(&rows);
+        let runs = AdsRun::runs_from_rows(&rows);
         assert_eq!(runs.len(), 2);
         let day = PackedDay::pack(12, &runs);
-        assert_eq!(PackedDay::read::<AdsRun>(12, day.bytes().to_vec()), Some(day.clone()));
-        assert_eq!((day.open(0).as_ref(), day.open(1).as_ref()), (Some(&runs[0]), Some(&runs[1])));
-        assert_eq!(PackedDay::read::<AdsRun>(12, day.bytes()[1..].to_vec()), None);
-        assert_eq!(PackedDay::read::<AdsRun>(12, day.bytes()[..day.bytes().len() - 1].to_vec()), None);
+        assert_eq!(PackedDay::from_bytes::<AdsRun>(12, day.as_bytes().to_vec()), Some(day.clone()));
+        assert_eq!(
+            (day.unpack_run(0).as_ref(), day.unpack_run(1).as_ref()),
+            (Some(&runs[0]), Some(&runs[1]))
+        );
+        assert_eq!(PackedDay::from_bytes::<AdsRun>(12, day.as_bytes()[1..].to_vec()), None);
+        assert_eq!(
+            PackedDay::from_bytes::<AdsRun>(12, day.as_bytes()[..day.as_bytes().len() - 1].to_vec()),
+            None
+        );
     }
 }

@@ -46,7 +46,7 @@ static CATALOGUE: LazyLock<Vec<Table>> = LazyLock::new(|| {
     toml::from_str::<Catalogue>(text).expect("the bundled catalogue of tables is tested").table
 });
 
-static HIDDEN: LazyLock<Vec<Table>> = LazyLock::new(|| {
+static HIDDEN_CATALOGUE: LazyLock<Vec<Table>> = LazyLock::new(|| {
     let text = include_str!("../../assets/hidden_tables.toml");
     toml::from_str::<Catalogue>(text).expect("the catalogue of hidden tables is tested").table
 });
@@ -65,7 +65,7 @@ impl Scope {
     pub(super) fn tables(self) -> impl Iterator<Item = &'static Table> {
         let hidden = match self {
             Scope::Visible => &[][..],
-            Scope::Hidden => &HIDDEN,
+            Scope::Hidden => &HIDDEN_CATALOGUE,
         };
         CATALOGUE.iter().chain(hidden)
     }
@@ -87,7 +87,7 @@ pub(super) const HIDDEN_SCHEMA: &str = "hidden";
 
 /// Returns the hidden tables of the x-ray; their names include the schema.
 pub fn hidden_tables() -> &'static [Table] {
-    &HIDDEN
+    &HIDDEN_CATALOGUE
 }
 
 /// Returns all visible tables.
@@ -102,13 +102,13 @@ pub fn table(name: &str) -> Option<&'static Table> {
 
 impl Table {
     /// Returns the CREATE statement of an ordinary table with the same columns and key.
-    pub fn declaration(&self) -> String {
-        let column = |column: &Column| match self.row_number() {
+    pub fn create_statement(&self) -> String {
+        let column = |column: &Column| match self.row_number_column() {
             Some(key) if key == column.name => format!("{key} INTEGER PRIMARY KEY"),
             _ => format!("{} {}", column.name, column.kind),
         };
         let mut parts: Vec<String> = self.columns.iter().map(column).collect();
-        if self.row_number().is_none() {
+        if self.row_number_column().is_none() {
             parts.push(format!("PRIMARY KEY ({})", self.key.join(", ")));
         }
         format!("CREATE TABLE {} ({})", self.name, parts.join(", "))
@@ -120,7 +120,7 @@ impl Table {
     }
 
     /// Returns the column that is the rowid, if any.
-    pub fn row_number(&self) -> Option<&str> {
+    pub fn row_number_column(&self) -> Option<&str> {
         let [key] = self.key.as_slice() else { return None };
         let own = self.columns.iter().find(|column| column.name == *key)?;
         (own.kind == "INTEGER").then_some(&own.name)
@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn hidden_tables_are_named_by_their_schema_and_by_no_other_connection() {
+    fn hidden_tables_require_the_hidden_scope() {
         assert_eq!(hidden_tables().len(), 7);
         assert!(hidden_tables().iter().all(|own| own.hidden_name().is_some() && table(&own.name).is_none()));
         let named =
@@ -172,11 +172,11 @@ mod tests {
     }
 
     #[test]
-    fn rows_are_numbered_where_the_key_is_one_whole_number() {
-        let number = |name: &str| table(name).and_then(Table::row_number);
+    fn row_number_column_is_a_single_integer_key() {
+        let number = |name: &str| table(name).and_then(Table::row_number_column);
         assert_eq!(number("subscriptions"), Some("subscription_id"));
         assert_eq!([number("research_projects"), number("daily_usage")], [None, None]);
-        let declared = table("daily_usage").map(Table::declaration).expect("a table");
+        let declared = table("daily_usage").map(Table::create_statement).expect("a table");
         let expected = "CREATE TABLE daily_usage (day INTEGER, customer_id INTEGER, usage_units INTEGER, \
                         PRIMARY KEY (day, customer_id))";
         assert_eq!(declared, expected);

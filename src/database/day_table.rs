@@ -18,12 +18,12 @@ use rusqlite::vtab::{
     Context, Filters, IndexConstraintOp, IndexInfo, VTab, VTabConfig, VTabConnection, VTabCursor,
 };
 
-use super::blocks::{BlockStore, Seen};
-use super::by_text::{ByText, TextIndexes, TextRow};
-use super::packing::{Kinds, PackedRows};
+use super::blocks::{BlockStore, QueryView};
+use super::packing::{KindSet, PackedRows};
+use super::text_index::{TextIndex, TextIndexes, TextRow};
 
 /// The properties in which the two tables differ. Columns 0 to 2 are always number, day and kind.
-pub(super) trait DayKind: Send + Sync + Sized + 'static {
+pub(super) trait DayTableDefinition: Send + Sync + Sized + 'static {
     type Day: PackedRows;
     /// Unpacked data of a day.
     type Unpacked: Default;
@@ -32,25 +32,25 @@ pub(super) trait DayKind: Send + Sync + Sized + 'static {
     const KINDS: &'static [&'static str];
 
     fn days(store: &BlockStore) -> &[Arc<Self::Day>];
-    fn unpack(day: &Self::Day, kinds: Kinds) -> Self::Unpacked;
+    fn unpack(day: &Self::Day, kinds: KindSet) -> Self::Unpacked;
     /// Returns the index of the kind of the row at a place.
     fn kind(day: &Self::Day, place: u64) -> usize;
     /// Column of the text, which is the last one.
     const TEXT: c_int;
-    fn text<'a>(row: &RowAt<'a, Self>) -> Cow<'a, str>;
-    fn texts(seen: &Seen) -> &TextIndexes;
+    fn text<'a>(row: &DayRow<'a, Self>) -> Cow<'a, str>;
+    fn texts(seen: &QueryView) -> &TextIndexes;
     /// Sets the result to a column between the third and the last.
-    fn column(_: &RowAt<'_, Self>, _: c_int, _: &mut Context) -> rusqlite::Result<()> {
+    fn column(_: &DayRow<'_, Self>, _: c_int, _: &mut Context) -> rusqlite::Result<()> {
         Ok(())
     }
     /// Returns the kinds that satisfy a comparison of a column after the third; all if it does not restrict kinds.
-    fn kinds_where(_column: c_int, _comparison: Comparison, _value: f64) -> Kinds {
-        Kinds::MAX
+    fn matching_kinds(_column: c_int, _comparison: Comparison, _value: f64) -> KindSet {
+        KindSet::MAX
     }
 }
 
 /// A row that is read.
-pub(super) struct RowAt<'a, K: DayKind> {
+pub(super) struct DayRow<'a, K: DayTableDefinition> {
     pub store: &'a BlockStore,
     pub day: &'a K::Day,
     pub unpacked: &'a K::Unpacked,
@@ -61,7 +61,7 @@ const NUMBER: c_int = 0;
 const DAY: c_int = 1;
 const KIND: c_int = 2;
 /// SQLite's column number of the rowid.
-const ROW: c_int = -1;
+const ROWID_COLUMN: c_int = -1;
 
 /// Operator of a comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -82,7 +82,7 @@ impl Comparison {
         (Comparison::AtMost, 'l'),
     ];
 
-    fn of(operator: &IndexConstraintOp) -> Option<Comparison> {
+    fn from_operator(operator: &IndexConstraintOp) -> Option<Comparison> {
         Some(match operator {
             IndexConstraintOp::SQLITE_INDEX_CONSTRAINT_EQ => Comparison::Equal,
             IndexConstraintOp::SQLITE_INDEX_CONSTRAINT_GT => Comparison::Greater,
@@ -95,72 +95,79 @@ impl Comparison {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Handled {
+struct HandledConstraint {
     column: c_int,
     comparison: Comparison,
 }
 
-impl Handled {
-    fn of(column: c_int, operator: &IndexConstraintOp, text: c_int) -> Option<Handled> {
-        let comparison = Comparison::of(operator)?;
-        let column = if column == ROW { NUMBER } else { column };
+impl HandledConstraint {
+    fn from_constraint(
+        column: c_int,
+        operator: &IndexConstraintOp,
+        text: c_int,
+    ) -> Option<HandledConstraint> {
+        let comparison = Comparison::from_operator(operator)?;
+        let column = if column == ROWID_COLUMN { NUMBER } else { column };
         let useful = !(column == text || matches!(column, NUMBER | KIND)) || comparison == Comparison::Equal;
-        (useful && (0..10).contains(&column)).then_some(Handled { column, comparison })
+        (useful && (0..10).contains(&column)).then_some(HandledConstraint { column, comparison })
     }
 
     /// Returns the two letters of the index text.
-    fn text(self) -> String {
+    fn encode(self) -> String {
         let letter = Comparison::ALL.iter().find(|(own, _)| *own == self.comparison);
         format!("{}{}", self.column, letter.map_or('=', |(_, letter)| *letter))
     }
 
-    fn read(pair: &[u8]) -> Option<Handled> {
+    fn decode(pair: &[u8]) -> Option<HandledConstraint> {
         let &[column, letter] = pair else { return None };
         let comparison = Comparison::ALL.iter().find(|(_, own)| *own == char::from(letter))?.0;
-        Some(Handled { column: c_int::from(column.wrapping_sub(b'0')), comparison })
+        Some(HandledConstraint { column: c_int::from(column.wrapping_sub(b'0')), comparison })
     }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Order {
+enum RowOrder {
     /// By number, and therefore by day.
-    Numbers,
+    ByNumber,
     /// By kind, then by day.
-    Kinds,
+    ByKind,
     /// By day, then by kind.
-    DaysAndKinds,
+    ByDayAndKind,
 }
 
-impl Order {
+impl RowOrder {
     /// Returns the order for sorting by a list of columns, or `None` if the table does not support it.
-    fn by(columns: &[c_int]) -> Option<Order> {
+    fn for_columns(columns: &[c_int]) -> Option<RowOrder> {
         match columns {
-            [NUMBER | ROW, ..] | [DAY] | [DAY, NUMBER | ROW, ..] => Some(Order::Numbers),
-            [KIND] | [KIND, DAY] | [KIND, NUMBER | ROW, ..] | [KIND, DAY, NUMBER | ROW, ..] => {
-                Some(Order::Kinds)
+            [NUMBER | ROWID_COLUMN, ..] | [DAY] | [DAY, NUMBER | ROWID_COLUMN, ..] => {
+                Some(RowOrder::ByNumber)
             }
-            [DAY, KIND] | [DAY, KIND, NUMBER | ROW, ..] => Some(Order::DaysAndKinds),
+            [KIND]
+            | [KIND, DAY]
+            | [KIND, NUMBER | ROWID_COLUMN, ..]
+            | [KIND, DAY, NUMBER | ROWID_COLUMN, ..] => Some(RowOrder::ByKind),
+            [DAY, KIND] | [DAY, KIND, NUMBER | ROWID_COLUMN, ..] => Some(RowOrder::ByDayAndKind),
             _ => None,
         }
     }
 }
 
 #[repr(C)]
-pub(super) struct DayTable<K: DayKind> {
+pub(super) struct DayTable<K: DayTableDefinition> {
     /// Base class; must be first.
     base: ffi::sqlite3_vtab,
-    seen: Arc<Seen>,
+    seen: Arc<QueryView>,
     kind: PhantomData<K>,
 }
 
 // SAFETY: the struct is `repr(C)` and starts with `sqlite3_vtab`, as the trait requires.
-unsafe impl<'vtab, K: DayKind> VTab<'vtab> for DayTable<K> {
-    type Aux = Arc<Seen>;
+unsafe impl<'vtab, K: DayTableDefinition> VTab<'vtab> for DayTable<K> {
+    type Aux = Arc<QueryView>;
     type Cursor = DayCursor<'vtab, K>;
 
     fn connect(
         db: &mut VTabConnection,
-        seen: Option<&Arc<Seen>>,
+        seen: Option<&Arc<QueryView>>,
         _: &[u8],
         _: &[u8],
         _: &[u8],
@@ -174,10 +181,13 @@ unsafe impl<'vtab, K: DayKind> VTab<'vtab> for DayTable<K> {
 
     fn best_index(&self, info: &mut IndexInfo) -> rusqlite::Result<bool> {
         let usable = info.constraints().enumerate().filter(|(_, constraint)| constraint.is_usable());
-        let is_text = |own: &Handled| own.column == KIND || own.column == K::TEXT;
-        let handled: Vec<(usize, Handled)> = usable
+        let is_text = |own: &HandledConstraint| own.column == KIND || own.column == K::TEXT;
+        let handled: Vec<(usize, HandledConstraint)> = usable
             .filter_map(|(at, constraint)| {
-                Some((at, Handled::of(constraint.column(), &constraint.operator(), K::TEXT)?))
+                Some((
+                    at,
+                    HandledConstraint::from_constraint(constraint.column(), &constraint.operator(), K::TEXT)?,
+                ))
             })
             // Texts are compared byte by byte, unlike NOCASE.
             .filter(|(at, own)| !is_text(own) || info.collation(*at).is_ok_and(|own| own == "BINARY"))
@@ -190,7 +200,8 @@ unsafe impl<'vtab, K: DayKind> VTab<'vtab> for DayTable<K> {
         }
         let columns: Option<Vec<c_int>> =
             info.order_bys().map(|order| (!order.is_order_by_desc()).then(|| order.column())).collect();
-        let order = columns.filter(|columns| !columns.is_empty()).and_then(|columns| Order::by(&columns));
+        let order =
+            columns.filter(|columns| !columns.is_empty()).and_then(|columns| RowOrder::for_columns(&columns));
         info.set_order_by_consumed(order.is_some());
         let share = |column: c_int, of_equal: f64, of_other: f64| {
             let own = handled.iter().filter(|(_, own)| own.column == column);
@@ -204,8 +215,8 @@ unsafe impl<'vtab, K: DayKind> VTab<'vtab> for DayTable<K> {
             * share(K::TEXT, 1e-5, 1.0);
         info.set_estimated_cost(rows);
         info.set_estimated_rows(rows as i64);
-        info.set_idx_num(order.unwrap_or(Order::Numbers) as c_int);
-        info.set_idx_str(&handled.iter().map(|(_, own)| own.text()).collect::<String>());
+        info.set_idx_num(order.unwrap_or(RowOrder::ByNumber) as c_int);
+        info.set_idx_str(&handled.iter().map(|(_, own)| own.encode()).collect::<String>());
         Ok(true)
     }
 
@@ -218,72 +229,72 @@ unsafe impl<'vtab, K: DayKind> VTab<'vtab> for DayTable<K> {
             pass: 0,
             place: 0,
             unpacked: Vec::new(),
-            only: None,
-            found: None,
+            row_number_filter: None,
+            indexed_rows: None,
             table: PhantomData,
         })
     }
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Pass {
+struct ScanPass {
     /// Position among the days.
     day: usize,
-    kinds: Kinds,
+    kinds: KindSet,
 }
 
-impl Pass {
+impl ScanPass {
     /// Returns whether the row at a place has one of the kinds.
-    fn has(self, day: &impl PackedRows, place: u64) -> bool {
-        day.next_among(self.kinds, place) == Some(place)
+    fn contains(self, day: &impl PackedRows, place: u64) -> bool {
+        day.next_of_kinds(self.kinds, place) == Some(place)
     }
 }
 
 #[repr(C)]
-pub(super) struct DayCursor<'vtab, K: DayKind> {
+pub(super) struct DayCursor<'vtab, K: DayTableDefinition> {
     /// Base class; must be first.
     base: ffi::sqlite3_vtab_cursor,
     store: BlockStore,
-    seen: Arc<Seen>,
-    passes: Vec<Pass>,
+    seen: Arc<QueryView>,
+    passes: Vec<ScanPass>,
     pass: usize,
     place: u64,
     /// Unpacked data of each requested day. Rows of an index can be on any of them.
     unpacked: Vec<OnceCell<K::Unpacked>>,
     /// Requested row number.
-    only: Option<f64>,
+    row_number_filter: Option<f64>,
     /// Remaining rows of an index; the positions of their days are those of the passes.
-    found: Option<(Arc<ByText>, Range<usize>)>,
+    indexed_rows: Option<(Arc<TextIndex>, Range<usize>)>,
     table: PhantomData<&'vtab DayTable<K>>,
 }
 
-impl<K: DayKind> DayCursor<'_, K> {
+impl<K: DayTableDefinition> DayCursor<'_, K> {
     fn day(&self) -> Option<&K::Day> {
         self.passes.get(self.pass).map(|pass| &*K::days(&self.store)[pass.day])
     }
 
     /// Advances to the first requested row at or after the place.
-    fn settle(&mut self) {
-        if let Some((index, rest)) = &mut self.found {
+    fn advance_to_match(&mut self) {
+        if let Some((index, rest)) = &mut self.indexed_rows {
             let mut rows = rest.map(|at| index.row(at)).map(|row| (row.day as usize, u64::from(row.place)));
             let days = K::days(&self.store);
             let next = rows.find(|(pass, place)| {
                 let pass = self.passes[*pass];
-                pass.has(&*days[pass.day], *place)
+                pass.contains(&*days[pass.day], *place)
             });
             (self.pass, self.place) = next.unwrap_or((self.passes.len(), 0));
             return;
         }
         while let Some(pass) = self.passes.get(self.pass) {
             let day = &K::days(&self.store)[pass.day];
-            let next = match self.only {
+            let next = match self.row_number_filter {
                 Some(number) => {
                     let place = number - day.first() as f64;
                     let is_here =
                         place.fract() == 0.0 && place >= self.place as f64 && place < day.len() as f64;
-                    is_here.then_some(place as u64).filter(|place| pass.has(&**day, *place))
+                    is_here.then_some(place as u64).filter(|place| pass.contains(&**day, *place))
                 }
-                None => day.next_among(pass.kinds, self.place),
+                None => day.next_of_kinds(pass.kinds, self.place),
             };
             if let Some(next) = next {
                 self.place = next;
@@ -296,65 +307,67 @@ impl<K: DayKind> DayCursor<'_, K> {
         }
     }
 
-    fn row_at(&self, day: usize, place: u64, kinds: Kinds) -> Option<RowAt<'_, K>> {
+    fn row_at(&self, day: usize, place: u64, kinds: KindSet) -> Option<DayRow<'_, K>> {
         let of_day = &*K::days(&self.store)[day];
         let unpacked = self.unpacked.get(day)?.get_or_init(|| K::unpack(of_day, kinds));
-        Some(RowAt { store: &self.store, day: of_day, unpacked, place })
+        Some(DayRow { store: &self.store, day: of_day, unpacked, place })
     }
 
     /// Returns the kinds that must be unpacked.
-    fn kinds_of(&self, pass: &Pass) -> Kinds {
-        if self.found.is_some() { Kinds::MAX } else { pass.kinds }
+    fn kinds_to_read(&self, pass: &ScanPass) -> KindSet {
+        if self.indexed_rows.is_some() { KindSet::MAX } else { pass.kinds }
     }
 
     /// Returns every row of a range of days with the hash of its text.
-    fn all_texts(&self, days: Range<usize>) -> Vec<TextRow> {
+    fn text_rows(&self, days: Range<usize>) -> Vec<TextRow> {
         let rows = |day: usize| {
-            let row = move |place| self.row_at(day, place, Kinds::MAX).map(|row| (day, place, K::text(&row)));
+            let row =
+                move |place| self.row_at(day, place, KindSet::MAX).map(|row| (day, place, K::text(&row)));
             (0..K::days(&self.store)[day].len()).filter_map(row)
         };
         let first = days.start;
-        days.flat_map(rows).map(|(day, place, text)| TextRow::of(&text, day - first, place)).collect()
+        days.flat_map(rows).map(|(day, place, text)| TextRow::new(&text, day - first, place)).collect()
     }
 
     /// Returns the scans of a range of days for kinds in an order.
-    fn passes(&self, days: [f64; 2], kinds: Kinds, order: Order) -> Vec<Pass> {
+    fn plan_passes(&self, days: [f64; 2], kinds: KindSet, order: RowOrder) -> Vec<ScanPass> {
         let all = K::days(&self.store);
         let end = all.partition_point(|day| f64::from(day.day()) <= days[1]);
         let days = all.partition_point(|day| f64::from(day.day()) < days[0]).min(end)..end;
         let single = || (0..K::KINDS.len()).map(|at| 1 << at).filter(move |bit| kinds & bit != 0);
         match order {
             // A single row needs one scan in any order.
-            _ if self.only.is_some() => days.map(|day| Pass { day, kinds }).collect(),
-            Order::Numbers => days.map(|day| Pass { day, kinds }).collect(),
-            Order::Kinds => {
-                single().flat_map(|kinds| days.clone().map(move |day| Pass { day, kinds })).collect()
+            _ if self.row_number_filter.is_some() => days.map(|day| ScanPass { day, kinds }).collect(),
+            RowOrder::ByNumber => days.map(|day| ScanPass { day, kinds }).collect(),
+            RowOrder::ByKind => {
+                single().flat_map(|kinds| days.clone().map(move |day| ScanPass { day, kinds })).collect()
             }
-            Order::DaysAndKinds => {
-                days.flat_map(|day| single().map(move |kinds| Pass { day, kinds })).collect()
+            RowOrder::ByDayAndKind => {
+                days.flat_map(|day| single().map(move |kinds| ScanPass { day, kinds })).collect()
             }
         }
     }
 }
 
 // SAFETY: the struct is `repr(C)` and starts with `sqlite3_vtab_cursor`, as the trait requires.
-unsafe impl<K: DayKind> VTabCursor for DayCursor<'_, K> {
+unsafe impl<K: DayTableDefinition> VTabCursor for DayCursor<'_, K> {
     fn filter(
         &mut self,
         order_number: c_int,
         plan: Option<&str>,
         values: &Filters<'_>,
     ) -> rusqlite::Result<()> {
-        let (mut days, mut kinds) = ([f64::NEG_INFINITY, f64::INFINITY], Kinds::MAX);
-        if self.found.is_none() {
+        let (mut days, mut kinds) = ([f64::NEG_INFINITY, f64::INFINITY], KindSet::MAX);
+        if self.indexed_rows.is_none() {
             // The unpacked data of a scan may lack kinds that were not requested.
             self.unpacked.clear();
         }
-        (self.only, self.found) = (None, None);
+        (self.row_number_filter, self.indexed_rows) = (None, None);
         self.unpacked.resize_with(K::days(&self.store).len(), OnceCell::new);
         let mut wanted_text = None;
-        let handled = plan.unwrap_or_default().as_bytes().chunks(2).filter_map(Handled::read);
-        for ((at, value), Handled { column, comparison }) in values.iter().enumerate().zip(handled) {
+        let handled = plan.unwrap_or_default().as_bytes().chunks(2).filter_map(HandledConstraint::decode);
+        for ((at, value), HandledConstraint { column, comparison }) in values.iter().enumerate().zip(handled)
+        {
             let number = match value.data_type() {
                 Type::Text if column == KIND => {
                     let wanted: String = values.get(at)?;
@@ -366,7 +379,7 @@ unsafe impl<K: DayKind> VTabCursor for DayCursor<'_, K> {
                     wanted_text = Some(values.get::<String>(at)?);
                     continue;
                 }
-                Type::Text if column != KIND => number_of(&values.get::<String>(at)?),
+                Type::Text if column != KIND => comparison_number(&values.get::<String>(at)?),
                 // Blobs are greater than every number.
                 Type::Blob if column != KIND && column != K::TEXT => f64::INFINITY,
                 Type::Integer | Type::Real if column != KIND && column != K::TEXT => values.get::<f64>(at)?,
@@ -380,34 +393,34 @@ unsafe impl<K: DayKind> VTabCursor for DayCursor<'_, K> {
                 days[1] = f64::NEG_INFINITY;
             }
             match (column, comparison) {
-                (NUMBER, _) => self.only = Some(number),
+                (NUMBER, _) => self.row_number_filter = Some(number),
                 (DAY, Comparison::Equal) => days = [days[0].max(number), days[1].min(number)],
                 (DAY, Comparison::Greater | Comparison::AtLeast) => days[0] = days[0].max(number),
                 (DAY, _) => days[1] = days[1].min(number),
-                _ => kinds &= K::kinds_where(column, comparison, number),
+                _ => kinds &= K::matching_kinds(column, comparison, number),
             }
         }
-        let order = [Order::Numbers, Order::Kinds, Order::DaysAndKinds];
+        let order = [RowOrder::ByNumber, RowOrder::ByKind, RowOrder::ByDayAndKind];
         let order = order.into_iter().find(|own| *own as c_int == order_number);
-        let order = order.unwrap_or(Order::Numbers);
-        self.passes = self.passes(days, kinds, order);
+        let order = order.unwrap_or(RowOrder::ByNumber);
+        self.passes = self.plan_passes(days, kinds, order);
         (self.pass, self.place) = (0, 0);
-        if let (Some(text), Order::Numbers, Some(first)) = (wanted_text, order, self.passes.first()) {
+        if let (Some(text), RowOrder::ByNumber, Some(first)) = (wanted_text, order, self.passes.first()) {
             let days = first.day..first.day + self.passes.len();
             let rows = K::days(&self.store)[days.clone()].iter().map(|day| day.len()).sum();
-            let index = K::texts(&self.seen).get(&days, rows, || self.all_texts(days.clone()));
-            self.found = index.map(|index| {
-                let rows = index.rows_of(&text);
+            let index = K::texts(&self.seen).get(&days, rows, || self.text_rows(days.clone()));
+            self.indexed_rows = index.map(|index| {
+                let rows = index.row_range(&text);
                 (index, rows)
             });
         }
-        self.settle();
+        self.advance_to_match();
         Ok(())
     }
 
     fn next(&mut self) -> rusqlite::Result<()> {
         self.place += 1;
-        self.settle();
+        self.advance_to_match();
         Ok(())
     }
 
@@ -421,7 +434,7 @@ unsafe impl<K: DayKind> VTabCursor for DayCursor<'_, K> {
             NUMBER => context.set_result((day.first() + self.place) as i64),
             DAY => context.set_result(day.day()),
             KIND => context.set_result(K::KINDS[K::kind(day, self.place)]),
-            other => match self.row_at(pass.day, self.place, self.kinds_of(pass)) {
+            other => match self.row_at(pass.day, self.place, self.kinds_to_read(pass)) {
                 Some(row) if other == K::TEXT => context.set_result(&*K::text(&row)),
                 Some(row) => K::column(&row, other, context),
                 None => Ok(()),
@@ -435,7 +448,7 @@ unsafe impl<K: DayKind> VTabCursor for DayCursor<'_, K> {
 }
 
 /// Returns the number as which a numeric column compares a text: its parsed value, or a value greater than every number.
-pub(super) fn number_of(text: &str) -> f64 {
+pub(super) fn comparison_number(text: &str) -> f64 {
     let text = text.trim_matches([' ', '\t', '\n', '\r', '\u{b}', '\u{c}']);
     let is_number = text.bytes().all(|byte| byte.is_ascii_digit() || b"+-.eE".contains(&byte));
     text.parse().ok().filter(|_| is_number).unwrap_or(f64::INFINITY)
@@ -455,11 +468,11 @@ mod tests {
             (0..3).map(|at| RepeatedLoss { customer: 10 + at, message_day: 1, cause: LossCause::Silence });
         let (mut days, mut first) = (Vec::new(), 1);
         for number in 1..=5u32 {
-            let mut day = NoticeDay::of(number, first);
+            let mut day = NoticeDay::new(number, first);
             day.push(6, &format!("R&D of day {number}"));
             day.push(LEAD_LOST, "lost");
             day.push(0, "won");
-            day.repeat(number.saturating_sub(1).min(3));
+            day.set_repeats(number.saturating_sub(1).min(3));
             if number == 3 {
                 day.push(5, "found");
             }
@@ -467,15 +480,15 @@ mod tests {
             days.push(Arc::new(day));
         }
         let inbox = Inbox { days: Arc::new(days), losses: Arc::new(losses.collect()) };
-        let seen = Arc::new(Seen::default());
-        seen.see(BlockStore { inbox, ..BlockStore::default() });
+        let seen = Arc::new(QueryView::default());
+        seen.set_store(BlockStore { inbox, ..BlockStore::default() });
         let connection = Connection::open_in_memory().expect("memory");
         register(&connection, &seen).expect("a module");
         connection
     }
 
     #[test]
-    fn questions_are_answered_as_by_an_ordinary_table() {
+    fn queries_return_what_an_ordinary_table_returns() {
         let connection = connection();
         connection
             .execute_batch(
@@ -572,7 +585,7 @@ mod tests {
     }
 
     #[test]
-    fn a_repeated_loss_tells_its_reason() {
+    fn repeated_loss_shows_its_reason() {
         let sql = "SELECT message FROM notifications WHERE day = 2 AND message LIKE 'Customer%'";
         let text: String = connection().query_row(sql, [], |row| row.get(0)).expect("a row");
         assert_eq!(
@@ -582,7 +595,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_can_be_written() {
+    fn day_tables_are_read_only() {
         assert!(connection().execute("DELETE FROM notifications", []).is_err());
     }
 }

@@ -15,38 +15,38 @@ use super::catalogue::{self, Scope};
 
 /// The reason of the last rejection by the authorizer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Objection {
+pub(super) enum RejectionReason {
     /// No rejection.
     None,
     /// Access to the schema.
     Schema,
     /// Access to a table that is not visible.
-    Hidden,
+    HiddenTable,
     /// A change of data.
     Write,
 }
 
 /// The last rejection reason, shared between the authorizer and the query.
 #[derive(Clone, Default)]
-pub(super) struct Objections(Arc<AtomicU8>);
+pub(super) struct LastRejection(Arc<AtomicU8>);
 
-impl Objections {
+impl LastRejection {
     pub fn clear(&self) {
         self.0.store(0, Ordering::Relaxed);
     }
 
-    pub fn last(&self) -> Objection {
+    pub fn get(&self) -> RejectionReason {
         match self.0.load(Ordering::Relaxed) {
-            0 => Objection::None,
-            1 => Objection::Schema,
-            2 => Objection::Hidden,
-            _ => Objection::Write,
+            0 => RejectionReason::None,
+            1 => RejectionReason::Schema,
+            2 => RejectionReason::HiddenTable,
+            _ => RejectionReason::Write,
         }
     }
 }
 
 /// Tables that the released simulator hides and that do not exist here. Reading them has a separate error code.
-const HIDDEN_TABLES: [&str; 25] = [
+const RELEASED_HIDDEN_TABLES: [&str; 25] = [
     "events",
     "api_costs",
     "customer_state",
@@ -76,11 +76,11 @@ const HIDDEN_TABLES: [&str; 25] = [
 
 /// Returns whether the released simulator hides a table; case-insensitive.
 pub(super) fn is_hidden_table(name: &str) -> bool {
-    HIDDEN_TABLES.iter().any(|hidden| hidden.eq_ignore_ascii_case(name))
+    RELEASED_HIDDEN_TABLES.iter().any(|hidden| hidden.eq_ignore_ascii_case(name))
 }
 
 /// Internal tables, and whether a visible table has the same rows.
-const INSIDES: [(&str, bool); 11] = [
+const INTERNAL_TABLES: [(&str, bool); 11] = [
     ("customer_rows", true),
     ("subscription_rows", true),
     ("ledger_blocks", false),
@@ -103,30 +103,30 @@ pub(super) fn is_unsafe_function(name: &str) -> bool {
 }
 
 /// Table-valued functions.
-const FUNCTIONS: [&str; 4] = ["json_each", "json_tree", "jsonb_each", "jsonb_tree"];
+const TABLE_FUNCTIONS: [&str; 4] = ["json_each", "json_tree", "jsonb_each", "jsonb_tree"];
 
 /// Returns whether a name is that of a table of the engine.
-pub(super) fn is_of_engine(name: &str) -> bool {
+pub(super) fn is_engine_table(name: &str) -> bool {
     let name = name.to_lowercase();
     name.starts_with("sqlite_") || name.starts_with("pragma_") || name == "dbstat"
 }
 
 /// Returns the visible table of an internal one.
-pub(super) fn visible_name(inside: &str) -> Option<&'static str> {
+pub(super) fn visible_table_of(inside: &str) -> Option<&'static str> {
     let table = catalogue::tables().iter().find(|table| {
         let stem = inside.strip_suffix("_rows").unwrap_or(inside);
         table.name.strip_suffix('s').unwrap_or(&table.name) == stem
     });
-    table.map(|table| table.name.as_str()).filter(|_| is_inside(inside))
+    table.map(|table| table.name.as_str()).filter(|_| is_internal_table(inside))
 }
 
 /// Returns whether a name is that of an internal table; case-insensitive.
-pub(super) fn is_inside(name: &str) -> bool {
-    INSIDES.iter().any(|(table, _)| table.eq_ignore_ascii_case(name))
+pub(super) fn is_internal_table(name: &str) -> bool {
+    INTERNAL_TABLES.iter().any(|(table, _)| table.eq_ignore_ascii_case(name))
 }
 
 /// Sets limits of statements. A function call cannot be interrupted, so values and patterns must be short.
-pub(super) fn limit(connection: &Connection) -> rusqlite::Result<()> {
+pub(super) fn set_limits(connection: &Connection) -> rusqlite::Result<()> {
     connection.set_limit(Limit::SQLITE_LIMIT_ATTACHED, 0)?;
     connection.set_limit(Limit::SQLITE_LIMIT_LENGTH, 2 << 20)?;
     connection.set_limit(Limit::SQLITE_LIMIT_LIKE_PATTERN_LENGTH, 1000)?;
@@ -139,14 +139,14 @@ pub(super) fn limit(connection: &Connection) -> rusqlite::Result<()> {
 
 /// Columns of visible tables that statements read, by table; shared between the authorizer and its users.
 #[derive(Clone, Default)]
-pub(super) struct Reads(Arc<Mutex<Columns>>);
+pub(super) struct ColumnReads(Arc<Mutex<ColumnsByTable>>);
 
 /// Names of columns by table.
-pub(super) type Columns = BTreeMap<String, BTreeSet<String>>;
+pub(super) type ColumnsByTable = BTreeMap<String, BTreeSet<String>>;
 
-impl Reads {
+impl ColumnReads {
     /// Returns and clears the columns.
-    pub fn take(&self) -> Columns {
+    pub fn take(&self) -> ColumnsByTable {
         std::mem::take(&mut self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner()))
     }
 
@@ -167,18 +167,18 @@ pub(super) struct InnerViews {
 impl InnerViews {
     /// Returns statements that replace a view by a temporary table with the read columns, or `None` if the visible table is not a
     /// view.
-    pub fn copy(&self, name: &str, read: &BTreeSet<String>) -> Option<String> {
+    pub fn copy_statements(&self, name: &str, read: &BTreeSet<String>) -> Option<String> {
         let table = catalogue::table(name).filter(|table| self.names.contains(&table.name))?;
         // The authorizer does not report columns of USING, and tables are joined by customer.
         let is_filled = |column: &&str| {
-            read.contains(*column) || *column == CUSTOMER || table.key.iter().any(|key| key == column)
+            read.contains(*column) || *column == CUSTOMER_ID || table.key.iter().any(|key| key == column)
         };
         let columns = table.columns.iter().map(|column| column.name.as_str());
         let filled: Vec<&str> = columns.filter(is_filled).collect();
         let (name, secret, columns) = (&table.name, &self.secret, filled.join(", "));
-        let declaration = table.declaration().replacen("TABLE", "TEMP TABLE", 1);
-        let index = match filled.contains(&CUSTOMER) && table.row_number() != Some(CUSTOMER) {
-            true => format!("; CREATE INDEX temp.{name}_of_customers ON {name} ({CUSTOMER})"),
+        let declaration = table.create_statement().replacen("TABLE", "TEMP TABLE", 1);
+        let index = match filled.contains(&CUSTOMER_ID) && table.row_number_column() != Some(CUSTOMER_ID) {
+            true => format!("; CREATE INDEX temp.{name}_of_customers ON {name} ({CUSTOMER_ID})"),
             false => String::new(),
         };
         Some(format!(
@@ -189,12 +189,12 @@ impl InnerViews {
 }
 
 /// The join column of the tables.
-pub(super) const CUSTOMER: &str = "customer_id";
+pub(super) const CUSTOMER_ID: &str = "customer_id";
 
 /// The authorizer of statements.
 pub(super) struct Guard {
-    objections: Objections,
-    reads: Reads,
+    last_rejection: LastRejection,
+    reads: ColumnReads,
     /// `None` if there are no internal tables.
     views: Option<InnerViews>,
     /// Tables that statements may name.
@@ -208,7 +208,7 @@ impl Guard {
     ///
     /// SQLite reports to the authorizer in which view a table is read, but it treats common table expressions like views. So
     /// internal tables are readable only in views with unpredictable names.
-    pub fn set_up(connection: &Connection, scope: Scope) -> rusqlite::Result<Guard> {
+    pub fn with_inner_views(connection: &Connection, scope: Scope) -> rusqlite::Result<Guard> {
         let existing = existing_names(connection)?;
         let secret = format!("inner_{:016x}{:016x}_", random_bits(), random_bits());
         let mut statement =
@@ -223,17 +223,29 @@ impl Guard {
         }
         let names = views.into_iter().map(|(name, _)| name).collect();
         let views = Some(InnerViews { secret, names });
-        Ok(Guard { objections: Objections::default(), reads: Reads::default(), views, scope, existing })
+        Ok(Guard {
+            last_rejection: LastRejection::default(),
+            reads: ColumnReads::default(),
+            views,
+            scope,
+            existing,
+        })
     }
 
     /// Returns a guard without internal tables.
-    pub fn of_ordinary_tables(connection: &Connection, scope: Scope) -> rusqlite::Result<Guard> {
+    pub fn for_ordinary_tables(connection: &Connection, scope: Scope) -> rusqlite::Result<Guard> {
         let existing = existing_names(connection)?;
-        Ok(Guard { objections: Objections::default(), reads: Reads::default(), views: None, scope, existing })
+        Ok(Guard {
+            last_rejection: LastRejection::default(),
+            reads: ColumnReads::default(),
+            views: None,
+            scope,
+            existing,
+        })
     }
 
     /// Returns the columns that statements read.
-    pub fn reads(&self) -> Reads {
+    pub fn reads(&self) -> ColumnReads {
         self.reads.clone()
     }
 
@@ -243,53 +255,54 @@ impl Guard {
     }
 
     /// Returns the rejection reasons.
-    pub fn objections(&self) -> Objections {
-        self.objections.clone()
+    pub fn last_rejection(&self) -> LastRejection {
+        self.last_rejection.clone()
     }
 
     /// Allows or denies one action of a statement.
     pub fn authorize(&self, context: &AuthContext<'_>) -> Authorization {
-        match self.problem(context) {
+        match self.rejection_reason(context) {
             None => Authorization::Allow,
             Some(problem) => {
-                self.objections.0.store(problem as u8, Ordering::Relaxed);
+                self.last_rejection.0.store(problem as u8, Ordering::Relaxed);
                 Authorization::Deny
             }
         }
     }
 
-    fn problem(&self, context: &AuthContext<'_>) -> Option<Objection> {
+    fn rejection_reason(&self, context: &AuthContext<'_>) -> Option<RejectionReason> {
         match context.action {
             AuthAction::Select | AuthAction::Recursive => None,
             AuthAction::Function { function_name } if !UNSAFE_FUNCTIONS.contains(&function_name) => None,
             AuthAction::Read { table_name, column_name } => {
                 match self.scope.hidden_table(context.database_name, table_name) {
                     Some(table) => {
-                        self.note_read(&table.name, column_name);
+                        self.record_read(&table.name, column_name);
                         None
                     }
-                    None => self.reading(table_name, column_name, context.accessor),
+                    None => self.check_read(table_name, column_name, context.accessor),
                 }
             }
-            AuthAction::Pragma { .. } => Some(Objection::Schema),
-            _ => Some(Objection::Write),
+            AuthAction::Pragma { .. } => Some(RejectionReason::Schema),
+            _ => Some(RejectionReason::Write),
         }
     }
 
-    fn note_read(&self, table: &str, column: &str) {
+    fn record_read(&self, table: &str, column: &str) {
         if self.views.is_none() {
             self.reads.add(table, column);
         }
     }
 
-    fn reading(&self, table: &str, column: &str, accessor: Option<&str>) -> Option<Objection> {
+    fn check_read(&self, table: &str, column: &str, accessor: Option<&str>) -> Option<RejectionReason> {
         let name = table.to_lowercase();
-        let inside = INSIDES.iter().find(|(table, _)| *table == name);
+        let inside = INTERNAL_TABLES.iter().find(|(table, _)| *table == name);
         let is_inner_view =
             |name: &str| self.views.as_ref().is_some_and(|views| name.starts_with(&views.secret));
-        self.note_read(&name, column);
-        let visible =
-            catalogue::table(&name).is_some() || FUNCTIONS.contains(&name.as_str()) || is_inner_view(&name);
+        self.record_read(&name, column);
+        let visible = catalogue::table(&name).is_some()
+            || TABLE_FUNCTIONS.contains(&name.as_str())
+            || is_inner_view(&name);
         let from_view = accessor.is_some_and(is_inner_view);
         // Without a column, only rows are counted: those of a common table expression, or of a view that the
         // planner has flattened. Any other table that exists and is not listed is rejected.
@@ -298,11 +311,11 @@ impl Guard {
                 Some((_, behind_view)) => *behind_view,
                 None => !self.existing.contains(&name),
             };
-        let engine = is_of_engine(&name);
+        let engine = is_engine_table(&name);
         match (visible || from_view || (counted && !engine), engine) {
             (true, _) => None,
-            (false, true) => Some(Objection::Schema),
-            (false, false) => Some(Objection::Hidden),
+            (false, true) => Some(RejectionReason::Schema),
+            (false, false) => Some(RejectionReason::HiddenTable),
         }
     }
 }
@@ -321,20 +334,20 @@ fn existing_names(connection: &Connection) -> rusqlite::Result<BTreeSet<String>>
 
 /// Disables the authorizer while the program itself works on a connection. Dropping it, also by a panic, restores the previous
 /// state.
-pub(super) struct Trust<'a> {
+pub(super) struct TrustGuard<'a> {
     trusted: &'a AtomicBool,
-    before: bool,
+    previous: bool,
 }
 
-impl Trust<'_> {
-    pub fn begin(trusted: &AtomicBool) -> Trust<'_> {
-        Trust { trusted, before: trusted.swap(true, Ordering::Relaxed) }
+impl TrustGuard<'_> {
+    pub fn enter(trusted: &AtomicBool) -> TrustGuard<'_> {
+        TrustGuard { trusted, previous: trusted.swap(true, Ordering::Relaxed) }
     }
 }
 
-impl Drop for Trust<'_> {
+impl Drop for TrustGuard<'_> {
     fn drop(&mut self) {
-        self.trusted.store(self.before, Ordering::Relaxed);
+        self.trusted.store(self.previous, Ordering::Relaxed);
     }
 }
 
@@ -350,17 +363,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn counting_the_rows_of_a_table_that_is_not_listed_is_refused() {
+    fn guard_rejects_row_counts_of_unlisted_tables() {
         let mut connection = Connection::open_in_memory().expect("a database");
         connection
             .execute_batch("CREATE TABLE Added_Later (a); CREATE TABLE ledger (amount)")
             .expect("tables");
         let guards = [
-            Guard::set_up(&connection, Scope::Visible).expect("a guard"),
-            Guard::of_ordinary_tables(&connection, Scope::Visible).expect("a guard"),
+            Guard::with_inner_views(&connection, Scope::Visible).expect("a guard"),
+            Guard::for_ordinary_tables(&connection, Scope::Visible).expect("a guard"),
         ];
         for guard in guards {
-            let objections = guard.objections();
+            let objections = guard.last_rejection();
             let authorizer = move |context: AuthContext<'_>| guard.authorize(&context);
             connection.authorizer(Some(authorizer)).expect("an authorizer");
             let is_allowed = |sql: &str| connection.prepare(sql).is_ok();
@@ -374,7 +387,7 @@ mod tests {
             ] {
                 objections.clear();
                 assert!(!is_allowed(refused), "{refused}");
-                assert_eq!(objections.last(), Objection::Hidden, "{refused}");
+                assert_eq!(objections.get(), RejectionReason::HiddenTable, "{refused}");
             }
             for allowed in [
                 "SELECT count(*) FROM ledger",
@@ -389,11 +402,11 @@ mod tests {
     }
 
     #[test]
-    fn trust_ends_with_its_work_also_by_a_panic() {
+    fn trust_guard_ends_on_drop_and_panic() {
         let trusted = AtomicBool::new(false);
-        let outer = Trust::begin(&trusted);
+        let outer = TrustGuard::enter(&trusted);
         let panicked = catch_unwind(AssertUnwindSafe(|| {
-            let _inner = Trust::begin(&trusted);
+            let _inner = TrustGuard::enter(&trusted);
             panic!("the work fails");
         }));
         assert!(panicked.is_err() && trusted.load(Ordering::Relaxed), "the outer work continues");

@@ -4,7 +4,7 @@ use rusqlite::vtab::Context;
 use std::ffi::c_int;
 use std::sync::Arc;
 
-use super::packing::{LONGEST_RUN, PackedDay, Packer, Run, Unpacker};
+use super::packing::{MAX_RUN_ROWS, PackedDay, Packer, RowRun, Unpacker};
 use novamind_world::events::IssueOpened;
 use novamind_world::identifiers::Group;
 
@@ -29,12 +29,12 @@ pub(super) struct IssueRow {
 
 impl IssueRun {
     /// Returns the runs of the issues that were opened on a day.
-    pub fn runs_of(opened: &[IssueOpened]) -> Vec<IssueRun> {
+    pub fn runs_from_opened(opened: &[IssueOpened]) -> Vec<IssueRun> {
         let mut runs: Vec<IssueRun> = Vec::new();
         for issue in opened {
             let continues = |run: &IssueRun| {
                 run.group == issue.group
-                    && run.customers.len() < LONGEST_RUN
+                    && run.customers.len() < MAX_RUN_ROWS
                     && run.first + run.customers.len() as u32 == issue.issue
                     && run.customers.last() < Some(&issue.customer)
             };
@@ -50,7 +50,7 @@ impl IssueRun {
     }
 }
 
-impl Run for IssueRun {
+impl RowRun for IssueRun {
     type Row = IssueRow;
 
     fn customers(&self) -> &[u32] {
@@ -62,18 +62,18 @@ impl Run for IssueRun {
     }
 
     fn pack(&self, packer: &mut Packer) {
-        packer.number(u64::from(self.first));
-        packer.number(self.group.index() as u64);
-        packer.ascending(&self.customers);
-        self.solved.iter().for_each(|day| packer.number(u64::from(*day)));
+        packer.push_number(u64::from(self.first));
+        packer.push_number(self.group.index() as u64);
+        packer.push_ascending(&self.customers);
+        self.solved.iter().for_each(|day| packer.push_number(u64::from(*day)));
     }
 
     fn unpack(unpacker: &mut Unpacker<'_>) -> Option<IssueRun> {
-        let first = unpacker.small()?;
-        let group = Group::at(unpacker.number()? as usize)?;
-        let customers = unpacker.ascending()?;
+        let first = unpacker.read_u32()?;
+        let group = Group::at(unpacker.read_number()? as usize)?;
+        let customers = unpacker.read_ascending()?;
         first.checked_add(customers.len() as u32)?;
-        let solved = customers.iter().map(|_| unpacker.small()).collect::<Option<_>>()?;
+        let solved = customers.iter().map(|_| unpacker.read_u32()).collect::<Option<_>>()?;
         Some(IssueRun { first, group, customers, solved })
     }
 }
@@ -92,7 +92,7 @@ pub(super) mod column {
 }
 
 /// Sets the result to a column of an issue, with ages by the issue clock.
-pub(super) fn show(
+pub(super) fn write_column(
     (clock, day): (&[u32], u32),
     row: IssueRow,
     column: c_int,
@@ -118,8 +118,8 @@ pub(super) fn days_open(clock: &[u32], opened: u32, solved: Option<u32>) -> u32 
 }
 
 /// Returns the position of the day on which an issue was opened.
-pub(super) fn day_of(days: &[Arc<PackedDay>], issue: u32) -> Option<usize> {
-    let first = |day: &PackedDay| day.open::<IssueRun>(0).map_or(u32::MAX, |run| run.first);
+pub(super) fn day_index_of_issue(days: &[Arc<PackedDay>], issue: u32) -> Option<usize> {
+    let first = |day: &PackedDay| day.unpack_run::<IssueRun>(0).map_or(u32::MAX, |run| run.first);
     days.partition_point(|day| first(day) <= issue).checked_sub(1)
 }
 
@@ -132,8 +132,8 @@ mod tests {
     }
 
     #[test]
-    fn issues_come_back_as_they_went() {
-        let mut runs = IssueRun::runs_of(&[
+    fn issue_runs_round_trip() {
+        let mut runs = IssueRun::runs_from_opened(&[
             opened(7, 20, 0),
             opened(8, 31, 0),
             opened(9, 4, 0),
@@ -144,19 +144,19 @@ mod tests {
         assert_eq!(shapes, [(7, 2), (9, 1), (10, 1), (12, 1)]);
         runs[0].solved[1] = 44;
         let day = PackedDay::pack(40, &runs);
-        let read = PackedDay::read::<IssueRun>(40, day.bytes().to_vec());
+        let read = PackedDay::from_bytes::<IssueRun>(40, day.as_bytes().to_vec());
         assert_eq!(read, Some(day.clone()));
-        assert_eq!(day.open::<IssueRun>(0), Some(runs[0].clone()));
-        let next = Arc::new(PackedDay::pack(41, &IssueRun::runs_of(&[opened(13, 1, 0)])));
+        assert_eq!(day.unpack_run::<IssueRun>(0), Some(runs[0].clone()));
+        let next = Arc::new(PackedDay::pack(41, &IssueRun::runs_from_opened(&[opened(13, 1, 0)])));
         let days = [Arc::new(day), next];
         assert_eq!(
-            [6, 7, 12, 13, 99].map(|issue| day_of(&days, issue)),
+            [6, 7, 12, 13, 99].map(|issue| day_index_of_issue(&days, issue)),
             [None, Some(0), Some(0), Some(1), Some(1)]
         );
     }
 
     #[test]
-    fn an_issue_ages_with_the_clock_from_its_day_to_the_eve_of_its_solution() {
+    fn days_open_follows_the_issue_clock() {
         // The clock does not tick on day 3.
         let clock = [0, 1, 2, 2, 3, 4];
         for (opened, solved, days) in

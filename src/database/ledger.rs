@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use super::packing::{Kinds, PackedRows, Packer, Unpacker};
+use super::packing::{KindSet, PackedRows, Packer, Unpacker};
 use novamind_world::events::Category;
 
 /// Categories in alphabetical order.
@@ -21,10 +21,10 @@ pub(super) const CATEGORIES: [&str; 12] = [
     "research_project",
     "subscription_payment",
 ];
-pub(super) const LEADS: usize = 7;
-pub(super) const PAYMENTS: usize = 11;
+pub(super) const LEAD_COST_CATEGORY: usize = 7;
+pub(super) const PAYMENT_CATEGORY: usize = 11;
 /// Income categories.
-pub(super) const INCOME: Kinds = 1 | 1 << 6 | 1 << PAYMENTS;
+pub(super) const INCOME_CATEGORIES: KindSet = 1 | 1 << 6 | 1 << PAYMENT_CATEGORY;
 
 /// A ledger entry that is neither a lead cost nor a payment.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,24 +50,24 @@ pub(super) struct LedgerDay {
 
 /// Customers of lead costs, and payments with their customers.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(super) struct Movements {
+pub(super) struct LeadsAndPayments {
     pub leads: Vec<u32>,
     pub payments: Vec<(u32, f64)>,
 }
 
 impl LedgerDay {
     /// Returns a day without entries.
-    pub fn of(day: u32, first: u64, lead_cost: f64) -> LedgerDay {
-        let packed = Movements::default().packed();
+    pub fn new(day: u32, first: u64, lead_cost: f64) -> LedgerDay {
+        let packed = LeadsAndPayments::default().pack();
         // SQLite keeps no negative zero.
         let lead_cost = lead_cost + 0.0;
         LedgerDay { day, first, lead_cost, packed, ..LedgerDay::default() }
     }
 
     /// Sets lead costs and payments.
-    pub fn set(&mut self, movements: &Movements) {
+    pub fn set_leads_and_payments(&mut self, movements: &LeadsAndPayments) {
         (self.leads, self.payments) = (movements.leads.len() as u32, movements.payments.len() as u32);
-        self.packed = movements.packed();
+        self.packed = movements.pack();
     }
 
     /// Adds another entry.
@@ -77,66 +77,67 @@ impl LedgerDay {
     }
 
     /// Returns the bytes in the file.
-    pub fn bytes(&self) -> Vec<u8> {
+    pub fn to_bytes(&self) -> Vec<u8> {
         let mut packer = Packer::default();
-        packer.number(self.first);
-        packer.float(self.lead_cost);
+        packer.push_number(self.first);
+        packer.push_float(self.lead_cost);
         for number in [u64::from(self.leads), self.payments.into(), self.packed.len() as u64] {
-            packer.number(number);
+            packer.push_number(number);
         }
-        packer.bytes(&self.packed);
-        packer.number(self.others.len() as u64);
+        packer.push_bytes(&self.packed);
+        packer.push_number(self.others.len() as u64);
         for OtherEntry { category, amount, note } in &self.others {
-            packer.number(u64::from(*category));
-            packer.float(*amount);
-            packer.number(note.len() as u64);
-            packer.bytes(note.as_bytes());
+            packer.push_number(u64::from(*category));
+            packer.push_float(*amount);
+            packer.push_number(note.len() as u64);
+            packer.push_bytes(note.as_bytes());
         }
         packer.finish()
     }
 
     /// Parses the bytes of a day. Returns `None` if they are invalid.
-    pub fn read(day: u32, bytes: &[u8]) -> Option<LedgerDay> {
-        let mut unpacker = Unpacker::of(bytes);
-        let (first, lead_cost) = (unpacker.number()?, unpacker.float()?);
-        let (leads, payments) = (unpacker.small()?, unpacker.small()?);
-        let length = unpacker.small()?;
-        let packed = unpacker.bytes(length as usize)?.to_vec();
+    pub fn from_bytes(day: u32, bytes: &[u8]) -> Option<LedgerDay> {
+        let mut unpacker = Unpacker::new(bytes);
+        let (first, lead_cost) = (unpacker.read_number()?, unpacker.read_float()?);
+        let (leads, payments) = (unpacker.read_u32()?, unpacker.read_u32()?);
+        let length = unpacker.read_u32()?;
+        let packed = unpacker.read_bytes(length as usize)?.to_vec();
         let mut others = Vec::new();
-        for _ in 0..unpacker.number()? {
-            let (category, amount, length) = (unpacker.small()?, unpacker.float()?, unpacker.small()?);
-            let note = std::str::from_utf8(unpacker.bytes(length as usize)?).ok()?.to_owned();
+        for _ in 0..unpacker.read_number()? {
+            let (category, amount, length) =
+                (unpacker.read_u32()?, unpacker.read_float()?, unpacker.read_u32()?);
+            let note = std::str::from_utf8(unpacker.read_bytes(length as usize)?).ok()?.to_owned();
             let category = u8::try_from(category).ok().filter(|own| usize::from(*own) < CATEGORIES.len())?;
             others.push(OtherEntry { category, amount, note });
         }
-        let movements = Movements::unpack(&packed)?;
+        let movements = LeadsAndPayments::unpack(&packed)?;
         let sound = movements.leads.len() == leads as usize && movements.payments.len() == payments as usize;
         let read = LedgerDay { day, first, lead_cost, leads, payments, packed, others };
         (sound && unpacker.is_empty()).then_some(read)
     }
 
     /// Returns the entry at a place, from 0.
-    pub fn at(&self, place: u64) -> Movement<'_> {
+    pub fn entry_at(&self, place: u64) -> LedgerRow<'_> {
         let (leads, payments) = (u64::from(self.leads), u64::from(self.payments));
         match place {
-            place if place < leads => Movement::Lead(place as usize),
-            place if place < leads + payments => Movement::Payment((place - leads) as usize),
-            place => Movement::Other(&self.others[(place - leads - payments) as usize]),
+            place if place < leads => LedgerRow::Lead(place as usize),
+            place if place < leads + payments => LedgerRow::Payment((place - leads) as usize),
+            place => LedgerRow::Other(&self.others[(place - leads - payments) as usize]),
         }
     }
 }
 
 /// An entry at a place of a day.
-pub(super) enum Movement<'a> {
+pub(super) enum LedgerRow<'a> {
     Lead(usize),
     Payment(usize),
     Other(&'a OtherEntry),
 }
 
-impl Movements {
-    fn packed(&self) -> Vec<u8> {
+impl LeadsAndPayments {
+    fn pack(&self) -> Vec<u8> {
         let mut packer = Packer::default();
-        packer.ascending(&self.leads);
+        packer.push_ascending(&self.leads);
         let mut places: BTreeMap<u64, u64> = BTreeMap::new();
         let mut amounts = Vec::new();
         for (_, amount) in &self.payments {
@@ -145,33 +146,34 @@ impl Movements {
                 amounts.len() as u64 - 1
             });
         }
-        packer.number(amounts.len() as u64);
-        amounts.iter().for_each(|amount| packer.float(*amount));
-        packer.number(self.payments.len() as u64);
+        packer.push_number(amounts.len() as u64);
+        amounts.iter().for_each(|amount| packer.push_float(*amount));
+        packer.push_number(self.payments.len() as u64);
         let mut before = 0i64;
         for (customer, amount) in &self.payments {
             let step = i64::from(*customer) - before;
             before = i64::from(*customer);
             // Zigzag encoding: small differences of either sign are small numbers.
-            packer.number((step << 1 ^ step >> 63) as u64);
-            packer.number(places[&amount.to_bits()]);
+            packer.push_number((step << 1 ^ step >> 63) as u64);
+            packer.push_number(places[&amount.to_bits()]);
         }
         packer.finish()
     }
 
     /// Parses packed entries. Returns `None` if the bytes are invalid.
-    pub fn unpack(bytes: &[u8]) -> Option<Movements> {
-        let mut unpacker = Unpacker::of(bytes);
-        let leads = unpacker.ascending()?;
-        let amounts: Vec<f64> = (0..unpacker.number()?).map(|_| unpacker.float()).collect::<Option<_>>()?;
+    pub fn unpack(bytes: &[u8]) -> Option<LeadsAndPayments> {
+        let mut unpacker = Unpacker::new(bytes);
+        let leads = unpacker.read_ascending()?;
+        let amounts: Vec<f64> =
+            (0..unpacker.read_number()?).map(|_| unpacker.read_float()).collect::<Option<_>>()?;
         let mut before = 0i64;
-        let payments = (0..unpacker.number()?).map(|_| {
-            let step = unpacker.number()?;
+        let payments = (0..unpacker.read_number()?).map(|_| {
+            let step = unpacker.read_number()?;
             before = before.checked_add((step >> 1) as i64 ^ -((step & 1) as i64))?;
-            Some((u32::try_from(before).ok()?, *amounts.get(unpacker.small()? as usize)?))
+            Some((u32::try_from(before).ok()?, *amounts.get(unpacker.read_u32()? as usize)?))
         });
         let payments = payments.collect::<Option<_>>()?;
-        Some(Movements { leads, payments }).filter(|_| unpacker.is_empty())
+        Some(LeadsAndPayments { leads, payments }).filter(|_| unpacker.is_empty())
     }
 }
 
@@ -188,13 +190,13 @@ impl PackedRows for LedgerDay {
         u64::from(self.leads) + u64::from(self.payments) + self.others.len() as u64
     }
 
-    fn next_among(&self, kinds: Kinds, place: u64) -> Option<u64> {
+    fn next_of_kinds(&self, kinds: KindSet, place: u64) -> Option<u64> {
         let (leads, packed) = (u64::from(self.leads), u64::from(self.leads) + u64::from(self.payments));
-        if place < leads && kinds & 1 << LEADS != 0 {
+        if place < leads && kinds & 1 << LEAD_COST_CATEGORY != 0 {
             return Some(place);
         }
         let place = place.max(leads);
-        if place < packed && kinds & 1 << PAYMENTS != 0 {
+        if place < packed && kinds & 1 << PAYMENT_CATEGORY != 0 {
             return Some(place);
         }
         let place = place.max(packed);
@@ -214,18 +216,18 @@ pub(super) fn payment_note(customer: u32) -> String {
 impl LedgerDay {
     /// Returns all rows: number, category, amount, note.
     pub fn rows(&self) -> impl Iterator<Item = (u64, &'static str, f64, String)> + '_ {
-        let movements = Movements::unpack(&self.packed).unwrap_or_default();
+        let movements = LeadsAndPayments::unpack(&self.packed).unwrap_or_default();
         (0..self.len()).map(move |place| {
             let number = self.first + place;
-            match self.at(place) {
-                Movement::Lead(at) => {
-                    (number, CATEGORIES[LEADS], self.lead_cost, lead_note(movements.leads[at]))
+            match self.entry_at(place) {
+                LedgerRow::Lead(at) => {
+                    (number, CATEGORIES[LEAD_COST_CATEGORY], self.lead_cost, lead_note(movements.leads[at]))
                 }
-                Movement::Payment(at) => {
+                LedgerRow::Payment(at) => {
                     let (customer, amount) = movements.payments[at];
-                    (number, CATEGORIES[PAYMENTS], amount, payment_note(customer))
+                    (number, CATEGORIES[PAYMENT_CATEGORY], amount, payment_note(customer))
                 }
-                Movement::Other(own) => {
+                LedgerRow::Other(own) => {
                     (number, CATEGORIES[usize::from(own.category)], own.amount, own.note.clone())
                 }
             }
@@ -239,16 +241,16 @@ mod tests {
     use proptest::prelude::*;
 
     fn day() -> LedgerDay {
-        let mut day = LedgerDay::of(3, 40, -0.5);
+        let mut day = LedgerDay::new(3, 40, -0.5);
         let payments = vec![(7, 12.0), (2, 25.0), (1_000_000, 12.0)];
-        day.set(&Movements { leads: vec![5, 6, 90], payments });
+        day.set_leads_and_payments(&LeadsAndPayments { leads: vec![5, 6, 90], payments });
         day.push(Category::Capacity, -85.0, "Daily capacity cost".to_owned());
         day.push(Category::AdRevenue, 3.25, "In-app ad revenue (2 subscribers)".to_owned());
         day
     }
 
     #[test]
-    fn categories_stand_in_ascending_order_and_income_is_what_never_takes() {
+    fn categories_are_sorted_and_income_is_never_negative() {
         assert!(CATEGORIES.is_sorted());
         for category in Category::ALL {
             let at = CATEGORIES.binary_search(&category.id()).expect("a category");
@@ -256,20 +258,20 @@ mod tests {
                 category,
                 Category::InitialFunding | Category::SubscriptionPayment | Category::AdRevenue
             );
-            assert_eq!(INCOME & 1 << at != 0, income, "{}", category.id());
+            assert_eq!(INCOME_CATEGORIES & 1 << at != 0, income, "{}", category.id());
         }
         assert_eq!(
-            (CATEGORIES[LEADS], CATEGORIES[PAYMENTS]),
+            (CATEGORIES[LEAD_COST_CATEGORY], CATEGORIES[PAYMENT_CATEGORY]),
             ("lead_acquisition_cost", "subscription_payment")
         );
     }
 
     #[test]
-    fn a_day_comes_back_as_it_went() {
+    fn ledger_day_round_trips() {
         let day = day();
-        assert_eq!(LedgerDay::read(3, &day.bytes()), Some(day.clone()));
-        assert_eq!(LedgerDay::read(3, &day.bytes()[1..]), None);
-        assert_eq!(LedgerDay::read(3, &day.bytes()[..day.bytes().len() - 1]), None);
+        assert_eq!(LedgerDay::from_bytes(3, &day.to_bytes()), Some(day.clone()));
+        assert_eq!(LedgerDay::from_bytes(3, &day.to_bytes()[1..]), None);
+        assert_eq!(LedgerDay::from_bytes(3, &day.to_bytes()[..day.to_bytes().len() - 1]), None);
         let rows: Vec<_> = day.rows().collect();
         assert_eq!(rows.len() as u64, day.len());
         assert_eq!(
@@ -284,31 +286,31 @@ mod tests {
     }
 
     #[test]
-    fn kinds_skip_what_they_leave_out() {
+    fn next_of_kinds_skips_other_categories() {
         let day = day();
-        let places = |kinds: Kinds| {
-            let next = |place: &u64| day.next_among(kinds, place + 1);
-            std::iter::successors(day.next_among(kinds, 0), next).collect::<Vec<_>>()
+        let places = |kinds: KindSet| {
+            let next = |place: &u64| day.next_of_kinds(kinds, place + 1);
+            std::iter::successors(day.next_of_kinds(kinds, 0), next).collect::<Vec<_>>()
         };
-        assert_eq!(places(Kinds::MAX), (0..8).collect::<Vec<_>>());
-        assert_eq!(places(1 << PAYMENTS), [3, 4, 5]);
-        assert_eq!(places(!INCOME), [0, 1, 2, 6]);
+        assert_eq!(places(KindSet::MAX), (0..8).collect::<Vec<_>>());
+        assert_eq!(places(1 << PAYMENT_CATEGORY), [3, 4, 5]);
+        assert_eq!(places(!INCOME_CATEGORIES), [0, 1, 2, 6]);
         assert_eq!(places(1), [7]);
         assert_eq!(places(0), [0u64; 0]);
     }
 
     proptest! {
         #[test]
-        fn movements_come_back_as_they_went(leads in proptest::collection::btree_set(any::<u32>(), 0..20),
+        fn leads_and_payments_round_trip(leads in proptest::collection::btree_set(any::<u32>(), 0..20),
             payments in proptest::collection::vec((any::<u32>(), -9i32..9), 0..40)) {
             let payments = payments.into_iter().map(|(customer, amount)| (customer, f64::from(amount) / 7.0)).collect();
-            let movements = Movements { leads: leads.into_iter().collect(), payments };
-            prop_assert_eq!(Movements::unpack(&movements.packed()), Some(movements));
+            let movements = LeadsAndPayments { leads: leads.into_iter().collect(), payments };
+            prop_assert_eq!(LeadsAndPayments::unpack(&movements.pack()), Some(movements));
         }
 
         #[test]
         fn damaged_bytes_never_panic(bytes in proptest::collection::vec(any::<u8>(), 0..60)) {
-            if let Some(day) = LedgerDay::read(1, &bytes) {
+            if let Some(day) = LedgerDay::from_bytes(1, &bytes) {
                 let _ = day.rows().count();
             }
         }

@@ -9,46 +9,46 @@ pub mod catalogue;
 pub mod query;
 pub mod text;
 
-mod answer;
+mod block_loading;
 mod block_table;
 mod blocks;
-mod by_customer;
-mod by_text;
+mod customer_index;
 mod day_table;
-mod filling;
+mod error_help;
 mod guard;
-mod help;
-mod hidden;
-mod interrupt;
+mod hidden_schema;
+mod hidden_table_rows;
 mod issues;
 mod ledger;
-mod loading;
 mod location;
-mod mathematics;
+mod math_functions;
 mod memory;
 mod notices;
 mod packed_tables;
 mod packing;
-mod plain_copy;
-mod plan;
 mod projector;
-mod released;
+mod query_interrupt;
+mod query_plan;
+mod query_result;
+mod released_schema;
 mod rows;
+mod sqlite_export;
+mod text_index;
 mod tokens;
 
 #[cfg(test)]
 mod tests;
 
-pub use answer::{Cell, Rows, number_at, text_at};
 pub use catalogue::{Column, Scope, Table, hidden_tables, table, tables};
-pub use hidden::HiddenValue;
-pub use interrupt::{Interrupt, Ticket};
-pub use location::Location;
-pub use mathematics::register_mathematics;
-pub use plain_copy::copy_for_other_programs;
+pub use hidden_schema::HiddenValue;
+pub use location::DatabaseLocation;
+pub use math_functions::register_mathematics;
 pub use projector::{
-    Position, ProjectionError, Projector, file_digest, has_layout_of_now, is_consistent, owner_of,
-    position_of, query_connection,
+    ProjectionError, ProjectionPosition, Projector, file_digest, has_current_layout, is_consistent,
+    query_connection, read_owner, read_position,
 };
 pub use query::{QueryConnection, QueryError, ScriptError};
-pub use rows::{Entry, ForecastRow};
+pub use query_interrupt::{Interrupt, QueryTicket};
+pub use query_result::{Cell, QueryResult, number_at, text_at};
+pub use rows::{ForecastRow, ProjectionEntry};
+pub use sqlite_export::export_sqlite;

@@ -7,32 +7,32 @@ use std::time::Duration;
 use rusqlite::{Connection, ErrorCode, OpenFlags};
 
 /// Page cache of a connection; negative values are KiB for SQLite.
-const CACHE: i64 = -65_536;
+const CACHE_SIZE: i64 = -65_536;
 
-const STATEMENTS: usize = 64;
+const MAX_CACHED_STATEMENTS: usize = 64;
 
 /// Location of a database.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Location {
+pub enum DatabaseLocation {
     /// A file.
     File(PathBuf),
     /// Named memory of this process.
     Memory(String),
 }
 
-impl Location {
+impl DatabaseLocation {
     /// Returns a new location in memory.
-    pub fn memory() -> Location {
+    pub fn new_in_memory() -> DatabaseLocation {
         static NEXT: AtomicU64 = AtomicU64::new(0);
         let number = NEXT.fetch_add(1, Ordering::Relaxed);
-        Location::Memory(format!("file:/novamind-{}-{number}?vfs=memdb", std::process::id()))
+        DatabaseLocation::Memory(format!("file:/novamind-{}-{number}?vfs=memdb", std::process::id()))
     }
 
     /// Returns the path of a file.
     pub fn path(&self) -> Option<&Path> {
         match self {
-            Location::File(path) => Some(path),
-            Location::Memory(_) => None,
+            DatabaseLocation::File(path) => Some(path),
+            DatabaseLocation::Memory(_) => None,
         }
     }
 
@@ -44,9 +44,9 @@ impl Location {
             connection.pragma_update(None, "journal_mode", "WAL")?;
             connection.pragma_update(None, "synchronous", "NORMAL")?;
         }
-        connection.pragma_update(None, "cache_size", CACHE)?;
+        connection.pragma_update(None, "cache_size", CACHE_SIZE)?;
         // More than a day needs, because an evicted statement would be compiled again every day.
-        connection.set_prepared_statement_cache_capacity(STATEMENTS);
+        connection.set_prepared_statement_cache_capacity(MAX_CACHED_STATEMENTS);
         Ok(connection)
     }
 
@@ -60,20 +60,21 @@ impl Location {
             // On read-only media, SQLite cannot create its shared-memory file.
             (Err(error), Some(path)) if error.sqlite_error_code() == Some(ErrorCode::CannotOpen) => {
                 let escaped = path.replace('%', "%25").replace('?', "%3f").replace('#', "%23");
-                Location::Memory(format!("file:{escaped}?immutable=1")).open(OpenFlags::SQLITE_OPEN_READ_ONLY)
+                DatabaseLocation::Memory(format!("file:{escaped}?immutable=1"))
+                    .open(OpenFlags::SQLITE_OPEN_READ_ONLY)
             }
             (opened, _) => opened,
         }?;
         // Enough to sort a table of the largest runs without a temporary file.
-        connection.pragma_update(None, "cache_size", CACHE)?;
+        connection.pragma_update(None, "cache_size", CACHE_SIZE)?;
         Ok(connection)
     }
 
     fn open(&self, flags: OpenFlags) -> rusqlite::Result<Connection> {
         let flags = flags | OpenFlags::SQLITE_OPEN_NO_MUTEX | OpenFlags::SQLITE_OPEN_URI;
         let connection = match self {
-            Location::File(path) => Connection::open_with_flags(path, flags)?,
-            Location::Memory(name) => Connection::open_with_flags(name, flags)?,
+            DatabaseLocation::File(path) => Connection::open_with_flags(path, flags)?,
+            DatabaseLocation::Memory(name) => Connection::open_with_flags(name, flags)?,
         };
         connection.busy_timeout(Duration::from_secs(150))?;
         Ok(connection)

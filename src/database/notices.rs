@@ -6,11 +6,11 @@
 
 use std::sync::Arc;
 
-use super::packing::{Kinds, PackedRows, Packer, Unpacker};
+use super::packing::{KindSet, PackedRows, Packer, Unpacker};
 use novamind_world::events::{LossCause, Notice};
 
 /// Types in alphabetical order.
-pub(super) const TYPES: [&str; 8] = [
+pub(super) const NOTICE_TYPES: [&str; 8] = [
     "deal_won",
     "group_research_complete",
     "large_customer_message",
@@ -21,12 +21,12 @@ pub(super) const TYPES: [&str; 8] = [
     "social_media",
 ];
 
-/// Index of losses in [`TYPES`].
+/// Index of losses in [`NOTICE_TYPES`].
 pub(super) const LEAD_LOST: u8 = 3;
 
-/// Returns the index of a notice's type in [`TYPES`].
-pub(super) fn type_of(notice: &Notice) -> u8 {
-    TYPES.binary_search(&notice.kind()).map_or(LEAD_LOST, |at| at as u8)
+/// Returns the index of a notice's type in [`NOTICE_TYPES`].
+pub(super) fn type_index(notice: &Notice) -> u8 {
+    NOTICE_TYPES.binary_search(&notice.kind()).map_or(LEAD_LOST, |at| at as u8)
 }
 
 /// A loss that is reported every day.
@@ -42,13 +42,13 @@ pub(super) struct RepeatedLoss {
 
 impl RepeatedLoss {
     /// Returns the loss that a notice repeats.
-    pub fn of(notice: &Notice) -> Option<RepeatedLoss> {
+    pub fn from_notice(notice: &Notice) -> Option<RepeatedLoss> {
         let Notice::LeadLossRepeated { customer, cause, message_day, .. } = *notice else { return None };
         Some(RepeatedLoss { customer, message_day, cause })
     }
 
     /// Returns the text of the notice.
-    pub fn words(&self) -> String {
+    pub fn text(&self) -> String {
         let RepeatedLoss { customer, message_day, .. } = self;
         match self.cause {
             LossCause::Silence => format!(
@@ -72,14 +72,14 @@ pub(super) struct NoticeDay {
     /// Number of repeated losses, counted from the first of the run.
     pub repeats: u32,
     /// Number of notices before the repeated ones; those of later calls follow them.
-    pub before: u32,
+    pub before_repeats: u32,
     types: Vec<u8>,
-    texts: Texts,
+    texts: PatternTexts,
 }
 
 impl NoticeDay {
     /// Returns a day without notices.
-    pub fn of(day: u32, first: u64) -> NoticeDay {
+    pub fn new(day: u32, first: u64) -> NoticeDay {
         NoticeDay { day, first, ..NoticeDay::default() }
     }
 
@@ -90,17 +90,17 @@ impl NoticeDay {
     }
 
     /// Completes the simulated day with its number of repeated losses.
-    pub fn repeat(&mut self, repeats: u32) {
-        (self.before, self.repeats) = (self.types.len() as u32, repeats);
+    pub fn set_repeats(&mut self, repeats: u32) {
+        (self.before_repeats, self.repeats) = (self.types.len() as u32, repeats);
     }
 
     /// Returns the notice at a place, from 0.
-    pub fn at(&self, place: u64) -> Place {
-        let (before, repeats) = (u64::from(self.before), u64::from(self.repeats));
+    pub fn slot_at(&self, place: u64) -> NoticeSlot {
+        let (before, repeats) = (u64::from(self.before_repeats), u64::from(self.repeats));
         match place {
-            place if place < before => Place::Own(place as usize),
-            place if place < before + repeats => Place::Repeated((place - before) as usize),
-            place => Place::Own((place - repeats) as usize),
+            place if place < before => NoticeSlot::Stored(place as usize),
+            place if place < before + repeats => NoticeSlot::Repeated((place - before) as usize),
+            place => NoticeSlot::Stored((place - repeats) as usize),
         }
     }
 
@@ -115,26 +115,33 @@ impl NoticeDay {
     }
 
     /// Returns the bytes in the file.
-    pub fn bytes(&self) -> Vec<u8> {
+    pub fn to_bytes(&self) -> Vec<u8> {
         let mut packer = Packer::default();
-        for number in [self.first, self.repeats.into(), self.before.into(), self.types.len() as u64] {
-            packer.number(number);
+        for number in [self.first, self.repeats.into(), self.before_repeats.into(), self.types.len() as u64] {
+            packer.push_number(number);
         }
-        packer.bytes(&self.types);
+        packer.push_bytes(&self.types);
         self.texts.pack(&mut packer);
         packer.finish()
     }
 
     /// Parses the bytes of a day. Returns `None` if they are invalid.
-    pub fn read(day: u32, bytes: &[u8]) -> Option<NoticeDay> {
-        let mut unpacker = Unpacker::of(bytes);
-        let first = unpacker.number()?;
-        let (repeats, before) = (unpacker.small()?, unpacker.small()?);
-        let count = unpacker.small()?;
-        let types = unpacker.bytes(count as usize)?.to_vec();
-        let texts = Texts::unpack(&mut unpacker, count)?;
-        let sound = types.iter().all(|own| usize::from(*own) < TYPES.len()) && before <= count;
-        (sound && unpacker.is_empty()).then_some(NoticeDay { day, first, repeats, before, types, texts })
+    pub fn from_bytes(day: u32, bytes: &[u8]) -> Option<NoticeDay> {
+        let mut unpacker = Unpacker::new(bytes);
+        let first = unpacker.read_number()?;
+        let (repeats, before) = (unpacker.read_u32()?, unpacker.read_u32()?);
+        let count = unpacker.read_u32()?;
+        let types = unpacker.read_bytes(count as usize)?.to_vec();
+        let texts = PatternTexts::unpack(&mut unpacker, count)?;
+        let sound = types.iter().all(|own| usize::from(*own) < NOTICE_TYPES.len()) && before <= count;
+        (sound && unpacker.is_empty()).then_some(NoticeDay {
+            day,
+            first,
+            repeats,
+            before_repeats: before,
+            types,
+            texts,
+        })
     }
 }
 
@@ -151,13 +158,13 @@ impl PackedRows for NoticeDay {
         self.types.len() as u64 + u64::from(self.repeats)
     }
 
-    fn next_among(&self, kinds: Kinds, mut place: u64) -> Option<u64> {
+    fn next_of_kinds(&self, kinds: KindSet, mut place: u64) -> Option<u64> {
         while place < self.len() {
-            match self.at(place) {
-                Place::Repeated(_) if kinds & (1 << LEAD_LOST) != 0 => return Some(place),
-                Place::Repeated(_) => place = u64::from(self.before) + u64::from(self.repeats),
-                Place::Own(at) if kinds & (1 << self.types[at]) != 0 => return Some(place),
-                Place::Own(_) => place += 1,
+            match self.slot_at(place) {
+                NoticeSlot::Repeated(_) if kinds & (1 << LEAD_LOST) != 0 => return Some(place),
+                NoticeSlot::Repeated(_) => place = u64::from(self.before_repeats) + u64::from(self.repeats),
+                NoticeSlot::Stored(at) if kinds & (1 << self.types[at]) != 0 => return Some(place),
+                NoticeSlot::Stored(_) => place += 1,
             }
         }
         None
@@ -166,52 +173,52 @@ impl PackedRows for NoticeDay {
 
 /// A notice at a place of a day.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Place {
+pub(super) enum NoticeSlot {
     /// A notice of the day itself.
-    Own(usize),
+    Stored(usize),
     /// A repeated loss.
     Repeated(usize),
 }
 
 /// Texts that differ in their numbers: each is a pattern of the day with its numbers.
 #[derive(Debug, Clone, PartialEq, Default)]
-struct Texts {
-    /// Texts with a [`NUMBER`] for each of their numbers.
+struct PatternTexts {
+    /// Texts with a [`NUMBER_PLACEHOLDER`] for each of their numbers.
     patterns: Vec<String>,
     /// Offset of each text.
-    begins: Vec<u32>,
+    starts: Vec<u32>,
     /// Pattern and numbers of each text.
     packed: Vec<u8>,
 }
 
 /// Placeholder of a number in a pattern; no text has this character.
-const NUMBER: char = '\u{0}';
+const NUMBER_PLACEHOLDER: char = '\u{0}';
 /// Maximum digits of a number: with the leading 1 they fit into 64 bits.
-const MOST_DIGITS: usize = 18;
+const MAX_DIGITS: usize = 18;
 
-impl Texts {
+impl PatternTexts {
     fn push(&mut self, text: &str) {
-        let (pattern, numbers) = split(text);
+        let (pattern, numbers) = split_numbers(text);
         let known = self.patterns.iter().position(|own| *own == pattern);
         let at = known.unwrap_or_else(|| {
             self.patterns.push(pattern);
             self.patterns.len() - 1
         });
-        self.begins.push(self.packed.len() as u32);
+        self.starts.push(self.packed.len() as u32);
         let mut packer = Packer::default();
-        packer.number(at as u64);
-        numbers.into_iter().for_each(|number| packer.number(number));
+        packer.push_number(at as u64);
+        numbers.into_iter().for_each(|number| packer.push_number(number));
         self.packed.extend(packer.finish());
     }
 
     fn get(&self, at: usize) -> String {
-        let mut unpacker = Unpacker::of(&self.packed[self.begins[at] as usize..]);
-        let pattern = unpacker.small().and_then(|at| self.patterns.get(at as usize));
+        let mut unpacker = Unpacker::new(&self.packed[self.starts[at] as usize..]);
+        let pattern = unpacker.read_u32().and_then(|at| self.patterns.get(at as usize));
         let mut text = String::new();
         for letter in pattern.map_or("", String::as_str).chars() {
             match letter {
                 // The first digit is the 1 that preserves leading zeros.
-                NUMBER => text.push_str(&unpacker.number().unwrap_or(1).to_string()[1..]),
+                NUMBER_PLACEHOLDER => text.push_str(&unpacker.read_number().unwrap_or(1).to_string()[1..]),
                 letter => text.push(letter),
             }
         }
@@ -219,47 +226,48 @@ impl Texts {
     }
 
     fn pack(&self, packer: &mut Packer) {
-        packer.number(self.patterns.len() as u64);
+        packer.push_number(self.patterns.len() as u64);
         for pattern in &self.patterns {
-            packer.number(pattern.len() as u64);
-            packer.bytes(pattern.as_bytes());
+            packer.push_number(pattern.len() as u64);
+            packer.push_bytes(pattern.as_bytes());
         }
-        packer.bytes(&self.packed);
+        packer.push_bytes(&self.packed);
     }
 
-    fn unpack(unpacker: &mut Unpacker<'_>, count: u32) -> Option<Texts> {
+    fn unpack(unpacker: &mut Unpacker<'_>, count: u32) -> Option<PatternTexts> {
         let mut patterns = Vec::new();
-        for _ in 0..unpacker.number()? {
-            let length = unpacker.small()?;
-            patterns.push(std::str::from_utf8(unpacker.bytes(length as usize)?).ok()?.to_owned());
+        for _ in 0..unpacker.read_number()? {
+            let length = unpacker.read_u32()?;
+            patterns.push(std::str::from_utf8(unpacker.read_bytes(length as usize)?).ok()?.to_owned());
         }
-        let numbers: Vec<usize> = patterns.iter().map(|pattern| pattern.matches(NUMBER).count()).collect();
-        let (rest, mut begins) = (unpacker.rest(), Vec::new());
+        let numbers: Vec<usize> =
+            patterns.iter().map(|pattern| pattern.matches(NUMBER_PLACEHOLDER).count()).collect();
+        let (rest, mut begins) = (unpacker.remaining(), Vec::new());
         for _ in 0..count {
-            begins.push((rest.len() - unpacker.rest().len()) as u32);
-            for _ in 0..*numbers.get(unpacker.small()? as usize)? {
-                (unpacker.number()? > 0).then_some(())?;
+            begins.push((rest.len() - unpacker.remaining().len()) as u32);
+            for _ in 0..*numbers.get(unpacker.read_u32()? as usize)? {
+                (unpacker.read_number()? > 0).then_some(())?;
             }
         }
-        let packed = rest[..rest.len() - unpacker.rest().len()].to_vec();
-        Some(Texts { patterns, begins, packed })
+        let packed = rest[..rest.len() - unpacker.remaining().len()].to_vec();
+        Some(PatternTexts { patterns, starts: begins, packed })
     }
 }
 
 /// Splits a text into its pattern and its numbers, each with a 1 before its digits.
-fn split(text: &str) -> (String, Vec<u64>) {
+fn split_numbers(text: &str) -> (String, Vec<u64>) {
     let (mut pattern, mut numbers, mut rest) = (String::new(), Vec::new(), text);
     while let Some(letter) = rest.chars().next() {
-        let digits = rest.bytes().take(MOST_DIGITS).take_while(u8::is_ascii_digit).count();
+        let digits = rest.bytes().take(MAX_DIGITS).take_while(u8::is_ascii_digit).count();
         match digits {
             0 => {
-                pattern.extend(Some(letter).filter(|letter| *letter != NUMBER));
+                pattern.extend(Some(letter).filter(|letter| *letter != NUMBER_PLACEHOLDER));
                 rest = &rest[letter.len_utf8()..];
             }
             digits => {
                 let value = rest[..digits].bytes().fold(1, |all, digit| all * 10 + u64::from(digit - b'0'));
                 numbers.push(value);
-                pattern.push(NUMBER);
+                pattern.push(NUMBER_PLACEHOLDER);
                 rest = &rest[digits..];
             }
         }
@@ -283,12 +291,12 @@ mod tests {
 
     proptest! {
         #[test]
-        fn texts_come_back_as_they_went(texts in proptest::collection::vec("[a-zé $.,0-9]{0,40}", 0..20), repeats in 0u32..9) {
-            let mut day = NoticeDay::of(7, 40);
+        fn notice_texts_round_trip(texts in proptest::collection::vec("[a-zé $.,0-9]{0,40}", 0..20), repeats in 0u32..9) {
+            let mut day = NoticeDay::new(7, 40);
             texts.iter().for_each(|text| day.push(2, text));
-            day.repeat(repeats);
+            day.set_repeats(repeats);
             day.push(LEAD_LOST, "007 of 99999999999999999999");
-            let read = NoticeDay::read(7, &day.bytes());
+            let read = NoticeDay::from_bytes(7, &day.to_bytes());
             prop_assert_eq!(read.as_ref(), Some(&day));
             for (at, text) in texts.iter().enumerate() {
                 prop_assert_eq!(&day.text_at(at), text);
@@ -299,34 +307,40 @@ mod tests {
 
         #[test]
         fn damaged_bytes_never_panic(bytes in proptest::collection::vec(any::<u8>(), 0..60)) {
-            if let Some(day) = NoticeDay::read(1, &bytes) {
+            if let Some(day) = NoticeDay::from_bytes(1, &bytes) {
                 (0..day.types.len()).for_each(|at| drop(day.text_at(at)));
             }
         }
     }
 
     #[test]
-    fn types_stand_in_ascending_order() {
-        assert!(TYPES.is_sorted());
-        assert_eq!(TYPES[usize::from(LEAD_LOST)], Notice::LeadSilent.kind());
-        assert_eq!(type_of(&Notice::EnterpriseLead), 2);
+    fn notice_types_are_sorted() {
+        assert!(NOTICE_TYPES.is_sorted());
+        assert_eq!(NOTICE_TYPES[usize::from(LEAD_LOST)], Notice::LeadSilent.kind());
+        assert_eq!(type_index(&Notice::EnterpriseLead), 2);
     }
 
     #[test]
-    fn repeated_losses_stand_between_the_day_and_its_calls() {
-        let mut day = NoticeDay::of(9, 1);
+    fn repeated_losses_come_after_the_day_and_before_its_calls() {
+        let mut day = NoticeDay::new(9, 1);
         day.push(2, "a");
         day.push(LEAD_LOST, "b");
-        day.repeat(2);
+        day.set_repeats(2);
         day.push(5, "c");
-        let places: Vec<Place> = (0..day.len()).map(|place| day.at(place)).collect();
+        let places: Vec<NoticeSlot> = (0..day.len()).map(|place| day.slot_at(place)).collect();
         assert_eq!(
             places,
-            [Place::Own(0), Place::Own(1), Place::Repeated(0), Place::Repeated(1), Place::Own(2)]
+            [
+                NoticeSlot::Stored(0),
+                NoticeSlot::Stored(1),
+                NoticeSlot::Repeated(0),
+                NoticeSlot::Repeated(1),
+                NoticeSlot::Stored(2)
+            ]
         );
         let of_type = |own: u8| {
-            let next = |place: &u64| day.next_among(1 << own, place + 1);
-            std::iter::successors(day.next_among(1 << own, 0), next).collect::<Vec<_>>()
+            let next = |place: &u64| day.next_of_kinds(1 << own, place + 1);
+            std::iter::successors(day.next_of_kinds(1 << own, 0), next).collect::<Vec<_>>()
         };
         assert_eq!(
             (of_type(2), of_type(LEAD_LOST), of_type(5), of_type(0)),

@@ -7,17 +7,18 @@ use std::sync::Arc;
 use rusqlite::Connection;
 use rusqlite::vtab::{Context, Module};
 
-use super::blocks::{BlockStore, Seen};
-use super::by_text::TextIndexes;
-use super::day_table::{Comparison, DayKind, DayTable, RowAt};
+use super::blocks::{BlockStore, QueryView};
+use super::day_table::{Comparison, DayRow, DayTable, DayTableDefinition};
 use super::ledger::{
-    CATEGORIES, INCOME, LEADS, LedgerDay, Movement, Movements, PAYMENTS, lead_note, payment_note,
+    CATEGORIES, INCOME_CATEGORIES, LEAD_COST_CATEGORY, LeadsAndPayments, LedgerDay, LedgerRow,
+    PAYMENT_CATEGORY, lead_note, payment_note,
 };
-use super::notices::{LEAD_LOST, NoticeDay, Place, TYPES};
-use super::packing::Kinds;
+use super::notices::{LEAD_LOST, NOTICE_TYPES, NoticeDay, NoticeSlot};
+use super::packing::KindSet;
+use super::text_index::TextIndexes;
 
 /// Registers both tables on a connection.
-pub(super) fn register(connection: &Connection, seen: &Arc<Seen>) -> rusqlite::Result<()> {
+pub(super) fn register(connection: &Connection, seen: &Arc<QueryView>) -> rusqlite::Result<()> {
     const NOTICES: Module<'static, DayTable<Notifications>> = Module::eponymous_only_module();
     const LEDGER: Module<'static, DayTable<Ledger>> = Module::eponymous_only_module();
     connection.create_module(c"notifications", &NOTICES, Some(seen.clone()))?;
@@ -27,11 +28,11 @@ pub(super) fn register(connection: &Connection, seen: &Arc<Seen>) -> rusqlite::R
 /// The table `ledger`.
 pub(super) struct Ledger;
 
-const AMOUNT: c_int = 3;
+const AMOUNT_COLUMN: c_int = 3;
 
-impl DayKind for Ledger {
+impl DayTableDefinition for Ledger {
     type Day = LedgerDay;
-    type Unpacked = Movements;
+    type Unpacked = LeadsAndPayments;
     const DECLARATION: &'static CStr =
         c"CREATE TABLE x(id INTEGER NOT NULL, day INTEGER NOT NULL, category TEXT NOT NULL, amount REAL NOT NULL,
         note TEXT)";
@@ -41,52 +42,52 @@ impl DayKind for Ledger {
         &store.ledger
     }
 
-    fn unpack(day: &LedgerDay, kinds: Kinds) -> Movements {
-        match kinds & (1 << LEADS | 1 << PAYMENTS) {
-            0 => Movements::default(),
-            _ => Movements::unpack(&day.packed).unwrap_or_default(),
+    fn unpack(day: &LedgerDay, kinds: KindSet) -> LeadsAndPayments {
+        match kinds & (1 << LEAD_COST_CATEGORY | 1 << PAYMENT_CATEGORY) {
+            0 => LeadsAndPayments::default(),
+            _ => LeadsAndPayments::unpack(&day.packed).unwrap_or_default(),
         }
     }
 
     fn kind(day: &LedgerDay, place: u64) -> usize {
-        match day.at(place) {
-            Movement::Lead(_) => LEADS,
-            Movement::Payment(_) => PAYMENTS,
-            Movement::Other(own) => own.category.into(),
+        match day.entry_at(place) {
+            LedgerRow::Lead(_) => LEAD_COST_CATEGORY,
+            LedgerRow::Payment(_) => PAYMENT_CATEGORY,
+            LedgerRow::Other(own) => own.category.into(),
         }
     }
 
     const TEXT: c_int = 4;
 
-    fn text<'a>(row: &RowAt<'a, Self>) -> Cow<'a, str> {
-        let Movements { leads, payments } = row.unpacked;
-        match row.day.at(row.place) {
-            Movement::Lead(at) => lead_note(leads[at]).into(),
-            Movement::Payment(at) => payment_note(payments[at].0).into(),
-            Movement::Other(own) => own.note.as_str().into(),
+    fn text<'a>(row: &DayRow<'a, Self>) -> Cow<'a, str> {
+        let LeadsAndPayments { leads, payments } = row.unpacked;
+        match row.day.entry_at(row.place) {
+            LedgerRow::Lead(at) => lead_note(leads[at]).into(),
+            LedgerRow::Payment(at) => payment_note(payments[at].0).into(),
+            LedgerRow::Other(own) => own.note.as_str().into(),
         }
     }
 
-    fn texts(seen: &Seen) -> &TextIndexes {
+    fn texts(seen: &QueryView) -> &TextIndexes {
         &seen.ledger_notes
     }
 
-    fn column(row: &RowAt<'_, Self>, _: c_int, context: &mut Context) -> rusqlite::Result<()> {
-        context.set_result(match row.day.at(row.place) {
-            Movement::Lead(_) => row.day.lead_cost,
-            Movement::Payment(at) => row.unpacked.payments[at].1,
-            Movement::Other(own) => own.amount,
+    fn column(row: &DayRow<'_, Self>, _: c_int, context: &mut Context) -> rusqlite::Result<()> {
+        context.set_result(match row.day.entry_at(row.place) {
+            LedgerRow::Lead(_) => row.day.lead_cost,
+            LedgerRow::Payment(at) => row.unpacked.payments[at].1,
+            LedgerRow::Other(own) => own.amount,
         })
     }
 
-    fn kinds_where(column: c_int, comparison: Comparison, value: f64) -> Kinds {
+    fn matching_kinds(column: c_int, comparison: Comparison, value: f64) -> KindSet {
         match comparison {
-            _ if column != AMOUNT => Kinds::MAX,
-            Comparison::Less if value <= 0.0 => !INCOME,
-            Comparison::AtMost | Comparison::Equal if value < 0.0 => !INCOME,
-            Comparison::Greater if value >= 0.0 => INCOME,
-            Comparison::AtLeast | Comparison::Equal if value > 0.0 => INCOME,
-            _ => Kinds::MAX,
+            _ if column != AMOUNT_COLUMN => KindSet::MAX,
+            Comparison::Less if value <= 0.0 => !INCOME_CATEGORIES,
+            Comparison::AtMost | Comparison::Equal if value < 0.0 => !INCOME_CATEGORIES,
+            Comparison::Greater if value >= 0.0 => INCOME_CATEGORIES,
+            Comparison::AtLeast | Comparison::Equal if value > 0.0 => INCOME_CATEGORIES,
+            _ => KindSet::MAX,
         }
     }
 }
@@ -94,37 +95,37 @@ impl DayKind for Ledger {
 /// The table `notifications`.
 pub(super) struct Notifications;
 
-impl DayKind for Notifications {
+impl DayTableDefinition for Notifications {
     type Day = NoticeDay;
     type Unpacked = ();
     const DECLARATION: &'static CStr =
         c"CREATE TABLE x(notification_id INTEGER NOT NULL, day INTEGER NOT NULL, type TEXT NOT NULL,
         message TEXT)";
-    const KINDS: &'static [&'static str] = &TYPES;
+    const KINDS: &'static [&'static str] = &NOTICE_TYPES;
 
     fn days(store: &BlockStore) -> &[Arc<NoticeDay>] {
         &store.inbox.days
     }
 
-    fn unpack(_: &NoticeDay, _: Kinds) {}
+    fn unpack(_: &NoticeDay, _: KindSet) {}
 
     fn kind(day: &NoticeDay, place: u64) -> usize {
-        match day.at(place) {
-            Place::Own(at) => usize::from(day.type_at(at)),
-            Place::Repeated(_) => usize::from(LEAD_LOST),
+        match day.slot_at(place) {
+            NoticeSlot::Stored(at) => usize::from(day.type_at(at)),
+            NoticeSlot::Repeated(_) => usize::from(LEAD_LOST),
         }
     }
 
     const TEXT: c_int = 3;
 
-    fn text<'a>(row: &RowAt<'a, Self>) -> Cow<'a, str> {
-        match row.day.at(row.place) {
-            Place::Own(at) => row.day.text_at(at).into(),
-            Place::Repeated(at) => row.store.inbox.losses[at].words().into(),
+    fn text<'a>(row: &DayRow<'a, Self>) -> Cow<'a, str> {
+        match row.day.slot_at(row.place) {
+            NoticeSlot::Stored(at) => row.day.text_at(at).into(),
+            NoticeSlot::Repeated(at) => row.store.inbox.losses[at].text().into(),
         }
     }
 
-    fn texts(seen: &Seen) -> &TextIndexes {
+    fn texts(seen: &QueryView) -> &TextIndexes {
         &seen.notice_texts
     }
 }

@@ -1,10 +1,10 @@
 //! Packed days: variable-length numbers, runs of ascending customers, and rows at places with kinds.
 
 /// Maximum rows of a run, because reading one row unpacks all of them.
-pub(super) const LONGEST_RUN: usize = 1024;
+pub(super) const MAX_RUN_ROWS: usize = 1024;
 
 /// A run of a table: rows with ascending customer numbers.
-pub(super) trait Run: Sized {
+pub(super) trait RowRun: Sized {
     /// The columns of a row besides day and customer.
     type Row: Copy + Default + Send + Sync;
 
@@ -20,12 +20,12 @@ pub(super) trait Run: Sized {
 pub(super) struct PackedDay {
     pub day: u32,
     bytes: Vec<u8>,
-    runs: Vec<RunPlace>,
+    runs: Vec<RunLocation>,
 }
 
 /// Position of a run in the bytes of its day, and its range of customers.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct RunPlace {
+struct RunLocation {
     begin: usize,
     /// Rows of the day before it.
     rows_before: usize,
@@ -34,11 +34,11 @@ struct RunPlace {
     last_customer: u32,
 }
 
-impl RunPlace {
+impl RunLocation {
     /// Returns the place of a run that starts at a byte, after earlier runs.
-    fn after(before: &[RunPlace], run: &impl Run, begin: usize) -> RunPlace {
+    fn after(before: &[RunLocation], run: &impl RowRun, begin: usize) -> RunLocation {
         let customers = run.customers();
-        RunPlace {
+        RunLocation {
             begin,
             rows_before: before.last().map_or(0, |last| last.rows_before + last.rows),
             rows: customers.len(),
@@ -49,12 +49,12 @@ impl RunPlace {
 }
 
 impl PackedDay {
-    pub fn pack<R: Run>(day: u32, rows: &[R]) -> PackedDay {
+    pub fn pack<R: RowRun>(day: u32, rows: &[R]) -> PackedDay {
         let mut packer = Packer::default();
-        packer.number(rows.len() as u64);
+        packer.push_number(rows.len() as u64);
         let mut runs = Vec::with_capacity(rows.len());
         for run in rows {
-            runs.push(RunPlace::after(&runs, run, packer.0.len()));
+            runs.push(RunLocation::after(&runs, run, packer.0.len()));
             run.pack(&mut packer);
         }
         packer.0.shrink_to_fit();
@@ -62,28 +62,28 @@ impl PackedDay {
     }
 
     /// Parses the bytes of a day. Returns `None` if they are invalid.
-    pub fn read<R: Run>(day: u32, bytes: Vec<u8>) -> Option<PackedDay> {
+    pub fn from_bytes<R: RowRun>(day: u32, bytes: Vec<u8>) -> Option<PackedDay> {
         let mut unpacker = Unpacker(&bytes);
         let mut runs = Vec::new();
-        for _ in 0..unpacker.number()? {
+        for _ in 0..unpacker.read_number()? {
             let begin = bytes.len() - unpacker.0.len();
-            runs.push(RunPlace::after(&runs, &R::unpack(&mut unpacker)?, begin));
+            runs.push(RunLocation::after(&runs, &R::unpack(&mut unpacker)?, begin));
         }
         unpacker.0.is_empty().then_some(PackedDay { day, bytes, runs })
     }
 
     /// Returns the bytes in the file.
-    pub fn bytes(&self) -> &[u8] {
+    pub fn as_bytes(&self) -> &[u8] {
         &self.bytes
     }
 
     /// Returns the number of runs.
-    pub fn len(&self) -> usize {
+    pub fn run_count(&self) -> usize {
         self.runs.len()
     }
 
     /// Returns the number of rows.
-    pub fn rows(&self) -> usize {
+    pub fn row_count(&self) -> usize {
         self.runs.last().map_or(0, |last| last.rows_before + last.rows)
     }
 
@@ -94,26 +94,26 @@ impl PackedDay {
     }
 
     /// Returns first and last customer of a run; the first is greater if it is empty.
-    pub fn customers(&self, run: usize) -> (u32, u32) {
+    pub fn customer_range(&self, run: usize) -> (u32, u32) {
         let place = &self.runs[run];
         (place.first_customer, place.last_customer)
     }
 
     /// Returns whether a run may have a customer.
-    pub fn may_hold(&self, run: usize, customer: f64) -> bool {
-        let (first, last) = self.customers(run);
+    pub fn may_contain_customer(&self, run: usize, customer: f64) -> bool {
+        let (first, last) = self.customer_range(run);
         (f64::from(first)..=f64::from(last)).contains(&customer)
     }
 
     /// Unpacks a run.
-    pub fn open<R: Run>(&self, run: usize) -> Option<R> {
+    pub fn unpack_run<R: RowRun>(&self, run: usize) -> Option<R> {
         let place = self.runs.get(run)?;
         R::unpack(&mut Unpacker(&self.bytes[place.begin..]))
     }
 }
 
 /// A set of kinds as bits.
-pub(super) type Kinds = u32;
+pub(super) type KindSet = u32;
 
 /// A packed day with rows at places from 0, each of a kind.
 pub(super) trait PackedRows {
@@ -123,7 +123,7 @@ pub(super) trait PackedRows {
     /// Returns the number of rows.
     fn len(&self) -> u64;
     /// Returns the first place from `place` on with one of the kinds.
-    fn next_among(&self, kinds: Kinds, place: u64) -> Option<u64>;
+    fn next_of_kinds(&self, kinds: KindSet, place: u64) -> Option<u64>;
 }
 
 /// Writes variable-length numbers.
@@ -131,7 +131,7 @@ pub(super) trait PackedRows {
 pub(super) struct Packer(Vec<u8>);
 
 impl Packer {
-    pub fn number(&mut self, mut value: u64) {
+    pub fn push_number(&mut self, mut value: u64) {
         while value >= 0x80 {
             self.0.push(value as u8 | 0x80);
             value >>= 7;
@@ -139,7 +139,7 @@ impl Packer {
         self.0.push(value as u8);
     }
 
-    pub fn bytes(&mut self, bytes: &[u8]) {
+    pub fn push_bytes(&mut self, bytes: &[u8]) {
         self.0.extend_from_slice(bytes);
     }
 
@@ -148,16 +148,16 @@ impl Packer {
         self.0
     }
 
-    pub fn float(&mut self, value: f64) {
+    pub fn push_float(&mut self, value: f64) {
         self.0.extend_from_slice(&value.to_le_bytes());
     }
 
     /// Writes ascending numbers as differences.
-    pub fn ascending(&mut self, values: &[u32]) {
-        self.number(values.len() as u64);
+    pub fn push_ascending(&mut self, values: &[u32]) {
+        self.push_number(values.len() as u64);
         let mut before = 0;
         for &value in values {
-            self.number(u64::from(value - before));
+            self.push_number(u64::from(value - before));
             before = value;
         }
     }
@@ -167,12 +167,12 @@ impl Packer {
 pub(super) struct Unpacker<'a>(&'a [u8]);
 
 impl<'a> Unpacker<'a> {
-    pub fn of(bytes: &'a [u8]) -> Unpacker<'a> {
+    pub fn new(bytes: &'a [u8]) -> Unpacker<'a> {
         Unpacker(bytes)
     }
 
     /// Returns the remaining bytes.
-    pub fn rest(&self) -> &'a [u8] {
+    pub fn remaining(&self) -> &'a [u8] {
         self.0
     }
 
@@ -180,13 +180,13 @@ impl<'a> Unpacker<'a> {
         self.0.is_empty()
     }
 
-    pub fn bytes(&mut self, count: usize) -> Option<&'a [u8]> {
+    pub fn read_bytes(&mut self, count: usize) -> Option<&'a [u8]> {
         let (bytes, rest) = self.0.split_at_checked(count)?;
         self.0 = rest;
         Some(bytes)
     }
 
-    pub fn number(&mut self) -> Option<u64> {
+    pub fn read_number(&mut self) -> Option<u64> {
         let (mut value, mut shift) = (0u64, 0u32);
         loop {
             let (&byte, rest) = self.0.split_first()?;
@@ -199,21 +199,21 @@ impl<'a> Unpacker<'a> {
         }
     }
 
-    pub fn small(&mut self) -> Option<u32> {
-        u32::try_from(self.number()?).ok()
+    pub fn read_u32(&mut self) -> Option<u32> {
+        u32::try_from(self.read_number()?).ok()
     }
 
-    pub fn float(&mut self) -> Option<f64> {
+    pub fn read_float(&mut self) -> Option<f64> {
         let (bytes, rest) = self.0.split_first_chunk::<8>()?;
         self.0 = rest;
         Some(f64::from_le_bytes(*bytes))
     }
 
-    pub fn ascending(&mut self) -> Option<Vec<u32>> {
+    pub fn read_ascending(&mut self) -> Option<Vec<u32>> {
         let mut before = 0u32;
-        (0..self.number()?)
+        (0..self.read_number()?)
             .map(|_| {
-                before = before.checked_add(self.small()?)?;
+                before = before.checked_add(self.read_u32()?)?;
                 Some(before)
             })
             .collect()

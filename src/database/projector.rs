@@ -9,31 +9,31 @@ use std::thread::JoinHandle;
 
 use rusqlite::{Connection, OptionalExtension};
 
+use super::block_loading::{BlockSource, load_store};
 use super::blocks::SharedStore;
 use super::catalogue::Scope;
-use super::loading::{BlockSource, load_store};
-use super::location::Location;
+use super::location::DatabaseLocation;
 use super::query::QueryConnection;
-use super::rows::{Entry, LAYOUT, RowWriter, create};
+use super::rows::{LAYOUT_VERSION, ProjectionEntry, RowWriter, create_tables};
 use novamind_world::events::Facts;
 use novamind_world::params::Params;
 
 /// Maximum queued entries, which limits memory. The simulation waits if the queue is full.
-const QUEUE: usize = 16;
+const QUEUE_CAPACITY: usize = 16;
 /// Maximum written facts whose memory is reused: the days of a week.
-const SPARE_FACTS: usize = 7;
+const MAX_SPARE_FACTS: usize = 7;
 
 /// Position of a database: the last trajectory line that it includes.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Position {
+pub struct ProjectionPosition {
     /// Number of the line.
     pub seq: u64,
     /// Hash of the line.
     pub line_hash: String,
 }
 
-impl Position {
-    fn check(&self) -> String {
+impl ProjectionPosition {
+    fn checksum(&self) -> String {
         blake3::hash(format!("{} {}", self.seq, self.line_hash).as_bytes()).to_hex()[..16].to_owned()
     }
 }
@@ -55,30 +55,30 @@ impl fmt::Display for ProjectionError {
 impl std::error::Error for ProjectionError {}
 
 /// Work that runs after all earlier jobs.
-type Errand = Box<dyn FnOnce(&Connection) + Send>;
+type WriterTask = Box<dyn FnOnce(&Connection) + Send>;
 
 enum Job {
-    Write(Box<Entry>),
-    Commit(Position),
-    Then(Errand),
-    Wait(Sender<Result<(), ProjectionError>>),
+    Write(Box<ProjectionEntry>),
+    Commit(ProjectionPosition),
+    Run(WriterTask),
+    Flush(Sender<Result<(), ProjectionError>>),
 }
 
 /// Keeps a database up to date in the background.
 pub struct Projector {
     jobs: Option<SyncSender<Job>>,
     thread: Option<JoinHandle<()>>,
-    pub(super) location: Location,
+    pub(super) location: DatabaseLocation,
     pub(super) store: SharedStore,
     gate: Arc<RwLock<()>>,
-    spare: Spare,
-    failed: Failed,
+    spare: FactsPool,
+    failed: SharedFailure,
 }
 
 #[derive(Clone, Default)]
-struct Failed(Arc<Mutex<Option<ProjectionError>>>);
+struct SharedFailure(Arc<Mutex<Option<ProjectionError>>>);
 
-impl Failed {
+impl SharedFailure {
     fn get(&self) -> Option<ProjectionError> {
         self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).clone()
     }
@@ -95,23 +95,23 @@ impl Projector {
     /// # Errors
     /// The database can neither be read nor created.
     pub fn start(
-        location: Location,
+        location: DatabaseLocation,
         owner: u32,
         params: Arc<Params>,
-        known: impl Fn(&Position) -> bool,
-    ) -> Result<(Projector, Option<Position>), ProjectionError> {
+        known: impl Fn(&ProjectionPosition) -> bool,
+    ) -> Result<(Projector, Option<ProjectionPosition>), ProjectionError> {
         let store = SharedStore::default();
         let opened = open_existing(&location, &store, known);
         let (mut connection, position) = match opened {
             Some(opened) => opened,
-            None => (make_anew(&location, owner).map_err(told)?, None),
+            None => (recreate(&location, owner).map_err(to_error)?, None),
         };
         let gate = Arc::new(RwLock::new(()));
-        let (jobs, queue) = sync_channel(QUEUE);
-        let spare = Spare::default();
-        let failed = Failed::default();
+        let (jobs, queue) = sync_channel(QUEUE_CAPACITY);
+        let spare = FactsPool::default();
+        let failed = SharedFailure::default();
         let told: fn(rusqlite::Error) -> ProjectionError =
-            if location.path().is_some() { told } else { told_of_memory };
+            if location.path().is_some() { to_error } else { to_memory_error };
         let (writer_spare, writer_failed) = (spare.clone(), failed.clone());
         let (writer_gate, writer_store) = (gate.clone(), store.clone());
         let thread = std::thread::Builder::new()
@@ -119,9 +119,18 @@ impl Projector {
             .spawn(move || {
                 let rows = RowWriter::new(params, writer_store);
                 let connection = &mut connection;
-                let readers_go_on = has_log(connection);
+                let readers_go_on = uses_write_ahead_log(connection);
                 let (gate, spare, failed) = (writer_gate, writer_spare, writer_failed);
-                Worker { connection, rows, gate, readers_go_on, spare, failed, told }.run(&queue);
+                Worker {
+                    connection,
+                    rows,
+                    gate,
+                    readers_are_not_blocked: readers_go_on,
+                    spare,
+                    failed,
+                    to_error: told,
+                }
+                .run(&queue);
             })
             .map_err(|error| ProjectionError(error.to_string()))?;
         let projector =
@@ -130,7 +139,7 @@ impl Projector {
     }
 
     /// Sends an entry. Blocks only if the queue is full.
-    pub fn write(&self, entry: Entry) {
+    pub fn enqueue(&self, entry: ProjectionEntry) {
         self.send(Job::Write(Box::new(entry)));
     }
 
@@ -140,16 +149,16 @@ impl Projector {
     }
 
     /// Commits all entries sent so far, with a trajectory position.
-    pub fn commit(&self, position: Position) {
+    pub fn commit(&self, position: ProjectionPosition) {
         self.send(Job::Commit(position));
     }
 
     /// Runs `work` on the writer thread after all earlier commits. If `digest` is set, passes the digest of the database file;
     /// `None` in memory, or if the file cannot be read.
-    pub fn then(&self, digest: bool, work: impl FnOnce(Option<String>) + Send + 'static) {
+    pub fn run_after_commit(&self, digest: bool, work: impl FnOnce(Option<String>) + Send + 'static) {
         let path = self.location.path().filter(|_| digest).map(Path::to_owned);
-        self.send(Job::Then(Box::new(move |connection| {
-            work(path.and_then(|path| settled_digest(connection, &path)));
+        self.send(Job::Run(Box::new(move |connection| {
+            work(path.and_then(|path| checkpointed_digest(connection, &path)));
         })));
     }
 
@@ -157,9 +166,9 @@ impl Projector {
     ///
     /// # Errors
     /// The error of writing the database.
-    pub fn wait(&self) -> Result<(), ProjectionError> {
+    pub fn flush(&self) -> Result<(), ProjectionError> {
         let (done, answer) = channel();
-        self.send(Job::Wait(done));
+        self.send(Job::Flush(done));
         answer.recv().unwrap_or_else(|_| Err(ProjectionError("the writer has stopped".to_owned())))
     }
 
@@ -174,13 +183,13 @@ impl Projector {
     /// The database cannot be opened for reading.
     pub fn connection(&self, scope: Scope) -> Result<QueryConnection, ProjectionError> {
         let source = BlockSource::Writer(self.store.clone(), self.gate.clone());
-        QueryConnection::open(&self.location, source, scope).map_err(told)
+        QueryConnection::open(&self.location, source, scope).map_err(to_error)
     }
 
     /// Limits the database to a number of additional pages, which simulates a full disk.
     #[cfg(any(test, feature = "test-kit"))]
-    pub fn bound_pages(&self, more: Option<u32>) {
-        self.send(Job::Then(Box::new(move |connection| {
+    pub fn limit_pages(&self, more: Option<u32>) {
+        self.send(Job::Run(Box::new(move |connection| {
             let pages: u32 = connection.query_row("PRAGMA page_count", [], |row| row.get(0)).expect("pages");
             let most = more.map_or(u32::MAX - 1, |more| pages + more);
             connection
@@ -206,19 +215,19 @@ impl Drop for Projector {
     }
 }
 
-fn told(error: rusqlite::Error) -> ProjectionError {
+fn to_error(error: rusqlite::Error) -> ProjectionError {
     ProjectionError(error.to_string())
 }
 
 /// Explains the size limit of SQLite for databases in memory.
-fn told_of_memory(error: rusqlite::Error) -> ProjectionError {
+fn to_memory_error(error: rusqlite::Error) -> ProjectionError {
     match error.sqlite_error_code() {
         Some(rusqlite::ErrorCode::DiskFull) => ProjectionError(
             "in memory it can have at most 1 GiB; a run in a writable folder that no other program plays has it \
              on disk"
                 .to_owned(),
         ),
-        _ => told(error),
+        _ => to_error(error),
     }
 }
 
@@ -227,33 +236,33 @@ struct Worker<'a> {
     rows: RowWriter,
     gate: Arc<RwLock<()>>,
     /// Whether readers continue with the previous state during a transaction.
-    readers_go_on: bool,
-    spare: Spare,
-    failed: Failed,
+    readers_are_not_blocked: bool,
+    spare: FactsPool,
+    failed: SharedFailure,
     /// Conversion of errors.
-    told: fn(rusqlite::Error) -> ProjectionError,
+    to_error: fn(rusqlite::Error) -> ProjectionError,
 }
 
 /// Cleared facts that are no longer in use.
 #[derive(Clone, Default)]
-struct Spare(Arc<Mutex<Vec<Arc<Facts>>>>);
+struct FactsPool(Arc<Mutex<Vec<Arc<Facts>>>>);
 
-impl Spare {
-    fn give(&self, mut facts: Arc<Facts>) {
+impl FactsPool {
+    fn recycle(&self, mut facts: Arc<Facts>) {
         let Some(unread) = Arc::get_mut(&mut facts) else { return };
         // Not every user of the facts starts a day, so they must be completely cleared.
-        unread.begin(0);
-        let mut kept = self.kept();
-        if kept.len() < SPARE_FACTS {
+        unread.start_day(0);
+        let mut kept = self.lock();
+        if kept.len() < MAX_SPARE_FACTS {
             kept.push(facts);
         }
     }
 
     fn take(&self) -> Option<Arc<Facts>> {
-        self.kept().pop()
+        self.lock().pop()
     }
 
-    fn kept(&self) -> MutexGuard<'_, Vec<Arc<Facts>>> {
+    fn lock(&self) -> MutexGuard<'_, Vec<Arc<Facts>>> {
         self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 }
@@ -262,15 +271,17 @@ impl Worker<'_> {
     /// Writes only when a week or call is complete, so that the simulation has all processors, and readers of a database in memory
     /// wait for one short transaction at most.
     fn run(mut self, queue: &Receiver<Job>) {
-        let mut pending: Vec<Entry> = Vec::new();
+        let mut pending: Vec<ProjectionEntry> = Vec::new();
         loop {
             let Ok(job) = queue.recv() else { return };
             match job {
-                Job::Wait(done) => {
+                Job::Flush(done) => {
                     let _ = done.send(self.failed.get().map_or(Ok(()), Err));
                 }
-                Job::Then(errand) => errand(self.connection),
-                Job::Commit(position) => self.try_to(|worker| worker.transact(&mut pending, &position)),
+                Job::Run(errand) => errand(self.connection),
+                Job::Commit(position) => {
+                    self.run_unless_failed(|worker| worker.commit_pending(&mut pending, &position))
+                }
                 // After a failure nothing is written, so drop the entry.
                 Job::Write(entry) if self.failed.get().is_none() => pending.push(*entry),
                 Job::Write(_) => pending.clear(),
@@ -279,29 +290,33 @@ impl Worker<'_> {
     }
 
     /// Runs work unless an earlier job failed: an incomplete database must not have gaps.
-    fn try_to(&mut self, work: impl FnOnce(&mut Self) -> rusqlite::Result<()>) {
+    fn run_unless_failed(&mut self, work: impl FnOnce(&mut Self) -> rusqlite::Result<()>) {
         if self.failed.get().is_none()
             && let Err(error) = work(self)
         {
-            self.failed.set((self.told)(error));
+            self.failed.set((self.to_error)(error));
         }
     }
 
-    fn transact(&mut self, pending: &mut Vec<Entry>, position: &Position) -> rusqlite::Result<()> {
+    fn commit_pending(
+        &mut self,
+        pending: &mut Vec<ProjectionEntry>,
+        position: &ProjectionPosition,
+    ) -> rusqlite::Result<()> {
         let gate = self.gate.clone();
         let close = || gate.write().unwrap_or_else(|poisoned| poisoned.into_inner());
         // Without a write-ahead log, close the gate first: otherwise a reader that passed the gate would wait for the
         // writer, and the writer at the gate for the reader.
-        let early = (!self.readers_go_on).then(close);
+        let early = (!self.readers_are_not_blocked).then(close);
         let transaction = self.connection.transaction()?;
         for entry in pending.drain(..) {
             self.rows.write(&transaction, &entry)?;
-            self.spare.give(entry.facts);
+            self.spare.recycle(entry.facts);
         }
         self.rows.flush(&transaction)?;
         transaction.execute(
             "INSERT OR REPLACE INTO projection VALUES (1, ?1, ?2, ?3)",
-            rusqlite::params![position.seq as i64, position.line_hash, position.check()],
+            rusqlite::params![position.seq as i64, position.line_hash, position.checksum()],
         )?;
         let closed = early.unwrap_or_else(close);
         transaction.commit()?;
@@ -312,13 +327,13 @@ impl Worker<'_> {
 }
 
 /// Returns whether the database uses a write-ahead log, which does not block readers.
-fn has_log(connection: &Connection) -> bool {
+fn uses_write_ahead_log(connection: &Connection) -> bool {
     let journal = connection.query_row("PRAGMA journal_mode", [], |row| row.get::<_, String>(0));
     journal.is_ok_and(|journal| journal == "wal")
 }
 
 /// Returns the digest of a database file after a checkpoint.
-fn settled_digest(connection: &Connection, path: &Path) -> Option<String> {
+fn checkpointed_digest(connection: &Connection, path: &Path) -> Option<String> {
     let busy: i64 = connection.query_row("PRAGMA wal_checkpoint(TRUNCATE)", [], |row| row.get(0)).ok()?;
     (busy == 0).then(|| file_digest(path)).flatten()
 }
@@ -332,16 +347,16 @@ pub fn file_digest(path: &Path) -> Option<String> {
 
 /// Opens an undamaged database at a known position and loads its blocks into the store.
 fn open_existing(
-    location: &Location,
+    location: &DatabaseLocation,
     store: &SharedStore,
-    known: impl Fn(&Position) -> bool,
-) -> Option<(Connection, Option<Position>)> {
+    known: impl Fn(&ProjectionPosition) -> bool,
+) -> Option<(Connection, Option<ProjectionPosition>)> {
     if !location.path()?.exists() {
         return None;
     }
     let connection = location.open_writer().ok()?;
     let position = stored_position(&connection).ok()??;
-    if !known(&position) || !is_laid_out_now(&connection) {
+    if !known(&position) || !is_current_layout(&connection) {
         return None;
     }
     let loaded = load_store(&connection)?;
@@ -354,35 +369,35 @@ fn open_existing(
 /// # Errors
 /// The database does not exist, or is not that of a run.
 pub fn query_connection(
-    location: &Location,
+    location: &DatabaseLocation,
     scope: Scope,
-) -> Result<(QueryConnection, Position), ProjectionError> {
+) -> Result<(QueryConnection, ProjectionPosition), ProjectionError> {
     let missing = || ProjectionError("there is no database yet".to_owned());
     if location.path().is_none_or(|path| !path.exists()) {
         return Err(missing());
     }
-    let connection = location.open_reader().map_err(told)?;
-    let position = stored_position(&connection).map_err(told)?.ok_or_else(missing)?;
-    if !is_laid_out_now(&connection) {
+    let connection = location.open_reader().map_err(to_error)?;
+    let position = stored_position(&connection).map_err(to_error)?.ok_or_else(missing)?;
+    if !is_current_layout(&connection) {
         return Err(ProjectionError("another version of the program created it".to_owned()));
     }
     let source = BlockSource::File(RefCell::default());
-    let connection = QueryConnection::open(location, source, scope).map_err(told)?;
+    let connection = QueryConnection::open(location, source, scope).map_err(to_error)?;
     Ok((connection, position))
 }
 
 /// Returns whether the database at a location has the layout of this version.
-pub fn has_layout_of_now(location: &Location) -> bool {
-    location.open_reader().is_ok_and(|connection| is_laid_out_now(&connection))
+pub fn has_current_layout(location: &DatabaseLocation) -> bool {
+    location.open_reader().is_ok_and(|connection| is_current_layout(&connection))
 }
 
-fn is_laid_out_now(connection: &Connection) -> bool {
+fn is_current_layout(connection: &Connection) -> bool {
     let layout = connection.query_row("PRAGMA user_version", [], |row| row.get::<_, u32>(0));
-    layout.is_ok_and(|layout| layout == LAYOUT)
+    layout.is_ok_and(|layout| layout == LAYOUT_VERSION)
 }
 
 /// Returns whether SQLite's quick check of the database at a location succeeds. Slow for large databases.
-pub fn is_consistent(location: &Location) -> bool {
+pub fn is_consistent(location: &DatabaseLocation) -> bool {
     let check = |connection: Connection| {
         connection.query_row("PRAGMA quick_check(1)", [], |row| row.get::<_, String>(0))
     };
@@ -390,32 +405,32 @@ pub fn is_consistent(location: &Location) -> bool {
 }
 
 /// Returns the position of the database at a location, or `None` if it cannot be read.
-pub fn position_of(location: &Location) -> Option<Position> {
+pub fn read_position(location: &DatabaseLocation) -> Option<ProjectionPosition> {
     location.path().filter(|path| path.exists())?;
     stored_position(&location.open_reader().ok()?).ok()?
 }
 
 /// Returns the number of the run that owns the database at a location, if any.
-pub fn owner_of(location: &Location) -> Option<u32> {
+pub fn read_owner(location: &DatabaseLocation) -> Option<u32> {
     location.path().filter(|path| path.exists())?;
     let connection = location.open_reader().ok()?;
     let owner: i32 = connection.query_row("PRAGMA application_id", [], |row| row.get(0)).ok()?;
     (owner != 0).then_some(owner as u32)
 }
 
-fn stored_position(connection: &Connection) -> rusqlite::Result<Option<Position>> {
+fn stored_position(connection: &Connection) -> rusqlite::Result<Option<ProjectionPosition>> {
     connection
         .query_row("SELECT seq, line_hash, own_check FROM projection", [], |row| {
-            let position = Position { seq: row.get::<_, i64>(0)? as u64, line_hash: row.get(1)? };
+            let position = ProjectionPosition { seq: row.get::<_, i64>(0)? as u64, line_hash: row.get(1)? };
             // Ignore a damaged position: the error would name the wrong file.
-            let whole = row.get::<_, String>(2)? == position.check();
+            let whole = row.get::<_, String>(2)? == position.checksum();
             Ok(whole.then_some(position))
         })
         .optional()
         .map(Option::flatten)
 }
 
-fn make_anew(location: &Location, owner: u32) -> rusqlite::Result<Connection> {
+fn recreate(location: &DatabaseLocation, owner: u32) -> rusqlite::Result<Connection> {
     if let Some(path) = location.path() {
         for suffix in ["", "-wal", "-shm", "-journal"] {
             let mut file = path.as_os_str().to_owned();
@@ -425,7 +440,7 @@ fn make_anew(location: &Location, owner: u32) -> rusqlite::Result<Connection> {
         }
     }
     let mut connection = location.open_writer()?;
-    create(&mut connection)?;
+    create_tables(&mut connection)?;
     // Two's complement: the pragma takes a signed number.
     connection.pragma_update(None, "application_id", owner as i32)?;
     Ok(connection)

@@ -12,23 +12,24 @@ use std::time::{Duration, Instant};
 use rusqlite::hooks::{AuthContext, Authorization};
 use rusqlite::{Connection, ffi};
 
-use super::answer::{Cell, Rows};
+use super::block_loading::BlockSource;
 use super::block_table;
-use super::blocks::{BlockStore, Seen};
+use super::blocks::{BlockStore, QueryView};
 use super::catalogue::Scope;
+use super::error_help::{empty_result_hint, explain_error};
 use super::guard::{
-    Guard, InnerViews, Objection, Objections, Trust, is_hidden_table, is_inside, is_of_engine, limit,
+    Guard, InnerViews, LastRejection, RejectionReason, TrustGuard, is_engine_table, is_hidden_table,
+    is_internal_table, set_limits,
 };
-use super::help::{explain_error, hints};
-use super::hidden;
-use super::interrupt::{Cause, Interrupt, STEPS_BETWEEN_LOOKS, Ticket};
-use super::loading::BlockSource;
-use super::location::Location;
-use super::mathematics::register_mathematics;
+use super::hidden_schema;
+use super::location::DatabaseLocation;
+use super::math_functions::register_mathematics;
 use super::packed_tables;
-use super::plan;
-use super::released::{Reading, Released, without_explain};
-use super::tokens::tokens;
+use super::query_interrupt::{Interrupt, QueryTicket, STEPS_BETWEEN_CHECKS, StopCause};
+use super::query_plan;
+use super::query_result::{Cell, QueryResult};
+use super::released_schema::{CheckedStatement, ReleasedSchema, strip_explain_query_plan};
+use super::tokens::tokenize;
 
 /// An error of a query.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -52,7 +53,7 @@ pub struct ScriptError {
 
 /// Limits of a query.
 #[derive(Debug, Clone, Copy)]
-pub struct Limits {
+pub struct QueryLimits {
     /// Maximum rows.
     pub rows: usize,
     /// Maximum time.
@@ -61,49 +62,49 @@ pub struct Limits {
     pub steps: Option<u64>,
 }
 
-const MOST_TEXT: usize = 64 << 20;
+const MAX_RESULT_TEXT_BYTES: usize = 64 << 20;
 
 /// A connection for guarded queries.
 pub struct QueryConnection {
-    pub(super) released: Released,
+    pub(super) released: ReleasedSchema,
     connection: Connection,
     /// Tables that statements may name.
     scope: Scope,
-    objections: Objections,
+    last_rejection: LastRejection,
     views: Option<InnerViews>,
     /// Whether the authorizer is disabled for the program itself.
     trusted: Arc<AtomicBool>,
     pub(super) interrupt: Interrupt,
     source: BlockSource,
     /// Blocks of the running query.
-    seen: Arc<Seen>,
+    view: Arc<QueryView>,
 }
 
 impl QueryConnection {
     /// Opens a guarded connection.
     pub(super) fn open(
-        location: &Location,
+        location: &DatabaseLocation,
         source: BlockSource,
         scope: Scope,
     ) -> rusqlite::Result<QueryConnection> {
-        let released = Released::open(scope)?;
+        let released = ReleasedSchema::open(scope)?;
         let mut connection = location.open_reader()?;
-        let seen = Arc::new(Seen::default());
+        let seen = Arc::new(QueryView::default());
         block_table::register(&connection, &seen)?;
         packed_tables::register(&connection, &seen)?;
         register_mathematics(&connection)?;
         connection.pragma_update(None, "temp_store", "MEMORY")?;
         if scope == Scope::Hidden {
-            hidden::attach(&connection)?;
+            hidden_schema::create_hidden_tables(&connection)?;
         }
-        let guard = Guard::set_up(&connection, scope)?;
+        let guard = Guard::with_inner_views(&connection, scope)?;
         connection.pragma_update(None, "query_only", true)?;
-        limit(&connection)?;
+        set_limits(&connection)?;
         // Virtual tables connect at their first use, which the authorizer would reject.
         for table in ["daily_usage", "ads_revenue", "issues", "ledger", "notifications"] {
             connection.prepare(&format!("SELECT 1 FROM {table}"))?;
         }
-        let (objections, views) = (guard.objections(), guard.views());
+        let (objections, views) = (guard.last_rejection(), guard.views());
         let trusted = Arc::new(AtomicBool::new(false));
         let by_desk = trusted.clone();
         connection.authorizer(Some(move |context: AuthContext<'_>| {
@@ -114,17 +115,17 @@ impl QueryConnection {
         }))?;
         let interrupt = Interrupt::new();
         let clock = interrupt.clone();
-        connection.progress_handler(STEPS_BETWEEN_LOOKS as i32, Some(move || clock.must_end()))?;
+        connection.progress_handler(STEPS_BETWEEN_CHECKS as i32, Some(move || clock.should_stop()))?;
         Ok(QueryConnection {
             released,
             connection,
             scope,
-            objections,
+            last_rejection: objections,
             views,
             trusted,
             interrupt,
             source,
-            seen,
+            view: seen,
         })
     }
 
@@ -137,25 +138,31 @@ impl QueryConnection {
     ///
     /// # Errors
     /// The `sql_` codes.
-    pub fn ask(&self, sql: &str, limits: Limits) -> Result<Rows, QueryError> {
-        self.ask_as(self.interrupt.ticket(), sql, limits)
+    pub fn query(&self, sql: &str, limits: QueryLimits) -> Result<QueryResult, QueryError> {
+        self.query_with_ticket(self.interrupt.ticket(), sql, limits)
     }
 
     /// Runs one statement with the ticket of its request.
     ///
     /// # Errors
     /// The `sql_` codes.
-    pub fn ask_as(&self, ticket: Ticket, sql: &str, limits: Limits) -> Result<Rows, QueryError> {
+    pub fn query_with_ticket(
+        &self,
+        ticket: QueryTicket,
+        sql: &str,
+        limits: QueryLimits,
+    ) -> Result<QueryResult, QueryError> {
         if sql.trim().is_empty() {
-            return Err(refusal("sql_empty", "no SQL was given"));
+            return Err(query_error("sql_empty", "no SQL was given"));
         }
         if sql.contains('\0') {
             // SQLite would ignore the rest of the statement.
-            return Err(refusal("sql_error", "the statement contains a NUL character"));
+            return Err(query_error("sql_error", "the statement contains a NUL character"));
         }
-        self.look(ticket, sql, limits)?;
-        let answer = self.run(sql, limits).map_err(|fault| self.told(sql, fault, limits));
-        let closed = self.look_away();
+        self.begin_read(ticket, sql, limits)?;
+        let answer =
+            self.run_single_statement(sql, limits).map_err(|fault| self.fault_to_error(sql, fault, limits));
+        let closed = self.end_read();
         // Report the error of the statement rather than a following one.
         answer.and_then(|rows| closed.map(|()| rows))
     }
@@ -168,137 +175,151 @@ impl QueryConnection {
     pub fn run_script(
         &self,
         sql: &str,
-        limits: Limits,
+        limits: QueryLimits,
         time: Duration,
-        mut answered: impl FnMut(Rows),
+        mut answered: impl FnMut(QueryResult),
     ) -> Result<(), ScriptError> {
         let end = Instant::now() + time;
         let at = |statement: usize| move |error: QueryError| ScriptError { statement, error };
-        self.look(self.interrupt.ticket(), sql, limits).map_err(at(1))?;
+        self.begin_read(self.interrupt.ticket(), sql, limits).map_err(at(1))?;
         let mut statements = self.released.statements(sql);
         let mut done = Ok(());
         for number in 1.. {
-            let own =
-                Limits { time: limits.time.min(end.saturating_duration_since(Instant::now())), ..limits };
-            self.interrupt.go_on(own.time, own.steps);
+            let own = QueryLimits {
+                time: limits.time.min(end.saturating_duration_since(Instant::now())),
+                ..limits
+            };
+            self.interrupt.begin_statement(own.time, own.steps);
             let answer = match statements.next() {
                 Ok(None) => break,
-                Ok(Some(reading)) => self.fetch(reading, sql, own),
+                Ok(Some(reading)) => self.run_statement(reading, sql, own),
                 Err(fault) => Err(fault),
             };
             match answer {
                 Ok(rows) => answered(rows),
                 Err(fault) => {
-                    done = Err(at(number)(self.told(sql, fault, own)));
+                    done = Err(at(number)(self.fault_to_error(sql, fault, own)));
                     break;
                 }
             }
         }
-        let closed = self.look_away().map_err(at(1));
+        let closed = self.end_read().map_err(at(1));
         done.and(closed)
     }
 
     /// Starts a read transaction with rows and blocks of the same commit.
-    fn look(&self, ticket: Ticket, sql: &str, limits: Limits) -> Result<(), QueryError> {
-        self.objections.clear();
-        self.released.objections().clear();
+    fn begin_read(&self, ticket: QueryTicket, sql: &str, limits: QueryLimits) -> Result<(), QueryError> {
+        self.last_rejection.clear();
+        self.released.last_rejection().clear();
         self.interrupt.begin(ticket, limits.time, limits.steps);
-        if self.interrupt.is_stopped() {
-            return Err(refusal(SQL_CANCELLED, CANCELLED));
+        if self.interrupt.is_stop_requested() {
+            return Err(query_error(SQL_CANCELLED, CANCELLED_MESSAGE));
         }
         let begin = || {
-            self.as_desk("BEGIN; SELECT seq FROM projection")
-                .map_err(|error| self.told(sql, Fault::Sqlite(error), limits))
+            self.execute_trusted("BEGIN; SELECT seq FROM projection")
+                .map_err(|error| self.fault_to_error(sql, QueryFault::Sqlite(error), limits))
         };
         match &self.source {
             BlockSource::Writer(store, gate) => {
                 let _open = gate.read().unwrap_or_else(|poisoned| poisoned.into_inner());
                 begin()?;
-                self.seen.see(store.read().unwrap_or_else(|poisoned| poisoned.into_inner()).clone());
+                self.view.set_store(store.read().unwrap_or_else(|poisoned| poisoned.into_inner()).clone());
             }
             BlockSource::File(blocks) => {
                 begin()?;
-                self.trusting(|connection| blocks.borrow_mut().refresh(connection));
+                self.with_trust(|connection| blocks.borrow_mut().refresh(connection));
             }
         }
         Ok(())
     }
 
     /// Returns whether damaged blocks were found, so that results are not reliable.
-    pub fn found_damage(&self) -> bool {
+    pub fn has_found_damage(&self) -> bool {
         matches!(&self.source, BlockSource::File(blocks) if blocks.borrow().is_damaged())
     }
 
-    fn load_for(&self, reading: &Reading) -> Result<(), Fault> {
+    fn load_blocks(&self, reading: &CheckedStatement) -> Result<(), QueryFault> {
         let BlockSource::File(blocks) = &self.source else { return Ok(()) };
         let mut blocks = blocks.borrow_mut();
-        let loaded = self.trusting(|connection| blocks.load(connection, &reading.tables));
-        self.seen.see(blocks.store().clone());
+        let loaded = self.with_trust(|connection| blocks.load(connection, &reading.tables));
+        self.view.set_store(blocks.store().clone());
         match loaded {
             true => Ok(()),
-            false if self.interrupt.must_end() => {
+            false if self.interrupt.should_stop() => {
                 let stopped = ffi::Error::new(ffi::SQLITE_INTERRUPT);
-                Err(Fault::Sqlite(rusqlite::Error::SqliteFailure(stopped, None)))
+                Err(QueryFault::Sqlite(rusqlite::Error::SqliteFailure(stopped, None)))
             }
             false => {
-                blocks.set_damaged();
-                Err(Fault::Damaged)
+                blocks.mark_damaged();
+                Err(QueryFault::Damaged)
             }
         }
     }
 
-    pub(super) fn trusting<T>(&self, work: impl FnOnce(&Connection) -> T) -> T {
-        let _trust = Trust::begin(&self.trusted);
+    pub(super) fn with_trust<T>(&self, work: impl FnOnce(&Connection) -> T) -> T {
+        let _trust = TrustGuard::enter(&self.trusted);
         work(&self.connection)
     }
 
-    fn look_away(&self) -> Result<(), QueryError> {
-        self.seen.see(BlockStore::default());
+    fn end_read(&self) -> Result<(), QueryError> {
+        self.view.set_store(BlockStore::default());
         // If memory ran out, SQLite has already ended the transaction.
         if self.connection.is_autocommit() {
             return Ok(());
         }
-        self.as_desk("ROLLBACK").map_err(|error| refusal("sql_error", &error.to_string()))
+        self.execute_trusted("ROLLBACK").map_err(|error| query_error("sql_error", &error.to_string()))
     }
 
-    fn as_desk(&self, sql: &str) -> rusqlite::Result<()> {
-        self.trusting(|connection| connection.execute_batch(sql))
+    fn execute_trusted(&self, sql: &str) -> rusqlite::Result<()> {
+        self.with_trust(|connection| connection.execute_batch(sql))
     }
 
-    fn run(&self, sql: &str, limits: Limits) -> Result<Rows, Fault> {
+    fn run_single_statement(&self, sql: &str, limits: QueryLimits) -> Result<QueryResult, QueryFault> {
         let mut statements = self.released.statements(sql);
-        let reading = statements.next()?.ok_or(Fault::Empty)?;
+        let reading = statements.next()?.ok_or(QueryFault::Empty)?;
         match statements.next() {
-            Ok(None) => self.fetch(reading, sql, limits),
-            _ => Err(Fault::Several),
+            Ok(None) => self.run_statement(reading, sql, limits),
+            _ => Err(QueryFault::MultipleStatements),
         }
     }
 
-    fn fetch(&self, reading: Reading, sql: &str, limits: Limits) -> Result<Rows, Fault> {
-        self.load_for(&reading)?;
+    fn run_statement(
+        &self,
+        reading: CheckedStatement,
+        sql: &str,
+        limits: QueryLimits,
+    ) -> Result<QueryResult, QueryFault> {
+        self.load_blocks(&reading)?;
         let read = reading.copied.iter();
-        let copies: Vec<String> =
-            read.filter_map(|(table, columns)| self.views.as_ref()?.copy(table, columns)).collect();
+        let copies: Vec<String> = read
+            .filter_map(|(table, columns)| self.views.as_ref()?.copy_statements(table, columns))
+            .collect();
         if copies.is_empty() {
-            return self.answer(reading, sql, limits);
+            return self.read_rows(reading, sql, limits);
         }
         let copies = copies.join("; ");
-        let copied = self
-            .as_desk(&format!("SAVEPOINT copies; PRAGMA query_only = 0; {copies}; PRAGMA query_only = 1"));
-        let answer = copied.map_err(Fault::Sqlite).and_then(|()| self.answer(reading, sql, limits));
+        let copied = self.execute_trusted(&format!(
+            "SAVEPOINT copies; PRAGMA query_only = 0; {copies}; PRAGMA query_only = 1"
+        ));
+        let answer = copied.map_err(QueryFault::Sqlite).and_then(|()| self.read_rows(reading, sql, limits));
         // An interrupted copy has ended the whole transaction.
         let undo = match self.connection.is_autocommit() {
             true => "PRAGMA query_only = 1",
             false => "PRAGMA query_only = 1; ROLLBACK TO copies; RELEASE copies",
         };
-        let undone = self.as_desk(undo);
+        let undone = self.execute_trusted(undo);
         let rows = answer?;
         undone?;
         Ok(rows)
     }
 
-    fn answer(&self, reading: Reading, sql: &str, limits: Limits) -> Result<Rows, Fault> {
-        let Reading { sql: spelled, columns, is_plan, .. } = reading;
+    fn read_rows(
+        &self,
+        reading: CheckedStatement,
+        sql: &str,
+        limits: QueryLimits,
+    ) -> Result<QueryResult, QueryFault> {
+        let CheckedStatement { sql: spelled, columns, is_plan, .. } = reading;
         let mut statement = self.connection.prepare(&spelled)?;
         let width = columns.len();
         let mut cursor = statement.query([])?;
@@ -310,69 +331,79 @@ impl QueryConnection {
                 truncated = true;
                 break;
             }
-            let cells = (0..width).map(|at| row.get_ref(at).map(Cell::of)).collect::<Result<Vec<_>, _>>()?;
-            text += cells.iter().map(Cell::text_length).sum::<usize>();
-            if text > MOST_TEXT {
-                return Err(Fault::TooLarge);
+            let cells =
+                (0..width).map(|at| row.get_ref(at).map(Cell::from_sqlite)).collect::<Result<Vec<_>, _>>()?;
+            text += cells.iter().map(Cell::text_bytes).sum::<usize>();
+            if text > MAX_RESULT_TEXT_BYTES {
+                return Err(QueryFault::TooLarge);
             }
             rows.push(cells);
             next = cursor.next()?;
         }
         let warning = truncated
             .then(|| format!("only the first {} rows are shown; more exist: aggregate in SQL", limits.rows));
-        let hint = if rows.is_empty() { hints(sql, self.scope) } else { None };
+        let hint = if rows.is_empty() { empty_result_hint(sql, self.scope) } else { None };
         if is_plan {
-            plan::mask(&mut rows, sql);
+            query_plan::mask_plan(&mut rows, sql);
         }
-        Ok(Rows { columns, rows, truncated, warning, hint })
+        Ok(QueryResult { columns, rows, truncated, warning, hint })
     }
 
-    pub(super) fn told(&self, sql: &str, fault: Fault, limits: Limits) -> QueryError {
-        let objection = match self.released.objections().last() {
-            Objection::None => self.objections.last(),
+    pub(super) fn fault_to_error(&self, sql: &str, fault: QueryFault, limits: QueryLimits) -> QueryError {
+        let objection = match self.released.last_rejection().get() {
+            RejectionReason::None => self.last_rejection.get(),
             objection => objection,
         };
         match fault {
-            Fault::Empty => refusal("sql_empty", "no SQL was given"),
-            Fault::Several => {
-                refusal("sql_error", "one statement at a time; remove what follows the first ;")
+            QueryFault::Empty => query_error("sql_empty", "no SQL was given"),
+            QueryFault::MultipleStatements => {
+                query_error("sql_error", "one statement at a time; remove what follows the first ;")
             }
-            Fault::MachineCode => refusal(
+            QueryFault::MachineCode => query_error(
                 "sql_schema",
                 "EXPLAIN alone shows the engine's machine code; EXPLAIN QUERY PLAN shows how a query is \
                  answered",
             ),
-            Fault::Parameters => {
-                refusal("sql_error", "statements take no parameters here; write the values in their place")
+            QueryFault::Parameters => query_error(
+                "sql_error",
+                "statements take no parameters here; write the values in their place",
+            ),
+            QueryFault::Write => write_error(),
+            QueryFault::Damaged => query_error(
+                "sql_error",
+                "world.db is damaged; open the run to play it, which rebuilds world.db",
+            ),
+            QueryFault::TooLarge => {
+                let most = MAX_RESULT_TEXT_BYTES >> 20;
+                query_error(
+                    "sql_error",
+                    &format!("the result is larger than {most} MiB; ask for less at a time"),
+                )
             }
-            Fault::Write => write_refusal(),
-            Fault::Damaged => {
-                refusal("sql_error", "world.db is damaged; open the run to play it, which rebuilds world.db")
+            QueryFault::Sqlite(_) if objection == RejectionReason::Write || is_write_statement(sql) => {
+                write_error()
             }
-            Fault::TooLarge => {
-                let most = MOST_TEXT >> 20;
-                refusal("sql_error", &format!("the result is larger than {most} MiB; ask for less at a time"))
+            QueryFault::Sqlite(_) if objection == RejectionReason::Schema => {
+                query_error("sql_schema", SCHEMA_MESSAGE)
             }
-            Fault::Sqlite(_) if objection == Objection::Write || is_change(sql) => write_refusal(),
-            Fault::Sqlite(_) if objection == Objection::Schema => refusal("sql_schema", SCHEMA_WORDS),
-            Fault::Sqlite(_) if objection == Objection::Hidden => hidden_refusal(None),
-            Fault::Sqlite(error) => self.told_by_sqlite(sql, &error, limits),
+            QueryFault::Sqlite(_) if objection == RejectionReason::HiddenTable => hidden_table_error(None),
+            QueryFault::Sqlite(error) => self.sqlite_to_error(sql, &error, limits),
         }
     }
 
-    fn told_by_sqlite(&self, sql: &str, error: &rusqlite::Error, limits: Limits) -> QueryError {
+    fn sqlite_to_error(&self, sql: &str, error: &rusqlite::Error, limits: QueryLimits) -> QueryError {
         use rusqlite::ErrorCode::{OperationInterrupted, OutOfMemory};
         if error.sqlite_error_code() == Some(OutOfMemory) {
             // The machine has less memory than the limit.
-            return refusal("sql_timeout", TOO_MUCH_MEMORY);
+            return query_error("sql_timeout", TOO_MUCH_MEMORY);
         }
         if error.sqlite_error_code() == Some(OperationInterrupted) {
             let seconds = limits.time.as_secs();
             let too_long = format!("the query ran longer than {seconds} s; ask for less at a time");
             return match self.interrupt.cause() {
-                Cause::Request => refusal(SQL_CANCELLED, CANCELLED),
-                Cause::Memory => refusal("sql_timeout", TOO_MUCH_MEMORY),
-                Cause::Time => refusal("sql_timeout", &too_long),
+                StopCause::Request => query_error(SQL_CANCELLED, CANCELLED_MESSAGE),
+                StopCause::Memory => query_error("sql_timeout", TOO_MUCH_MEMORY),
+                StopCause::Time => query_error("sql_timeout", &too_long),
             };
         }
         let (text, position) = match error {
@@ -383,15 +414,15 @@ impl QueryConnection {
             other => (other.to_string(), None),
         };
         if text.starts_with("cannot modify") || text.ends_with("may not be modified") {
-            return write_refusal();
+            return write_error();
         }
         if let Some(table) = text.strip_prefix("no such table: ") {
             let name = table.rsplit('.').next().unwrap_or(table);
-            if is_hidden_table(name) || is_inside(name) {
-                return hidden_refusal(Some(name));
+            if is_hidden_table(name) || is_internal_table(name) {
+                return hidden_table_error(Some(name));
             }
-            if is_of_engine(name) {
-                return refusal("sql_schema", SCHEMA_WORDS);
+            if is_engine_table(name) {
+                return query_error("sql_schema", SCHEMA_MESSAGE);
             }
         }
         QueryError { code: "sql_error", message: explain_error(&text, sql, self.scope), position }
@@ -399,23 +430,23 @@ impl QueryConnection {
 }
 
 /// Returns whether a statement starts like one that changes data. Help on its syntax would be useless.
-fn is_change(sql: &str) -> bool {
+fn is_write_statement(sql: &str) -> bool {
     const WORDS: [&str; 11] = [
         "INSERT", "REPLACE", "UPDATE", "DELETE", "CREATE", "DROP", "ALTER", "ATTACH", "DETACH", "REINDEX",
         "VACUUM",
     ];
-    let own = tokens(without_explain(sql));
-    let first = own.iter().find(|token| !token.is_sign(";") && !token.is("EXPLAIN"));
-    first.is_some_and(|first| WORDS.iter().any(|word| first.is(word)))
+    let own = tokenize(strip_explain_query_plan(sql));
+    let first = own.iter().find(|token| !token.is_symbol(";") && !token.is_word("EXPLAIN"));
+    first.is_some_and(|first| WORDS.iter().any(|word| first.is_word(word)))
 }
 
 /// Internal error of a statement.
 #[derive(Debug)]
-pub(super) enum Fault {
+pub(super) enum QueryFault {
     /// No statement.
     Empty,
     /// More than one statement.
-    Several,
+    MultipleStatements,
     /// EXPLAIN without QUERY PLAN.
     MachineCode,
     /// Parameters.
@@ -430,9 +461,9 @@ pub(super) enum Fault {
     Sqlite(rusqlite::Error),
 }
 
-impl From<rusqlite::Error> for Fault {
+impl From<rusqlite::Error> for QueryFault {
     fn from(error: rusqlite::Error) -> Self {
-        Fault::Sqlite(error)
+        QueryFault::Sqlite(error)
     }
 }
 
@@ -441,22 +472,24 @@ const TOO_MUCH_MEMORY: &str = "the query needs too much memory; ask for less at 
 /// Error code of a query that the user cancelled.
 pub const SQL_CANCELLED: &str = "sql_cancelled";
 
-const CANCELLED: &str = "the query was cancelled";
+const CANCELLED_MESSAGE: &str = "the query was cancelled";
 
-const SCHEMA_WORDS: &str =
+const SCHEMA_MESSAGE: &str =
     "schema statements are not allowed; describe_tables and the table browser show all tables";
 
-fn refusal(code: &'static str, message: &str) -> QueryError {
+fn query_error(code: &'static str, message: &str) -> QueryError {
     QueryError { code, message: message.to_owned(), position: None }
 }
 
-fn write_refusal() -> QueryError {
-    refusal("sql_write", "only reading is allowed; use the tools to change anything")
+fn write_error() -> QueryError {
+    query_error("sql_write", "only reading is allowed; use the tools to change anything")
 }
 
-fn hidden_refusal(table: Option<&str>) -> QueryError {
+fn hidden_table_error(table: Option<&str>) -> QueryError {
     match table {
-        Some(table) => refusal("sql_hidden_table", &format!("table {table} is not accessible")),
-        None => refusal("sql_hidden_table", "that table is not accessible; the 19 tables of the browser are"),
+        Some(table) => query_error("sql_hidden_table", &format!("table {table} is not accessible")),
+        None => {
+            query_error("sql_hidden_table", "that table is not accessible; the 19 tables of the browser are")
+        }
     }
 }

@@ -4,9 +4,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use super::query::Limits;
+use super::query::QueryLimits;
 use super::{
-    Cell, Entry, Location, Position, Projector, QueryConnection, QueryError, Rows, Scope, number_at, text_at,
+    Cell, DatabaseLocation, ProjectionEntry, ProjectionPosition, Projector, QueryConnection, QueryError,
+    QueryResult, Scope, number_at, text_at,
 };
 use novamind_world::day::step_day;
 use novamind_world::events::{
@@ -18,13 +19,13 @@ use novamind_world::random::Streams;
 use novamind_world::state::World;
 use novamind_world::test_kit::policy_p;
 
-const LIMITS: Limits = Limits { rows: 5000, time: Duration::from_secs(20), steps: None };
+const LIMITS: QueryLimits = QueryLimits { rows: 5000, time: Duration::from_secs(20), steps: None };
 
-fn entry(facts: Facts) -> Entry {
-    Entry {
-        notices: facts.notices.iter().map(|notice| novamind_voice::notice(notice, None)).collect(),
+fn entry(facts: Facts) -> ProjectionEntry {
+    ProjectionEntry {
+        notices: facts.notices.iter().map(|notice| novamind_voice::notice_text(notice, None)).collect(),
         turns: facts.turns.iter().map(|_| String::new()).collect(),
-        readings: facts.readings.iter().map(novamind_voice::reading).collect(),
+        readings: facts.readings.iter().map(novamind_voice::reading_text).collect(),
         addresses: facts
             .arrivals
             .iter()
@@ -32,12 +33,12 @@ fn entry(facts: Facts) -> Entry {
             .map(|arrival| (arrival.customer, format!("{}@example.com", arrival.customer)))
             .collect(),
         facts: facts.into(),
-        ..Entry::default()
+        ..ProjectionEntry::default()
     }
 }
 
-fn position(seq: u64) -> Position {
-    Position { seq, line_hash: format!("hash {seq}") }
+fn position(seq: u64) -> ProjectionPosition {
+    ProjectionPosition { seq, line_hash: format!("hash {seq}") }
 }
 
 /// Simulates days of policy P and projects them with one commit per week.
@@ -49,66 +50,66 @@ struct Company {
 }
 
 impl Company {
-    fn open(location: Location) -> Company {
-        let params = Arc::new(Params::shipped());
+    fn open(location: DatabaseLocation) -> Company {
+        let params = Arc::new(Params::bundled());
         let mut facts = Facts::default();
-        let mut world = World::open(500, 1_000_000.0, &params, &mut facts);
+        let mut world = World::new(500, 1_000_000.0, &params, &mut facts);
         let (projector, found) =
             Projector::start(location, 1, params.clone(), |_| false).expect("a database");
         assert_eq!(found, None);
-        projector.write(entry(facts));
+        projector.enqueue(entry(facts));
         projector.commit(position(0));
         policy_p(&mut world);
         Company { world, params, streams: Streams::new(42), projector }
     }
 
-    fn weeks(&mut self, weeks: u32) -> QueryConnection {
+    fn simulate_weeks(&mut self, weeks: u32) -> QueryConnection {
         for _ in 0..weeks {
             for _ in 0..7 {
                 let mut facts = Facts::default();
                 step_day(&mut self.world, &self.params, &self.streams, &mut facts);
-                self.projector.write(entry(facts));
+                self.projector.enqueue(entry(facts));
             }
             self.projector.commit(position(u64::from(self.world.day)));
         }
-        self.projector.wait().expect("everything is written");
+        self.projector.flush().expect("everything is written");
         self.projector.connection(Scope::Visible).expect("a connection")
     }
 }
 
-fn rows(connection: &QueryConnection, sql: &str) -> Rows {
-    connection.ask(sql, LIMITS).unwrap_or_else(|error| panic!("{sql}: {} {}", error.code, error.message))
+fn query_rows(connection: &QueryConnection, sql: &str) -> QueryResult {
+    connection.query(sql, LIMITS).unwrap_or_else(|error| panic!("{sql}: {} {}", error.code, error.message))
 }
 
-fn one(connection: &QueryConnection, sql: &str) -> f64 {
-    match rows(connection, sql).rows.first().and_then(|row| row.first()) {
+fn query_number(connection: &QueryConnection, sql: &str) -> f64 {
+    match query_rows(connection, sql).rows.first().and_then(|row| row.first()) {
         Some(Cell::Integer(number)) => *number as f64,
         Some(Cell::Real(number)) => *number,
         other => panic!("{sql}: {other:?}"),
     }
 }
 
-fn refused(connection: &QueryConnection, sql: &str) -> QueryError {
-    match connection.ask(sql, LIMITS) {
+fn query_error(connection: &QueryConnection, sql: &str) -> QueryError {
+    match connection.query(sql, LIMITS) {
         Ok(rows) => panic!("{sql} was answered: {rows:?}"),
         Err(error) => error,
     }
 }
 
 #[test]
-fn rows_agree_with_the_world() {
-    let mut company = Company::open(Location::memory());
-    let connection = company.weeks(16);
+fn database_matches_the_world() {
+    let mut company = Company::open(DatabaseLocation::new_in_memory());
+    let connection = company.simulate_weeks(16);
     let world = &company.world;
-    assert!((one(&connection, "SELECT sum(amount) FROM ledger") - world.finance.cash).abs() < 1e-6);
-    let active: u32 = world.customers.active().iter().sum();
+    assert!((query_number(&connection, "SELECT sum(amount) FROM ledger") - world.finance.cash).abs() < 1e-6);
+    let active: u32 = world.customers.active_by_group().iter().sum();
     assert_eq!(
-        one(&connection, "SELECT count(*) FROM subscriptions WHERE status = 'subscribed'"),
+        query_number(&connection, "SELECT count(*) FROM subscriptions WHERE status = 'subscribed'"),
         f64::from(active)
     );
     let customers = f64::from(world.customers.next_customer - 1);
-    assert_eq!(one(&connection, "SELECT count(*) FROM customers"), customers);
-    assert_eq!(one(&connection, "SELECT count(*) FROM service_day"), 112.0);
+    assert_eq!(query_number(&connection, "SELECT count(*) FROM customers"), customers);
+    assert_eq!(query_number(&connection, "SELECT count(*) FROM service_day"), 112.0);
     for (group, block) in world.customers.blocks() {
         for at in 0..block.len() {
             let sql = format!(
@@ -125,26 +126,27 @@ fn rows_agree_with_the_world() {
                 Cell::Integer(1),
                 Cell::Text(group.id().to_owned()),
             ];
-            assert_eq!(rows(&connection, &sql).rows, [expected]);
+            assert_eq!(query_rows(&connection, &sql).rows, [expected]);
         }
     }
 }
 
 #[test]
-fn issues_age_on_the_days_on_which_the_desk_of_issues_works() {
-    let params = Arc::new(Params::shipped());
-    let (projector, _) = Projector::start(Location::memory(), 1, params, |_| false).expect("a database");
+fn issues_age_only_on_days_with_issue_work() {
+    let params = Arc::new(Params::bundled());
+    let (projector, _) =
+        Projector::start(DatabaseLocation::new_in_memory(), 1, params, |_| false).expect("a database");
     for (day, opened, aged) in [(1, Some(1), false), (2, None, true), (3, Some(2), false), (4, None, true)] {
         let mut facts = Facts::default();
-        facts.begin(day);
+        facts.start_day(day);
         facts.issues_aged = aged;
         let group = Group::at(0).expect("S1");
         facts.issues_opened.extend(opened.map(|issue| IssueOpened { issue, customer: 7, group }));
-        projector.write(entry(facts));
+        projector.enqueue(entry(facts));
     }
     projector.commit(position(4));
-    projector.wait().expect("everything is written");
-    let found = rows(
+    projector.flush().expect("everything is written");
+    let found = query_rows(
         &projector.connection(Scope::Visible).expect("a connection"),
         "SELECT issue_id, open_day, days_open FROM issues ORDER BY 1",
     );
@@ -153,11 +155,12 @@ fn issues_age_on_the_days_on_which_the_desk_of_issues_works() {
 }
 
 #[test]
-fn a_subscription_that_begins_and_ends_between_two_commits_has_its_days() {
-    let params = Arc::new(Params::shipped());
-    let (projector, _) = Projector::start(Location::memory(), 1, params, |_| false).expect("a database");
+fn subscription_within_one_commit_keeps_its_dates() {
+    let params = Arc::new(Params::bundled());
+    let (projector, _) =
+        Projector::start(DatabaseLocation::new_in_memory(), 1, params, |_| false).expect("a database");
     let mut begins = Facts::default();
-    begins.begin(2);
+    begins.start_day(2);
     begins.openings.push(SubscriptionOpened {
         subscription: 1,
         customer: 7,
@@ -169,7 +172,7 @@ fn a_subscription_that_begins_and_ends_between_two_commits_has_its_days() {
         seats: 1,
     });
     let mut ends = Facts::default();
-    ends.begin(5);
+    ends.start_day(5);
     ends.endings.push(SubscriptionEnded {
         subscription: 1,
         customer: 7,
@@ -179,12 +182,12 @@ fn a_subscription_that_begins_and_ends_between_two_commits_has_its_days() {
         status: SubscriptionStatus::Cancelled,
         cause: EndCause::Involuntary,
     });
-    projector.write(entry(begins));
-    projector.write(entry(ends));
+    projector.enqueue(entry(begins));
+    projector.enqueue(entry(ends));
     projector.commit(position(5));
-    projector.wait().expect("everything is written");
+    projector.flush().expect("everything is written");
     let sql = "SELECT start_day, end_day, status, effective_price FROM subscriptions";
-    let found = rows(&projector.connection(Scope::Visible).expect("a connection"), sql);
+    let found = query_rows(&projector.connection(Scope::Visible).expect("a connection"), sql);
     let expected =
         [Cell::Integer(2), Cell::Integer(5), Cell::Text("cancelled".to_owned()), Cell::Real(18.0)].to_vec();
     assert_eq!(found.rows, [expected]);
@@ -192,8 +195,8 @@ fn a_subscription_that_begins_and_ends_between_two_commits_has_its_days() {
 
 #[test]
 fn open_issues_agree_with_the_world() {
-    let mut company = Company::open(Location::memory());
-    let connection = company.weeks(12);
+    let mut company = Company::open(DatabaseLocation::new_in_memory());
+    let connection = company.simulate_weeks(12);
     let sql = "SELECT i.customer_id, i.days_open FROM issues i JOIN subscriptions s USING (customer_id) \
                WHERE i.status = 'open' AND s.status = 'subscribed' ORDER BY 1";
     let mut expected: Vec<Vec<Cell>> = Vec::new();
@@ -208,23 +211,23 @@ fn open_issues_agree_with_the_world() {
         Cell::Integer(customer) => customer,
         _ => 0,
     });
-    let found = rows(&connection, sql);
+    let found = query_rows(&connection, sql);
     assert!(!expected.is_empty() && (found.rows == expected || found.truncated));
     let wrong =
         "SELECT count(*) FROM issues WHERE status = 'resolved' AND days_open <> resolved_day - open_day - 1";
     // Issues do not age on days without open issues of active customers; policy P has no such days after a month.
-    assert_eq!(one(&connection, &format!("{wrong} AND open_day > 30")), 0.0);
+    assert_eq!(query_number(&connection, &format!("{wrong} AND open_day > 30")), 0.0);
 }
 
 #[test]
-fn usage_older_than_a_month_goes() {
-    let mut company = Company::open(Location::memory());
-    let connection = company.weeks(16);
-    assert_eq!(one(&connection, "SELECT min(day) FROM daily_usage"), 80.0);
-    assert_eq!(one(&connection, "SELECT max(day) FROM daily_usage"), 112.0);
-    let total = one(&connection, "SELECT sum(usage_units) FROM daily_usage WHERE day = 100");
-    assert_eq!(total, one(&connection, "SELECT total_usage_units FROM service_day WHERE day = 100"));
-    let readings = rows(
+fn usage_older_than_a_month_is_deleted() {
+    let mut company = Company::open(DatabaseLocation::new_in_memory());
+    let connection = company.simulate_weeks(16);
+    assert_eq!(query_number(&connection, "SELECT min(day) FROM daily_usage"), 80.0);
+    assert_eq!(query_number(&connection, "SELECT max(day) FROM daily_usage"), 112.0);
+    let total = query_number(&connection, "SELECT sum(usage_units) FROM daily_usage WHERE day = 100");
+    assert_eq!(total, query_number(&connection, "SELECT total_usage_units FROM service_day WHERE day = 100"));
+    let readings = query_rows(
         &connection,
         "SELECT day, pmi_trend, length(description) > 50 FROM macroeconomic_conditions ORDER BY 1",
     );
@@ -236,9 +239,9 @@ fn usage_older_than_a_month_goes() {
 
 #[test]
 fn a_day_of_the_ledger_lists_leads_payments_and_then_costs() {
-    let mut company = Company::open(Location::memory());
-    let connection = company.weeks(1);
-    let first = rows(&connection, "SELECT id, category, amount, note FROM ledger WHERE day = 0");
+    let mut company = Company::open(DatabaseLocation::new_in_memory());
+    let connection = company.simulate_weeks(1);
+    let first = query_rows(&connection, "SELECT id, category, amount, note FROM ledger WHERE day = 0");
     let funding = [
         Cell::Integer(1),
         Cell::Text("initial_funding".to_owned()),
@@ -246,7 +249,7 @@ fn a_day_of_the_ledger_lists_leads_payments_and_then_costs() {
         Cell::Text("Initial seed funding".to_owned()),
     ];
     assert_eq!(first.rows, [funding]);
-    let order = rows(
+    let order = query_rows(
         &connection,
         "SELECT DISTINCT category FROM (SELECT category FROM ledger WHERE day = 3 ORDER BY id)",
     );
@@ -261,32 +264,32 @@ fn a_day_of_the_ledger_lists_leads_payments_and_then_costs() {
         "advertising",
     ];
     assert_eq!(order, expected.map(|category| format!("{:?}", Cell::Text(category.to_owned()))));
-    assert_eq!(one(&connection, "SELECT count(*) FROM group_info_levels WHERE info_level = 1"), 6.0);
-    assert_eq!(one(&connection, "SELECT count(*) FROM config_history"), 1.0);
+    assert_eq!(query_number(&connection, "SELECT count(*) FROM group_info_levels WHERE info_level = 1"), 6.0);
+    assert_eq!(query_number(&connection, "SELECT count(*) FROM config_history"), 1.0);
 }
 
 #[test]
 fn profiles_are_written_in_words() {
-    let mut company = Company::open(Location::memory());
-    let connection = company.weeks(6);
-    let observer = rows(&connection, "SELECT * FROM customers WHERE customer_id = 1").rows.remove(0);
+    let mut company = Company::open(DatabaseLocation::new_in_memory());
+    let connection = company.simulate_weeks(6);
+    let observer = query_rows(&connection, "SELECT * FROM customers WHERE customer_id = 1").rows.remove(0);
     assert_eq!(observer[1], Cell::Text("small".to_owned()));
     assert_eq!(observer.iter().filter(|cell| **cell == Cell::Null).count(), 12);
     let odd = "SELECT count(*) FROM customers WHERE customer_id > 1 AND (persona_description IS NULL \
                OR persona_industry IS NULL OR persona_role IS NULL OR persona_experience IS NULL \
                OR persona_work_style IS NULL OR persona_tech_savvy IS NULL OR acquisition_source IS NULL)";
-    assert_eq!(one(&connection, odd), 0.0);
+    assert_eq!(query_number(&connection, odd), 0.0);
     let companies = "SELECT count(*), sum(company_culture = persona_work_style), \
                      sum(persona_experience = 'executive' AND email IS NOT NULL AND company_primary_concern IS NOT NULL \
                      AND persona_description LIKE '% seats, %') FROM customers WHERE customer_type = 'large'";
-    let counts = rows(&connection, companies).rows.remove(0);
+    let counts = query_rows(&connection, companies).rows.remove(0);
     assert!(counts[0] != Cell::Integer(0) && counts.iter().all(|count| *count == counts[0]), "{counts:?}");
 }
 
 #[test]
-fn what_is_hidden_cannot_be_asked() {
-    let mut company = Company::open(Location::memory());
-    let connection = company.weeks(2);
+fn hidden_tables_cannot_be_queried() {
+    let mut company = Company::open(DatabaseLocation::new_in_memory());
+    let connection = company.simulate_weeks(2);
     for (sql, code) in [
         // Obvious attempts first, then advanced ones.
         ("", "sql_empty"),
@@ -341,21 +344,21 @@ fn what_is_hidden_cannot_be_asked() {
         ("SELEC 1", "sql_error"),
         ("SELECT day FROM ledger JOIN service_day", "sql_error"),
     ] {
-        let error = refused(&connection, sql);
+        let error = query_error(&connection, sql);
         assert_eq!(error.code, code, "{sql}: {}", error.message);
         for inside in ["customer_rows", "usage_blocks", "issue_clock", "no such"] {
             assert!(!error.message.contains(inside) || sql.contains(inside), "{sql}: {}", error.message);
         }
     }
-    assert_eq!(one(&connection, "SELECT count(*) FROM ledger WHERE day = 0"), 1.0);
+    assert_eq!(query_number(&connection, "SELECT count(*) FROM ledger WHERE day = 0"), 1.0);
 }
 
 #[test]
-fn a_query_plan_shows_the_way_and_nothing_of_the_inside() {
-    let mut company = Company::open(Location::memory());
-    let connection = company.weeks(1);
+fn query_plan_names_no_internal_table() {
+    let mut company = Company::open(DatabaseLocation::new_in_memory());
+    let connection = company.simulate_weeks(1);
     let plan = |sql: &str| -> Vec<String> {
-        let all = rows(&connection, &format!("EXPLAIN QUERY PLAN {sql}"));
+        let all = query_rows(&connection, &format!("EXPLAIN QUERY PLAN {sql}"));
         assert_eq!(all.columns, ["id", "parent", "notused", "detail"]);
         all.rows.iter().map(|row| text_at(row, 3).to_owned()).collect()
     };
@@ -378,18 +381,19 @@ fn a_query_plan_shows_the_way_and_nothing_of_the_inside() {
 }
 
 #[test]
-fn rows_have_numbers_and_tables_the_name_of_their_schema() {
-    let mut company = Company::open(Location::memory());
-    let connection = company.weeks(2);
+fn rowid_and_schema_names_are_accepted() {
+    let mut company = Company::open(DatabaseLocation::new_in_memory());
+    let connection = company.simulate_weeks(2);
     for table in super::tables() {
         let name = &table.name;
         for number in ["rowid", "oid", "_rowid_", "\"rowid\"", "[OID]", "`_RowId_`"] {
-            let both = rows(&connection, &format!("SELECT {number}, t.{number}, t.* FROM {name} t LIMIT 0"));
+            let both =
+                query_rows(&connection, &format!("SELECT {number}, t.{number}, t.* FROM {name} t LIMIT 0"));
             assert_eq!(both.columns.len(), 2 + table.columns.len());
         }
-        let key = table.row_number().unwrap_or("rowid");
+        let key = table.row_number_column().unwrap_or("rowid");
         let numbers =
-            rows(&connection, &format!("SELECT rowid, {key} FROM main.{name} ORDER BY oid LIMIT 50"));
+            query_rows(&connection, &format!("SELECT rowid, {key} FROM main.{name} ORDER BY oid LIMIT 50"));
         assert_eq!(numbers.columns, [key, key]);
         assert!(numbers.rows.iter().all(|row| row[0] == row[1]));
     }
@@ -407,12 +411,12 @@ fn rows_have_numbers_and_tables_the_name_of_their_schema() {
             "max(rowid)",
         ),
     ] {
-        assert_eq!(rows(&connection, sql).columns.join(", "), columns, "{sql}");
+        assert_eq!(query_rows(&connection, sql).columns.join(", "), columns, "{sql}");
     }
-    let error = refused(&connection, "SELECT rowid FROM ledger JOIN issues");
+    let error = query_error(&connection, "SELECT rowid FROM ledger JOIN issues");
     assert_eq!(error.code, "sql_error");
     assert!(error.message.contains("ambiguous"), "{}", error.message);
-    let error = refused(&connection, "SELECT 1 FROM temp.ledger");
+    let error = query_error(&connection, "SELECT 1 FROM temp.ledger");
     assert!(
         error.message.starts_with("there is no table temp.ledger; write ledger alone;"),
         "{}",
@@ -421,9 +425,9 @@ fn rows_have_numbers_and_tables_the_name_of_their_schema() {
 }
 
 #[test]
-fn ordinary_questions_are_answered() {
-    let mut company = Company::open(Location::memory());
-    let connection = company.weeks(2);
+fn ordinary_queries_succeed() {
+    let mut company = Company::open(DatabaseLocation::new_in_memory());
+    let connection = company.simulate_weeks(2);
     for sql in [
         "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n WHERE x < 10) SELECT sum(x) FROM n",
         "SELECT day, amount, sum(amount) OVER (ORDER BY id) FROM ledger LIMIT 3",
@@ -436,32 +440,32 @@ fn ordinary_questions_are_answered() {
         "SELECT max(length(name)) FROM json_each('[1]'), (SELECT 'a' AS name)",
         "-- just looking\nSELECT 1",
     ] {
-        rows(&connection, sql);
+        query_rows(&connection, sql);
     }
     for table in super::tables() {
-        let all = rows(&connection, &format!("SELECT * FROM {}", table.name));
+        let all = query_rows(&connection, &format!("SELECT * FROM {}", table.name));
         let columns: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
         assert_eq!(all.columns, columns, "{}", table.name);
     }
 }
 
 #[test]
-fn results_are_capped_and_slow_queries_end() {
-    let mut company = Company::open(Location::memory());
-    let connection = company.weeks(1);
+fn query_limits_are_enforced() {
+    let mut company = Company::open(DatabaseLocation::new_in_memory());
+    let connection = company.simulate_weeks(1);
     let counting = |most: u32| {
         format!(
             "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n WHERE x < {most}) SELECT x FROM n"
         )
     };
-    let full = rows(&connection, &counting(5000));
+    let full = query_rows(&connection, &counting(5000));
     assert_eq!((full.rows.len(), full.truncated), (5000, false));
-    let cut = rows(&connection, &format!("{} LIMIT 5500", counting(6000)));
+    let cut = query_rows(&connection, &format!("{} LIMIT 5500", counting(6000)));
     assert_eq!((cut.rows.len(), cut.truncated), (5000, true));
     assert!(cut.warning.is_some());
     let endless = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n) SELECT count(*) FROM n";
     let error = connection
-        .ask(endless, Limits { rows: 10, time: Duration::from_millis(50), steps: None })
+        .query(endless, QueryLimits { rows: 10, time: Duration::from_millis(50), steps: None })
         .expect_err("too slow");
     assert_eq!(error.code, "sql_timeout");
     let interrupt = connection.interrupt();
@@ -470,67 +474,70 @@ fn results_are_capped_and_slow_queries_end() {
         std::thread::sleep(Duration::from_millis(50));
         interrupt.stop();
     });
-    let error = connection.ask_as(ticket, endless, LIMITS).expect_err("cancelled");
+    let error = connection.query_with_ticket(ticket, endless, LIMITS).expect_err("cancelled");
     assert_eq!((error.code, error.message.as_str()), ("sql_cancelled", "the query was cancelled"));
     stopper.join().expect("the stopper ends");
-    rows(&connection, "SELECT 1");
+    query_rows(&connection, "SELECT 1");
 }
 
 #[test]
-fn a_stop_reaches_a_query_that_has_not_begun_and_none_that_is_asked_later() {
-    let mut company = Company::open(Location::memory());
-    let connection = company.weeks(1);
+fn stop_cancels_pending_queries_and_no_later_ones() {
+    let mut company = Company::open(DatabaseLocation::new_in_memory());
+    let connection = company.simulate_weeks(1);
     let interrupt = connection.interrupt();
     let endless = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n) SELECT count(*) FROM n";
     let ticket = interrupt.ticket();
     interrupt.stop();
     for sql in [endless, "SELECT 1"] {
-        let error = connection.ask_as(ticket, sql, LIMITS).expect_err("stopped before it began");
+        let error = connection.query_with_ticket(ticket, sql, LIMITS).expect_err("stopped before it began");
         assert_eq!((error.code, error.message.as_str()), ("sql_cancelled", "the query was cancelled"));
     }
-    rows(&connection, "SELECT 1");
+    query_rows(&connection, "SELECT 1");
 }
 
 #[test]
-fn a_query_that_is_stopped_while_tables_are_copied_for_it_says_so() {
-    let mut company = Company::open(Location::memory());
-    let connection = company.weeks(6);
+fn query_stopped_during_table_copy_is_cancelled() {
+    let mut company = Company::open(DatabaseLocation::new_in_memory());
+    let connection = company.simulate_weeks(6);
     let sql = "SELECT count(*) FROM issues RIGHT JOIN customers USING (customer_id)";
-    let all = one(&connection, sql);
+    let all = query_number(&connection, sql);
     let mut stopped = 0;
     for steps in (250..60_000).step_by(1250) {
-        match connection.ask(sql, Limits { steps: Some(steps), ..LIMITS }) {
+        match connection.query(sql, QueryLimits { steps: Some(steps), ..LIMITS }) {
             Ok(rows) => assert_eq!(super::number_at(&rows.rows[0], 0), all, "after {steps} steps"),
             Err(error) => {
                 assert_eq!(error.code, "sql_timeout", "after {steps} steps: {}", error.message);
                 stopped += 1;
             }
         }
-        assert_eq!(one(&connection, "SELECT 1"), 1.0, "the connection still answers");
-        assert!(connection.ask("DELETE FROM ledger", LIMITS).is_err_and(|error| error.code == "sql_write"));
+        assert_eq!(query_number(&connection, "SELECT 1"), 1.0, "the connection still answers");
+        assert!(connection.query("DELETE FROM ledger", LIMITS).is_err_and(|error| error.code == "sql_write"));
     }
     assert!(stopped > 0);
 }
 
 #[test]
-fn empty_results_explain_themselves() {
-    let mut company = Company::open(Location::memory());
-    let connection = company.weeks(1);
-    let empty = rows(&connection, "SELECT * FROM subscriptions WHERE status = 'active'");
+fn empty_results_have_hints() {
+    let mut company = Company::open(DatabaseLocation::new_in_memory());
+    let connection = company.simulate_weeks(1);
+    let empty = query_rows(&connection, "SELECT * FROM subscriptions WHERE status = 'active'");
     assert!(empty.hint.is_some_and(|hint| hint.contains("'subscribed'")));
-    assert_eq!(rows(&connection, "SELECT count(*) FROM subscriptions WHERE status = 'active'").hint, None);
-    let in_double_quotes = rows(&connection, "SELECT * FROM subscriptions WHERE status = \"active\"");
+    assert_eq!(
+        query_rows(&connection, "SELECT count(*) FROM subscriptions WHERE status = 'active'").hint,
+        None
+    );
+    let in_double_quotes = query_rows(&connection, "SELECT * FROM subscriptions WHERE status = \"active\"");
     assert!(in_double_quotes.hint.is_some_and(|hint| hint.contains("'subscribed'")));
 }
 
 #[test]
-fn mathematical_functions_are_there() {
-    let connection = Company::open(Location::memory()).weeks(0);
+fn mathematical_functions_are_registered() {
+    let connection = Company::open(DatabaseLocation::new_in_memory()).simulate_weeks(0);
     let sql = "SELECT ceil(1.2), ceiling(1.2), floor(-1.2), sqrt(9), pow(2, 3), power(2, 3), ln(1), log(100), log(2, 8), \
                log10(1000), log2(8), exp(0), trunc(-1.7), mod(7, 4), pi(), sin(0), cos(0), tan(0), asin(0), acos(1), \
                atan(0), atan2(0, 1), sinh(0), cosh(0), tanh(0), asinh(0), acosh(1), atanh(0), degrees(0), radians(0), \
                sign(-3), sqrt(-1), floor('x')";
-    let row = rows(&connection, sql).rows.remove(0);
+    let row = query_rows(&connection, sql).rows.remove(0);
     let numbers: Vec<f64> = (0..row.len()).map(|at| number_at(&row, at)).collect();
     let expected = [
         2.0,
@@ -573,8 +580,8 @@ fn mathematical_functions_are_there() {
 
 #[test]
 fn numbers_and_texts_compare_as_in_ordinary_tables() {
-    let mut company = Company::open(Location::memory());
-    let connection = company.weeks(10);
+    let mut company = Company::open(DatabaseLocation::new_in_memory());
+    let connection = company.simulate_weeks(10);
     for (text, number) in [
         ("subscriptions WHERE effective_price = '9'", "subscriptions WHERE effective_price = 9"),
         ("subscriptions WHERE contract_months = '1'", "subscriptions"),
@@ -587,84 +594,87 @@ fn numbers_and_texts_compare_as_in_ordinary_tables() {
         ("customers WHERE customer_type > 5", "customers"),
     ] {
         let (left, right) = (
-            one(&connection, &format!("SELECT count(*) FROM {text}")),
-            one(&connection, &format!("SELECT count(*) FROM {number}")),
+            query_number(&connection, &format!("SELECT count(*) FROM {text}")),
+            query_number(&connection, &format!("SELECT count(*) FROM {number}")),
         );
         assert!(left == right && left > 0.0, "{text}: {left}, {right}");
     }
     assert_eq!(
-        one(
+        query_number(
             &connection,
             "SELECT count(*) FROM subscriptions WHERE pending_price IS NULL AND pending_plan IS NULL"
         ),
-        one(&connection, "SELECT count(*) FROM subscriptions")
+        query_number(&connection, "SELECT count(*) FROM subscriptions")
     );
 }
 
 #[test]
-fn a_database_of_another_layout_is_made_anew() {
+fn database_with_another_layout_is_rebuilt() {
     let folder = tempfile::tempdir().expect("a folder");
-    let location = Location::File(folder.path().join("world.db"));
-    drop(Company::open(location.clone()).weeks(1));
-    assert!(super::has_layout_of_now(&location));
+    let location = DatabaseLocation::File(folder.path().join("world.db"));
+    drop(Company::open(location.clone()).simulate_weeks(1));
+    assert!(super::has_current_layout(&location));
     let file = rusqlite::Connection::open(folder.path().join("world.db")).expect("a file");
     file.execute_batch("DROP INDEX enterprise_turns_by_thread; PRAGMA user_version = 0")
         .expect("an older layout");
     drop(file);
-    assert!(!super::has_layout_of_now(&location));
+    assert!(!super::has_current_layout(&location));
     assert!(super::query_connection(&location, Scope::Visible).is_err());
     let (projector, found) =
-        Projector::start(location.clone(), 1, Arc::new(Params::shipped()), |_| true).expect("it opens");
+        Projector::start(location.clone(), 1, Arc::new(Params::bundled()), |_| true).expect("it opens");
     assert_eq!(found, None);
     drop(projector);
-    assert!(super::has_layout_of_now(&location));
+    assert!(super::has_current_layout(&location));
 }
 
 #[test]
-fn days_of_a_file_are_read_when_their_table_is_named_and_have_to_be_whole() {
+fn file_blocks_load_on_first_use_and_detect_damage() {
     let folder = tempfile::tempdir().expect("a folder");
-    let location = Location::File(folder.path().join("world.db"));
+    let location = DatabaseLocation::File(folder.path().join("world.db"));
     let mut company = Company::open(location.clone());
     let usage = "SELECT count(*), sum(usage_units) FROM daily_usage";
     let ledger = "SELECT count(*), sum(amount) FROM ledger";
-    let connection = company.weeks(6);
-    let before = [usage, ledger].map(|sql| rows(&connection, sql));
+    let connection = company.simulate_weeks(6);
+    let before = [usage, ledger].map(|sql| query_rows(&connection, sql));
     drop((connection, company));
     let file = rusqlite::Connection::open(folder.path().join("world.db")).expect("a file");
     let (reader, _) = super::query_connection(&location, Scope::Visible).expect("a connection");
-    assert_eq!([usage, ledger].map(|sql| rows(&reader, sql)), before);
+    assert_eq!([usage, ledger].map(|sql| query_rows(&reader, sql)), before);
     let damaged = file.execute("UPDATE usage_blocks SET packed = x'ff' WHERE day = 30", []);
     assert_eq!(damaged, Ok(1));
-    assert_eq!(rows(&reader, ledger), before[1], "other tables still answer");
-    assert!(!reader.found_damage());
-    let refused = reader.ask(usage, LIMITS).expect_err("the file has changed since it was read");
-    assert!(refused.message.starts_with("world.db is damaged") && reader.found_damage(), "{refused:?}");
+    assert_eq!(query_rows(&reader, ledger), before[1], "other tables still answer");
+    assert!(!reader.has_found_damage());
+    let refused = reader.query(usage, LIMITS).expect_err("the file has changed since it was read");
+    assert!(refused.message.starts_with("world.db is damaged") && reader.has_found_damage(), "{refused:?}");
     for sql in
         ["SELECT 1 WHERE EXISTS (SELECT 1 FROM daily_usage)", "SELECT (SELECT count(*) FROM daily_usage)"]
     {
-        assert!(reader.ask(sql, LIMITS).is_err(), "{sql}");
+        assert!(reader.query(sql, LIMITS).is_err(), "{sql}");
     }
 }
 
 #[test]
-fn a_database_is_continued_where_it_stands_or_made_anew() {
+fn database_is_continued_or_rebuilt() {
     let folder = tempfile::tempdir().expect("a folder");
-    let location = Location::File(folder.path().join("world.db"));
+    let location = DatabaseLocation::File(folder.path().join("world.db"));
     let mut company = Company::open(location.clone());
     let usage = "SELECT count(*), sum(usage_units), sum(day * customer_id) FROM daily_usage";
-    let before = rows(&company.weeks(6), usage);
+    let before = query_rows(&company.simulate_weeks(6), usage);
     drop(company);
-    let params = Arc::new(Params::shipped());
-    let known = |found: &Position| *found == position(42);
+    let params = Arc::new(Params::bundled());
+    let known = |found: &ProjectionPosition| *found == position(42);
     let (projector, found) = Projector::start(location.clone(), 1, params.clone(), known).expect("it opens");
     assert_eq!(found, Some(position(42)));
-    assert_eq!(rows(&projector.connection(Scope::Visible).expect("a connection"), usage), before);
+    assert_eq!(query_rows(&projector.connection(Scope::Visible).expect("a connection"), usage), before);
     drop(projector);
     let (projector, found) =
         Projector::start(location.clone(), 1, params.clone(), |_| false).expect("it opens");
     assert_eq!(found, None);
     assert_eq!(
-        one(&projector.connection(Scope::Visible).expect("a connection"), "SELECT count(*) FROM ledger"),
+        query_number(
+            &projector.connection(Scope::Visible).expect("a connection"),
+            "SELECT count(*) FROM ledger"
+        ),
         0.0
     );
     drop(projector);
@@ -678,40 +688,42 @@ fn a_database_is_continued_where_it_stands_or_made_anew() {
 #[test]
 fn queries_during_a_week_see_the_state_before_it() {
     let folder = tempfile::tempdir().expect("a folder");
-    for location in [Location::memory(), Location::File(folder.path().join("world.db"))] {
+    for location in
+        [DatabaseLocation::new_in_memory(), DatabaseLocation::File(folder.path().join("world.db"))]
+    {
         let mut company = Company::open(location);
-        let connection = company.weeks(1);
+        let connection = company.simulate_weeks(1);
         let mut facts = Facts::default();
         step_day(&mut company.world, &company.params, &company.streams, &mut facts);
-        company.projector.write(entry(facts));
+        company.projector.enqueue(entry(facts));
         let state = "SELECT (SELECT max(day) FROM service_day), (SELECT max(day) FROM daily_usage)";
-        assert_eq!(rows(&connection, state).rows, [[Cell::Integer(7), Cell::Integer(7)]]);
+        assert_eq!(query_rows(&connection, state).rows, [[Cell::Integer(7), Cell::Integer(7)]]);
         company.projector.commit(position(8));
-        company.projector.wait().expect("written");
-        assert_eq!(rows(&connection, state).rows, [[Cell::Integer(8), Cell::Integer(8)]]);
+        company.projector.flush().expect("written");
+        assert_eq!(query_rows(&connection, state).rows, [[Cell::Integer(8), Cell::Integer(8)]]);
     }
 }
 
 #[test]
-fn a_reader_and_the_writer_never_wait_for_each_other() {
-    let mut company = Company::open(Location::memory());
+fn readers_and_writer_do_not_block_each_other() {
+    let mut company = Company::open(DatabaseLocation::new_in_memory());
     let connection = company.projector.connection(Scope::Visible).expect("a connection");
     let over = Arc::new(AtomicBool::new(false));
     let is_over = over.clone();
     // Without a pause, so that queries run during transactions.
     let reader = std::thread::spawn(move || {
         while !is_over.load(Ordering::Relaxed) {
-            let answer = connection.ask("SELECT count(*) FROM ledger", LIMITS);
+            let answer = connection.query("SELECT count(*) FROM ledger", LIMITS);
             assert!(answer.is_ok(), "{answer:?}");
         }
     });
-    company.weeks(30);
+    company.simulate_weeks(30);
     over.store(true, Ordering::Relaxed);
     reader.join().expect("every question is answered");
 }
 
 #[test]
-fn cells_that_are_missing_or_of_another_kind_count_as_nothing() {
+fn missing_or_mistyped_cells_read_as_defaults() {
     let row = [Cell::Null, Cell::Integer(2), Cell::Text("x".to_owned())];
     assert_eq!([0, 1, 2, 3].map(|at| number_at(&row, at)), [0.0, 2.0, 0.0, 0.0]);
     assert_eq!([0, 2, 3].map(|at| text_at(&row, at)), ["", "x", ""]);

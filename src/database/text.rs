@@ -2,10 +2,10 @@
 
 use unicode_width::UnicodeWidthStr;
 
-use super::answer::{Cell, Rows};
+use super::query_result::{Cell, QueryResult};
 
 /// Formats a value of a result.
-pub fn cell_text(cell: &Cell) -> String {
+pub fn format_cell(cell: &Cell) -> String {
     match cell {
         Cell::Null => "NULL".to_owned(),
         Cell::Integer(number) => number.to_string(),
@@ -15,8 +15,8 @@ pub fn cell_text(cell: &Cell) -> String {
 }
 
 /// Formats a result as aligned columns with names, row count, warning and hint.
-pub fn table(rows: &Rows) -> String {
-    let mut text = columns(rows);
+pub fn format_result(rows: &QueryResult) -> String {
+    let mut text = format_columns(rows);
     text += &match (rows.rows.len(), rows.truncated) {
         (count, true) => format!("({count} rows, more exist)\n"),
         (1, false) => "(1 row)\n".to_owned(),
@@ -32,17 +32,17 @@ pub fn table(rows: &Rows) -> String {
 }
 
 /// Formats a result as aligned columns with names.
-pub fn columns(rows: &Rows) -> String {
+pub fn format_columns(rows: &QueryResult) -> String {
     let cells: Vec<Vec<String>> = rows
         .rows
         .iter()
-        .map(|row| row.iter().map(|cell| cell_text(cell).replace(['\n', '\r', '\t'], " ")).collect())
+        .map(|row| row.iter().map(|cell| format_cell(cell).replace(['\n', '\r', '\t'], " ")).collect())
         .collect();
-    aligned(&rows.columns, &cells)
+    align_columns(&rows.columns, &cells)
 }
 
 /// Formats rows of text as aligned columns with names.
-pub fn aligned(columns: &[String], rows: &[Vec<String>]) -> String {
+pub fn align_columns(columns: &[String], rows: &[Vec<String>]) -> String {
     let width = |at: usize| {
         let cells = rows.iter().filter_map(|row| row.get(at)).chain([&columns[at]]);
         cells.map(|cell| cell.width()).max().unwrap_or(0)

@@ -14,7 +14,7 @@ pub(super) enum TokenKind {
     /// A number or a parameter.
     Number,
     /// Anything else: one character.
-    Sign,
+    Symbol,
 }
 
 /// A token of a statement.
@@ -23,25 +23,25 @@ pub(super) struct Token<'a> {
     /// Kind.
     pub kind: TokenKind,
     /// Source text.
-    pub written: &'a str,
+    pub text: &'a str,
     /// Byte offset.
-    pub at: usize,
+    pub offset: usize,
 }
 
 impl<'a> Token<'a> {
     /// Returns its byte range.
-    pub fn place(&self) -> Range<usize> {
-        self.at..self.at + self.written.len()
+    pub fn range(&self) -> Range<usize> {
+        self.offset..self.offset + self.text.len()
     }
 
     /// Returns its content without quotes.
-    pub fn content(&self) -> Cow<'a, str> {
-        let quote = match (self.kind, self.written.chars().next()) {
+    pub fn unquoted(&self) -> Cow<'a, str> {
+        let quote = match (self.kind, self.text.chars().next()) {
             (TokenKind::Quoted | TokenKind::Text, Some('[')) => ']',
             (TokenKind::Quoted | TokenKind::Text, Some(quote)) => quote,
-            _ => return Cow::Borrowed(self.written),
+            _ => return Cow::Borrowed(self.text),
         };
-        let inner = &self.written[1..];
+        let inner = &self.text[1..];
         let inner = inner.strip_suffix(quote).unwrap_or(inner);
         match quote != ']' && inner.contains(quote) {
             true => Cow::Owned(inner.replace(&String::from_iter([quote, quote]), &quote.to_string())),
@@ -50,64 +50,64 @@ impl<'a> Token<'a> {
     }
 
     /// Returns whether it is this keyword or name; case-insensitive.
-    pub fn is(&self, word: &str) -> bool {
-        self.kind == TokenKind::Name && self.written.eq_ignore_ascii_case(word)
+    pub fn is_word(&self, word: &str) -> bool {
+        self.kind == TokenKind::Name && self.text.eq_ignore_ascii_case(word)
     }
 
     /// Returns whether it is this sign.
-    pub fn is_sign(&self, sign: &str) -> bool {
-        self.kind == TokenKind::Sign && self.written == sign
+    pub fn is_symbol(&self, sign: &str) -> bool {
+        self.kind == TokenKind::Symbol && self.text == sign
     }
 
     /// Returns whether it is a name, quoted or not.
-    pub fn may_name(&self) -> bool {
+    pub fn can_be_name(&self) -> bool {
         matches!(self.kind, TokenKind::Name | TokenKind::Quoted | TokenKind::Text)
     }
 }
 
 /// Returns all tokens of a statement, without spaces and comments. An unterminated token extends to the end of the text.
-pub(super) fn tokens(sql: &str) -> Vec<Token<'_>> {
+pub(super) fn tokenize(sql: &str) -> Vec<Token<'_>> {
     let mut found = Vec::new();
     let mut at = 0;
     while at < sql.len() {
-        let (kind, length) = next(&sql[at..]);
-        found.extend(kind.map(|kind| Token { kind, written: &sql[at..at + length], at }));
+        let (kind, length) = next_token(&sql[at..]);
+        found.extend(kind.map(|kind| Token { kind, text: &sql[at..at + length], offset: at }));
         at += length;
     }
     found
 }
 
 /// Returns kind and length of the first token; spaces and comments have no kind.
-fn next(rest: &str) -> (Option<TokenKind>, usize) {
+fn next_token(rest: &str) -> (Option<TokenKind>, usize) {
     let until = |end: &str, from: usize| rest[from..].find(end).map(|at| from + at + end.len());
     let first = rest.chars().next().unwrap_or(' ');
     match first {
         _ if rest.starts_with("--") => (None, until("\n", 2).unwrap_or(rest.len())),
         _ if rest.starts_with("/*") => (None, until("*/", 2).unwrap_or(rest.len())),
         blank if blank.is_ascii_whitespace() => (None, 1),
-        '\'' => (Some(TokenKind::Text), quoted(rest, '\'')),
-        '"' | '`' => (Some(TokenKind::Quoted), quoted(rest, first)),
+        '\'' => (Some(TokenKind::Text), quoted_length(rest, '\'')),
+        '"' | '`' => (Some(TokenKind::Quoted), quoted_length(rest, first)),
         '[' => (Some(TokenKind::Quoted), until("]", 1).unwrap_or(rest.len())),
         '?' | '0'..='9' => (Some(TokenKind::Number), 1 + word_length(&rest[1..])),
         ':' | '@' | '#' if word_length(&rest[1..]) > 0 => {
             (Some(TokenKind::Number), 1 + word_length(&rest[1..]))
         }
-        letter if begins_name(letter) => (Some(TokenKind::Name), word_length(rest)),
-        other => (Some(TokenKind::Sign), other.len_utf8()),
+        letter if starts_name(letter) => (Some(TokenKind::Name), word_length(rest)),
+        other => (Some(TokenKind::Symbol), other.len_utf8()),
     }
 }
 
-fn begins_name(letter: char) -> bool {
+fn starts_name(letter: char) -> bool {
     letter.is_ascii_alphabetic() || letter == '_' || !letter.is_ascii()
 }
 
 fn word_length(rest: &str) -> usize {
-    let outside = |letter: char| !(begins_name(letter) || letter.is_ascii_digit() || letter == '$');
+    let outside = |letter: char| !(starts_name(letter) || letter.is_ascii_digit() || letter == '$');
     rest.find(outside).unwrap_or(rest.len())
 }
 
 /// Returns the length of a leading quoted text; a doubled quote does not end it.
-fn quoted(rest: &str, quote: char) -> usize {
+fn quoted_length(rest: &str, quote: char) -> usize {
     let mut letters = rest.char_indices().skip(1).peekable();
     while let Some((at, letter)) = letters.next() {
         if letter == quote && letters.next_if(|(_, next)| *next == quote).is_none() {
@@ -123,13 +123,13 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn statements_fall_into_names_texts_and_signs() {
+    fn tokenize_splits_names_texts_and_symbols() {
         let sql =
             "SELECT c.\"row\"\"id\", 'it''s' -- from words\n FROM [a b] /* x */ c WHERE x<>1.5e3 AND ?1=:a";
         let words: Vec<(TokenKind, String)> =
-            tokens(sql).iter().map(|token| (token.kind, token.content().into_owned())).collect();
+            tokenize(sql).iter().map(|token| (token.kind, token.unquoted().into_owned())).collect();
         let name = |word: &str| (TokenKind::Name, word.to_owned());
-        let sign = |word: &str| (TokenKind::Sign, word.to_owned());
+        let sign = |word: &str| (TokenKind::Symbol, word.to_owned());
         let quoted = |word: &str| (TokenKind::Quoted, word.to_owned());
         let number = |word: &str| (TokenKind::Number, word.to_owned());
         let expected = [
@@ -159,13 +159,13 @@ mod tests {
 
     proptest! {
         #[test]
-        fn any_text_is_read_to_its_end(sql in "\\PC*") {
+        fn tokenize_consumes_any_text(sql in "\\PC*") {
             let mut end = 0;
-            for token in tokens(&sql) {
-                prop_assert!(token.at >= end && !token.written.is_empty());
-                prop_assert_eq!(&sql[token.place()], token.written);
-                end = token.place().end;
-                token.content();
+            for token in tokenize(&sql) {
+                prop_assert!(token.offset >= end && !token.text.is_empty());
+                prop_assert_eq!(&sql[token.range()], token.text);
+                end = token.range().end;
+                token.unquoted();
             }
         }
     }

@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use super::{Subject, Term, subject, term};
+use super::{Subject, Term, subject_by_name, term};
 use novamind_database::{Column, Table};
-use novamind_tools::{Argument, Numbers, Spec};
+use novamind_tools::{Argument, ParameterNumbers, ToolSpec};
 
 /// A part of an explanation.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -32,21 +32,21 @@ pub struct Explanation {
 
 impl Explanation {
     /// Explains a subject with the parameters in force.
-    pub fn of(subject: Subject, numbers: &Numbers) -> Explanation {
+    pub fn new(subject: Subject, numbers: &ParameterNumbers) -> Explanation {
         let (note, sections, related, places) = match subject {
-            Subject::Term(term) => of_term(term),
-            Subject::Tool(spec) => of_tool(spec),
-            Subject::Argument(spec, argument) => of_argument(spec, argument),
-            Subject::Table(table) => of_table(table),
-            Subject::Column(table, column) => of_column(table, column),
+            Subject::Term(term) => term_parts(term),
+            Subject::Tool(spec) => tool_parts(spec),
+            Subject::Argument(spec, argument) => argument_parts(spec, argument),
+            Subject::Table(table) => table_parts(table),
+            Subject::Column(table, column) => column_parts(table, column),
         };
-        let filled = |section: Section| Section { text: numbers.fill(&section.text), ..section };
+        let filled = |section: Section| Section { text: numbers.substitute(&section.text), ..section };
         let sections = sections.into_iter().filter(|section| !section.text.is_empty()).map(filled).collect();
         Explanation { title: subject.title(), note, sections, related, places }
     }
 
     /// Returns the explanation as lines of text.
-    pub fn as_text(&self) -> String {
+    pub fn to_text(&self) -> String {
         let mut text = format!("{} ({})\n", self.title, self.note);
         for section in &self.sections {
             let label = if section.name.is_empty() { String::new() } else { format!("{}: ", section.name) };
@@ -61,68 +61,69 @@ impl Explanation {
     }
 }
 
-type Parts = (String, Vec<Section>, Vec<Subject>, &'static [String]);
+type ExplanationParts = (String, Vec<Section>, Vec<Subject>, &'static [String]);
 
 fn section(name: &'static str, text: impl Into<String>) -> Section {
     Section { name, text: text.into() }
 }
 
-fn of_term(own: &'static Term) -> Parts {
+fn term_parts(own: &'static Term) -> ExplanationParts {
     let sections = vec![
         section("", own.text.clone()),
         section("more", own.more.clone()),
         section("also called", own.aka.join(", ")),
     ];
     let terms = own.see.iter().filter_map(|id| term(id)).map(Subject::Term);
-    let tools = own.tools.iter().filter_map(|name| subject(name));
+    let tools = own.tools.iter().filter_map(|name| subject_by_name(name));
     let tables = own.tables.iter().filter_map(|name| novamind_database::table(name)).map(Subject::Table);
     (own.topic.clone(), sections, terms.chain(tools).chain(tables).collect(), &own.places)
 }
 
-fn of_tool(spec: &'static Spec) -> Parts {
-    let line = |argument: &Argument| format!("{}: {}", argument.name, argument.doc);
+fn tool_parts(spec: &'static ToolSpec) -> ExplanationParts {
+    let line = |argument: &Argument| format!("{}: {}", argument.name, argument.description);
     let arguments: Vec<String> = spec.arguments.iter().map(line).collect();
     let sections = vec![
-        section("", sentence(spec.summary)),
+        section("", to_sentence(spec.summary)),
         section("effect", spec.effect),
-        section("takes effect", spec.when.id()),
+        section("takes effect", spec.effect_timing.id()),
         section("cost", spec.cost),
         section("arguments", arguments.join("\n")),
-        section("rejection codes", spec.refusals.join(", ")),
+        section("rejection codes", spec.rejection_codes.join(", ")),
         section("example", format!("{}({})", spec.name(), spec.example)),
     ];
     let terms = super::terms().iter().filter(|term| term.tools.iter().any(|name| name == spec.name()));
     let arguments = spec.arguments.iter().map(|argument| Subject::Argument(spec, argument));
-    let tables = spec.writes.iter().filter_map(|name| novamind_database::table(name)).map(Subject::Table);
+    let tables =
+        spec.written_tables.iter().filter_map(|name| novamind_database::table(name)).map(Subject::Table);
     let related = terms.map(Subject::Term).chain(arguments).chain(tables).collect();
     (format!("tool · {}", spec.module.id()), sections, related, &[])
 }
 
-fn of_argument(spec: &'static Spec, argument: &'static Argument) -> Parts {
+fn argument_parts(spec: &'static ToolSpec, argument: &'static Argument) -> ExplanationParts {
     let default = match (argument.required, spec.kind) {
         (true, _) => "required",
-        (false, novamind_tools::Kind::Setting) => "optional; unchanged if omitted",
+        (false, novamind_tools::ToolKind::Setting) => "optional; unchanged if omitted",
         (false, _) => "optional",
     };
     let sections = vec![
-        section("", sentence(argument.doc)),
+        section("", to_sentence(argument.description)),
         section("unit", argument.unit),
-        section("range", argument.kind.words()),
+        section("range", argument.kind.describe()),
         section("default", default),
         section("effect", spec.effect),
-        section("takes effect", spec.when.id()),
+        section("takes effect", spec.effect_timing.id()),
         section("cost", spec.cost),
-        section("rejection codes", spec.refusals.join(", ")),
+        section("rejection codes", spec.rejection_codes.join(", ")),
     ];
     let terms = super::terms().iter().filter(|term| term.tools.iter().any(|name| name == spec.name()));
     let related = std::iter::once(Subject::Tool(spec)).chain(terms.map(Subject::Term)).collect();
     (format!("argument of {}", spec.name()), sections, related, &[])
 }
 
-fn of_table(table: &'static Table) -> Parts {
+fn table_parts(table: &'static Table) -> ExplanationParts {
     let columns: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
     let sections = vec![
-        section("", sentence(&table.description)),
+        section("", to_sentence(&table.description)),
         section("written", table.written.clone()),
         section("key", table.key.join(", ")),
         section("columns", columns.join(", ")),
@@ -132,9 +133,9 @@ fn of_table(table: &'static Table) -> Parts {
     ("table".to_owned(), sections, terms.map(Subject::Term).chain(columns).collect(), &[])
 }
 
-fn of_column(table: &'static Table, column: &'static Column) -> Parts {
+fn column_parts(table: &'static Table, column: &'static Column) -> ExplanationParts {
     let sections = vec![
-        section("", sentence(&column.description)),
+        section("", to_sentence(&column.description)),
         section("type", column.kind.clone()),
         section("values", column.values.join(", ")),
         section("table", format!("{}: {}", table.name, table.description)),
@@ -145,7 +146,7 @@ fn of_column(table: &'static Table, column: &'static Column) -> Parts {
     (format!("column of {}", table.name), sections, related, &[])
 }
 
-fn sentence(text: &str) -> String {
+fn to_sentence(text: &str) -> String {
     let mut letters = text.trim_end_matches('.').chars();
     match letters.next() {
         Some(first) => format!("{}{}.", first.to_uppercase(), letters.as_str()),
@@ -158,11 +159,14 @@ mod tests {
     use super::*;
 
     fn explained(name: &str) -> Explanation {
-        Explanation::of(subject(name).unwrap_or_else(|| panic!("{name} is unknown")), &Numbers::shipped())
+        Explanation::new(
+            subject_by_name(name).unwrap_or_else(|| panic!("{name} is unknown")),
+            &ParameterNumbers::bundled(),
+        )
     }
 
     #[test]
-    fn a_term_says_what_it_is_and_where_it_leads() {
+    fn term_explanation_has_definition_and_related_subjects() {
         let runway = explained("runway");
         assert_eq!((runway.title.as_str(), runway.note.as_str()), ("Runway", "money"));
         assert!(
@@ -175,8 +179,8 @@ mod tests {
     }
 
     #[test]
-    fn an_argument_says_unit_range_default_and_refusals() {
-        let text = explained("set_prices.A").as_text();
+    fn argument_explanation_has_unit_range_default_and_rejections() {
+        let text = explained("set_prices.A").to_text();
         for part in [
             "set_prices.A (argument of set_prices)",
             "List price of plan A.",
@@ -206,10 +210,10 @@ mod tests {
             .chain(
                 tables().flat_map(|table| table.columns.iter().map(move |own| Subject::Column(table, own))),
             );
-        let numbers = Numbers::shipped();
+        let numbers = ParameterNumbers::bundled();
         for subject in subjects {
-            let explained = Explanation::of(subject, &numbers);
-            assert!(!explained.as_text().contains("{operations.") && !explained.as_text().contains(":%}"));
+            let explained = Explanation::new(subject, &numbers);
+            assert!(!explained.to_text().contains("{operations.") && !explained.to_text().contains(":%}"));
             let first = &explained.sections[0];
             assert!(first.name.is_empty() && first.text.ends_with('.'), "{}: {first:?}", subject.name());
             assert!(!explained.note.is_empty(), "{}", subject.name());

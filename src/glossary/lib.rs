@@ -1,7 +1,7 @@
 //! The glossary: terms of the company, and the documentation of tools and tables.
 //!
 //! Terms are defined in `assets/glossary.toml` and contain only information visible to players. Interfaces request an
-//! [`Explanation`] of a [`Subject`] and display it in their own way.
+//! [`Explanation`] of a [`LedgerSubject`] and display it in their own way.
 
 mod explanation;
 mod subject;
@@ -11,7 +11,7 @@ use std::sync::LazyLock;
 use serde::{Deserialize, Serialize};
 
 pub use explanation::Explanation;
-pub use subject::{Subject, find, subject};
+pub use subject::{Subject, find_subject, subject_by_name};
 
 /// A term of the glossary.
 #[derive(Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -46,13 +46,13 @@ pub struct Term {
 }
 
 #[derive(Deserialize)]
-struct Book {
+struct GlossaryFile {
     term: Vec<Term>,
 }
 
 static TERMS: LazyLock<Vec<Term>> = LazyLock::new(|| {
     let text = include_str!("../../assets/glossary.toml");
-    toml::from_str::<Book>(text).expect("the bundled glossary is valid").term
+    toml::from_str::<GlossaryFile>(text).expect("the bundled glossary is valid").term
 });
 
 /// Returns all terms, ordered by topic.
@@ -66,7 +66,7 @@ pub fn term(id: &str) -> Option<&'static Term> {
 }
 
 /// Returns the terms that a screen or dialog shows, by action name.
-pub fn terms_of(place: &str) -> impl Iterator<Item = &'static Term> {
+pub fn terms_shown_on(place: &str) -> impl Iterator<Item = &'static Term> {
     TERMS.iter().filter(move |term| term.places.iter().any(|own| own == place))
 }
 
@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn everything_a_term_points_at_exists() {
+    fn references_of_terms_exist() {
         for Term { id, see, tools, tables, places, .. } in terms() {
             see.iter().for_each(|other| assert!(term(other).is_some() && other != id, "{id} sees {other}"));
             tools.iter().for_each(|tool| assert!(novamind_tools::find(tool).is_some(), "{id} names {tool}"));
@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn terms_are_sentences_and_topics_stand_together() {
+    fn terms_are_sentences_grouped_by_topic() {
         let mut topics: Vec<&str> = Vec::new();
         for term in terms() {
             assert!(term.text.ends_with('.') && !term.text.contains(". "), "{}: one sentence", term.id);
@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_hidden_is_said() {
+    fn terms_name_no_hidden_state() {
         let sealed = include_str!("../../tests/data/sealed.csv");
         let text = include_str!("../../assets/glossary.toml");
         let visible = |name: &str| {

@@ -1,9 +1,9 @@
 //! Subjects that can be explained, and their lookup.
 
 use super::{Term, term, terms};
-use novamind_base::nearest;
+use novamind_base::similar_names;
 use novamind_database::{Column, Table};
-use novamind_tools::{Argument, Spec};
+use novamind_tools::{Argument, ToolSpec};
 
 /// A subject that can be explained.
 #[derive(Debug, Clone, Copy)]
@@ -11,9 +11,9 @@ pub enum Subject {
     /// A term of the glossary.
     Term(&'static Term),
     /// A tool.
-    Tool(&'static Spec),
+    Tool(&'static ToolSpec),
     /// An argument of a tool.
-    Argument(&'static Spec, &'static Argument),
+    Argument(&'static ToolSpec, &'static Argument),
     /// A table.
     Table(&'static Table),
     /// A column of a table.
@@ -52,9 +52,9 @@ impl Subject {
     }
 }
 
-/// Looks up an exact name: a term (`churn`), a tool or argument (`set_prices`, `set_prices.A`), a table or column
+/// Looks up an exact name: a term (`churn`), a tool or argument (`set_prices_validates_and_updates`, `set_prices_validates_and_updates.A`), a table or column
 /// (`ledger`, `ledger.amount`). Parts of a tool that are not arguments resolve to the tool.
-pub fn subject(name: &str) -> Option<Subject> {
+pub fn subject_by_name(name: &str) -> Option<Subject> {
     if let Some(term) = term(name) {
         return Some(Subject::Term(term));
     }
@@ -78,68 +78,73 @@ pub fn subject(name: &str) -> Option<Subject> {
 ///
 /// # Errors
 /// Returns similar names if nothing matches.
-pub fn find(words: &str) -> Result<Subject, Vec<&'static str>> {
-    let typed = plain(words);
+pub fn find_subject(words: &str) -> Result<Subject, Vec<&'static str>> {
+    let typed = normalize(words);
     let called = |term: &&Term| {
         let names = std::iter::once(&term.id).chain(std::iter::once(&term.title)).chain(&term.aka);
-        names.into_iter().any(|name| plain(name) == typed)
+        names.into_iter().any(|name| normalize(name) == typed)
     };
     let joined = words.trim().to_lowercase().replace([' ', '-'], "_");
     terms()
         .iter()
         .find(called)
         .map(Subject::Term)
-        .or_else(|| subject(words.trim()))
-        .or_else(|| subject(&joined))
-        .or_else(|| answered(&joined))
-        .or_else(|| without_remark(words).and_then(|words| find(words).ok()))
-        .ok_or_else(|| near(&typed))
+        .or_else(|| subject_by_name(words.trim()))
+        .or_else(|| subject_by_name(&joined))
+        .or_else(|| tool_with_result_field(&joined))
+        .or_else(|| strip_parentheses(words).and_then(|words| find_subject(words).ok()))
+        .ok_or_else(|| similar_terms(&typed))
 }
 
 /// Returns the tool that answers with a field of this name, because its manual describes the field.
-fn answered(field: &str) -> Option<Subject> {
+fn tool_with_result_field(field: &str) -> Option<Subject> {
     // A single word is more likely a type than a field.
     if !field.contains('_') && field != "description" {
         return None;
     }
     let names = |kind: &'static str| kind.split(|letter: char| !letter.is_alphanumeric() && letter != '_');
-    let answers = |spec: &&'static Spec| {
-        let fields = |output: &novamind_tools::Output| {
+    let answers = |spec: &&'static ToolSpec| {
+        let fields = |output: &novamind_tools::ResultField| {
             output.name == field || names(output.kind).any(|name| name == field)
         };
-        spec.returns.iter().any(fields)
+        spec.result_fields.iter().any(fields)
     };
     novamind_tools::CATALOGUE.iter().map(|tool| tool.spec()).find(answers).map(Subject::Tool)
 }
 
 /// Removes a remark in brackets at the end, as in `Overload (peak)`.
-fn without_remark(words: &str) -> Option<&str> {
+fn strip_parentheses(words: &str) -> Option<&str> {
     words.trim().strip_suffix(')')?.split_once('(').map(|(words, _)| words)
 }
 
 /// Returns similar names, those that contain the words first.
-fn near(typed: &str) -> Vec<&'static str> {
+fn similar_terms(typed: &str) -> Vec<&'static str> {
     let names = || terms().iter().map(|term| term.id.as_str());
     let mut found: Vec<&str> = if typed.len() < 3 {
         Vec::new()
     } else {
-        terms().iter().filter(|term| holds(term, typed)).map(|term| term.id.as_str()).take(5).collect()
+        terms()
+            .iter()
+            .filter(|term| contains_text(term, typed))
+            .map(|term| term.id.as_str())
+            .take(5)
+            .collect()
     };
     if found.is_empty() {
         let tools = novamind_tools::CATALOGUE.iter().map(|tool| tool.spec().name());
         let tables = novamind_database::tables().iter().map(|table| table.name.as_str());
-        found = nearest(&typed.replace(' ', "-"), names());
-        found.extend(nearest(&typed.replace(' ', "_"), tools.chain(tables)));
+        found = similar_names(&typed.replace(' ', "-"), names());
+        found.extend(similar_names(&typed.replace(' ', "_"), tools.chain(tables)));
         found.truncate(5);
     }
     found
 }
 
-fn holds(term: &Term, typed: &str) -> bool {
-    std::iter::once(&term.id).chain(&term.aka).any(|name| plain(name).contains(typed))
+fn contains_text(term: &Term, typed: &str) -> bool {
+    std::iter::once(&term.id).chain(&term.aka).any(|name| normalize(name).contains(typed))
 }
 
-fn plain(words: &str) -> String {
+fn normalize(words: &str) -> String {
     let spaced = words.to_lowercase().replace(['-', '_'], " ");
     spaced.split_whitespace().collect::<Vec<_>>().join(" ")
 }
@@ -160,26 +165,26 @@ mod tests {
             ("ledger.amount", "column"),
             ("LEDGER.Amount", "column"),
         ] {
-            assert_eq!(subject(name).map(|found| found.kind()), Some(kind), "{name}");
+            assert_eq!(subject_by_name(name).map(|found| found.kind()), Some(kind), "{name}");
         }
         for name in ["", ".", "ledger.secret", "no_tool.A", "Churn", "customers.usage_demand"] {
-            assert!(subject(name).is_none(), "{name}");
+            assert!(subject_by_name(name).is_none(), "{name}");
         }
     }
 
     #[test]
-    fn every_name_comes_back() {
+    fn every_subject_is_found_by_its_name() {
         let tools = novamind_tools::CATALOGUE.iter().map(|tool| tool.spec());
         for spec in tools {
             for argument in spec.arguments {
                 let name = Subject::Argument(spec, argument).name();
-                assert_eq!(subject(&name).map(|found| found.name()), Some(name));
+                assert_eq!(subject_by_name(&name).map(|found| found.name()), Some(name));
             }
         }
         for table in novamind_database::tables() {
             for column in &table.columns {
                 let name = Subject::Column(table, column).name();
-                assert_eq!(subject(&name).map(|found| found.kind()), Some("column"), "{name}");
+                assert_eq!(subject_by_name(&name).map(|found| found.kind()), Some("column"), "{name}");
             }
         }
     }
@@ -205,10 +210,10 @@ mod tests {
             ("avg_response_days", "get_group_insights"),
             ("cycle_phase", "pmi"),
         ] {
-            assert_eq!(find(words).map(|found| found.name()), Ok(name.to_owned()), "{words}");
+            assert_eq!(find_subject(words).map(|found| found.name()), Ok(name.to_owned()), "{words}");
         }
-        assert!(find("qualit").is_err_and(|near| near.contains(&"delivered-quality")));
-        assert!(find("runwy").is_err_and(|near| near.contains(&"runway")));
-        assert!(find("").is_err() && find("\u{301}.\n").is_err());
+        assert!(find_subject("qualit").is_err_and(|near| near.contains(&"delivered-quality")));
+        assert!(find_subject("runwy").is_err_and(|near| near.contains(&"runway")));
+        assert!(find_subject("").is_err() && find_subject("\u{301}.\n").is_err());
     }
 }

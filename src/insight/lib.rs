@@ -2,55 +2,60 @@
 //!
 //! Every function checks permissions first. Hidden state comes from inspections of the session, which are rejected or recorded.
 
+mod causes;
 mod counterfactual;
 mod curve;
-mod same_world;
+mod inspection;
 #[cfg(test)]
-mod voice_tests;
+mod model_voice_tests;
+mod replayed_world;
 mod whatif;
-mod why;
-mod xray;
 
-pub use counterfactual::last_read::{LastRead, OfRecord};
-pub use counterfactual::one_each::unless_stopped;
-pub use counterfactual::script::{PastCall, PastDecision};
-pub use curve::access::CurveLook;
+pub use causes::{
+    Cause, CauseAnalysis, CauseContribution, CauseDetail, CauseProgress, CauseProgressFn, ChangeExplanation,
+    InputDetail, WeekQuantity, WeekQuestion, begin_cause_analysis, cause_analysis_folder,
+    record_figure_inspection,
+};
+pub use counterfactual::analysis_cache::{AnalysisCache, RecordAnalysis};
+pub use counterfactual::parallel_map::continue_unless_stopped;
+pub use counterfactual::recorded_steps::{RecordedCall, RecordedDecision};
+pub use curve::access::CurveInspection;
 pub use curve::example::example_curve;
 pub use curve::explorer::{
-    CurveBasis, CurveExplorer, CurveOutcome, CurvePoint, Expected, PlanPoint, SAMPLED_LEADS, true_curve_of,
+    CurveBasis, CurveExplorer, CurveOutcome, CurvePoint, ExpectedRange, LEAD_SAMPLE_SIZE, PlanPoint,
+    true_curve,
 };
-pub use same_world::SameWorld;
+pub use inspection::breakpoint::condition::{Condition, ConditionState, Direction, Relation, WorldEvent};
+pub use inspection::breakpoint::condition_history::ConditionHistory;
+pub use inspection::breakpoint::grammar::ConditionParseError;
+pub use inspection::breakpoint::list::Breakpoint;
+pub use inspection::breakpoint::measure::{Measure, MeasureKind, Quantity};
+pub use inspection::breakpoint::run_until::{BreakpointHit, BreakpointRun, StillTrueBreakpoint};
+pub use inspection::competitor_state::{CompetitorState, NextCompetitorMove};
+pub use inspection::customer_view::CustomerView;
+pub use inspection::day_replay::open_for_inspection;
+pub use inspection::difference::{CustomerDifference, DayDifference, RunDifference};
+pub use inspection::drift_state::{DriftState, GroupDriftState};
+pub use inspection::enterprise_thread_day::{EnterpriseThreadDay, EvaluatedPlan};
+pub use inspection::enterprise_view::EnterpriseView;
+pub use inspection::hidden_values::{HiddenValues, TrueGroupValues};
+pub use inspection::individual_recorder::{IndividualDay, LeadPlanTerms, SignupDecision, SubscriberOutcome};
+pub use inspection::individual_view::IndividualView;
+pub use inspection::inspector::{Inspect, Inspector};
+pub use inspection::lead_equation::{LeadEquation, LeadFactor};
+pub use inspection::next_draws::{Draw, DrawEffect, KeyedDraws, MAX_DRAWS, NextDraws, RandomPart};
+pub use inspection::quality_equation::{DeliveredPlanQuality, QualityEquation, SharedQualityGains};
+pub use inspection::reputation_equation::{
+    ChangeThresholds, DepartureEffect, ReputationEquation, Spillover, SubscriberContribution,
+};
+pub use inspection::satisfaction_equation::{SatisfactionEquation, SatisfactionTerm};
+pub use inspection::weighed_decision::{DecisionTerm, DecisiveTerm, RenewalPlanTerms, WeighedDecision};
+pub use inspection::writes::target::WriteTarget;
+pub use inspection::writes::{FigureWrite, FigureWrites, WriteSource};
+pub use replayed_world::ReplayedWorld;
 pub use whatif::{
-    Adopted, BranchComparison, BranchFigure, BranchFigures, BranchOrigin, DecisionDifference, DecisionEdit,
-    FORMS, FirstChange, FutureBand, Futures, Kin, MOST_ALTERNATIVES, OnWhatIfProgress, ParameterDifference,
-    WhatIf, branch_with_decisions, branches_of, look_at_what_if, origin_of, sets_amounts,
+    AdoptedBranch, BranchComparison, BranchFigure, BranchFigures, BranchOrigin, CallDifference, DecisionEdit,
+    EDIT_SYNTAX, FirstChange, FutureInterval, Futures, MAX_ALTERNATIVES, ParameterDifference, RelatedRun,
+    WhatIf, WhatIfProgressFn, branch_origin, create_branch_with_decisions, is_scalable,
+    record_what_if_inspection, related_runs,
 };
-pub use why::{
-    Cause, Causes, Detail, InputDetail, OnProgress, WeekQuantity, WeekQuestion, Why, WhyPart, WhyProgress,
-    begin_why, folder_of_causes, look_at_figure,
-};
-pub use xray::breakpoint::condition::{Condition, Direction, Judged, Relation, WorldEvent};
-pub use xray::breakpoint::grammar::ConditionProblem;
-pub use xray::breakpoint::list::Breakpoint;
-pub use xray::breakpoint::look_back::LookBack;
-pub use xray::breakpoint::measure::{Measure, MeasureKind, Quantity};
-pub use xray::breakpoint::run::{Hit, RunUntil, TrueBefore};
-pub use xray::company_day::{CompanyDay, JudgedPlan};
-pub use xray::company_lens::CompanyLens;
-pub use xray::customer_diary::{CustomerDay, DayOutcome, FirstDecision, FirstTerms};
-pub use xray::customer_lens::CustomerLens;
-pub use xray::difference::{CustomerDifference, Difference, RunDifference};
-pub use xray::drift_state::{DriftState, GroupDrifted};
-pub use xray::hidden_values::{HiddenValues, TrueGroup};
-pub use xray::inspector::{Inspect, Inspector};
-pub use xray::lead_equation::{LeadEquation, LeadFactor};
-pub use xray::lens::Lens;
-pub use xray::metrics::open_to_look_inside;
-pub use xray::next_draws::{Draw, DrawnPart, Follows, KeyedDraws, MOST_DRAWS, NextDraws};
-pub use xray::quality_equation::{PlanDelivered, QualityEquation, SharedGains};
-pub use xray::reputation_equation::{Departures, LeastChanges, OwnChange, ReputationEquation, Spillover};
-pub use xray::rival_state::{NextRivalMove, RivalState};
-pub use xray::satisfaction_equation::{MoodTerm, SatisfactionEquation};
-pub use xray::weighed::{PlanTerms, Term, TurningTerm, Weighed};
-pub use xray::writes::target::WriteTarget;
-pub use xray::writes::{WhoWrites, Write, WrittenBy};

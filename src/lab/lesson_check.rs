@@ -7,8 +7,8 @@ use rayon::prelude::*;
 
 use novamind_course::{Lesson, MEASURED_SEEDS, MeasuredFigure, ReferencePlay, measure_over_part};
 use novamind_record::error::RunError;
-use novamind_rules::answers_to_companies;
-use novamind_session::{PartPlay, Session, play_part, play_part_watched};
+use novamind_rules::calls_for_waiting_threads;
+use novamind_session::{PartPlay, Session, play_part, play_part_with_hooks};
 
 /// Allowed relative deviation of a measured figure from the stated one.
 pub const TOLERANCE: f64 = 0.15;
@@ -32,9 +32,9 @@ pub struct GoalResult {
     /// Measured value, if any.
     pub value: Option<f64>,
     /// Target value.
-    pub bound: Option<f64>,
+    pub target: Option<f64>,
     /// Whether the goal was reached.
-    pub met: bool,
+    pub is_met: bool,
 }
 
 /// A figure in the texts, measured again.
@@ -48,7 +48,7 @@ pub struct FigureResult {
 
 impl FigureResult {
     /// Whether the stated value is correct.
-    pub fn holds(&self) -> bool {
+    pub fn is_within_tolerance(&self) -> bool {
         (self.mean - self.stated.value).abs() <= TOLERANCE * self.stated.value.abs()
     }
 }
@@ -57,9 +57,9 @@ impl FigureResult {
 #[derive(Debug, Clone, PartialEq)]
 pub struct LessonCheck {
     /// Results of the reference play by seed.
-    pub good: Vec<PlayResult>,
+    pub reference_results: Vec<PlayResult>,
     /// Results of the bad play by seed.
-    pub bad: Vec<PlayResult>,
+    pub pitfall_results: Vec<PlayResult>,
     /// Figures in the texts.
     pub figures: Vec<FigureResult>,
     /// Pitfall that the bad play must trigger.
@@ -68,20 +68,25 @@ pub struct LessonCheck {
 
 impl LessonCheck {
     /// Returns the failed checks, one line each.
-    pub fn problems(&self) -> Vec<String> {
-        let missed = self.good.iter().flat_map(|play| {
-            let missed = play.goals.iter().filter(|goal| !goal.met);
+    pub fn describe_problems(&self) -> Vec<String> {
+        let missed = self.reference_results.iter().flat_map(|play| {
+            let missed = play.goals.iter().filter(|goal| !goal.is_met);
             missed.map(|goal| format!("seed {}: the reference play misses {}", play.seed, goal.text))
         });
-        let reached = self.bad.iter().filter(|play| play.goals.iter().all(|goal| goal.met));
+        let reached = self.pitfall_results.iter().filter(|play| play.goals.iter().all(|goal| goal.is_met));
         let reached = reached.map(|play| format!("seed {}: the bad play reaches every goal", play.seed));
-        let unmet = self.bad.iter().filter(|play| !play.pitfalls.contains(&self.pitfall));
+        let unmet = self.pitfall_results.iter().filter(|play| !play.pitfalls.contains(&self.pitfall));
         let unmet = unmet.map(|play| {
             format!("seed {}: the bad play does not trigger pitfall {}", play.seed, self.pitfall)
         });
-        let wrong = self.figures.iter().filter(|figure| !figure.holds()).map(|figure| {
+        let wrong = self.figures.iter().filter(|figure| !figure.is_within_tolerance()).map(|figure| {
             let FigureResult { stated, mean } = figure;
-            format!("{} is stated as {} but is {}", stated.name, stated.written(), stated.write(*mean))
+            format!(
+                "{} is stated as {} but is {}",
+                stated.name,
+                stated.formatted_value(),
+                stated.format_value(*mean)
+            )
         });
         missed.chain(reached).chain(unmet).chain(wrong).collect()
     }
@@ -93,7 +98,7 @@ impl LessonCheck {
 /// Fails if a part cannot start or a play is rejected.
 pub fn check_lesson(lesson: &Arc<Lesson>) -> Result<LessonCheck, RunError> {
     Ok(LessonCheck {
-        figures: measured(lesson)?,
+        figures: measure_figures(lesson)?,
         ..check_plays(lesson, &MEASURED_SEEDS.collect::<Vec<u64>>())?
     })
 }
@@ -104,49 +109,49 @@ pub fn check_lesson(lesson: &Arc<Lesson>) -> Result<LessonCheck, RunError> {
 /// As for [`check_lesson`].
 pub fn check_plays(lesson: &Arc<Lesson>, seeds: &[u64]) -> Result<LessonCheck, RunError> {
     let plays = |play: &ReferencePlay| -> Result<Vec<PlayResult>, RunError> {
-        seeds.par_iter().map(|seed| played(lesson, play, *seed)).collect()
+        seeds.par_iter().map(|seed| run_play(lesson, play, *seed)).collect()
     };
     Ok(LessonCheck {
-        good: plays(&lesson.plan.good)?,
-        bad: plays(&lesson.plan.bad)?,
+        reference_results: plays(&lesson.plan.good)?,
+        pitfall_results: plays(&lesson.plan.bad)?,
         figures: Vec::new(),
         pitfall: lesson.plan.bad.pitfall.clone().unwrap_or_default(),
     })
 }
 
-fn played(lesson: &Arc<Lesson>, play: &ReferencePlay, seed: u64) -> Result<PlayResult, RunError> {
+fn run_play(lesson: &Arc<Lesson>, play: &ReferencePlay, seed: u64) -> Result<PlayResult, RunError> {
     let mut result = PlayResult { seed, goals: Vec::new(), pitfalls: Vec::new() };
     for (part, own) in lesson.plan.parts.iter().enumerate() {
         let of_part = PartPlay {
             lesson,
             part,
             seed: Some(seed),
-            plays: &play.plays,
+            scheduled_calls: &play.plays,
             weeks: None,
             is_judged: true,
-            asks_database: lesson.asks_database(),
+            needs_database: lesson.needs_database(),
         };
-        let session = play_part(&of_part, answers_to_companies)?;
+        let session = play_part(&of_part, calls_for_waiting_threads)?;
         let Some(standing) = session.lesson() else { continue };
         for (step, own) in own.steps.iter().enumerate() {
-            let judged = standing.goals(step);
+            let judged = standing.goal_results(step);
             result.goals.extend(own.goals.iter().enumerate().map(|(at, goal)| {
                 let note = judged.get(at);
                 GoalResult {
                     text: goal.text.clone(),
                     value: note.and_then(|note| note.value),
-                    bound: note.and_then(|note| note.bound),
-                    met: note.is_some_and(|note| note.met == Some(true)),
+                    target: note.and_then(|note| note.bound),
+                    is_met: note.is_some_and(|note| note.met == Some(true)),
                 }
             }));
         }
-        result.pitfalls.extend(standing.pitfalls().into_iter().map(str::to_owned));
+        result.pitfalls.extend(standing.met_pitfalls().into_iter().map(str::to_owned));
     }
     Ok(result)
 }
 
 /// Measures the figures of a lesson; figures of one play are measured in the same runs.
-fn measured(lesson: &Arc<Lesson>) -> Result<Vec<FigureResult>, RunError> {
+fn measure_figures(lesson: &Arc<Lesson>) -> Result<Vec<FigureResult>, RunError> {
     let mut plays: Vec<Vec<&MeasuredFigure>> = Vec::new();
     for figure in &lesson.plan.measured {
         let is_same = |of: &&mut Vec<&MeasuredFigure>| {
@@ -165,7 +170,7 @@ fn measured(lesson: &Arc<Lesson>) -> Result<Vec<FigureResult>, RunError> {
     let runs: Vec<(usize, u64)> =
         (0..plays.len()).flat_map(|play| MEASURED_SEEDS.map(move |seed| (play, seed))).collect();
     let of_runs: Result<Vec<Vec<Option<f64>>>, RunError> =
-        runs.par_iter().map(|(play, seed)| values_of(lesson, &plays[*play], *seed)).collect();
+        runs.par_iter().map(|(play, seed)| figure_values(lesson, &plays[*play], *seed)).collect();
     let of_runs = of_runs?;
     let mean = |figure: &MeasuredFigure| {
         let of_play = runs.iter().zip(&of_runs).filter_map(|((play, _), values)| {
@@ -179,22 +184,22 @@ fn measured(lesson: &Arc<Lesson>) -> Result<Vec<FigureResult>, RunError> {
 }
 
 /// Measures the figures of one play on a seed.
-fn values_of(
+fn figure_values(
     lesson: &Arc<Lesson>,
     figures: &[&MeasuredFigure],
     seed: u64,
 ) -> Result<Vec<Option<f64>>, RunError> {
     let Some(first) = figures.first() else { return Ok(Vec::new()) };
     let last = lesson.plan.parts[first.part].weeks();
-    let world = lesson.in_world_of(first);
+    let world = lesson.with_world_of(first);
     let play = PartPlay {
         lesson: &world,
         part: first.part,
         seed: Some(seed),
-        plays: &first.plays,
+        scheduled_calls: &first.plays,
         weeks: figures.iter().map(|own| own.week.unwrap_or(last)).max(),
         is_judged: false,
-        asks_database: figures.iter().any(|own| own.measurement.needs_database()),
+        needs_database: figures.iter().any(|own| own.measurement.needs_database()),
     };
     let mut values = vec![None; figures.len()];
     let mut measure = |session: &mut Session, week: u32| {
@@ -204,12 +209,12 @@ fn values_of(
             let wanted = own.week.unwrap_or(last);
             if wanted == week || (stays && wanted > week) {
                 let problem =
-                    |problem| RunError::NotPossible(format!("measured figure {}: {problem}", own.name));
+                    |problem| RunError::InvalidRequest(format!("measured figure {}: {problem}", own.name));
                 *value = measure_over_part(&own.measurement, session).map_err(problem)?;
             }
         }
         Ok(())
     };
-    play_part_watched(&play, answers_to_companies, &mut |_| {}, &mut measure)?;
+    play_part_with_hooks(&play, calls_for_waiting_threads, &mut |_| {}, &mut measure)?;
     Ok(values)
 }

@@ -4,46 +4,50 @@
 //! the starting yields from the parameters. Figures include hidden state, so policy runs are debug runs.
 
 pub mod ablation;
-mod answers;
 pub mod baseline;
-pub mod behaviour;
-pub mod bench;
+pub mod behavior;
+pub mod benchmark;
 pub mod bound;
 pub mod comparison;
 pub mod consistency;
 pub mod curves;
-#[cfg(test)]
-mod example_tests;
-pub mod exhibit;
+pub mod distributions;
+mod enterprise_answers;
 pub mod experiment;
-mod forecasts;
-mod golden;
-pub mod laws;
+mod forecast_backtest;
+mod golden_figures;
+pub mod lab_report;
 mod lesson_check;
 mod metrics;
-mod normal;
+mod normal_distribution;
 mod opponents;
 mod policy;
 mod ranks;
 pub mod results;
-mod routine;
 mod runner;
 mod seeds;
-mod strong;
+#[cfg(test)]
+mod spoiler_tests;
+mod strong_policies;
 pub mod study;
 mod symbols;
+mod weekly_routine;
 
-pub use answers::{EnterpriseRule, OfferingRule, PriceFactor, ThreadTypes};
-pub use forecasts::{PlayedWeeks, coverage, horizons, measure, play_weeks, policies_of};
-pub use golden::{GoldenComparison, GoldenError, Reference, compare, read_reference};
+pub use enterprise_answers::{EnterpriseRule, OfferingRule, PriceFactor, ThreadTypes};
+pub use forecast_backtest::{
+    PlayedWeeks, band_coverage, forecast_horizons, measure_naive_bands, play_weeks, policy_names,
+};
+pub use golden_figures::{
+    GoldenComparison, GoldenError, ReferenceFigures, compare_with_reference, read_reference,
+};
 pub use lesson_check::{
     FigureResult, GoalResult, LessonCheck, PlayResult, TOLERANCE, check_lesson, check_plays,
 };
-pub use metrics::{Collector, Figure};
-pub use novamind_rules::answers_to_companies;
+pub use metrics::{Collector, MetricValue};
+pub use novamind_rules::calls_for_waiting_threads;
 pub use novamind_world::params::Params;
 pub use opponents::play_opponents;
 pub use policy::{Policy, PolicyError};
-pub use runner::{Outcome, RunEnd, RunError, RunSpec, play};
-pub use seeds::{Seeds, parse_seeds};
-pub use strong::STRONG;
+pub use runner::{PolicyRunOutcome, RunEnd, RunError, RunSpec, play};
+pub use seeds::{SeedRange, parse_seeds};
+pub use strong_policies::STRONG_POLICIES;

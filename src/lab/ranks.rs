@@ -1,7 +1,7 @@
 //! Ranks and rank correlation.
 
 /// Returns ranks from 1, greatest value first; equal values share their mean rank.
-pub fn places(values: &[f64]) -> Vec<f64> {
+pub fn mean_ranks(values: &[f64]) -> Vec<f64> {
     let place = |value: &f64| {
         let better = values.iter().filter(|other| other.total_cmp(value).is_gt()).count() as f64;
         let equal = values.iter().filter(|other| other.total_cmp(value).is_eq()).count() as f64;
@@ -16,8 +16,8 @@ pub fn rank_correlation(pairs: &[(f64, f64)]) -> Option<f64> {
     if pairs.len() < 3 {
         return None;
     }
-    let left = places(&pairs.iter().map(|pair| pair.0).collect::<Vec<f64>>());
-    let right = places(&pairs.iter().map(|pair| pair.1).collect::<Vec<f64>>());
+    let left = mean_ranks(&pairs.iter().map(|pair| pair.0).collect::<Vec<f64>>());
+    let right = mean_ranks(&pairs.iter().map(|pair| pair.1).collect::<Vec<f64>>());
     let middle = (pairs.len() as f64 + 1.0) / 2.0;
     let product = |one: &[f64], other: &[f64]| -> f64 {
         one.iter().zip(other).map(|(one, other)| (one - middle) * (other - middle)).sum()
@@ -55,12 +55,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn places_begin_with_the_greatest_and_equal_ones_share() {
-        assert_eq!(places(&[5.0, 9.0, 5.0, -1.0]), [2.5, 1.0, 2.5, 4.0]);
+    fn ranks_start_at_the_largest_and_ties_share() {
+        assert_eq!(mean_ranks(&[5.0, 9.0, 5.0, -1.0]), [2.5, 1.0, 2.5, 4.0]);
     }
 
     #[test]
-    fn rankings_that_agree_have_concordance_1_and_opposite_ones_0() {
+    fn concordance_is_1_for_equal_and_0_for_opposite_rankings() {
         let up = vec![1.0, 2.0, 3.0];
         let down = vec![3.0, 2.0, 1.0];
         assert_eq!(concordance(&[up.clone(), up.clone(), up.clone()]), Some(1.0));
@@ -76,7 +76,7 @@ mod tests {
         assert!((own - 12.0 * spread / (9.0 * 60.0)).abs() < 1e-12, "{own}");
     }
     #[test]
-    fn order_counts_and_size_does_not() {
+    fn concordance_ignores_magnitudes() {
         assert_eq!(rank_correlation(&[(1.0, 9.0), (2.0, 5.0), (300.0, 1.0)]), Some(-1.0));
         assert_eq!(rank_correlation(&[(1.0, 1.0), (2.0, 2.0), (3.0, 900.0)]), Some(1.0));
         // Ranks 1, 2.5, 2.5, 4 against 1, 3, 2, 4.
@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn too_few_or_equal_pairs_have_none() {
+    fn rank_correlation_needs_three_varying_pairs() {
         assert_eq!(rank_correlation(&[(1.0, 1.0), (2.0, 2.0)]), None);
         assert_eq!(rank_correlation(&[(1.0, 5.0), (2.0, 5.0), (3.0, 5.0)]), None);
     }

@@ -9,16 +9,16 @@ use serde_json::Value;
 
 use super::metrics::Collector;
 use super::policy::Policy;
-use super::routine;
-use super::symbols::Symbols;
+use super::symbols::SymbolTable;
+use super::weekly_routine;
 use novamind_record::error::RunError as SessionError;
 use novamind_record::figures::WeekFigures;
 use novamind_record::folder::configuration::Configuration;
 use novamind_record::mode::Mode;
 use novamind_record::trajectory::policy_rationale;
-use novamind_record::trajectory::record::{Ended, Via};
+use novamind_record::trajectory::record::{RunEndReason, Via};
 use novamind_session::{DayReport, NewRun, Session, Storage};
-use novamind_tools::{Answer, Refusal, ToolId};
+use novamind_tools::{Answer, Rejection, ToolId};
 
 /// Settings of a run.
 #[derive(Debug, Clone)]
@@ -28,7 +28,7 @@ pub struct RunSpec {
     /// Last day of the run; it affects the mechanics.
     pub days: Option<u32>,
     /// Stop after this day.
-    pub until: Option<u32>,
+    pub stop_after_day: Option<u32>,
     /// Demand surges; `None`: from the policy or scenario.
     pub surges: Option<bool>,
     /// Cash on day 0, dollars.
@@ -38,24 +38,24 @@ pub struct RunSpec {
     /// Single parameters, `(table.key, value)`.
     pub overrides: Vec<(String, String)>,
     /// Folder in which the run is saved.
-    pub save: Option<PathBuf>,
+    pub save_folder: Option<PathBuf>,
     /// Whether a saved run includes its database.
-    pub projection: bool,
+    pub saves_database: bool,
 }
 
 impl RunSpec {
     /// Returns a run on a seed with the settings of the policy.
-    pub fn of_seed(seed: u64) -> RunSpec {
+    pub fn for_seed(seed: u64) -> RunSpec {
         RunSpec {
             seed,
             days: None,
-            until: None,
+            stop_after_day: None,
             surges: None,
             cash: None,
             scenario: None,
             overrides: Vec::new(),
-            save: None,
-            projection: false,
+            save_folder: None,
+            saves_database: false,
         }
     }
 }
@@ -74,7 +74,7 @@ pub enum RunEnd {
 
 /// The outcome of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Outcome {
+pub struct PolicyRunOutcome {
     /// Seed.
     pub seed: u64,
     /// Policy.
@@ -101,16 +101,16 @@ pub struct Outcome {
     pub seconds: f64,
 }
 
-impl fmt::Display for Outcome {
+impl fmt::Display for PolicyRunOutcome {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             formatter,
             "seed {}  day {}  cash {}  subscribers {}  seats {}  ",
             self.seed,
             self.day,
-            novamind_base::notation::dollars(self.cash),
-            novamind_base::notation::grouped(f64::from(self.subscribers), 0),
-            novamind_base::notation::grouped(f64::from(self.seats), 0),
+            novamind_base::formatting::dollars(self.cash),
+            novamind_base::formatting::grouped_number(f64::from(self.subscribers), 0),
+            novamind_base::formatting::grouped_number(f64::from(self.seats), 0),
         )?;
         match self.ended {
             RunEnd::Bankruptcy => write!(formatter, "bankrupt on day {}", self.day),
@@ -140,7 +140,7 @@ pub enum RunError {
         /// Tool.
         tool: String,
         /// Rejection.
-        refusal: Box<Refusal>,
+        refusal: Box<Rejection>,
     },
 }
 
@@ -172,19 +172,19 @@ pub fn play(
     spec: &RunSpec,
     configuration: &Configuration,
     collector: &mut Collector,
-) -> Result<Outcome, RunError> {
+) -> Result<PolicyRunOutcome, RunError> {
     let started = Instant::now();
     let session = play_session(policy, spec, configuration, collector)?;
     Ok(outcome(policy, spec.seed, &session, started.elapsed()))
 }
 
 /// Plays a policy to its end and returns the weeks.
-pub(super) fn weeks_of(
+pub(super) fn play_all_weeks(
     policy: &Policy,
     spec: &RunSpec,
     configuration: &Configuration,
 ) -> Result<Vec<WeekFigures>, RunError> {
-    let session = play_session(policy, spec, configuration, &mut Collector::idle())?;
+    let session = play_session(policy, spec, configuration, &mut Collector::disabled())?;
     Ok(session.weeks().to_vec())
 }
 
@@ -195,7 +195,7 @@ pub(super) fn play_session(
     configuration: &Configuration,
     collector: &mut Collector,
 ) -> Result<Session, RunError> {
-    let mut watch = |report: &DayReport<'_>| collector.day(report);
+    let mut watch = |report: &DayReport<'_>| collector.add_day(report);
     let mut session = play_while(&|| true, policy, spec, configuration, &mut watch)?;
     session.save()?;
     Ok(session)
@@ -212,14 +212,14 @@ pub(super) fn play_while(
     let mut session = Session::create(new_run(policy, spec), configuration)?;
     while !is_over(&session, spec) && goes_on() {
         decide(policy, spec.seed, &mut session)?;
-        advance(policy, spec.seed, spec.until.unwrap_or(u32::MAX), &mut session, watch)?;
+        advance_week(policy, spec.seed, spec.stop_after_day.unwrap_or(u32::MAX), &mut session, watch)?;
     }
     Ok(session)
 }
 
 /// Returns whether a run reached its stop day or its end.
 pub(super) fn is_over(session: &Session, spec: &RunSpec) -> bool {
-    session.ended().is_some() || spec.until.is_some_and(|until| session.day() >= until)
+    session.ended().is_some() || spec.stop_after_day.is_some_and(|until| session.day() >= until)
 }
 
 /// Creates the session that a policy requests.
@@ -244,8 +244,8 @@ pub(super) fn new_run(policy: &Policy, spec: &RunSpec) -> NewRun {
         participant: None,
         agreed: None,
         study: None,
-        storage: spec.save.clone().map_or(Storage::Memory, Storage::Runs),
-        projection: spec.projection,
+        storage: spec.save_folder.clone().map_or(Storage::Memory, Storage::Runs),
+        projection: spec.saves_database,
         sync_calls: false,
         seal_key: standard.seal_key,
     }
@@ -253,11 +253,11 @@ pub(super) fn new_run(policy: &Policy, spec: &RunSpec) -> NewRun {
 
 /// Makes the calls of a policy on the current decision day.
 pub(super) fn decide(policy: &Policy, seed: u64, session: &mut Session) -> Result<(), RunError> {
-    decide_telling(policy, seed, session, &mut |_| ())
+    decide_with_answers(policy, seed, session, &mut |_| ())
 }
 
 /// Makes the calls of a policy and passes every response to a callback.
-pub(super) fn decide_telling(
+pub(super) fn decide_with_answers(
     policy: &Policy,
     seed: u64,
     session: &mut Session,
@@ -281,13 +281,13 @@ pub(super) fn decide_telling(
         }
     };
     if let Some(rules) = &policy.rule_based {
-        for (tool, arguments) in routine::calls(rules, session) {
+        for (tool, arguments) in weekly_routine::routine_calls(rules, session) {
             call(session, tool.as_ref(), &arguments, false)?;
         }
     }
     for scheduled in policy.calls.iter().filter(|call| call.is_due(day)) {
         for _ in 0..scheduled.repeat {
-            let symbols = Symbols::of(session.company().observe().known_groups);
+            let symbols = SymbolTable::new(session.company().observe().known_groups);
             for arguments in symbols.resolve(&scheduled.arguments) {
                 call(session, &scheduled.tool, &arguments, scheduled.may_fail)?;
             }
@@ -302,7 +302,7 @@ pub(super) fn decide_telling(
 }
 
 /// Simulates a week, or the days up to the stop day; `watch` observes every day.
-pub(super) fn advance(
+pub(super) fn advance_week(
     policy: &Policy,
     seed: u64,
     until: u32,
@@ -325,9 +325,9 @@ pub(super) fn advance(
 }
 
 /// Returns the outcome of a session.
-pub(super) fn outcome(policy: &Policy, seed: u64, session: &Session, took: Duration) -> Outcome {
+pub(super) fn outcome(policy: &Policy, seed: u64, session: &Session, took: Duration) -> PolicyRunOutcome {
     let seen = session.company().observe();
-    Outcome {
+    PolicyRunOutcome {
         seed,
         policy: policy.name.clone(),
         days: seen.last_day,
@@ -336,7 +336,7 @@ pub(super) fn outcome(policy: &Policy, seed: u64, session: &Session, took: Durat
         subscribers: seen.subscribers,
         seats: seen.seats,
         ended: match session.ended() {
-            Some(Ended::Bankruptcy) => RunEnd::Bankruptcy,
+            Some(RunEndReason::Bankruptcy) => RunEnd::Bankruptcy,
             Some(_) => RunEnd::Horizon,
             None => RunEnd::Until,
         },

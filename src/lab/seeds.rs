@@ -1,13 +1,13 @@
 //! Parses seeds and ranges of seeds.
 
-use novamind_base::notation::grouped;
+use novamind_base::formatting::grouped_number;
 
 /// Maximum number of seeds in a range. Larger ranges are probably typing errors.
-const MOST_SEEDS: u64 = 1_000_000;
+const MAX_SEEDS: u64 = 1_000_000;
 
 /// A seed or an inclusive range of seeds.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Seeds {
+pub struct SeedRange {
     /// First seed.
     pub first: u64,
     /// Last seed.
@@ -17,12 +17,12 @@ pub struct Seeds {
 /// Parses `7` or `1..24`.
 ///
 /// # Errors
-/// Fails if the text is neither, a seed is above 2^63 - 1, or the range is empty or longer than `MOST_SEEDS`.
-pub fn parse_seeds(text: &str) -> Result<Seeds, String> {
+/// Fails if the text is neither, a seed is above 2^63 - 1, or the range is empty or longer than `MAX_SEEDS`.
+pub fn parse_seeds(text: &str) -> Result<SeedRange, String> {
     let number = |text: &str| text.trim().parse::<u64>().map_err(|_| format!("{text} is not a seed"));
     let seeds = match text.split_once("..") {
-        Some((first, last)) => Seeds { first: number(first)?, last: number(last)? },
-        None => number(text).map(|seed| Seeds { first: seed, last: seed })?,
+        Some((first, last)) => SeedRange { first: number(first)?, last: number(last)? },
+        None => number(text).map(|seed| SeedRange { first: seed, last: seed })?,
     };
     if seeds.last > i64::MAX as u64 {
         return Err(format!("a seed must be at most {}, not {}", i64::MAX, seeds.last));
@@ -31,8 +31,8 @@ pub fn parse_seeds(text: &str) -> Result<Seeds, String> {
         return Err(format!("{}..{} is empty; put the smaller number first", seeds.first, seeds.last));
     }
     let count = seeds.last - seeds.first + 1;
-    if count > MOST_SEEDS {
-        let (holds, most) = (grouped(count as f64, 0), grouped(MOST_SEEDS as f64, 0));
+    if count > MAX_SEEDS {
+        let (holds, most) = (grouped_number(count as f64, 0), grouped_number(MAX_SEEDS as f64, 0));
         return Err(format!("{}..{} has {holds} seeds; the maximum is {most}", seeds.first, seeds.last));
     }
     Ok(seeds)
@@ -44,8 +44,8 @@ mod tests {
 
     #[test]
     fn seeds_are_one_or_a_range_with_both_ends() {
-        assert_eq!(parse_seeds("7"), Ok(Seeds { first: 7, last: 7 }));
-        assert_eq!(parse_seeds("1..24"), Ok(Seeds { first: 1, last: 24 }));
+        assert_eq!(parse_seeds("7"), Ok(SeedRange { first: 7, last: 7 }));
+        assert_eq!(parse_seeds("1..24"), Ok(SeedRange { first: 1, last: 24 }));
         assert!(parse_seeds("1..1000000").is_ok());
         let many = parse_seeds("1..1000000000").expect_err("too many");
         assert_eq!(many, "1..1000000000 has 1,000,000,000 seeds; the maximum is 1,000,000");

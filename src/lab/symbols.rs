@@ -6,31 +6,35 @@ use serde_json::{Map, Value};
 use novamind_world::identifiers::{Channel, Group};
 
 /// Values of symbols.
-pub struct Symbols {
-    known: Vec<Group>,
+pub struct SymbolTable {
+    known_groups: Vec<Group>,
 }
 
-impl Symbols {
+impl SymbolTable {
     /// Creates the symbols for a company that knows these groups.
-    pub fn of(known: impl IntoIterator<Item = Group>) -> Symbols {
-        Symbols { known: known.into_iter().collect() }
+    pub fn new(known: impl IntoIterator<Item = Group>) -> SymbolTable {
+        SymbolTable { known_groups: known.into_iter().collect() }
     }
 
-    fn discovered(&self) -> impl Iterator<Item = Group> + '_ {
-        self.known.iter().copied().filter(|group| !group.initially_known())
+    fn discovered_groups(&self) -> impl Iterator<Item = Group> + '_ {
+        self.known_groups.iter().copied().filter(|group| !group.is_initially_known())
     }
 
     /// Returns the names that a symbol represents, or `None` if the text is not a symbol.
-    fn members(&self, text: &str) -> Option<Vec<String>> {
+    fn symbol_members(&self, text: &str) -> Option<Vec<String>> {
         let names =
             |groups: &mut dyn Iterator<Item = Group>| groups.map(|group| group.id().to_owned()).collect();
         Some(match text {
             "@first_discovered" => {
-                self.discovered().map(|group| group.id().to_owned()).min().into_iter().collect()
+                self.discovered_groups().map(|group| group.id().to_owned()).min().into_iter().collect()
             }
-            "@discovered_individuals" => names(&mut self.discovered().filter(|group| !group.is_enterprise())),
-            "@discovered_enterprises" => names(&mut self.discovered().filter(|group| group.is_enterprise())),
-            "@known" => names(&mut self.known.iter().copied()),
+            "@discovered_individuals" => {
+                names(&mut self.discovered_groups().filter(|group| !group.is_enterprise()))
+            }
+            "@discovered_enterprises" => {
+                names(&mut self.discovered_groups().filter(|group| group.is_enterprise()))
+            }
+            "@known" => names(&mut self.known_groups.iter().copied()),
             "@channels" => Channel::ALL.iter().map(|channel| channel.id().to_owned()).collect(),
             _ => return None,
         })
@@ -42,9 +46,9 @@ impl Symbols {
         let Some(map) = arguments.as_object() else { return vec![arguments.clone()] };
         let mut calls = vec![Map::new()];
         for (name, value) in map {
-            let values = match value.as_str().and_then(|text| self.members(text)) {
+            let values = match value.as_str().and_then(|text| self.symbol_members(text)) {
                 Some(members) => members.into_iter().map(Value::String).collect(),
-                None => self.expanded(value).map_or_else(Vec::new, |value| vec![value]),
+                None => self.expand_map(value).map_or_else(Vec::new, |value| vec![value]),
             };
             calls = calls
                 .iter()
@@ -61,12 +65,12 @@ impl Symbols {
     }
 
     /// Expands the symbol keys of a map; explicit entries take precedence. Returns `None` if a symbol is empty.
-    fn expanded(&self, value: &Value) -> Option<Value> {
+    fn expand_map(&self, value: &Value) -> Option<Value> {
         let Some(map) = value.as_object() else { return Some(value.clone()) };
         let mut spread = Map::new();
         for (key, inner) in map {
-            let inner = self.expanded(inner)?;
-            match self.members(key) {
+            let inner = self.expand_map(inner)?;
+            match self.symbol_members(key) {
                 Some(members) if members.is_empty() => return None,
                 Some(members) => members.into_iter().for_each(|name| {
                     spread.insert(name, inner.clone());
@@ -74,8 +78,8 @@ impl Symbols {
                 None => {}
             }
         }
-        for (key, inner) in map.iter().filter(|(key, _)| self.members(key).is_none()) {
-            spread.insert(key.clone(), self.expanded(inner)?);
+        for (key, inner) in map.iter().filter(|(key, _)| self.symbol_members(key).is_none()) {
+            spread.insert(key.clone(), self.expand_map(inner)?);
         }
         Some(Value::Object(spread))
     }
@@ -86,13 +90,15 @@ mod tests {
     use super::*;
     use serde_json::json;
 
-    fn symbols(discovered: &[&str]) -> Symbols {
+    fn symbols(discovered: &[&str]) -> SymbolTable {
         let group = |id: &&str| Group::parse(id).expect("a group");
-        Symbols::of(Group::all().filter(|group| group.initially_known()).chain(discovered.iter().map(group)))
+        SymbolTable::new(
+            Group::all().filter(|group| group.is_initially_known()).chain(discovered.iter().map(group)),
+        )
     }
 
     #[test]
-    fn keys_spread_and_written_entries_win() {
+    fn symbol_keys_expand_and_explicit_entries_win() {
         let given =
             json!({"targeted_spend": {"@channels": {"S1": 50, "@discovered_individuals": 9, "D_S02": 1}}});
         let calls = symbols(&["D_S02", "D_S07", "D_E01"]).resolve(&given);
@@ -103,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn values_make_one_call_per_member_and_nothing_makes_none() {
+    fn symbol_values_expand_to_one_call_per_member() {
         let given = json!({"group_id": "@first_discovered", "target_level": 2});
         assert_eq!(symbols(&[]).resolve(&given), Vec::<Value>::new());
         let calls = symbols(&["D_S02", "D_E09"]).resolve(&given);

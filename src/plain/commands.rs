@@ -1,50 +1,50 @@
 //! The commands of plain mode and their answers (docs/interfaces/plain-mode.md#commands).
 
-mod asked;
 mod breakpoints;
 mod check;
 mod curve;
+mod debug_commands;
 mod difference;
+mod explanations;
 mod groups;
 mod help;
 mod inbox;
 mod lesson;
-mod memo;
+mod notes;
+mod overview;
 mod parameters;
 mod queries;
-mod readings;
 mod report;
 mod rules;
 mod thread;
 mod whatif;
 mod why;
-mod words;
 mod xray;
 
 use std::io;
 
 use serde_json::{Value, json};
 
-pub use readings::change as change_line;
-use words::{explain, glossary};
+use explanations::{explain, glossary};
+pub use overview::describe_setting_change;
 
-use super::answers::Answer;
-use super::grammar::{self, Argument, Line, Problem, as_object};
-use super::lines::Lines;
-use super::next;
-use super::signals::{Phase, Watch};
-use novamind_base::nearest;
-use novamind_database::text::table;
-use novamind_insight::{Causes, LastRead, WhatIf};
-use novamind_record::folder::library::Library;
-use novamind_record::trajectory::record::{Activity, Help, QuerySource, Select, Via};
-use novamind_report::research::late_in_words;
-use novamind_session::{Change, RunDatabase, Session, rows_as_json};
+use super::advance;
+use super::grammar::{self, Argument, ParseError, ParsedLine, arguments_to_object};
+use super::line_source::LineSource;
+use super::response::CommandResponse;
+use super::signals::{Phase, SignalWatch};
+use novamind_base::similar_names;
+use novamind_database::text::format_result;
+use novamind_insight::{AnalysisCache, CauseAnalysis, WhatIf};
+use novamind_record::folder::query_library::QueryLibrary;
+use novamind_record::trajectory::record::{Activity, HelpRequest, ObjectSelection, QuerySource, Via};
+use novamind_report::research::describe_late_project;
+use novamind_session::{RunDatabase, Session, SettingChange, rows_to_json};
 use novamind_study::CodeCheck;
-use novamind_tools::{AnyTool, Kind, Module, ToolId};
+use novamind_tools::{AnyTool, ToolId, ToolKind, ToolModule};
 
 /// Commands that simulate a week: the plain-mode command and the names of the tool.
-const NEXT: [&str; 3] = ["next", "next-week", "next_week"];
+const NEXT_WEEK_COMMANDS: [&str; 3] = ["next", "next-week", "next_week"];
 
 /// Commands that are not tools, with their help. Aliases have no help.
 const COMMANDS: &[(&str, &str)] = &[
@@ -149,7 +149,7 @@ const COMMANDS: &[(&str, &str)] = &[
 ];
 
 /// Commands that only show something. Their use is recorded.
-const LOOKS: &[&str] = &[
+const READ_COMMANDS: &[&str] = &[
     "dashboard",
     "status",
     "inbox",
@@ -172,33 +172,38 @@ const LOOKS: &[&str] = &[
 pub struct Interpreter {
     /// The run.
     pub session: Session,
-    library: Library,
-    watch: Watch,
+    library: QueryLibrary,
+    watch: SignalWatch,
     /// Whether a person types and can be asked.
-    pub(super) prompts: bool,
+    pub(super) is_interactive: bool,
     /// Checks the experimenter's code. `None` if there is no experimenter.
     pub(super) code_check: Option<CodeCheck>,
     /// Whether the player is a participant of a study, for whom some commands are not available.
-    pub(super) leads_participant: bool,
+    pub(super) is_participant: bool,
     /// Simulations of the last `why` question.
-    causes_kept: LastRead<Causes>,
+    cached_causes: AnalysisCache<CauseAnalysis>,
     /// Simulations of the last `whatif` question.
-    branches_kept: LastRead<WhatIf>,
+    cached_branches: AnalysisCache<WhatIf>,
 }
 
 impl Interpreter {
     /// Creates an interpreter. `prompts` states that a person types and can be asked.
-    pub fn new(mut session: Session, library: Library, watch: Watch, prompts: bool) -> Interpreter {
-        session.answer_companies_by(novamind_rules::answers_to_companies);
+    pub fn new(
+        mut session: Session,
+        library: QueryLibrary,
+        watch: SignalWatch,
+        prompts: bool,
+    ) -> Interpreter {
+        session.set_rule_evaluator(novamind_rules::calls_for_waiting_threads);
         Interpreter {
             session,
             library,
             watch,
-            prompts,
+            is_interactive: prompts,
             code_check: None,
-            leads_participant: false,
-            causes_kept: LastRead::default(),
-            branches_kept: LastRead::default(),
+            is_participant: false,
+            cached_causes: AnalysisCache::default(),
+            cached_branches: AnalysisCache::default(),
         }
     }
 
@@ -206,291 +211,317 @@ impl Interpreter {
     ///
     /// # Errors
     /// Reading the answer to a question fails.
-    pub fn answer(&mut self, line: &str, input: &mut Lines) -> io::Result<Option<Answer>> {
-        let parsed = grammar::parse(line);
+    pub fn execute_line(
+        &mut self,
+        line: &str,
+        input: &mut LineSource,
+    ) -> io::Result<Option<CommandResponse>> {
+        let parsed = grammar::parse_line(line);
         if let Ok(line) = &parsed
-            && let Some(refused) = self.refuse_while_stopped(line)
+            && let Some(refused) = self.reject_while_paused(line)
         {
             return Ok(Some(refused));
         }
         let answer = match parsed {
-            Ok(Line::Empty) => return Ok(None),
-            Ok(Line::Text { word, .. }) if word == "check" => self.check(line).unwrap_or_else(usage),
-            Ok(Line::Text { word, rest }) => self.text(&word, &rest, line),
-            Ok(Line::Call { word, arguments, .. }) if NEXT.contains(&word.as_str()) => {
-                self.next(&arguments, input)?
+            Ok(ParsedLine::Empty) => return Ok(None),
+            Ok(ParsedLine::TextCommand { word, .. }) if word == "check" => {
+                self.check_command(line).unwrap_or_else(syntax_error)
             }
-            Ok(Line::Call { word, column, arguments }) => self.command(&word, column, &arguments),
-            Err(problem) => usage(problem),
+            Ok(ParsedLine::TextCommand { word, rest }) => self.execute_text_command(&word, &rest, line),
+            Ok(ParsedLine::Call { word, arguments, .. }) if NEXT_WEEK_COMMANDS.contains(&word.as_str()) => {
+                self.next_week(&arguments, input)?
+            }
+            Ok(ParsedLine::Call { word, column, arguments }) => {
+                self.execute_command(&word, column, &arguments)
+            }
+            Err(problem) => syntax_error(problem),
         };
-        Ok(Some(answer.naming_the_word_in(line)))
+        Ok(Some(answer.with_word_from(line)))
     }
 
     /// Executes a command that takes the rest of its line as text.
-    fn text(&mut self, word: &str, rest: &str, line: &str) -> Answer {
+    fn execute_text_command(&mut self, word: &str, rest: &str, line: &str) -> CommandResponse {
         // Columns are counted in the whole line.
         let column = line.trim_end().chars().count() - rest.chars().count() + 1;
         match word {
             "inbox" => self.inbox_where(rest, column),
-            "memo" if rest.is_empty() => self.show_memo(),
-            "memo" => self.add_to_memo(rest),
+            "memo" if rest.is_empty() => self.show_notes(),
+            "memo" => self.add_note(rest),
             "explain" | "what" => self.explain(word, rest),
             "glossary" => glossary(rest, &self.session),
-            "rules" => self.rules(rest, column),
-            "xray" => self.hidden_tables(rest, column),
-            "why" => self.why(rest, column).unwrap_or_else(usage),
-            "whatif" => self.what_if(rest, column).unwrap_or_else(usage),
+            "rules" => self.rules_command(rest, column),
+            "xray" => self.query_hidden_tables(rest, column),
+            "why" => self.why(rest, column).unwrap_or_else(syntax_error),
+            "whatif" => self.what_if(rest, column).unwrap_or_else(syntax_error),
             "pause" => self.pause(rest),
-            "break" => self.breakpoint(rest, column).unwrap_or_else(usage),
-            "run" => self.run_days(rest, column).unwrap_or_else(usage),
-            "since" | "back" => self.back(word, rest, column).unwrap_or_else(usage),
-            "find" => self.find_days(rest, column).unwrap_or_else(usage),
-            "who" => self.who(rest, column).unwrap_or_else(usage),
+            "break" => self.breakpoint_command(rest, column).unwrap_or_else(syntax_error),
+            "run" => self.run_days(rest, column).unwrap_or_else(syntax_error),
+            "since" | "back" => self.run_back(word, rest, column).unwrap_or_else(syntax_error),
+            "find" => self.find_days(rest, column).unwrap_or_else(syntax_error),
+            "who" => self.find_writers(rest, column).unwrap_or_else(syntax_error),
             "resume" => self.resume(rest),
-            _ => self.query(&grammar::statement(rest), QuerySource::Typed),
+            _ => self.execute_query(&grammar::sql_statement(rest), QuerySource::Typed),
         }
     }
 
-    fn query(&mut self, sql: &str, via: QuerySource) -> Answer {
-        let answer =
-            self.session.complete_database().and_then(RunDatabase::interrupt).and_then(|interrupt| {
+    fn execute_query(&mut self, sql: &str, via: QuerySource) -> CommandResponse {
+        let answer = self.session.up_to_date_database().and_then(RunDatabase::interrupt_handle).and_then(
+            |interrupt| {
                 // From here on a signal stops this query, even though it has not started.
                 let ticket = interrupt.ticket();
                 self.watch.enter_query(interrupt);
                 self.session.query_as(Some(ticket), sql, via)
-            });
-        self.watch.enter(Phase::Working);
+            },
+        );
+        self.watch.set_phase(Phase::Working);
         match answer {
-            Ok(rows) => Answer::done("sql", table(&rows), Value::Object(rows_as_json(&rows))),
-            Err(refusal) => Answer::refused("sql", refusal),
+            Ok(rows) => {
+                CommandResponse::success("sql", format_result(&rows), Value::Object(rows_to_json(&rows)))
+            }
+            Err(refusal) => CommandResponse::rejected("sql", refusal),
         }
     }
 
-    fn explain(&mut self, word: &str, rest: &str) -> Answer {
+    fn explain(&mut self, word: &str, rest: &str) -> CommandResponse {
         let answer = explain(word, rest, &self.session.numbers());
-        if let Ok(subject) = novamind_glossary::find(rest) {
-            let help = Help { term: subject.name(), place: "plain".to_owned() };
-            self.session.activity().note(Activity::Help(help));
+        if let Ok(subject) = novamind_glossary::find_subject(rest) {
+            let help = HelpRequest { term: subject.name(), place: "plain".to_owned() };
+            self.session.activity().record(Activity::Help(help));
         }
         answer
     }
 
     /// Records that the player viewed something.
-    fn note_look(&mut self, word: &str, arguments: &[Argument]) {
+    fn record_view(&mut self, word: &str, arguments: &[Argument]) {
         let words = arguments.iter().map(|argument| match &argument.value {
             Value::String(text) => text.clone(),
             other => other.to_string(),
         });
         let which = std::iter::once(word.to_owned()).chain(words).collect::<Vec<_>>().join(" ");
         let (screen, what) = ("plain".to_owned(), "command".to_owned());
-        self.session.activity().note(Activity::Select(Select { screen, what, which }));
+        self.session.activity().record(Activity::Select(ObjectSelection { screen, what, which }));
     }
 
-    fn next(&mut self, arguments: &[Argument], input: &mut Lines) -> io::Result<Answer> {
-        let filing = match next::read(arguments, &self.session, self.prompts) {
-            Ok(next::Filing::Ask) => match next::ask(&self.session, input)? {
+    fn next_week(&mut self, arguments: &[Argument], input: &mut LineSource) -> io::Result<CommandResponse> {
+        let filing = match advance::parse_filing(arguments, &self.session, self.is_interactive) {
+            Ok(advance::WeekFiling::Ask) => match advance::ask_filing(&self.session, input)? {
                 Some(filing) => filing,
                 None => {
                     let text = "cancelled; no day has passed".to_owned();
-                    return Ok(Answer::done("next", text, json!({ "cancelled": true })));
+                    return Ok(CommandResponse::success("next", text, json!({ "cancelled": true })));
                 }
             },
             Ok(filing) => filing,
-            Err(problem) => return Ok(usage(problem)),
+            Err(problem) => return Ok(syntax_error(problem)),
         };
-        Ok(next::run(&mut self.session, filing))
+        Ok(advance::advance_week(&mut self.session, filing))
     }
 
-    fn command(&mut self, word: &str, column: usize, arguments: &[Argument]) -> Answer {
+    fn execute_command(&mut self, word: &str, column: usize, arguments: &[Argument]) -> CommandResponse {
         let outcome = match word {
-            "quit" | "exit" => none(arguments).map(|()| Answer::Quit),
-            "dashboard" => none(arguments).map(|()| self.dashboard()),
-            "status" => none(arguments).map(|()| self.status()),
+            "quit" | "exit" => expect_no_arguments(arguments).map(|()| CommandResponse::Quit),
+            "dashboard" => expect_no_arguments(arguments).map(|()| self.dashboard()),
+            "status" => expect_no_arguments(arguments).map(|()| self.status()),
             "inbox" => self.inbox(arguments),
-            "thread" => self.thread(arguments),
-            "changes" => none(arguments).map(|()| self.changes()),
-            "needs" => none(arguments).map(|()| self.needs()),
-            "fit" => name(arguments).and_then(|name| self.fit(name, arguments)),
-            "leads" => name(arguments).and_then(|name| self.leads(name, arguments)),
+            "thread" => self.thread_command(arguments),
+            "changes" => expect_no_arguments(arguments).map(|()| self.changes()),
+            "needs" => expect_no_arguments(arguments).map(|()| self.needs()),
+            "fit" => optional_name(arguments).and_then(|name| self.fit(name, arguments)),
+            "leads" => optional_name(arguments).and_then(|name| self.leads(name, arguments)),
             "curve" => self.curve(arguments),
-            "undo" => none(arguments).map(|()| self.undo()),
-            "redo" => none(arguments).map(|()| self.redo()),
-            "vars" => none(arguments).map(|()| self.call_named(ToolId::GetVars, &json!({}))),
+            "undo" => expect_no_arguments(arguments).map(|()| self.undo()),
+            "redo" => expect_no_arguments(arguments).map(|()| self.redo()),
+            "vars" => {
+                expect_no_arguments(arguments).map(|()| self.call_tool_by_id(ToolId::GetVars, &json!({})))
+            }
             "help" => {
-                let (numbers, led) = (self.session.numbers(), self.leads_participant);
-                name(arguments).and_then(|name| help::help(name, arguments, &numbers, led))
+                let (numbers, led) = (self.session.numbers(), self.is_participant);
+                optional_name(arguments).and_then(|name| help::help(name, arguments, &numbers, led))
             }
-            "tools" => {
-                name(arguments).and_then(|name| readings::tools(name, arguments, &self.session.numbers()))
-            }
-            "queries" => name(arguments).and_then(|name| match name {
+            "tools" => optional_name(arguments)
+                .and_then(|name| overview::tools_command(name, arguments, &self.session.numbers())),
+            "queries" => optional_name(arguments).and_then(|name| match name {
                 Some(name) => self.named_query(name, arguments),
                 None => Ok(self.queries()),
             }),
-            "tables" => name(arguments).and_then(|name| readings::tables(name, arguments)),
-            "report" => name(arguments).and_then(|what| self.report(what, arguments)),
-            "history" => count(arguments).map(|count| self.history(count.unwrap_or(20))),
+            "tables" => optional_name(arguments).and_then(|name| overview::tables_command(name, arguments)),
+            "report" => optional_name(arguments).and_then(|what| self.report(what, arguments)),
+            "history" => optional_count(arguments).map(|count| self.history(count.unwrap_or(20))),
             "branch" => self.branch(arguments),
-            "lesson" => self.lesson(arguments),
+            "lesson" => self.lesson_command(arguments),
             "guess" => self.guess(arguments),
-            "hint" => none(arguments).map(|()| self.hint()),
-            "retry" | "again" => self.again(word, arguments),
-            "debrief" => none(arguments).map(|()| self.debrief()),
-            "branches" => none(arguments).map(|()| self.branches()),
-            "xray" => self.xray(arguments),
-            "lens" => self.lens(arguments),
+            "hint" => expect_no_arguments(arguments).map(|()| self.hint()),
+            "retry" | "again" => self.restart_step(word, arguments),
+            "debrief" => expect_no_arguments(arguments).map(|()| self.debrief()),
+            "branches" => expect_no_arguments(arguments).map(|()| self.branches()),
+            "xray" => self.xray_command(arguments),
+            "lens" => self.show_customer(arguments),
             "diff" => self.difference(arguments),
-            "set" => self.set(arguments),
-            "step" => count(arguments).map(|days| self.step(days.unwrap_or(1))),
-            _ => self.call(word, column, arguments),
+            "set" => self.set_parameter(arguments),
+            "step" => optional_count(arguments).map(|days| self.step(days.unwrap_or(1))),
+            _ => self.call_tool(word, column, arguments),
         };
-        if outcome.is_ok() && LOOKS.contains(&word) {
-            self.note_look(word, arguments);
+        if outcome.is_ok() && READ_COMMANDS.contains(&word) {
+            self.record_view(word, arguments);
         }
-        outcome.unwrap_or_else(usage)
+        outcome.unwrap_or_else(syntax_error)
     }
 
     /// Calls a tool by its name, with or without its module.
-    fn call(&mut self, word: &str, column: usize, arguments: &[Argument]) -> Result<Answer, Problem> {
-        let tool = tool_called(word).ok_or_else(|| self.unknown_tool(word, column, arguments))?;
-        let arguments = read_arguments(tool, arguments)?;
-        Ok(self.call_named(tool.spec().id, &arguments))
+    fn call_tool(
+        &mut self,
+        word: &str,
+        column: usize,
+        arguments: &[Argument],
+    ) -> Result<CommandResponse, ParseError> {
+        let tool = find_tool(word).ok_or_else(|| self.record_unknown_tool(word, column, arguments))?;
+        let arguments = parse_call_arguments(tool, arguments)?;
+        Ok(self.call_tool_by_id(tool.spec().id, &arguments))
     }
 
-    fn call_named(&mut self, tool: ToolId, arguments: &Value) -> Answer {
-        match self.call_stoppable(tool, arguments) {
-            Ok(data) if tool.runs_code() => queries::of_script(tool, &data),
+    fn call_tool_by_id(&mut self, tool: ToolId, arguments: &Value) -> CommandResponse {
+        match self.call_cancellable(tool, arguments) {
+            Ok(data) if tool.executes_code() => queries::script_response(tool, &data),
             Ok(data) => {
                 let shown = groups::with_ranges(&self.session, &data);
-                let answer = Answer::call_shown(tool.name(), data.to_json(), shown);
-                answer.with_notes(&self.late_projects(&data))
+                let answer = CommandResponse::tool_result(tool.name(), data.to_json(), shown);
+                answer.with_notes(&self.late_project_warnings(&data))
             }
-            Err(refusal) => Answer::refused(tool.name(), refusal),
+            Err(refusal) => CommandResponse::rejected(tool.name(), refusal),
         }
     }
 
     /// Returns a warning if the started project ends after the last day.
-    fn late_projects(&self, started: &novamind_tools::Answer) -> Vec<String> {
+    fn late_project_warnings(&self, started: &novamind_tools::Answer) -> Vec<String> {
         let novamind_tools::Answer::StartResearchProject(started) = started else { return Vec::new() };
         let last_day = self.session.manifest().days;
         let is_late = started.expected_completion_day > last_day;
         is_late
-            .then(|| late_in_words(&started.project_id, started.expected_completion_day, last_day))
+            .then(|| describe_late_project(&started.project_id, started.expected_completion_day, last_day))
             .into_iter()
             .collect()
     }
 
-    fn undo(&mut self) -> Answer {
+    fn undo(&mut self) -> CommandResponse {
         match self.session.undo(Via::Plain) {
-            Ok(back) => Answer::done("undo", in_words("undone", &back), json!({ "taken_back": back })),
-            Err(refusal) => Answer::refused("undo", refusal),
+            Ok(back) => CommandResponse::success(
+                "undo",
+                describe_changes("undone", &back),
+                json!({ "taken_back": back }),
+            ),
+            Err(refusal) => CommandResponse::rejected("undo", refusal),
         }
     }
 
-    fn redo(&mut self) -> Answer {
+    fn redo(&mut self) -> CommandResponse {
         match self.session.redo(Via::Plain) {
-            Ok(again) => Answer::done("redo", in_words("redone", &again), json!({ "set_again": again })),
-            Err(refusal) => Answer::refused("redo", refusal),
+            Ok(again) => CommandResponse::success(
+                "redo",
+                describe_changes("redone", &again),
+                json!({ "set_again": again }),
+            ),
+            Err(refusal) => CommandResponse::rejected("redo", refusal),
         }
     }
 
-    fn step(&mut self, days: u32) -> Answer {
+    fn step(&mut self, days: u32) -> CommandResponse {
         match self.session.step(days, &mut |_| {}) {
-            Ok(week) => next::report("step", &self.session, &week),
-            Err(refusal) => Answer::refused("step", refusal),
+            Ok(week) => advance::week_response("step", &self.session, &week),
+            Err(refusal) => CommandResponse::rejected("step", refusal),
         }
     }
 }
 
-/// Returns the tool of a name, with or without its module. `next_week` and `query` are separate commands.
-fn tool_called(word: &str) -> Option<&'static dyn AnyTool> {
+/// Returns the tool of a name, with or without its module. `handle_next_week` and `query` are separate commands.
+fn find_tool(word: &str) -> Option<&'static dyn AnyTool> {
     let (module, name) = match word.split_once('.') {
         Some((module, name)) => (Some(module), name),
         None => (None, word),
     };
-    let fits = |module: &str, own: Module| own.id() == module;
+    let fits = |module: &str, own: ToolModule| own.id() == module;
     novamind_tools::find(name)
-        .filter(|tool| tool.spec().kind != Kind::Time && tool.spec().name() != "query")
+        .filter(|tool| tool.spec().kind != ToolKind::Time && tool.spec().name() != "query")
         .filter(|tool| module.is_none_or(|module| fits(module, tool.spec().module)))
 }
 
 /// Reads the arguments of a call. The error includes an example call.
-fn read_arguments(tool: &'static dyn AnyTool, arguments: &[Argument]) -> Result<Value, Problem> {
-    as_object(arguments, only_required(tool)).map_err(|problem| {
+fn parse_call_arguments(tool: &'static dyn AnyTool, arguments: &[Argument]) -> Result<Value, ParseError> {
+    arguments_to_object(arguments, positional_argument(tool)).map_err(|problem| {
         let (spec, text) = (tool.spec(), problem.text);
-        Problem { text: format!("{text}; example: {} {}", spec.name(), spec.example), ..problem }
+        ParseError { text: format!("{text}; example: {} {}", spec.name(), spec.example), ..problem }
     })
 }
 
 /// Lists the restored changes, one per line.
-fn in_words(what: &str, changes: &[Change]) -> String {
-    let lines: String = changes.iter().map(|change| format!("{}\n", readings::change(change))).collect();
+fn describe_changes(what: &str, changes: &[SettingChange]) -> String {
+    let lines: String =
+        changes.iter().map(|change| format!("{}\n", overview::describe_setting_change(change))).collect();
     format!("{what}\n{lines}")
 }
 
 /// Returns the argument that may be given without its name: the only required one, the whole object, or the only one.
-fn only_required(tool: &'static dyn AnyTool) -> Option<&'static str> {
+fn positional_argument(tool: &'static dyn AnyTool) -> Option<&'static str> {
     let mut required = tool.spec().arguments.iter().filter(|argument| argument.required);
     let only = required.next().filter(|_| required.next().is_none()).map(|argument| argument.name);
     let sole = match tool.spec().arguments {
         [argument] => Some(argument.name),
         _ => None,
     };
-    only.or(tool.spec().whole).or(sole)
+    only.or(tool.spec().unnamed_argument).or(sole)
 }
 
-fn unknown(word: &str, column: usize) -> Problem {
+fn unknown_command(word: &str, column: usize) -> ParseError {
     let commands = COMMANDS.iter().map(|(name, _)| *name);
     let tools = novamind_tools::CATALOGUE.iter().map(|tool| tool.spec().name());
     let name = word.rsplit('.').next().unwrap_or(word);
-    if novamind_tools::find(name).is_some_and(|tool| tool.spec().kind == Kind::Time) {
+    if novamind_tools::find(name).is_some_and(|tool| tool.spec().kind == ToolKind::Time) {
         let text = format!(
             "{word} is not a command in plain mode; next \"WHY\" naive simulates a week, and help next \
              explains more"
         );
-        return Problem { text, column };
+        return ParseError { text, column };
     }
-    let near = nearest(name, commands.chain(tools));
+    let near = similar_names(name, commands.chain(tools));
     let help = if near.is_empty() {
         "; help lists them all".to_owned()
     } else {
         format!("; did you mean {}?", near.join(" or "))
     };
-    Problem { text: format!("{word} is not a command{help}"), column }
+    ParseError { text: format!("{word} is not a command{help}"), column }
 }
 
-fn usage(problem: Problem) -> Answer {
-    Answer::usage(problem.text, problem.column)
+fn syntax_error(problem: ParseError) -> CommandResponse {
+    CommandResponse::syntax_error(problem.text, problem.column)
 }
 
-fn problem(arguments: &[Argument], text: &str) -> Problem {
-    Problem::of(arguments, text)
+fn argument_error(arguments: &[Argument], text: &str) -> ParseError {
+    ParseError::at_first_argument(arguments, text)
 }
 
-fn none(arguments: &[Argument]) -> Result<(), Problem> {
+fn expect_no_arguments(arguments: &[Argument]) -> Result<(), ParseError> {
     match arguments {
         [] => Ok(()),
-        _ => Err(problem(arguments, "this command takes no arguments")),
+        _ => Err(argument_error(arguments, "this command takes no arguments")),
     }
 }
 
 /// Parses at most one name.
-fn name(arguments: &[Argument]) -> Result<Option<&str>, Problem> {
+fn optional_name(arguments: &[Argument]) -> Result<Option<&str>, ParseError> {
     match arguments {
         [] => Ok(None),
         [Argument { key: None, value: Value::String(name), .. }] => Ok(Some(name)),
-        _ => Err(problem(arguments, "this command takes at most one name")),
+        _ => Err(argument_error(arguments, "this command takes at most one name")),
     }
 }
 
 /// Parses at most one whole number from 1.
-fn count(arguments: &[Argument]) -> Result<Option<u32>, Problem> {
+fn optional_count(arguments: &[Argument]) -> Result<Option<u32>, ParseError> {
     let number = |value: &Value| {
         value.as_u64().filter(|number| *number > 0).and_then(|number| u32::try_from(number).ok())
     };
     match arguments {
         [] => Ok(None),
         [Argument { key: None, value, .. }] if number(value).is_some() => Ok(number(value)),
-        _ => Err(problem(arguments, "this command takes at most one argument, a whole number from 1")),
+        _ => Err(argument_error(arguments, "this command takes at most one argument, a whole number from 1")),
     }
 }

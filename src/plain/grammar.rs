@@ -2,16 +2,16 @@
 
 use serde_json::{Map, Value};
 
-use novamind_base::notation::written::Reader;
-pub use novamind_base::notation::written::{Argument, Problem};
+use novamind_base::formatting::arguments::LineParser;
+pub use novamind_base::formatting::arguments::{Argument, ParseError};
 
 /// A parsed line.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Line {
+pub enum ParsedLine {
     /// An empty line or a comment.
     Empty,
     /// A command that takes the rest of the line as text.
-    Text {
+    TextCommand {
         /// First word.
         word: String,
         /// The rest, trimmed.
@@ -35,26 +35,26 @@ const TEXT_COMMANDS: [&str; 18] = [
 ];
 
 /// Reads a line.
-pub fn parse(line: &str) -> Result<Line, Problem> {
-    let mut reader = Reader::of(line);
-    reader.skip_blanks();
-    if reader.rest().is_empty() || reader.rest().starts_with('#') {
-        return Ok(Line::Empty);
+pub fn parse_line(line: &str) -> Result<ParsedLine, ParseError> {
+    let mut reader = LineParser::new(line);
+    reader.skip_whitespace();
+    if reader.remaining().is_empty() || reader.remaining().starts_with('#') {
+        return Ok(ParsedLine::Empty);
     }
     let column = reader.column();
-    let word = reader.word();
+    let word = reader.parse_word();
     if word.is_empty() {
-        return Err(reader.problem("a line begins with the name of a command or tool"));
+        return Err(reader.error_here("a line begins with the name of a command or tool"));
     }
     let is_text = match word.as_str() {
-        "inbox" => has_condition(reader.rest()),
-        "xray" => statement_of_xray(reader.rest()).is_some(),
+        "inbox" => has_condition(reader.remaining()),
+        "xray" => xray_statement(reader.remaining()).is_some(),
         word => TEXT_COMMANDS.contains(&word),
     };
     if is_text {
-        return Ok(Line::Text { word, rest: reader.rest().trim().to_owned() });
+        return Ok(ParsedLine::TextCommand { word, rest: reader.remaining().trim().to_owned() });
     }
-    Ok(Line::Call { word, column, arguments: reader.arguments()? })
+    Ok(ParsedLine::Call { word, column, arguments: reader.parse_arguments()? })
 }
 
 /// Returns whether the text after `inbox` is a condition: `where …` or `all where …`.
@@ -63,16 +63,16 @@ fn has_condition(rest: &str) -> bool {
 }
 
 /// Returns the statement of `xray sql …` with its optional day. Returns `None` for other views.
-pub fn statement_of_xray(rest: &str) -> Option<&str> {
+pub fn xray_statement(rest: &str) -> Option<&str> {
     let rest = rest.trim_start().strip_prefix("sql")?;
     (rest.is_empty() || rest.starts_with(char::is_whitespace)).then(|| rest.trim())
 }
 
 /// Returns the statement after `sql` and `query`: the text itself, or the only argument of a call of the tool.
-pub fn statement(rest: &str) -> String {
+pub fn sql_statement(rest: &str) -> String {
     let is_call = rest.starts_with(['{', '(']) || rest.starts_with("sql=");
-    if let Some(Ok(Line::Call { arguments, .. })) = is_call.then(|| parse(&format!("call {rest}")))
-        && let Ok(call) = as_object(&arguments, Some("sql"))
+    if let Some(Ok(ParsedLine::Call { arguments, .. })) = is_call.then(|| parse_line(&format!("call {rest}")))
+        && let Ok(call) = arguments_to_object(&arguments, Some("sql"))
         && let Some(sql) = call.get("sql").and_then(Value::as_str)
     {
         return sql.to_owned();
@@ -81,8 +81,8 @@ pub fn statement(rest: &str) -> String {
 }
 
 /// Combines arguments into the object that a tool takes. A single unnamed object holds all of them; another single unnamed value is
-/// the argument `only_required`.
-pub fn as_object(arguments: &[Argument], only_required: Option<&str>) -> Result<Value, Problem> {
+/// the argument `positional_argument`.
+pub fn arguments_to_object(arguments: &[Argument], only_required: Option<&str>) -> Result<Value, ParseError> {
     if let [Argument { key: None, value: Value::Object(map), .. }] = arguments {
         return Ok(Value::Object(map.clone()));
     }
@@ -93,7 +93,7 @@ pub fn as_object(arguments: &[Argument], only_required: Option<&str>) -> Result<
             (None, Some(required)) if arguments.len() == 1 => required.to_owned(),
             (None, _) => {
                 let text = "write an argument as name=value, or all of them as one {…}".to_owned();
-                return Err(Problem { text, column: argument.column });
+                return Err(ParseError { text, column: argument.column });
             }
         };
         map.insert(key, argument.value.clone());
@@ -107,11 +107,12 @@ mod tests {
     use proptest::prelude::*;
     use serde_json::json;
 
-    fn call(line: &str) -> (String, Value) {
-        match parse(line) {
-            Ok(Line::Call { word, arguments, .. }) => (
+    fn parsed_call(line: &str) -> (String, Value) {
+        match parse_line(line) {
+            Ok(ParsedLine::Call { word, arguments, .. }) => (
                 word,
-                as_object(&arguments, Some("tier")).unwrap_or_else(|problem| panic!("{line}: {problem:?}")),
+                arguments_to_object(&arguments, Some("tier"))
+                    .unwrap_or_else(|problem| panic!("{line}: {problem:?}")),
             ),
             other => panic!("{line}: {other:?}"),
         }
@@ -128,21 +129,21 @@ mod tests {
             "  pricing.set_prices( A=12 ,B=25, C=55.5 )  # done",
             "pricing.set_prices(\nA=12\nB=25 C=+55.5)",
         ] {
-            assert_eq!(call(line), ("pricing.set_prices".to_owned(), prices.clone()), "{line}");
+            assert_eq!(parsed_call(line), ("pricing.set_prices".to_owned(), prices.clone()), "{line}");
         }
-        assert_eq!(call("set_capacity_tier 3").1, json!({"tier": 3}));
+        assert_eq!(parsed_call("set_capacity_tier 3").1, json!({"tier": 3}));
         let mixed = "x a=1_000_000 b=null c=true d=word e=\"two words # no comment\" f=[1, 2]";
         let expected = json!({"a": 1_000_000, "b": null, "c": true, "d": "word", "e": "two words # no comment", "f": [1, 2]});
-        assert_eq!(call(mixed).1, expected);
-        assert_eq!(call("get_cost_info").1, json!({}));
-        assert_eq!(call("get_cost_info()").1, json!({}));
-        assert_eq!(call("x a=12-3").1, json!({"a": "12-3"}));
+        assert_eq!(parsed_call(mixed).1, expected);
+        assert_eq!(parsed_call("get_cost_info").1, json!({}));
+        assert_eq!(parsed_call("get_cost_info()").1, json!({}));
+        assert_eq!(parsed_call("x a=12-3").1, json!({"a": "12-3"}));
     }
 
     #[test]
-    fn text_is_taken_as_it_stands() {
-        let text = |line: &str| match parse(line) {
-            Ok(Line::Text { word, rest }) => (word, rest),
+    fn text_commands_keep_the_rest_of_the_line() {
+        let text = |line: &str| match parse_line(line) {
+            Ok(ParsedLine::TextCommand { word, rest }) => (word, rest),
             other => panic!("{other:?}"),
         };
         let sql = "SELECT '# no comment', \"x\" FROM ledger -- (";
@@ -156,23 +157,23 @@ mod tests {
             text("inbox all where seats >= 5"),
             ("inbox".to_owned(), "all where seats >= 5".to_owned())
         );
-        assert_eq!(call("inbox(tier=3)").1, json!({"tier": 3}));
+        assert_eq!(parsed_call("inbox(tier=3)").1, json!({"tier": 3}));
     }
 
     #[test]
     fn statements_may_be_written_as_a_call() {
         for rest in ["SELECT 1", "{\"sql\": \"SELECT 1\"}", "(sql=\"SELECT 1\")", "sql=\"SELECT 1\""] {
-            assert_eq!(statement(rest), "SELECT 1", "{rest}");
+            assert_eq!(sql_statement(rest), "SELECT 1", "{rest}");
         }
         for rest in ["(SELECT 1)", "{\"sql\": 3}", ""] {
-            assert_eq!(statement(rest), rest);
+            assert_eq!(sql_statement(rest), rest);
         }
     }
 
     #[test]
-    fn empty_lines_and_comments_say_nothing() {
+    fn empty_lines_and_comments_parse_as_empty() {
         for line in ["", "   ", "# comment", "  # comment"] {
-            assert_eq!(parse(line), Ok(Line::Empty));
+            assert_eq!(parse_line(line), Ok(ParsedLine::Empty));
         }
     }
 
@@ -190,26 +191,26 @@ mod tests {
             ("set_prices A={\"größe\": ]}", 24, "JSON"),
             ("(A=3)", 1, "name of a command"),
         ] {
-            let problem = parse(line).expect_err(line);
+            let problem = parse_line(line).expect_err(line);
             assert_eq!(problem.column, column, "{line}: {problem:?}");
             assert!(problem.text.contains(part), "{line}: {problem:?}");
         }
-        let Ok(Line::Call { arguments, .. }) = parse("set_prices 12 13") else { panic!("a call") };
-        assert_eq!(as_object(&arguments, None).expect_err("no names").column, 12);
+        let Ok(ParsedLine::Call { arguments, .. }) = parse_line("set_prices 12 13") else { panic!("a call") };
+        assert_eq!(arguments_to_object(&arguments, None).expect_err("no names").column, 12);
     }
 
     proptest! {
         #[test]
         fn no_line_panics(line in "\\PC{0,60}") {
-            let _ = parse(&line);
+            let _ = parse_line(&line);
         }
 
         #[test]
-        fn objects_come_back(a in any::<i32>(), b in "[a-z ]{0,8}", c in any::<bool>()) {
+        fn json_object_arguments_round_trip(a in any::<i32>(), b in "[a-z ]{0,8}", c in any::<bool>()) {
             let given = json!({"a": a, "b": b, "c": [c, {"d": a}]});
-            prop_assert_eq!(call(&format!("tool {given}")).1, given.clone());
+            prop_assert_eq!(parsed_call(&format!("tool {given}")).1, given.clone());
             let keyed = format!("tool a={a} b={} c={}", given["b"], given["c"]);
-            prop_assert_eq!(call(&keyed).1, given);
+            prop_assert_eq!(parsed_call(&keyed).1, given);
         }
     }
 }

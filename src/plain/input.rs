@@ -3,11 +3,11 @@
 use std::io::{self, BufRead, Read as _};
 
 /// Maximum length of a line in bytes.
-const LONGEST: usize = 1 << 20;
+const MAX_LINE_BYTES: usize = 1 << 20;
 
 /// The result of reading a logical line.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Read {
+pub enum InputLine {
     /// A line without its end. Continued lines are joined by line breaks.
     Line(String),
     /// A line that cannot be read, with the reason.
@@ -19,58 +19,58 @@ pub enum Read {
 /// An input with line numbers.
 pub struct Input<R> {
     source: R,
-    lines: u32,
+    line_count: u32,
 }
 
 impl<R: BufRead> Input<R> {
     /// Creates an input.
     pub fn new(source: R) -> Input<R> {
-        Input { source, lines: 0 }
+        Input { source, line_count: 0 }
     }
 
     /// Returns the number of the next line, from 1.
     pub fn next_number(&self) -> u32 {
-        self.lines + 1
+        self.line_count + 1
     }
 
     /// Reads a logical line.
     ///
     /// # Errors
     /// The source fails.
-    pub fn read(&mut self) -> io::Result<Read> {
+    pub fn read_line(&mut self) -> io::Result<InputLine> {
         let mut whole: Option<String> = None;
         loop {
-            let text = match self.physical()? {
-                Read::Line(text) => text,
-                Read::End => return Ok(whole.map_or(Read::End, Read::Line)),
+            let text = match self.read_physical_line()? {
+                InputLine::Line(text) => text,
+                InputLine::End => return Ok(whole.map_or(InputLine::End, InputLine::Line)),
                 unreadable => return Ok(unreadable),
             };
             let joined = match whole.take() {
                 Some(before) => before + "\n" + &text,
                 None => text,
             };
-            if joined.len() > LONGEST {
-                return Ok(Read::Unreadable("the line is longer than 1 MiB".to_owned()));
+            if joined.len() > MAX_LINE_BYTES {
+                return Ok(InputLine::Unreadable("the line is longer than 1 MiB".to_owned()));
             }
             match joined.strip_suffix('\\') {
                 Some(rest) => whole = Some(rest.to_owned()),
-                None => return Ok(Read::Line(joined)),
+                None => return Ok(InputLine::Line(joined)),
             }
         }
     }
 
     /// Reads one line of the source without joining.
-    fn physical(&mut self) -> io::Result<Read> {
+    fn read_physical_line(&mut self) -> io::Result<InputLine> {
         let mut bytes = Vec::new();
-        let limit = LONGEST as u64 + 2;
+        let limit = MAX_LINE_BYTES as u64 + 2;
         if self.source.by_ref().take(limit).read_until(b'\n', &mut bytes)? == 0 {
-            return Ok(Read::End);
+            return Ok(InputLine::End);
         }
-        self.lines += 1;
+        self.line_count += 1;
         let complete = bytes.last() == Some(&b'\n');
         if !complete && bytes.len() as u64 == limit {
             self.skip_line()?;
-            return Ok(Read::Unreadable("the line is longer than 1 MiB".to_owned()));
+            return Ok(InputLine::Unreadable("the line is longer than 1 MiB".to_owned()));
         }
         if complete {
             bytes.pop();
@@ -79,9 +79,11 @@ impl<R: BufRead> Input<R> {
             }
         }
         match String::from_utf8(bytes) {
-            Ok(text) if self.lines == 1 => Ok(Read::Line(text.trim_start_matches('\u{feff}').to_owned())),
-            Ok(text) => Ok(Read::Line(text)),
-            Err(_) => Ok(Read::Unreadable("the line is not UTF-8".to_owned())),
+            Ok(text) if self.line_count == 1 => {
+                Ok(InputLine::Line(text.trim_start_matches('\u{feff}').to_owned()))
+            }
+            Ok(text) => Ok(InputLine::Line(text)),
+            Err(_) => Ok(InputLine::Unreadable("the line is not UTF-8".to_owned())),
         }
     }
 
@@ -106,20 +108,20 @@ impl<R: BufRead> Input<R> {
 mod tests {
     use super::*;
 
-    fn all(bytes: &[u8]) -> Vec<(u32, Read)> {
+    fn all(bytes: &[u8]) -> Vec<(u32, InputLine)> {
         let mut input = Input::new(bytes);
         let mut found = Vec::new();
         loop {
             let number = input.next_number();
-            match input.read().expect("bytes do not fail") {
-                Read::End => return found,
+            match input.read_line().expect("bytes do not fail") {
+                InputLine::End => return found,
                 read => found.push((number, read)),
             }
         }
     }
 
-    fn line(number: u32, text: &str) -> (u32, Read) {
-        (number, Read::Line(text.to_owned()))
+    fn line(number: u32, text: &str) -> (u32, InputLine) {
+        (number, InputLine::Line(text.to_owned()))
     }
 
     #[test]
@@ -132,12 +134,12 @@ mod tests {
 
     #[test]
     fn unreadable_lines_do_not_hide_the_next() {
-        let mut bytes = vec![b'x'; LONGEST + 5];
+        let mut bytes = vec![b'x'; MAX_LINE_BYTES + 5];
         bytes.extend(b"\nok\n\xff\xfe\nok\n");
         let found = all(&bytes);
-        assert!(matches!(&found[0].1, Read::Unreadable(problem) if problem.contains("1 MiB")));
+        assert!(matches!(&found[0].1, InputLine::Unreadable(problem) if problem.contains("1 MiB")));
         assert_eq!(found[1], line(2, "ok"));
-        assert!(matches!(&found[2].1, Read::Unreadable(problem) if problem.contains("UTF-8")));
+        assert!(matches!(&found[2].1, InputLine::Unreadable(problem) if problem.contains("UTF-8")));
         assert_eq!(found[3], line(4, "ok"));
     }
 }

@@ -3,40 +3,40 @@
 //! Each line holds one command and is answered before the next one is read. There are no colors and no cursor movements. Every
 //! answer, including rejections, goes to standard output and ends with an empty line.
 
-mod answers;
+mod advance;
 mod commands;
-mod ending;
+mod end_reason;
 mod grammar;
 mod input;
-mod lines;
-mod next;
+mod line_source;
+mod participant_session;
 mod pause;
 mod questions;
+mod response;
 mod signals;
-mod visit;
 
 use std::io::{self, IsTerminal, Write};
 
 use serde_json::{Value, json};
 
-pub use visit::visit;
+pub use participant_session::run_participant_session;
 
-pub use novamind_database::text::{cell_text, table};
+pub use novamind_database::text::{format_cell, format_result};
 
-use answers::Answer;
 use commands::Interpreter;
-use ending::End;
-use input::Read;
-use lines::Lines;
-use novamind_base::notation::printable;
-use novamind_record::folder::library::Library;
+use end_reason::EndReason;
+use input::InputLine;
+use line_source::LineSource;
+use novamind_base::formatting::escape_control_characters;
+use novamind_record::folder::query_library::QueryLibrary;
 use novamind_record::trajectory::record::LeavingCause;
 use novamind_session::{Interface, Session};
 use novamind_study::Study;
+use response::CommandResponse;
 
 /// Output options of plain mode.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Style {
+pub struct OutputStyle {
     /// One JSON object per line.
     pub json: bool,
     /// Print each input line before its answer.
@@ -49,101 +49,105 @@ pub struct Style {
 ///
 /// # Errors
 /// Standard input or output fails.
-pub fn play(session: Session, library: Library, style: Style) -> io::Result<u8> {
-    let mut lines = Lines::of_standard_input();
-    dialogue(session, library, style, None, &mut lines).map(|(end, _)| end.code())
+pub fn play(session: Session, library: QueryLibrary, style: OutputStyle) -> io::Result<u8> {
+    let mut lines = LineSource::from_stdin();
+    run_dialogue(session, library, style, None, &mut lines).map(|(end, _)| end.exit_code())
 }
 
 /// Answers lines until the player or the input ends.
-fn dialogue(
+fn run_dialogue(
     mut session: Session,
-    library: Library,
-    style: Style,
+    library: QueryLibrary,
+    style: OutputStyle,
     study: Option<&Study>,
-    lines: &mut Lines,
-) -> io::Result<(End, Session)> {
-    session.activity().take_up(Interface { name: "plain", window: None });
+    lines: &mut LineSource,
+) -> io::Result<(EndReason, Session)> {
+    session.activity().attach(Interface { name: "plain", window: None });
     let mut interpreter = Interpreter::new(session, library, lines.watch(), io::stdin().is_terminal());
     interpreter.code_check = study.and_then(Study::code_check);
-    interpreter.leads_participant = study.is_some();
+    interpreter.is_participant = study.is_some();
     let mut out = io::stdout();
-    let end = converse(&mut interpreter, lines, &mut out, style, study);
+    let end = command_loop(&mut interpreter, lines, &mut out, style, study);
     // If the output fails, the player has gone.
-    interpreter.session.activity().leave(end.as_ref().map_or(LeavingCause::Hangup, |end| end.cause()));
+    interpreter
+        .session
+        .activity()
+        .detach(end.as_ref().map_or(LeavingCause::Hangup, |end| end.leaving_cause()));
     // Every answer `ok` is already on disk. Only derived rows can be missing, and they can be rebuilt.
     let _ = interpreter.session.save();
     let end = end?;
-    if end == End::Withdrawn {
+    if end == EndReason::Withdrawn {
         // The run was erased, so nothing claims that it was saved.
         return Ok((end, interpreter.session));
     }
-    let told = writeln!(out, "{}", farewell(&interpreter.session, style, end)).and_then(|()| out.flush());
+    let told =
+        writeln!(out, "{}", farewell_text(&interpreter.session, style, end)).and_then(|()| out.flush());
     match end {
         // The terminal may have gone.
-        End::Signal(_) => {}
+        EndReason::Signal(_) => {}
         _ => told?,
     }
     Ok((end, interpreter.session))
 }
 
-fn converse(
+fn command_loop(
     interpreter: &mut Interpreter,
-    lines: &mut Lines,
+    lines: &mut LineSource,
     out: &mut io::Stdout,
-    style: Style,
+    style: OutputStyle,
     study: Option<&Study>,
-) -> io::Result<End> {
+) -> io::Result<EndReason> {
     greet(out, &interpreter.session, style)?;
-    if let Some(held) = interpreter.hold_limit() {
-        answer(out, style, lines.number(), None, &held, interpreter.session.day())?;
+    if let Some(held) = interpreter.restore_limit_pause() {
+        print_response(out, style, lines.number(), None, &held, interpreter.session.day())?;
     }
     loop {
         for told in interpreter.check_limits() {
-            answer(out, style, lines.number(), None, &told, interpreter.session.day())?;
+            print_response(out, style, lines.number(), None, &told, interpreter.session.day())?;
         }
         if let Some(end) = ask_questions(interpreter, lines, style, study)? {
             return Ok(end);
         }
-        if interpreter.prompts && !lines.is_waiting() {
-            prompt(&interpreter.prompt_text())?;
+        if interpreter.is_interactive && !lines.is_waiting() {
+            show_prompt(&interpreter.prompt_text())?;
         }
-        let read = lines.wait(interpreter.patience())?;
+        let read = lines.read_line_timeout(interpreter.limit_check_timeout())?;
         let number = lines.number();
         let (line, day) = match read {
             None => continue,
-            Some(Read::End) => return Ok(lines.end()),
-            Some(Read::Line(line)) => (line, interpreter.session.day()),
-            Some(Read::Unreadable(problem)) => {
-                let problem = Answer::usage(problem, 1);
-                answer(out, style, number, None, &problem, interpreter.session.day())?;
+            Some(InputLine::End) => return Ok(lines.end_reason()),
+            Some(InputLine::Line(line)) => (line, interpreter.session.day()),
+            Some(InputLine::Unreadable(problem)) => {
+                let problem = CommandResponse::syntax_error(problem, 1);
+                print_response(out, style, number, None, &problem, interpreter.session.day())?;
                 if style.strict {
-                    return Ok(End::Strict);
+                    return Ok(EndReason::StrictRejection);
                 }
                 continue;
             }
         };
         if study.is_some() && line.trim() == "withdraw" {
-            if withdraws(style, lines)? {
-                return Ok(End::Withdrawn);
+            if confirm_withdrawal(style, lines)? {
+                return Ok(EndReason::Withdrawn);
             }
             let text = "nothing was erased; the study continues".to_owned();
-            let reply = Answer::done("withdraw", text, json!({ "withdrawn": false }));
-            answer(out, style, number, None, &reply, day)?;
+            let reply = CommandResponse::success("withdraw", text, json!({ "withdrawn": false }));
+            print_response(out, style, number, None, &reply, day)?;
             continue;
         }
-        let Some(reply) = interpreter.answer(&line, lines)? else { continue };
+        let Some(reply) = interpreter.execute_line(&line, lines)? else { continue };
         if reply.is_quit() {
-            return Ok(End::Quit);
+            return Ok(EndReason::Quit);
         }
-        answer(out, style, number, style.echo.then_some(line.as_str()), &reply, day)?;
-        if lines.watch().caught().is_some() {
-            return Ok(lines.end());
+        print_response(out, style, number, style.echo.then_some(line.as_str()), &reply, day)?;
+        if lines.watch().caught_signal().is_some() {
+            return Ok(lines.end_reason());
         }
-        if interpreter.session.log().loss().is_some() {
-            return Ok(End::RecordLost);
+        if interpreter.session.log().loss_reason().is_some() {
+            return Ok(EndReason::RecordLost);
         }
-        if style.strict && !reply.is_ok() {
-            return Ok(End::Strict);
+        if style.strict && !reply.is_success() {
+            return Ok(EndReason::StrictRejection);
         }
     }
 }
@@ -151,20 +155,20 @@ fn converse(
 /// Asks the questions of a study that are due. Returns the end of the session if the participant leaves.
 fn ask_questions(
     interpreter: &mut Interpreter,
-    lines: &mut Lines,
-    style: Style,
+    lines: &mut LineSource,
+    style: OutputStyle,
     study: Option<&Study>,
-) -> io::Result<Option<End>> {
-    let Some(study) = study.filter(|_| !lines.is_waiting() && !interpreter.session.log().clock_stands())
+) -> io::Result<Option<EndReason>> {
+    let Some(study) = study.filter(|_| !lines.is_waiting() && !interpreter.session.log().is_clock_stopped())
     else {
         return Ok(None);
     };
-    let left = questions::ask_due(study, &mut interpreter.session, style, lines)?;
-    Ok(left.or_else(|| interpreter.session.ended().map(|_| End::Over)))
+    let left = questions::ask_due_questions(study, &mut interpreter.session, style, lines)?;
+    Ok(left.or_else(|| interpreter.session.ended().map(|_| EndReason::RunOver)))
 }
 
 /// Asks for confirmation of a withdrawal.
-fn withdraws(style: Style, lines: &mut Lines) -> io::Result<bool> {
+fn confirm_withdrawal(style: OutputStyle, lines: &mut LineSource) -> io::Result<bool> {
     let question = "Withdrawing permanently erases your runs of this study. Type withdraw again to confirm, \
                     or anything else to continue:";
     if style.json {
@@ -173,18 +177,18 @@ fn withdraws(style: Style, lines: &mut Lines) -> io::Result<bool> {
         println!("{question}");
     }
     io::stdout().flush()?;
-    Ok(matches!(lines.read()?, Read::Line(line) if line.trim() == "withdraw"))
+    Ok(matches!(lines.read_line()?, InputLine::Line(line) if line.trim() == "withdraw"))
 }
 
 /// Shows a prompt on a stream that the user sees.
-fn prompt(text: &str) -> io::Result<()> {
+fn show_prompt(text: &str) -> io::Result<()> {
     let write = |out: &mut dyn Write| out.write_all(text.as_bytes()).and_then(|()| out.flush());
     if io::stdout().is_terminal() { write(&mut io::stdout()) } else { write(&mut io::stderr()) }
 }
 
-fn greet(out: &mut io::Stdout, session: &Session, style: Style) -> io::Result<()> {
+fn greet(out: &mut io::Stdout, session: &Session, style: OutputStyle) -> io::Result<()> {
     let seen = session.company().observe();
-    let hides_result = session.rules().hide_result(session.ended().is_some());
+    let hides_result = session.rules().hides_result(session.ended().is_some());
     let dashboard = if hides_result { "" } else { seen.dashboard.as_str() };
     if style.json {
         let event = json!({
@@ -199,7 +203,7 @@ fn greet(out: &mut io::Stdout, session: &Session, style: Style) -> io::Result<()
         });
         writeln!(out, "{event}")?;
     } else {
-        let (run, seed, day, days) = (seen.run, seed_in_words(seen.seed), seen.day, seen.last_day);
+        let (run, seed, day, days) = (seen.run, describe_seed(seen.seed), seen.day, seen.last_day);
         writeln!(out, "run {run}{seed} · day {day} of {days} · {}", seen.mode)?;
         for remark in session.remarks() {
             writeln!(out, "note: {remark}")?;
@@ -213,11 +217,11 @@ fn greet(out: &mut io::Stdout, session: &Session, style: Style) -> io::Result<()
 }
 
 /// Returns the seed after the run id, or nothing if it is hidden.
-fn seed_in_words(seed: Option<u64>) -> String {
+fn describe_seed(seed: Option<u64>) -> String {
     seed.map_or(String::new(), |seed| format!(" · seed {seed}"))
 }
 
-fn farewell(session: &Session, style: Style, end: End) -> String {
+fn farewell_text(session: &Session, style: OutputStyle, end: EndReason) -> String {
     let (run, day) = (&session.manifest().id, session.day());
     if style.json {
         json!({ "event": "end", "run": run, "day": day, "reason": end.id() }).to_string()
@@ -227,25 +231,25 @@ fn farewell(session: &Session, style: Style, end: End) -> String {
     }
 }
 
-fn answer(
+fn print_response(
     out: &mut io::Stdout,
-    style: Style,
+    style: OutputStyle,
     line: u32,
     echo: Option<&str>,
-    reply: &Answer,
+    reply: &CommandResponse,
     day: u32,
 ) -> io::Result<()> {
     if style.json {
-        let mut object = reply.as_json(line, day);
+        let mut object = reply.to_json(line, day);
         if let (Some(text), Value::Object(fields)) = (echo, &mut object) {
             fields.insert("input".to_owned(), text.into());
         }
         writeln!(out, "{object}")?;
     } else {
         if let Some(text) = echo {
-            writeln!(out, "> {}", printable(text))?;
+            writeln!(out, "> {}", escape_control_characters(text))?;
         }
-        writeln!(out, "{}\n", printable(reply.as_text().trim_end_matches('\n')))?;
+        writeln!(out, "{}\n", escape_control_characters(reply.to_text().trim_end_matches('\n')))?;
     }
     out.flush()
 }

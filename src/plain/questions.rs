@@ -4,34 +4,38 @@ use std::io::{self, Write};
 
 use serde_json::{Value, json};
 
-use super::ending::End;
-use super::input::Read;
-use super::lines::Lines;
-use super::{Style, withdraws};
-use novamind_base::notation::printable;
-use novamind_record::clock::steady;
+use super::end_reason::EndReason;
+use super::input::InputLine;
+use super::line_source::LineSource;
+use super::{OutputStyle, confirm_withdrawal};
+use novamind_base::formatting::escape_control_characters;
+use novamind_record::clock::monotonic_time;
 use novamind_session::Session;
-use novamind_study::{DueQuestion, Form, Study};
+use novamind_study::{AnswerFormat, DueQuestion, Study};
 
 /// Asks all questions that are due. Returns the end of the session if the participant leaves before answering all of them.
 ///
 /// # Errors
 /// Standard input or output fails.
-pub(super) fn ask_due(
+pub(super) fn ask_due_questions(
     study: &Study,
     session: &mut Session,
-    style: Style,
-    lines: &mut Lines,
-) -> io::Result<Option<End>> {
-    let due = study.due(session);
+    style: OutputStyle,
+    lines: &mut LineSource,
+) -> io::Result<Option<EndReason>> {
+    let due = study.due_questions(session);
     for (number, question) in due.iter().enumerate() {
         let begins = number == 0 || due[number - 1].questionnaire != question.questionnaire;
         if begins && !style.json {
-            println!("== {} ==\n{}", printable(&question.title), printable(question.introduction.trim()));
+            println!(
+                "== {} ==\n{}",
+                escape_control_characters(&question.title),
+                escape_control_characters(question.introduction.trim())
+            );
         }
-        question.note_shown(session);
-        show(question, style)?;
-        if let Some(end) = answer(question, session, style, lines)? {
+        question.record_shown(session);
+        show_question(question, style)?;
+        if let Some(end) = ask_question(question, session, style, lines)? {
             return Ok(Some(end));
         }
     }
@@ -39,46 +43,46 @@ pub(super) fn ask_due(
 }
 
 /// Reads lines until one is an answer or leaves. Unlike in the console, an answer cannot be changed.
-fn answer(
+fn ask_question(
     due: &DueQuestion,
     session: &mut Session,
-    style: Style,
-    lines: &mut Lines,
-) -> io::Result<Option<End>> {
-    let shown = steady();
+    style: OutputStyle,
+    lines: &mut LineSource,
+) -> io::Result<Option<EndReason>> {
+    let shown = monotonic_time();
     loop {
-        let typed = match lines.read()? {
-            Read::End => return Ok(Some(lines.end())),
-            Read::Unreadable(problem) => {
-                refuse(due, &problem, style)?;
+        let typed = match lines.read_line()? {
+            InputLine::End => return Ok(Some(lines.end_reason())),
+            InputLine::Unreadable(problem) => {
+                show_invalid_answer(due, &problem, style)?;
                 continue;
             }
-            Read::Line(line) => line,
+            InputLine::Line(line) => line,
         };
         let value = match typed.trim() {
-            "quit" | "exit" => return Ok(Some(End::Quit)),
-            "withdraw" if withdraws(style, lines)? => return Ok(Some(End::Withdrawn)),
+            "quit" | "exit" => return Ok(Some(EndReason::Quit)),
+            "withdraw" if confirm_withdrawal(style, lines)? => return Ok(Some(EndReason::Withdrawn)),
             "withdraw" => {
-                show(due, style)?;
+                show_question(due, style)?;
                 continue;
             }
             "" if !due.question.required => Ok(Value::Null),
-            "" => Err(format!("an answer is required: {}", expected(&due.question.form))),
-            typed => due.question.form.value(typed).map_err(|expected| format!("type {expected}")),
+            "" => Err(format!("an answer is required: {}", describe_expected_answer(&due.question.form))),
+            typed => due.question.form.parse_answer(typed).map_err(|expected| format!("type {expected}")),
         };
         match value {
             Ok(value) => {
-                let for_ms = steady().saturating_sub(shown).as_millis() as u64;
-                due.note_answer(session, &value, for_ms, 0);
+                let for_ms = monotonic_time().saturating_sub(shown).as_millis() as u64;
+                due.record_answer(session, &value, for_ms, 0);
                 return Ok(None);
             }
-            Err(problem) => refuse(due, &problem, style)?,
+            Err(problem) => show_invalid_answer(due, &problem, style)?,
         }
     }
 }
 
 /// Prints why a line is not an answer.
-fn refuse(due: &DueQuestion, problem: &str, style: Style) -> io::Result<()> {
+fn show_invalid_answer(due: &DueQuestion, problem: &str, style: OutputStyle) -> io::Result<()> {
     if style.json {
         println!("{}", json!({ "event": "question_refused", "id": due.question.id, "error": problem }));
     } else {
@@ -87,7 +91,7 @@ fn refuse(due: &DueQuestion, problem: &str, style: Style) -> io::Result<()> {
     io::stdout().flush()
 }
 
-fn show(due: &DueQuestion, style: Style) -> io::Result<()> {
+fn show_question(due: &DueQuestion, style: OutputStyle) -> io::Result<()> {
     let question = &due.question;
     if style.json {
         let event = json!({
@@ -102,31 +106,34 @@ fn show(due: &DueQuestion, style: Style) -> io::Result<()> {
         });
         println!("{event}");
     } else {
-        println!("{}", printable(&question.text));
-        for line in choices(&question.form) {
-            println!("  {}", printable(&line));
+        println!("{}", escape_control_characters(&question.text));
+        for line in list_choices(&question.form) {
+            println!("  {}", escape_control_characters(&line));
         }
         let pass = if question.required { "" } else { ", or an empty line to skip" };
-        println!("type {}{pass}; quit leaves, withdraw erases what you did", expected(&question.form));
+        println!(
+            "type {}{pass}; quit leaves, withdraw erases what you did",
+            describe_expected_answer(&question.form)
+        );
     }
     io::stdout().flush()
 }
 
 /// Returns the choices, one per line.
-fn choices(form: &Form) -> Vec<String> {
+fn list_choices(form: &AnswerFormat) -> Vec<String> {
     match form {
-        Form::Likert { points, low, high } => {
+        AnswerFormat::Likert { points, low, high } => {
             let ends = [(1, low), (*points, high)].into_iter().filter(|(_, words)| !words.is_empty());
             ends.map(|(point, words)| format!("{point} = {words}")).collect()
         }
-        Form::Choice { options, .. } | Form::Attention { options, .. } => {
+        AnswerFormat::Choice { options, .. } | AnswerFormat::Attention { options, .. } => {
             options.iter().enumerate().map(|(at, option)| format!("{} {option}", at + 1)).collect()
         }
-        Form::Number { .. } | Form::Text { .. } => Vec::new(),
+        AnswerFormat::Number { .. } | AnswerFormat::Text { .. } => Vec::new(),
     }
 }
 
 /// Describes valid answers, as the error for an invalid one does.
-fn expected(form: &Form) -> String {
-    form.value("").err().unwrap_or_default()
+fn describe_expected_answer(form: &AnswerFormat) -> String {
+    form.parse_answer("").err().unwrap_or_default()
 }

@@ -20,9 +20,9 @@ pub enum Phase {
 
 /// Watches for signals.
 #[derive(Clone)]
-pub struct Watch(Arc<Mutex<State>>);
+pub struct SignalWatch(Arc<Mutex<WatchState>>);
 
-struct State {
+struct WatchState {
     phase: Phase,
     interrupt: Option<Interrupt>,
     /// Stops the simulation.
@@ -32,18 +32,18 @@ struct State {
     leaving: bool,
 }
 
-impl Watch {
+impl SignalWatch {
     /// Starts watching. `prompt` is called for signals at a prompt. If signals cannot be watched, they end the program, which loses
     /// nothing.
-    pub fn start(prompt: impl Fn(i32) + Send + 'static) -> Watch {
-        let state = State {
+    pub fn start(prompt: impl Fn(i32) + Send + 'static) -> SignalWatch {
+        let state = WatchState {
             phase: Phase::Working,
             interrupt: None,
             stop: Arc::default(),
             caught: None,
             leaving: false,
         };
-        let watch = Watch(Arc::new(Mutex::new(state)));
+        let watch = SignalWatch(Arc::new(Mutex::new(state)));
         #[cfg(unix)]
         watch.listen(prompt);
         #[cfg(not(unix))]
@@ -91,7 +91,7 @@ impl Watch {
     }
 
     /// Sets the current activity.
-    pub fn enter(&self, phase: Phase) {
+    pub fn set_phase(&self, phase: Phase) {
         self.state().phase = phase;
     }
 
@@ -119,16 +119,16 @@ impl Watch {
     }
 
     /// Records a signal that ended the wait at a prompt.
-    pub fn catch(&self, signal: i32) {
+    pub fn record_signal(&self, signal: i32) {
         self.state().caught = Some(signal);
     }
 
     /// Returns the signal that asked to leave, if any.
-    pub fn caught(&self) -> Option<i32> {
+    pub fn caught_signal(&self) -> Option<i32> {
         self.state().caught
     }
 
-    fn state(&self) -> MutexGuard<'_, State> {
+    fn state(&self) -> MutexGuard<'_, WatchState> {
         self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 }
@@ -140,10 +140,10 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn a_signal_that_comes_just_before_the_prompt_keeps_nobody_waiting() {
-        let watch = Watch::start(|_| panic!("no prompt is waiting"));
+    fn signal_before_the_prompt_is_not_lost() {
+        let watch = SignalWatch::start(|_| panic!("no prompt is waiting"));
         watch.handle(15, false, &|_| panic!("no prompt is waiting"));
         assert!(!watch.enter_prompt());
-        assert_eq!(watch.caught(), Some(15));
+        assert_eq!(watch.caught_signal(), Some(15));
     }
 }

@@ -64,7 +64,7 @@ pub struct ConsentText {
 
 impl ConsentText {
     /// Returns the text with instructions for agreeing without a screen.
-    pub fn explained(&self) -> String {
+    pub fn instructions(&self) -> String {
         format!(
             "a baseline session needs the participant's agreement to {}: read it, then start with --consent. \
              Nothing was recorded",
@@ -80,7 +80,7 @@ impl ConsentText {
 
 /// An agreement that is not recorded in a run yet.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Agreed {
+pub struct ConsentAgreement {
     /// How it was given.
     pub given: ConsentGiven,
     /// Moment of the agreement, RFC 3339.
@@ -89,7 +89,7 @@ pub struct Agreed {
 
 impl ConsentGiven {
     /// Returns the agreement with the current moment.
-    pub fn now(self) -> Agreed {
-        Agreed { given: self, at: now() }
+    pub fn given_now(self) -> ConsentAgreement {
+        ConsentAgreement { given: self, at: now() }
     }
 }

@@ -21,7 +21,7 @@ pub enum RunError {
         error: std::io::Error,
     },
     /// A file of a run was changed after it was written.
-    #[error("{path}, line {line}: {problem}. {safe}", path = .path.display())]
+    #[error("{path}, line {line}: {problem}. {remedy}", path = .path.display())]
     Damaged {
         /// Path of the file.
         path: PathBuf,
@@ -30,14 +30,14 @@ pub enum RunError {
         /// The defect.
         problem: String,
         /// The data that is still valid, and the next step.
-        safe: String,
+        remedy: String,
     },
     /// A manifest or configuration is invalid.
     #[error("{0}")]
     Configuration(#[from] ParameterError),
     /// The run was recorded with parameters that differ from those of this program.
     #[error(
-        "run {id} was recorded by version {version} with parameters {recorded}, but this program has {own}. \
+        "run {id} was recorded by version {version} with parameters {recorded}, but this program has {expected}. \
          Nothing was changed; open the run with that version"
     )]
     OtherParameters {
@@ -48,12 +48,12 @@ pub enum RunError {
         /// Digest in the manifest.
         recorded: String,
         /// Digest of the parameters as loaded by this program.
-        own: String,
+        expected: String,
     },
     /// The run was recorded with mechanics that differ from those of this program.
     #[error(
         "run {id} was recorded by version {version} with mechanics {recorded}, but this program has \
-         mechanics {own}. Nothing was changed; open the run with that version"
+         mechanics {expected}. Nothing was changed; open the run with that version"
     )]
     OtherMechanics {
         /// Id of the run.
@@ -63,10 +63,10 @@ pub enum RunError {
         /// Mechanics number in the manifest.
         recorded: u32,
         /// Mechanics number of this program.
-        own: u32,
+        expected: u32,
     },
     /// The participant has to agree to the consent text first.
-    #[error("{}", .0.explained())]
+    #[error("{}", .0.instructions())]
     ConsentNeeded(ConsentText),
     /// The run has a format that this program cannot read.
     #[error(
@@ -94,16 +94,16 @@ pub enum RunError {
     /// The trajectory was moved, removed, linked or changed while the run was open.
     #[error(
         "your decisions are no longer on disk: {path} was moved, removed or linked, or another program has written to it. \
-        Nothing more will be saved. {}", kept_words(.kept), path = .path.display()
+        Nothing more will be saved. {}", describe_saved_copy(.saved_copy), path = .path.display()
     )]
-    Astray {
+    FileReplaced {
         /// Path of the trajectory.
         path: PathBuf,
         /// The file to which all confirmed lines were copied, or the error of copying them.
-        kept: Result<PathBuf, String>,
+        saved_copy: Result<PathBuf, String>,
     },
     /// The program panicked while it closed a run.
-    #[error("the program has a defect and failed while it closed run {run}. {}", safe_words(run, folder.as_deref()))]
+    #[error("the program has a defect and failed while it closed run {run}. {}", describe_saved_lines(run, folder.as_deref()))]
     Defect {
         /// Id of the run.
         run: String,
@@ -133,21 +133,21 @@ pub enum RunError {
         folder: PathBuf,
     },
     /// A file is not an archive of a run, or was changed after it was sealed.
-    #[error("{path}: {problem}. {safe}", path = .path.display())]
-    Archive {
+    #[error("{path}: {problem}. {remedy}", path = .path.display())]
+    InvalidArchive {
         /// Path of the archive.
         path: PathBuf,
         /// The defect, with the name of the file inside the archive.
         problem: String,
         /// The data that is still valid, and the next step.
-        safe: String,
+        remedy: String,
     },
     /// A file or run would be overwritten.
     #[error("{0}")]
-    Exists(String),
+    AlreadyExists(String),
     /// The scenario does not exist.
     #[error("there is no scenario {name}; the scenarios are {known}")]
-    NoScenario {
+    UnknownScenario {
         /// Requested name.
         name: String,
         /// Existing names, separated by commas.
@@ -155,7 +155,7 @@ pub enum RunError {
     },
     /// The lesson does not exist.
     #[error("there is no lesson {name}; the lessons are {known}")]
-    NoLesson {
+    UnknownLesson {
         /// Requested name.
         name: String,
         /// Existing names, separated by commas.
@@ -163,14 +163,14 @@ pub enum RunError {
     },
     /// The run cannot be started with these options.
     #[error("{0}")]
-    NotPossible(String),
+    InvalidRequest(String),
     /// The database cannot be written.
     #[error("{0}")]
     Projection(#[from] ProjectionError),
 }
 
 /// Returns where the confirmed lines are, and the next step.
-fn kept_words(kept: &Result<PathBuf, String>) -> String {
+fn describe_saved_copy(kept: &Result<PathBuf, String>) -> String {
     match kept {
         Ok(file) => format!(
             "Everything confirmed so far is in {}. Leave the program. If trajectory.jsonl is gone, rename this file to it and open \
@@ -188,7 +188,7 @@ fn kept_words(kept: &Result<PathBuf, String>) -> String {
 }
 
 /// Returns what is safe after a defect, and the next step.
-fn safe_words(run: &str, folder: Option<&Path>) -> String {
+fn describe_saved_lines(run: &str, folder: Option<&Path>) -> String {
     match folder {
         Some(folder) => format!(
             "Everything that was confirmed is in {}. Open the run again with `novamind play --run {run}`: the program rebuilds \

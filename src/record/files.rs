@@ -12,7 +12,7 @@ use crate::error::RunError;
 ///
 /// # Errors
 /// The file cannot be written. The old file is kept, unless only the sync of the folder failed.
-pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
+pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
     let draft = path.with_extension("draft");
     let written = File::create(&draft)
         .and_then(|mut file| file.write_all(bytes).and_then(|()| file.sync_all()))
@@ -21,7 +21,7 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
         let _ = std::fs::remove_file(&draft);
         return Err(RunError::io(path)(error));
     }
-    sync_folder(folder_of(path))
+    sync_folder(parent_folder(path))
 }
 
 /// Appends bytes to a regular file and syncs it, and its folder if the file is new.
@@ -30,9 +30,9 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
 /// The path is not a regular file, or it cannot be written.
 pub fn append_synced(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
     let is_new = !path.exists();
-    let mut file = append_to_regular_file(path).map_err(RunError::io(path))?;
+    let mut file = open_regular_file_for_append(path).map_err(RunError::io(path))?;
     file.write_all(bytes).and_then(|()| file.sync_all()).map_err(RunError::io(path))?;
-    if is_new { sync_folder(folder_of(path)) } else { Ok(()) }
+    if is_new { sync_folder(parent_folder(path)) } else { Ok(()) }
 }
 
 /// Creates a folder and its missing ancestors, and syncs the parent of each new folder.
@@ -43,12 +43,12 @@ pub fn create_folder(folder: &Path) -> Result<(), RunError> {
     let missing: Vec<&Path> =
         folder.ancestors().take_while(|own| !own.as_os_str().is_empty() && !own.exists()).collect();
     std::fs::create_dir_all(folder).map_err(RunError::io(folder))?;
-    let synced = missing.iter().rev().try_for_each(|own| sync_folder(folder_of(own)));
+    let synced = missing.iter().rev().try_for_each(|own| sync_folder(parent_folder(own)));
     synced.inspect_err(|_| missing.iter().for_each(|own| drop(std::fs::remove_dir(own))))
 }
 
 /// Returns the folder of a file; for a bare name, the current directory.
-pub fn folder_of(path: &Path) -> &Path {
+pub fn parent_folder(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
@@ -59,7 +59,7 @@ pub fn folder_of(path: &Path) -> &Path {
 /// The folder cannot be synced.
 pub fn sync_folder(folder: &Path) -> Result<(), RunError> {
     #[cfg(any(test, feature = "test-kit"))]
-    probe::note(folder).map_err(RunError::io(folder))?;
+    sync_probe::record_sync(folder).map_err(RunError::io(folder))?;
     if cfg!(unix) {
         File::open(folder).and_then(|folder| folder.sync_all()).map_err(RunError::io(folder))?;
     }
@@ -72,7 +72,7 @@ pub fn sync_folder(folder: &Path) -> Result<(), RunError> {
 /// The file does not exist, is not a regular file, or cannot be opened.
 pub fn open_regular_file(path: &Path) -> io::Result<File> {
     if !std::fs::metadata(path)?.is_file() {
-        return Err(no_regular_file());
+        return Err(not_regular_file_error());
     }
     File::open(path)
 }
@@ -81,9 +81,9 @@ pub fn open_regular_file(path: &Path) -> io::Result<File> {
 ///
 /// # Errors
 /// The path is not a regular file, or it cannot be opened or created.
-pub fn append_to_regular_file(path: &Path) -> io::Result<File> {
+pub fn open_regular_file_for_append(path: &Path) -> io::Result<File> {
     if std::fs::metadata(path).is_ok_and(|own| !own.is_file()) {
-        return Err(no_regular_file());
+        return Err(not_regular_file_error());
     }
     File::options().create(true).read(true).append(true).open(path)
 }
@@ -92,14 +92,14 @@ pub fn append_to_regular_file(path: &Path) -> io::Result<File> {
 ///
 /// # Errors
 /// The file does not exist, is not a regular file, or cannot be opened.
-pub(crate) fn write_to_regular_file(path: &Path) -> io::Result<File> {
+pub(crate) fn open_regular_file_for_write(path: &Path) -> io::Result<File> {
     if !std::fs::metadata(path)?.is_file() {
-        return Err(no_regular_file());
+        return Err(not_regular_file_error());
     }
     File::options().read(true).write(true).open(path)
 }
 
-fn no_regular_file() -> io::Error {
+fn not_regular_file_error() -> io::Error {
     io::Error::new(io::ErrorKind::InvalidInput, "not a regular file")
 }
 
@@ -114,24 +114,24 @@ pub fn read_regular_file(path: &Path) -> io::Result<Vec<u8>> {
 }
 
 /// Returns the text of a regular file, or an empty text if it cannot be read.
-pub fn read_regular_text(path: &Path) -> String {
+pub fn read_regular_text_or_empty(path: &Path) -> String {
     read_regular_file(path).ok().and_then(|bytes| String::from_utf8(bytes).ok()).unwrap_or_default()
 }
 
 /// Records folder syncs per thread for tests, and lets them fail.
 #[cfg(any(test, feature = "test-kit"))]
-pub mod probe {
+pub mod sync_probe {
     use std::cell::{Cell, RefCell};
     use std::io;
     use std::path::{Path, PathBuf};
 
     thread_local! {
-        static SYNCED: RefCell<Vec<(PathBuf, Vec<String>)>> = const { RefCell::new(Vec::new()) };
-        static FAILS: Cell<bool> = const { Cell::new(false) };
+        static SYNCED_ENTRIES: RefCell<Vec<(PathBuf, Vec<String>)>> = const { RefCell::new(Vec::new()) };
+        static SYNC_FAILS: Cell<bool> = const { Cell::new(false) };
     }
 
-    pub(super) fn note(folder: &Path) -> io::Result<()> {
-        if FAILS.get() {
+    pub(super) fn record_sync(folder: &Path) -> io::Result<()> {
+        if SYNC_FAILS.get() {
             return Err(io::Error::other("the folder cannot be synced"));
         }
         let mut names: Vec<String> = std::fs::read_dir(folder)?
@@ -139,21 +139,22 @@ pub mod probe {
             .map(|entry| entry.file_name().to_string_lossy().into_owned())
             .collect();
         names.sort();
-        SYNCED.with_borrow_mut(|synced| synced.push((folder.to_owned(), names)));
+        SYNCED_ENTRIES.with_borrow_mut(|synced| synced.push((folder.to_owned(), names)));
         Ok(())
     }
 
     /// Returns whether this thread has synced a directory entry after it was created.
     pub fn has_synced(path: &Path) -> bool {
         let name = path.file_name().expect("a name").to_string_lossy().into_owned();
-        let folder = super::folder_of(path);
-        SYNCED.with_borrow(|synced| synced.iter().any(|(own, names)| own == folder && names.contains(&name)))
+        let folder = super::parent_folder(path);
+        SYNCED_ENTRIES
+            .with_borrow(|synced| synced.iter().any(|(own, names)| own == folder && names.contains(&name)))
     }
 
     /// Clears the recorded syncs of this thread, and lets later syncs fail or succeed.
     pub fn reset(fails: bool) {
-        SYNCED.with_borrow_mut(Vec::clear);
-        FAILS.set(fails);
+        SYNCED_ENTRIES.with_borrow_mut(Vec::clear);
+        SYNC_FAILS.set(fails);
     }
 }
 
@@ -162,26 +163,26 @@ mod tests {
     use super::*;
 
     #[test]
-    fn create_folder_syncs_the_folder_above_each_new_one() {
+    fn create_folder_syncs_each_new_parent_entry() {
         let place = tempfile::tempdir().expect("a folder");
         let (one, two) = (place.path().join("one"), place.path().join("one/two"));
         create_folder(&two).expect("created");
-        assert!(probe::has_synced(&one) && probe::has_synced(&two));
-        probe::reset(false);
+        assert!(sync_probe::has_synced(&one) && sync_probe::has_synced(&two));
+        sync_probe::reset(false);
         create_folder(&two).expect("it exists");
-        assert!(!probe::has_synced(&two), "no new folder");
-        probe::reset(true);
+        assert!(!sync_probe::has_synced(&two), "no new folder");
+        sync_probe::reset(true);
         assert!(create_folder(&two.join("three/four")).is_err());
-        probe::reset(false);
+        sync_probe::reset(false);
         assert!(!two.join("three").exists() && two.exists());
     }
 
     #[test]
-    fn append_synced_syncs_the_folder_of_a_new_file() {
+    fn append_synced_syncs_the_folder_of_new_files() {
         let place = tempfile::tempdir().expect("a folder");
         let path = place.path().join("lines");
         append_synced(&path, b"one\n").expect("written");
-        assert!(probe::has_synced(&path));
+        assert!(sync_probe::has_synced(&path));
         append_synced(&path, b"two\n").expect("written");
         assert_eq!(std::fs::read(&path).expect("bytes"), b"one\ntwo\n");
         assert!(append_synced(place.path(), b"a folder is not a file").is_err());

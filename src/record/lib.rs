@@ -2,10 +2,10 @@
 //! stamps of the study, lesson and handout of a run. It also has the data from which lines are made: figures of a week,
 //! lessons and the progress of a student.
 //!
-//! Modules from bottom to top: `clock`, `mode`; `consent`, `rules`, `stamp`; `error`; `files`; `trajectory`; `answer_book`,
+//! Modules from bottom to top: `clock`, `mode`; `consent`, `rules`, `stamp`; `error`; `files`; `trajectory`; `answered_questions`,
 //! `folder`; `figures`; `lesson`.
 
-pub mod answer_book;
+pub mod answered_questions;
 pub mod clock;
 pub mod consent;
 pub mod error;

@@ -23,10 +23,10 @@ impl Mode {
     pub const ALL: [Mode; 4] = [Mode::Baseline, Mode::Sandbox, Mode::Lesson, Mode::Debug];
 
     /// The modes that a user can choose for a new run. Lessons set their mode themselves.
-    pub const OFFERED: [Mode; 3] = [Mode::Baseline, Mode::Sandbox, Mode::Debug];
+    pub const SELECTABLE: [Mode; 3] = [Mode::Baseline, Mode::Sandbox, Mode::Debug];
 
     /// Returns the default mode of a branch. A branch is never a baseline run and never belongs to a lesson.
-    pub fn of_branch(self) -> Mode {
+    pub fn branch_mode(self) -> Mode {
         if matches!(self, Mode::Baseline | Mode::Lesson) { Mode::Sandbox } else { self }
     }
 

@@ -124,17 +124,17 @@ pub enum AtLimit {
 
 impl SessionRules {
     /// Returns whether the final result and figures are hidden: the study withholds results, and the run is over.
-    pub fn hide_result(&self, is_over: bool) -> bool {
-        self.hides_results() && is_over
+    pub fn hides_result(&self, is_over: bool) -> bool {
+        self.withholds_results() && is_over
     }
 
     /// Returns whether the study withholds results from participants.
-    pub fn hides_results(&self) -> bool {
+    pub fn withholds_results(&self) -> bool {
         self.results == ResultsShown::None
     }
 
     /// Returns the rules of a run outside of a study.
-    pub fn of_mode(mode: Mode) -> SessionRules {
+    pub fn for_mode(mode: Mode) -> SessionRules {
         let open = SessionRules {
             advice: true,
             calibration: true,
@@ -158,7 +158,7 @@ impl SessionRules {
     }
 
     /// Returns whether activity of a kind is recorded.
-    pub fn records(&self, kind: &str) -> bool {
+    pub fn records_activity(&self, kind: &str) -> bool {
         !self.unrecorded.iter().any(|left_out| left_out == kind)
     }
 }

@@ -28,7 +28,7 @@ pub struct StudyStamp {
 #[cfg(any(test, feature = "test-kit"))]
 impl StudyStamp {
     /// Returns the stamp of a pilot study without conditions.
-    pub fn pilot(practice: bool) -> StudyStamp {
+    pub fn pilot_study(practice: bool) -> StudyStamp {
         StudyStamp {
             name: "pilot".to_owned(),
             digest: String::new(),
@@ -88,12 +88,12 @@ pub struct HandoutEntry {
 
 impl HandoutEntry {
     /// Returns the values for the first run of a handout.
-    pub fn of_first_run(stamp: HandoutStamp) -> HandoutEntry {
+    pub fn for_first_run(stamp: HandoutStamp) -> HandoutEntry {
         HandoutEntry { run: Some(stamp.run.clone()), stamp }
     }
 
     /// Returns the values for a later run of the same handout.
-    pub fn of_later_run(stamp: HandoutStamp) -> HandoutEntry {
+    pub fn for_later_run(stamp: HandoutStamp) -> HandoutEntry {
         HandoutEntry { stamp, run: None }
     }
 }

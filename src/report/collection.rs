@@ -7,19 +7,19 @@ use std::path::{Path, PathBuf};
 use super::Logbook;
 use super::tables::StudyTables;
 use novamind_record::error::RunError;
-use novamind_session::archive::Workshop;
+use novamind_session::archive::TemporaryFolder;
 use novamind_session::{Export, LabKey, LabPublicKey, Seal, SealKey};
 use novamind_study::{
-    CollectNote, FoundRun, FoundVisit, Gathered, Study, VisitSummary, gather, missing_places,
+    CollectNote, CollectedRuns, FoundRun, FoundVisit, Study, VisitSummary, collect_runs, missing_participants,
 };
 
 /// Inputs and options of a collection.
 #[derive(Clone, Copy)]
-pub struct Collecting<'a> {
+pub struct CollectOptions<'a> {
     /// Folders of machines, and archives.
     pub sources: &'a [PathBuf],
     /// Output folder.
-    pub out: &'a Path,
+    pub output_folder: &'a Path,
     /// The study with its assignment of participants.
     pub study: Option<&'a Study>,
     /// Replacement labels by run.
@@ -32,22 +32,22 @@ pub struct Collecting<'a> {
 #[derive(Clone, Copy, Default)]
 pub struct LabKeys<'a> {
     /// Signs the archives that are written.
-    pub own: Option<&'a LabKey>,
+    pub signing_key: Option<&'a LabKey>,
     /// Verifies the signatures of the archives that are read.
-    pub public: Option<&'a LabPublicKey>,
+    pub verification_key: Option<&'a LabPublicKey>,
     /// Seals the snapshots of the runs.
-    pub seal: Option<&'a SealKey>,
+    pub sealing_key: Option<&'a SealKey>,
 }
 
 impl LabKeys<'_> {
-    fn seal_key(&self) -> SealKey {
-        self.seal.cloned().unwrap_or_default()
+    fn sealing_key_or_default(&self) -> SealKey {
+        self.sealing_key.cloned().unwrap_or_default()
     }
 }
 
 /// The result of a collection.
 #[derive(Debug, Clone)]
-pub struct Collected {
+pub struct CollectionResult {
     /// Tables of all collected runs.
     pub tables: StudyTables,
     /// Collected runs: label, seal, path of the archive.
@@ -63,13 +63,17 @@ pub struct Collected {
 ///
 /// # Errors
 /// Returns an error if the output folder cannot be written.
-pub fn collect(what: Collecting<'_>, progress: &mut dyn FnMut(usize, usize)) -> Result<Collected, RunError> {
-    let Collecting { sources, out, study, labels, keys } = what;
+pub fn collect(
+    what: CollectOptions<'_>,
+    progress: &mut dyn FnMut(usize, usize),
+) -> Result<CollectionResult, RunError> {
+    let CollectOptions { sources, output_folder: out, study, labels, keys } = what;
     std::fs::create_dir_all(out).map_err(|error| RunError::Io { path: out.to_owned(), error })?;
     // Unpacked archives go to a hidden folder that is deleted at the end.
-    let workshop = Workshop::within(out)?;
-    let Gathered { runs, conflicts, mut notes, visits } = gather(sources, workshop.path(), out, keys.public);
-    let mut collected = Collected {
+    let workshop = TemporaryFolder::create_in(out)?;
+    let CollectedRuns { runs, conflicts, mut notes, visits } =
+        collect_runs(sources, workshop.path(), out, keys.verification_key);
+    let mut collected = CollectionResult {
         tables: StudyTables::default(),
         runs: Vec::new(),
         notes: Vec::new(),
@@ -79,7 +83,7 @@ pub fn collect(what: Collecting<'_>, progress: &mut dyn FnMut(usize, usize)) -> 
         runs.iter().filter_map(|run| run.manifest.participant.as_deref()).collect();
     let of_study = |visit: &&FoundVisit| study.is_none_or(|study| visit.line.study == study.digest);
     let own_visits = visits.iter().filter(of_study).map(|visit| &visit.line);
-    collected.visits = VisitSummary::of(own_visits, &labels_recorded);
+    collected.visits = VisitSummary::from_lines(own_visits, &labels_recorded);
     collected.tables.add_visits(&visits);
     let mut present: BTreeSet<String> = BTreeSet::new();
     let mut others: BTreeMap<String, (String, String)> = BTreeMap::new();
@@ -96,7 +100,7 @@ pub fn collect(what: Collecting<'_>, progress: &mut dyn FnMut(usize, usize)) -> 
         if let (Some(stamp), Some(label)) = (other, &label) {
             others.insert(label.clone(), (id.clone(), stamp.digest.clone()));
         }
-        match take(run, out, label.clone(), keys, &mut collected.tables) {
+        match archive_run(run, out, label.clone(), keys, &mut collected.tables) {
             Ok((seal, archive)) => {
                 let is_session = run.manifest.study.as_ref().is_none_or(|stamp| !stamp.practice);
                 present.extend(label.clone().filter(|_| is_session && other.is_none()));
@@ -109,7 +113,7 @@ pub fn collect(what: Collecting<'_>, progress: &mut dyn FnMut(usize, usize)) -> 
             }
         }
     }
-    keep_apart(&conflicts, out, keys, &mut notes)?;
+    archive_conflicts(&conflicts, out, keys, &mut notes)?;
     for id in conflicts.keys() {
         collected.tables.add_unread(id, "two records contradict each other; both are kept in conflicts");
     }
@@ -117,29 +121,29 @@ pub fn collect(what: Collecting<'_>, progress: &mut dyn FnMut(usize, usize)) -> 
     let unknown = labels.keys().filter(|run| !known.contains(run));
     notes.extend(unknown.map(|run| CollectNote::UnknownRun { run: run.clone() }));
     if let Some(assignment) = study.and_then(|study| study.assignment.as_ref()) {
-        notes.extend(missing_places(assignment, &present, &others, &visits));
+        notes.extend(missing_participants(assignment, &present, &others, &visits));
     }
     collected.notes = notes;
     Ok(collected)
 }
 
-fn take(
+fn archive_run(
     run: &FoundRun,
     out: &Path,
     label: Option<String>,
     keys: LabKeys<'_>,
     tables: &mut StudyTables,
 ) -> Result<(Seal, PathBuf), RunError> {
-    let export = Export::prepare(&run.folder, out, &keys.seal_key())?;
+    let export = Export::prepare(&run.folder, out, &keys.sealing_key_or_default())?;
     let archive = out.join(format!("{}.tar.gz", run.manifest.id));
-    let seal = export.write(&archive, true, keys.own)?;
-    let mut book = Logbook::of(export.session(), &export.trajectory().lines, export.afterwards());
+    let seal = export.write(&archive, true, keys.signing_key)?;
+    let mut book = Logbook::new(export.session(), &export.trajectory().lines, export.afterwards_lines());
     book.participant = label;
-    tables.add(&book, &export.trajectory().lines, export.afterwards());
+    tables.add(&book, &export.trajectory().lines, export.afterwards_lines());
     Ok((seal, archive))
 }
 
-fn keep_apart(
+fn archive_conflicts(
     conflicts: &BTreeMap<String, Vec<FoundRun>>,
     out: &Path,
     keys: LabKeys<'_>,
@@ -153,8 +157,8 @@ fn keep_apart(
     for (run, records) in conflicts {
         for (number, record) in records.iter().enumerate() {
             let archive = folder.join(format!("{run}-{}.tar.gz", number + 1));
-            let kept = Export::prepare(&record.folder, &folder, &keys.seal_key())
-                .and_then(|own| own.write(&archive, true, keys.own));
+            let kept = Export::prepare(&record.folder, &folder, &keys.sealing_key_or_default())
+                .and_then(|own| own.write(&archive, true, keys.signing_key));
             notes.extend(kept.err().map(|error| CollectNote::Unreadable {
                 path: record.source.clone(),
                 problem: error.to_string(),

@@ -2,31 +2,32 @@
 
 use serde_json::Value;
 
-use super::words::count;
-use novamind_base::notation::cents;
-use novamind_session::CompanyNames;
+use super::formatting::pluralize;
+use novamind_base::formatting::cents;
+use novamind_session::EnterpriseNames;
 use novamind_tools::ToolId;
 
-const TOLD: usize = 3;
+const MAX_LISTED_DEALS: usize = 3;
 
 /// Describes the deals of a call. `None` for other tools and for arguments without deals.
-pub fn deals_in_words(tool: ToolId, arguments: &Value, names: &CompanyNames) -> Option<String> {
+pub fn describe_deals(tool: ToolId, arguments: &Value, names: &EnterpriseNames) -> Option<String> {
     if !matches!(tool, ToolId::SendEnterpriseDeal | ToolId::RejectEnterpriseDeal) {
         return None;
     }
     let deals = arguments.get("deals")?.as_array()?;
-    let told: Option<Vec<String>> = deals.iter().take(TOLD).map(|deal| deal_in_words(deal, names)).collect();
+    let told: Option<Vec<String>> =
+        deals.iter().take(MAX_LISTED_DEALS).map(|deal| describe_deal(deal, names)).collect();
     let mut words = told.filter(|told| !told.is_empty())?.join(" · ");
-    if deals.len() > TOLD {
-        words += &format!(" · {} more", count((deals.len() - TOLD) as u32, "enterprise"));
+    if deals.len() > MAX_LISTED_DEALS {
+        words += &format!(" · {} more", pluralize((deals.len() - MAX_LISTED_DEALS) as u32, "enterprise"));
     }
     Some(words)
 }
 
-fn deal_in_words(deal: &Value, names: &CompanyNames) -> Option<String> {
+fn describe_deal(deal: &Value, names: &EnterpriseNames) -> Option<String> {
     let part = |name: &str, at: usize| deal.get(name).or_else(|| deal.get(at));
     let customer = part("customer_id", 0).unwrap_or(deal).as_u64()?;
-    let company = names.with_number(u32::try_from(customer).ok()?);
+    let company = names.name_with_number(u32::try_from(customer).ok()?);
     let Some(offerings) = part("offerings", 1).and_then(Value::as_array) else { return Some(company) };
     let offering = |offering: &Value| {
         let part = |name: &str, at: usize| offering.get(name).or_else(|| offering.get(at));
@@ -45,10 +46,10 @@ mod tests {
     use novamind_world::params::Params;
 
     #[test]
-    fn deals_name_their_companies_in_every_form_of_a_call() {
-        let names = CompanyNames::new(3, &Params::shipped().personas.email);
-        let told = |tool: ToolId, deals: Value| deals_in_words(tool, &json!({ "deals": deals }), &names);
-        let (one, send) = (names.with_number(7), ToolId::SendEnterpriseDeal);
+    fn deals_name_their_enterprises_in_every_call_form() {
+        let names = EnterpriseNames::new(3, &Params::bundled().personas.email);
+        let told = |tool: ToolId, deals: Value| describe_deals(tool, &json!({ "deals": deals }), &names);
+        let (one, send) = (names.name_with_number(7), ToolId::SendEnterpriseDeal);
         let offered = Some(format!("{one}: B $35.00 or C $60.50"));
         assert_eq!(told(send, json!([[7, [["B", 35], ["C", 60.5]]]])), offered);
         let object = json!([{"customer_id": 7, "offerings": [

@@ -2,56 +2,61 @@
 
 use serde_json::Value;
 
-use super::deals::deals_in_words;
-use super::lesson::{goal_amount, goal_in_words, guess_in_words, question_in_words};
-use super::page::{Block, Chart, Curve, Fact, Page, Plot, Table};
-use super::words::{count, money};
-use novamind_base::notation::{grouped, percent, signed_dollars};
+use super::deals::describe_deals;
+use super::formatting::{format_money, pluralize};
+use super::lesson::{describe_goal, describe_question, format_goal_amount, format_guess};
+use super::page::{Block, Chart, Curve, NamedValue, Page, Plot, Table};
+use novamind_base::formatting::{grouped_number, percent, signed_dollars};
 use novamind_course::{
-    Debrief, DebriefStep, DecisionComparison, DecisionContrast, DecisionEffect, FirstDifference,
-    JudgedFigure, MEASURED_SEEDS, PartedDecision, PartingEffect, ReferenceCurve, SettingContrast,
+    Debrief, DebriefStep, DecisionComparison, DecisionDifference, DecisionEffect, DifferentDecision,
+    FirstDifference, JudgedFigure, MEASURED_SEEDS, ReferenceCurve, ReferenceEffect, SettingDifference,
 };
 use novamind_glossary::{Term, terms};
 use novamind_record::figures::{FigureUnit, WeekFigure};
-use novamind_record::trajectory::record::Ended;
-use novamind_session::CompanyNames;
+use novamind_record::trajectory::record::RunEndReason;
+use novamind_session::EnterpriseNames;
 use novamind_tools::ToolId;
 
-const MOST_SETTINGS: usize = 6;
+const MAX_LISTED_SETTINGS: usize = 6;
 
-const MOST_CALLS: usize = 2;
+const MAX_LISTED_CALLS: usize = 2;
 
 /// Summarizes the result of the part in a sentence.
 pub fn headline(own: &Debrief) -> String {
-    let last = |cash: &[f64]| money(cash.last().copied().unwrap_or(0.0));
-    let day = own.own.len().saturating_sub(1);
+    let last = |cash: &[f64]| format_money(cash.last().copied().unwrap_or(0.0));
+    let day = own.cash_by_day.len().saturating_sub(1);
     let end = match own.ended {
-        Some(Ended::Bankruptcy) => format!("You went bankrupt on day {day}"),
-        _ => format!("You had {} on day {day}", last(&own.own)),
+        Some(RunEndReason::Bankruptcy) => format!("You went bankrupt on day {day}"),
+        _ => format!("You had {} on day {day}", last(&own.cash_by_day)),
     };
     let other = |curve: &Option<ReferenceCurve>, name: &str| {
         curve.as_ref().map(|curve| format!("{name} play {}", last(&curve.cash_by_day)))
     };
     let cash_of = |curve: &Option<ReferenceCurve>| curve.as_ref().map(|curve| last(&curve.cash_by_day));
-    let others: Vec<String> = match cash_of(&own.good) {
-        Some(cash) if cash_of(&own.bad).as_ref() == Some(&cash) => {
+    let others: Vec<String> = match cash_of(&own.reference) {
+        Some(cash) if cash_of(&own.bad_play).as_ref() == Some(&cash) => {
             vec![format!("reference and bad play both {cash}")]
         }
-        _ => [other(&own.good, "reference"), other(&own.bad, "bad")].into_iter().flatten().collect(),
+        _ => {
+            [other(&own.reference, "reference"), other(&own.bad_play, "bad")].into_iter().flatten().collect()
+        }
     };
     let cash = match others.is_empty() {
         true => format!("{end}."),
         false => format!("{end}; {}.", others.join(", ")),
     };
-    own.judged_by.as_ref().and_then(judged_in_words).map_or(cash.clone(), |judged| format!("{judged} {cash}"))
+    own.judged_by
+        .as_ref()
+        .and_then(describe_judged_figure)
+        .map_or(cash.clone(), |judged| format!("{judged} {cash}"))
 }
 
-fn judged_in_words(judged: &JudgedFigure) -> Option<String> {
-    let last = |curve: &[(u32, f64)]| curve.last().map(|(_, value)| of_figure(judged.figure, *value));
-    let (day, _) = judged.own.last()?;
+fn describe_judged_figure(judged: &JudgedFigure) -> Option<String> {
+    let last = |curve: &[(u32, f64)]| curve.last().map(|(_, value)| format_figure(judged.figure, *value));
+    let (day, _) = judged.actual.last()?;
     let mut said =
-        format!("{} on day {day}: yours {}", capitalised(judged.figure.name()), last(&judged.own)?);
-    for (name, curve) in [("reference", &judged.good), ("bad", &judged.bad)] {
+        format!("{} on day {day}: yours {}", capitalize(judged.figure.name()), last(&judged.actual)?);
+    for (name, curve) in [("reference", &judged.reference), ("bad", &judged.bad_play)] {
         if let Some(value) = curve.as_deref().and_then(last) {
             said += &format!(", the {name} play's {value}");
         }
@@ -59,36 +64,36 @@ fn judged_in_words(judged: &JudgedFigure) -> Option<String> {
     Some(said + ".")
 }
 
-fn of_figure(figure: WeekFigure, value: f64) -> String {
+fn format_figure(figure: WeekFigure, value: f64) -> String {
     match figure.unit() {
-        FigureUnit::Dollars => money(value),
-        FigureUnit::Count => grouped(value, 0),
-        FigureUnit::Share | FigureUnit::FineShare => percent(value, 1),
-        FigureUnit::Level => grouped(value, 3),
+        FigureUnit::Dollars => format_money(value),
+        FigureUnit::Count => grouped_number(value, 0),
+        FigureUnit::Share | FigureUnit::PreciseShare => percent(value, 1),
+        FigureUnit::Level => grouped_number(value, 3),
     }
 }
 
-fn capitalised(text: &str) -> String {
+fn capitalize(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// Returns the debrief as paragraphs.
-pub fn in_words(own: &Debrief) -> Vec<String> {
+pub fn debrief_paragraphs(own: &Debrief) -> Vec<String> {
     let part = own.part.as_ref().map(|part| format!(" · {part}")).unwrap_or_default();
     let mut lines = vec![format!("{}{part}", own.title), headline(own), String::new()];
-    lines.extend(comparison_in_words(own));
+    lines.extend(describe_comparison(own));
     for step in &own.steps {
         lines.push(String::new());
-        lines.extend(step_in_words(step));
+        lines.extend(describe_step(step));
     }
     if !own.pitfalls.is_empty() {
         lines.push(String::new());
         lines.extend(own.pitfalls.iter().map(|(day, say)| format!("Day {day}: {say}")));
     }
     if let Some(text) = &own.text {
-        lines.extend(paragraphs(text).into_iter().flat_map(|own| [String::new(), own]));
-        lines.extend([String::new(), figures_in_text(own)]);
+        lines.extend(split_paragraphs(text).into_iter().flat_map(|own| [String::new(), own]));
+        lines.extend([String::new(), describe_figure_source(own)]);
         lines.push(String::new());
         lines.extend(named_terms(text).iter().map(|term| format!("{}: {}", term.title, term.text)));
     }
@@ -96,95 +101,97 @@ pub fn in_words(own: &Debrief) -> Vec<String> {
 }
 
 /// Describes the first decisions that differ from the reference play, and their effect.
-pub fn comparison_in_words(own: &Debrief) -> Vec<String> {
+pub fn describe_comparison(own: &Debrief) -> Vec<String> {
     match &own.comparison {
         DecisionComparison::Same => {
             vec!["You made the same decisions as the reference play, week by week.".to_owned()]
         }
-        DecisionComparison::Nothing => vec!["There was nothing to decide in this part.".to_owned()],
-        DecisionComparison::Unknown => {
+        DecisionComparison::NoDecisions => vec!["There was nothing to decide in this part.".to_owned()],
+        DecisionComparison::NotComparable => {
             vec!["Your decisions cannot be compared with the reference play in this run.".to_owned()]
         }
-        DecisionComparison::Parted(parting) => {
+        DecisionComparison::Different(parting) => {
             let told = |name: &str, play: &Option<ReferenceCurve>| {
                 let text = play.as_ref().and_then(|play| play.text.as_ref());
                 text.map(|text| format!("The {name} play: {text}"))
             };
-            let mut lines: Vec<String> =
-                [told("reference", &own.good), told("bad", &own.bad)].into_iter().flatten().collect();
+            let mut lines: Vec<String> = [told("reference", &own.reference), told("bad", &own.bad_play)]
+                .into_iter()
+                .flatten()
+                .collect();
             lines.push(format!("Your decisions first differ in week {}, day {}:", parting.week, parting.day));
             let names = own.company_names();
-            lines.extend(parting.decisions.iter().map(|one| format!("  {}", decision_in_words(one, &names))));
-            lines.push(effect_in_words(parting, own));
+            lines.extend(parting.decisions.iter().map(|one| format!("  {}", describe_decision(one, &names))));
+            lines.push(describe_effect(parting, own));
             lines
         }
     }
 }
 
-fn decision_in_words(decision: &PartedDecision, names: &CompanyNames) -> String {
+fn describe_decision(decision: &DifferentDecision, names: &EnterpriseNames) -> String {
     let said = match &decision.difference {
-        DecisionContrast::Settings { settings } => {
-            let one = |setting: &SettingContrast| {
+        DecisionDifference::Settings { settings } => {
+            let one = |setting: &SettingDifference| {
                 format!(
                     "{} {}, reference play {}",
                     setting.name,
-                    written(&setting.own),
-                    written(&setting.good)
+                    format_argument(&setting.own),
+                    format_argument(&setting.good)
                 )
             };
-            let more = match settings.len().saturating_sub(MOST_SETTINGS) {
+            let more = match settings.len().saturating_sub(MAX_LISTED_SETTINGS) {
                 0 => String::new(),
                 more => format!("; {more} more"),
             };
-            settings.iter().take(MOST_SETTINGS).map(one).collect::<Vec<_>>().join("; ") + &more
+            settings.iter().take(MAX_LISTED_SETTINGS).map(one).collect::<Vec<_>>().join("; ") + &more
         }
-        DecisionContrast::Calls { own, good } => {
-            let told = |calls| calls_in_words(decision.tool, calls, names);
+        DecisionDifference::Calls { own, good } => {
+            let told = |calls| describe_calls(decision.tool, calls, names);
             format!("{}; reference play: {}", told(own), told(good))
         }
     };
     format!("{}: {said}", decision.tool.name())
 }
 
-fn written(value: &Value) -> String {
+fn format_argument(value: &Value) -> String {
     match value {
         Value::Null => "nothing".to_owned(),
         Value::String(text) => text.clone(),
         Value::Number(number) => {
             let value = number.as_f64().unwrap_or(0.0);
-            grouped(value, if value.fract() == 0.0 { 0 } else { 2 })
+            grouped_number(value, if value.fract() == 0.0 { 0 } else { 2 })
         }
         other => other.to_string(),
     }
 }
 
-fn calls_in_words(tool: ToolId, calls: &[Value], names: &CompanyNames) -> String {
+fn describe_calls(tool: ToolId, calls: &[Value], names: &EnterpriseNames) -> String {
     let one = |call: &Value| {
-        if let Some(words) = deals_in_words(tool, call, names) {
+        if let Some(words) = describe_deals(tool, call, names) {
             return words;
         }
-        let of = |(name, value): (&String, &Value)| format!("{name} {}", written(value));
+        let of = |(name, value): (&String, &Value)| format!("{name} {}", format_argument(value));
         call.as_object()
-            .map_or_else(|| written(call), |own| own.iter().map(of).collect::<Vec<_>>().join(", "))
+            .map_or_else(|| format_argument(call), |own| own.iter().map(of).collect::<Vec<_>>().join(", "))
     };
-    let more = match calls.len().saturating_sub(MOST_CALLS) {
+    let more = match calls.len().saturating_sub(MAX_LISTED_CALLS) {
         0 => String::new(),
         more => format!("; {more} more"),
     };
     match calls {
         [] => "no call".to_owned(),
-        calls => calls.iter().take(MOST_CALLS).map(one).collect::<Vec<_>>().join("; ") + &more,
+        calls => calls.iter().take(MAX_LISTED_CALLS).map(one).collect::<Vec<_>>().join("; ") + &more,
     }
 }
 
-fn effect_in_words(parting: &FirstDifference, own: &Debrief) -> String {
+fn describe_effect(parting: &FirstDifference, own: &Debrief) -> String {
     let effect = match parting.effect {
         DecisionEffect::Simulated(effect) => effect,
-        DecisionEffect::Refused => {
+        DecisionEffect::Rejected => {
             return "The rules reject the reference play's calls in your run, so their effect was not simulated."
                 .to_owned();
         }
-        DecisionEffect::OtherCustomers => {
+        DecisionEffect::DifferentCustomers => {
             return "Your later messages name enterprises by number. After other decisions these numbers belong to \
                     different enterprises, so the effect was not simulated."
                 .to_owned();
@@ -192,7 +199,7 @@ fn effect_in_words(parting: &FirstDifference, own: &Debrief) -> String {
     };
     let judged_by = own.judged_by.as_ref();
     let figure = judged_by.zip(effect.judged).map(|(judged, (own, with))| {
-        let (own, with) = (of_figure(judged.figure, own), of_figure(judged.figure, with));
+        let (own, with) = (format_figure(judged.figure, own), format_figure(judged.figure, with));
         format!("{} of {with} rather than {own}, and ", judged.figure.name())
     });
     let told = format!(
@@ -200,16 +207,16 @@ fn effect_in_words(parting: &FirstDifference, own: &Debrief) -> String {
          cash of {} on day {} rather than {} ({}).",
         parting.week,
         figure.unwrap_or_default(),
-        money(effect.with),
+        format_money(effect.with),
         effect.day,
-        money(effect.own),
+        format_money(effect.own),
         signed_dollars(effect.with - effect.own)
     );
-    told + &alone_or_together(effect, own)
+    told + &describe_single_or_joint_effect(effect, own)
 }
 
 /// Explains the result if the first different decisions of the reference play alone make it worse.
-fn alone_or_together(effect: PartingEffect, own: &Debrief) -> String {
+fn describe_single_or_joint_effect(effect: ReferenceEffect, own: &Debrief) -> String {
     let (mine, with) = effect.judged.unwrap_or((effect.own, effect.with));
     if with >= mine {
         return String::new();
@@ -220,14 +227,14 @@ fn alone_or_together(effect: PartingEffect, own: &Debrief) -> String {
     }
     let good = match (&own.judged_by, effect.judged) {
         (Some(judged), Some(_)) => {
-            judged.good.as_ref().and_then(|good| Some((good.last()?.1, judged.figure)))
+            judged.reference.as_ref().and_then(|good| Some((good.last()?.1, judged.figure)))
         }
         _ => None,
     };
-    let cash = own.good.as_ref().and_then(|good| good.cash_by_day.last());
+    let cash = own.reference.as_ref().and_then(|good| good.cash_by_day.last());
     let (reached, words) = match (good, cash) {
-        (Some((value, figure)), _) => (value, of_figure(figure, value)),
-        (None, Some(cash)) => (*cash, money(*cash)),
+        (Some((value, figure)), _) => (value, format_figure(figure, value)),
+        (None, Some(cash)) => (*cash, format_money(*cash)),
         (None, None) => return String::new(),
     };
     match reached > mine {
@@ -242,20 +249,20 @@ fn alone_or_together(effect: PartingEffect, own: &Debrief) -> String {
     }
 }
 
-fn step_in_words(step: &DebriefStep) -> Vec<String> {
-    let mut lines = vec![format!("{} · {}", step.title, effort(step))];
-    lines.extend(step.question.iter().flat_map(question_in_words));
-    lines.extend(step.goals.iter().map(goal_in_words));
+fn describe_step(step: &DebriefStep) -> Vec<String> {
+    let mut lines = vec![format!("{} · {}", step.title, describe_effort(step))];
+    lines.extend(step.question.iter().flat_map(describe_question));
+    lines.extend(step.goals.iter().map(describe_goal));
     lines
 }
 
-fn effort(step: &DebriefStep) -> String {
+fn describe_effort(step: &DebriefStep) -> String {
     let (used, all) = step.hints;
     let tries = if step.tries == 1 { "1 try".to_owned() } else { format!("{} tries", step.tries) };
-    format!("{tries}, {used} of {}", count(all as u32, "hint"))
+    format!("{tries}, {used} of {}", pluralize(all as u32, "hint"))
 }
 
-fn figures_in_text(own: &Debrief) -> String {
+fn describe_figure_source(own: &Debrief) -> String {
     let (from, to) = (MEASURED_SEEDS.start(), MEASURED_SEEDS.end());
     format!(
         "Amounts in this text are averages over seeds {from} to {to}; your company has seed {}.",
@@ -263,7 +270,7 @@ fn figures_in_text(own: &Debrief) -> String {
     )
 }
 
-fn paragraphs(text: &str) -> Vec<String> {
+fn split_paragraphs(text: &str) -> Vec<String> {
     let plain = |paragraph: &str| {
         let words: Vec<&str> = paragraph.split_whitespace().collect();
         words.join(" ").replace(['*', '`'], "")
@@ -289,18 +296,18 @@ pub fn named_terms(text: &str) -> Vec<&'static Term> {
     found
 }
 
-pub(super) fn page_of(own: &Debrief) -> Page {
-    let mut blocks = vec![Block::Facts(facts(own))];
+pub(super) fn debrief_page(own: &Debrief) -> Page {
+    let mut blocks = vec![Block::Facts(summary_facts(own))];
     if let Some(judged) = &own.judged_by {
         blocks.push(Block::Heading("Target"));
         blocks.push(Block::Chart(judged_chart(judged, &headline(own))));
     }
     blocks.push(Block::Heading("Cash"));
-    blocks.push(Block::Chart(cash(own)));
+    blocks.push(Block::Chart(cash_chart(own)));
     blocks.push(Block::Heading("Comparison with the reference play"));
-    blocks.extend(comparison_in_words(own).into_iter().map(|line| Block::Text(line.trim().to_owned())));
-    blocks.extend(guesses(own));
-    blocks.extend(goals(own));
+    blocks.extend(describe_comparison(own).into_iter().map(|line| Block::Text(line.trim().to_owned())));
+    blocks.extend(guess_blocks(own));
+    blocks.extend(goal_blocks(own));
     if !own.pitfalls.is_empty() {
         blocks.push(Block::Heading("Pitfalls"));
         let row = |(day, say): &(u32, String)| vec![day.to_string(), say.clone()];
@@ -311,8 +318,8 @@ pub(super) fn page_of(own: &Debrief) -> Page {
     }
     if let Some(text) = &own.text {
         blocks.push(Block::Heading("The mechanism"));
-        blocks.extend(paragraphs(text).into_iter().map(Block::Text));
-        blocks.push(Block::Text(figures_in_text(own)));
+        blocks.extend(split_paragraphs(text).into_iter().map(Block::Text));
+        blocks.push(Block::Text(describe_figure_source(own)));
         let row = |term: &&Term| vec![term.title.clone(), term.text.clone()];
         let rows: Vec<Vec<String>> = named_terms(text).iter().map(row).collect();
         if !rows.is_empty() {
@@ -327,42 +334,42 @@ pub(super) fn page_of(own: &Debrief) -> Page {
         headline: headline(own),
         tags,
         blocks,
-        foot: format!(
+        footer: format!(
             "Recorded by NovaMind console {}. The reference play and the bad play were simulated with the seed of the run.",
             env!("CARGO_PKG_VERSION")
         ),
     }
 }
 
-fn facts(own: &Debrief) -> Vec<Fact> {
-    let last = |cash: &[f64]| money(cash.last().copied().unwrap_or(0.0));
-    let day = format!("day {}", own.own.len().saturating_sub(1));
-    let mut facts = vec![Fact::new("You", last(&own.own), day)];
-    for (name, curve) in [("Reference play", &own.good), ("Bad play", &own.bad)] {
+fn summary_facts(own: &Debrief) -> Vec<NamedValue> {
+    let last = |cash: &[f64]| format_money(cash.last().copied().unwrap_or(0.0));
+    let day = format!("day {}", own.cash_by_day.len().saturating_sub(1));
+    let mut facts = vec![NamedValue::new("You", last(&own.cash_by_day), day)];
+    for (name, curve) in [("Reference play", &own.reference), ("Bad play", &own.bad_play)] {
         let told = |curve: &ReferenceCurve| {
-            Fact::new(name, last(&curve.cash_by_day), curve.text.clone().unwrap_or_default())
+            NamedValue::new(name, last(&curve.cash_by_day), curve.text.clone().unwrap_or_default())
         };
         facts.extend(curve.as_ref().map(told));
     }
     facts
 }
 
-fn cash(own: &Debrief) -> Chart {
+fn cash_chart(own: &Debrief) -> Chart {
     let curve = |name: &str, cash: &[f64]| Curve {
         name: name.to_owned(),
         points: cash.iter().enumerate().map(|(day, cash)| (day as f64, *cash)).collect(),
     };
-    let references = [("reference play", &own.good), ("bad play", &own.bad)];
+    let references = [("reference play", &own.reference), ("bad play", &own.bad_play)];
     let others =
         references.into_iter().filter_map(|(name, own)| Some(curve(name, &own.as_ref()?.cash_by_day)));
     Chart {
         title: "Cash by day".to_owned(),
         summary: headline(own),
-        across: "day",
-        dollars: true,
-        within: None,
+        x_label: "day",
+        is_in_dollars: true,
+        y_limits: None,
         plot: Plot::Lines {
-            curves: std::iter::once(curve("you", &own.own)).chain(others).collect(),
+            curves: std::iter::once(curve("you", &own.cash_by_day)).chain(others).collect(),
             band: None,
         },
     }
@@ -373,27 +380,27 @@ fn judged_chart(judged: &JudgedFigure, summary: &str) -> Chart {
         name: name.to_owned(),
         points: values.iter().map(|(day, value)| (f64::from(*day), *value)).collect(),
     };
-    let references = [("reference play", &judged.good), ("bad play", &judged.bad)];
+    let references = [("reference play", &judged.reference), ("bad play", &judged.bad_play)];
     let others = references.into_iter().filter_map(|(name, own)| Some(curve(name, own.as_ref()?)));
     Chart {
-        title: format!("{} by week", capitalised(judged.figure.name())),
+        title: format!("{} by week", capitalize(judged.figure.name())),
         summary: summary.to_owned(),
-        across: "day",
-        dollars: judged.figure.unit() == FigureUnit::Dollars,
-        within: None,
+        x_label: "day",
+        is_in_dollars: judged.figure.unit() == FigureUnit::Dollars,
+        y_limits: None,
         plot: Plot::Lines {
-            curves: std::iter::once(curve("you", &judged.own)).chain(others).collect(),
+            curves: std::iter::once(curve("you", &judged.actual)).chain(others).collect(),
             band: None,
         },
     }
 }
 
-fn guesses(own: &Debrief) -> Vec<Block> {
+fn guess_blocks(own: &Debrief) -> Vec<Block> {
     let asked = own.steps.iter().filter_map(|step| Some((step, step.question.as_ref()?)));
     let rows: Vec<Vec<String>> = asked
         .map(|(step, question)| {
             let said =
-                |value: Option<f64>| value.map_or("–".to_owned(), |value| guess_in_words(question, value));
+                |value: Option<f64>| value.map_or("–".to_owned(), |value| format_guess(question, value));
             vec![step.title.clone(), question.text.clone(), said(question.guess), said(question.outcome)]
         })
         .collect();
@@ -404,23 +411,23 @@ fn guesses(own: &Debrief) -> Vec<Block> {
     vec![Block::Heading("Guesses"), Block::Table(Table { columns, rows })]
 }
 
-fn goals(own: &Debrief) -> Vec<Block> {
+fn goal_blocks(own: &Debrief) -> Vec<Block> {
     let row = |step: &DebriefStep| {
         let met = |met| match met {
             Some(true) => "reached",
             Some(false) => "missed",
             None => "not judged",
         };
-        let one = |goal: &novamind_course::GoalPage| {
+        let one = |goal: &novamind_course::GoalStatus| {
             let number =
-                |value: Option<f64>| value.map_or("–".to_owned(), |value| goal_amount(goal, value));
+                |value: Option<f64>| value.map_or("–".to_owned(), |value| format_goal_amount(goal, value));
             vec![
                 step.title.clone(),
                 goal.text.clone(),
                 number(goal.value),
                 number(goal.bound),
                 met(goal.met).to_owned(),
-                effort(step),
+                describe_effort(step),
             ]
         };
         step.goals.iter().map(one).collect::<Vec<_>>()
@@ -445,10 +452,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn emphasised_words_are_looked_up_and_marks_do_not_stay() {
+    fn emphasized_terms_are_found_and_marks_removed() {
         let text = "People *churn* if `a < b`.\n\nGlossary: *churn*, *model\ntier*, *no such thing*.";
         let names: Vec<&str> = named_terms(text).iter().map(|term| term.id.as_str()).collect();
         assert_eq!(names, ["churn", "model-tier"]);
-        assert_eq!(paragraphs(text)[0], "People churn if a < b.");
+        assert_eq!(split_paragraphs(text)[0], "People churn if a < b.");
     }
 }

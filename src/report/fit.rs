@@ -3,17 +3,17 @@
 
 use serde::Serialize;
 
-use super::words::{range, whole};
-use novamind_base::notation::{cents, dollars, percent, price_to_cents};
+use super::formatting::{format_range, format_whole};
+use novamind_base::formatting::{cents, dollars, percent, price_to_cents};
 use novamind_session::identifiers::{ByGroup, ByPlan, Group, Plan};
-use novamind_session::{DeliveredQuality, Estimates, GroupWeek, Session, Settings, truth_behind};
+use novamind_session::{DeliveredQuality, Estimates, GroupWeek, Session, Settings, true_value_range};
 
 /// Number of weeks in `recent`.
-const RECENT: usize = 4;
+const RECENT_WEEKS: usize = 4;
 
 /// Smallest and largest true value that an estimate allows.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct TruthRange {
+pub struct TrueValueRange {
     /// Smallest.
     pub least: f64,
     /// Largest.
@@ -22,55 +22,55 @@ pub struct TruthRange {
 
 /// Position of a figure relative to the range of a true value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Beside {
+pub enum RangePosition {
     /// Below the range.
     Below,
     /// In the range: the true value can be on either side.
-    Inside,
+    InRange,
     /// Above the range.
     Above,
 }
 
-impl TruthRange {
+impl TrueValueRange {
     /// Returns the range behind an estimate with a relative error of at most `share`.
-    pub fn behind(estimate: f64, share: f64) -> TruthRange {
-        truth_behind(estimate, share).into()
+    pub fn from_estimate(estimate: f64, share: f64) -> TrueValueRange {
+        true_value_range(estimate, share).into()
     }
 
     /// Compares a figure with the range; both ends count as inside.
-    pub fn beside(&self, figure: f64) -> Beside {
+    pub fn position_of(&self, figure: f64) -> RangePosition {
         match figure {
-            figure if figure < self.least => Beside::Below,
-            figure if figure > self.most => Beside::Above,
-            _ => Beside::Inside,
+            figure if figure < self.least => RangePosition::Below,
+            figure if figure > self.most => RangePosition::Above,
+            _ => RangePosition::InRange,
         }
     }
 
     /// Formats a range of qualities: `0.181 to 0.858`.
-    pub fn quality(&self) -> String {
-        range(self.least, self.most, 3)
+    pub fn format_quality(&self) -> String {
+        format_range(self.least, self.most, 3)
     }
 
     /// Formats a range of dollars: `$18 to $87`.
-    pub fn money(&self) -> String {
-        format!("${}", range(self.least, self.most, 0).replace(" to ", " to $"))
+    pub fn format_money(&self) -> String {
+        format!("${}", format_range(self.least, self.most, 0).replace(" to ", " to $"))
     }
 
     /// Formats whole units, or dollars if the label has the unit: `180 to 841`.
-    pub fn units(&self) -> String {
-        range(self.least, self.most, 0)
+    pub fn format_units(&self) -> String {
+        format_range(self.least, self.most, 0)
     }
 }
 
-impl From<(f64, f64)> for TruthRange {
-    fn from((least, most): (f64, f64)) -> TruthRange {
-        TruthRange { least, most }
+impl From<(f64, f64)> for TrueValueRange {
+    fn from((least, most): (f64, f64)) -> TrueValueRange {
+        TrueValueRange { least, most }
     }
 }
 
 /// An aspect in which a group compares a plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Concern {
+pub enum FitCriterion {
     /// List price compared with the budget.
     Price,
     /// Delivered quality compared with the required quality.
@@ -79,16 +79,16 @@ pub enum Concern {
     Quota,
 }
 
-impl Concern {
+impl FitCriterion {
     /// All aspects, in the order of display.
-    pub const ALL: [Concern; 3] = [Concern::Price, Concern::Quality, Concern::Quota];
+    pub const ALL: [FitCriterion; 3] = [FitCriterion::Price, FitCriterion::Quality, FitCriterion::Quota];
 
     /// Returns the word for the aspect.
-    pub fn id(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
-            Concern::Price => "price",
-            Concern::Quality => "quality",
-            Concern::Quota => "quota",
+            FitCriterion::Price => "price",
+            FitCriterion::Quality => "quality",
+            FitCriterion::Quota => "quota",
         }
     }
 }
@@ -99,12 +99,12 @@ pub struct PlanFit {
     /// Plan.
     pub plan: Plan,
     /// List price, dollars a month; 0 if it is not on sale.
-    pub list: f64,
+    pub list_price: f64,
     /// List price less the promotion for leads of all channels, which a lead compares with its budget.
     /// Enterprises negotiate their price.
-    pub price: f64,
+    pub lead_price: f64,
     /// List price less the promotion in force, which a subscriber is billed.
-    pub billed: f64,
+    pub billed_price: f64,
     /// Delivered quality.
     pub quality: f64,
     /// Quota, units a day and account.
@@ -117,11 +117,11 @@ pub struct LeadFlow {
     /// All leads.
     pub leads: u32,
     /// Leads through channels.
-    pub paid: u32,
+    pub channel_leads: u32,
     /// Leads by word of mouth.
     pub word_of_mouth: u32,
     /// Individuals who signed up, and enterprises that accepted their first deal.
-    pub signed: u32,
+    pub signups: u32,
 }
 
 /// Estimates of a group compared with the plans.
@@ -132,17 +132,17 @@ pub struct Fit {
     /// Study level.
     pub level: u8,
     /// Largest relative error of its estimates.
-    pub noise: f64,
+    pub max_relative_error: f64,
     /// Day of the estimates of required quality and budget.
-    pub as_of: u32,
-    /// Days since `as_of`.
-    pub age: u32,
+    pub study_day: u32,
+    /// Days since `study_day`.
+    pub age_days: u32,
     /// Mean required quality of the group, before it rises with the price.
-    pub floor: TruthRange,
+    pub floor: TrueValueRange,
     /// Mean budget, dollars a month; for enterprises, per seat.
-    pub budget: TruthRange,
+    pub budget: TrueValueRange,
     /// Mean usage of a customer, units a day; for enterprises, of the smallest.
-    pub usage: TruthRange,
+    pub usage: TrueValueRange,
     /// The plans.
     pub plans: ByPlan<PlanFit>,
     /// The last week; `None` before the first.
@@ -155,34 +155,35 @@ pub struct Fit {
 pub fn fits(session: &Session) -> Vec<Fit> {
     let (quality, weeks) = (session.company().delivered_quality(), session.company().group_weeks());
     let delivered = |group: Group| quality.iter().find(|own| own.group == group);
-    let of =
-        |own: &Estimates| Some(fit(own, delivered(own.group)?, session.settings(), weeks, session.day()));
+    let of = |own: &Estimates| {
+        Some(group_fit(own, delivered(own.group)?, session.settings(), weeks, session.day()))
+    };
     session.company().estimates().iter().filter_map(of).collect()
 }
 
-fn fit(
+fn group_fit(
     own: &Estimates,
     quality: &DeliveredQuality,
     settings: &Settings,
     weeks: &[ByGroup<GroupWeek>],
     day: u32,
 ) -> Fit {
-    let recent = &weeks[weeks.len().saturating_sub(RECENT)..];
+    let recent = &weeks[weeks.len().saturating_sub(RECENT_WEEKS)..];
     Fit {
         group: own.group,
         level: own.level,
-        noise: own.noise,
-        as_of: own.as_of,
-        age: day.saturating_sub(own.as_of),
-        floor: TruthRange::behind(own.floor, own.noise),
-        budget: TruthRange::behind(own.budget, own.noise),
-        usage: own.account_range().into(),
+        max_relative_error: own.max_relative_error,
+        study_day: own.as_of,
+        age_days: day.saturating_sub(own.as_of),
+        floor: TrueValueRange::from_estimate(own.required_quality, own.max_relative_error),
+        budget: TrueValueRange::from_estimate(own.budget, own.max_relative_error),
+        usage: own.account_usage_range().into(),
         plans: ByPlan::from_fn(|plan| plan_fit(own.group, plan, quality.by_plan[plan], settings)),
-        last_week: weeks.last().map(|week| LeadFlow::of(&week[own.group])),
+        last_week: weeks.last().map(|week| LeadFlow::from_week(&week[own.group])),
         recent: recent
             .iter()
-            .map(|week| LeadFlow::of(&week[own.group]))
-            .fold(LeadFlow::default(), LeadFlow::plus),
+            .map(|week| LeadFlow::from_week(&week[own.group]))
+            .fold(LeadFlow::default(), LeadFlow::add),
     }
 }
 
@@ -192,90 +193,90 @@ fn plan_fit(group: Group, plan: Plan, quality: f64, settings: &Settings) -> Plan
     let leads = if group.is_enterprise() { 0.0 } else { settings.lead_promotion.sum(group, None) };
     PlanFit {
         plan,
-        list,
-        price: less(leads),
+        list_price: list,
+        lead_price: less(leads),
         // No customer has the number 0, so settings of individual customers do not apply.
-        billed: less(settings.promotion.sum(0, group, plan)),
+        billed_price: less(settings.promotion.sum(0, group, plan)),
         quality,
         quota: settings.core.quotas[plan].units(),
     }
 }
 
 impl LeadFlow {
-    fn of(week: &GroupWeek) -> LeadFlow {
+    fn from_week(week: &GroupWeek) -> LeadFlow {
         LeadFlow {
             leads: week.leads,
-            paid: week.paid_leads(),
+            channel_leads: week.paid_leads(),
             word_of_mouth: week.word_of_mouth,
-            signed: week.signed,
+            signups: week.signed,
         }
     }
 
-    fn plus(self, other: LeadFlow) -> LeadFlow {
+    fn add(self, other: LeadFlow) -> LeadFlow {
         LeadFlow {
             leads: self.leads + other.leads,
-            paid: self.paid + other.paid,
+            channel_leads: self.channel_leads + other.channel_leads,
             word_of_mouth: self.word_of_mouth + other.word_of_mouth,
-            signed: self.signed + other.signed,
+            signups: self.signups + other.signups,
         }
     }
 
     /// Returns signups divided by leads; `None` without leads.
     pub fn conversion(&self) -> Option<f64> {
-        (self.leads > 0).then(|| f64::from(self.signed) / f64::from(self.leads))
+        (self.leads > 0).then(|| f64::from(self.signups) / f64::from(self.leads))
     }
 
     /// Describes the leads: `120 leads (80 paid, 40 by word of mouth), 12 signed (10.0%)`.
-    pub fn in_words(&self) -> String {
+    pub fn describe(&self) -> String {
         if self.leads == 0 {
-            let signed = if self.signed == 0 { String::new() } else { format!(", {} signed", self.signed) };
+            let signed = if self.signups == 0 { String::new() } else { format!(", {} signed", self.signups) };
             return format!("no leads{signed}");
         }
         let share = self.conversion().map_or(String::new(), |share| format!(" ({})", percent(share, 1)));
-        let number = |count: u32| whole(f64::from(count));
+        let number = |count: u32| format_whole(f64::from(count));
         format!(
             "{} ({} paid, {} by word of mouth), {} signed{share}",
-            super::words::count(self.leads, "lead"),
-            number(self.paid),
+            super::formatting::pluralize(self.leads, "lead"),
+            number(self.channel_leads),
             number(self.word_of_mouth),
-            number(self.signed)
+            number(self.signups)
         )
     }
 }
 
 impl Fit {
     /// Compares a plan in one aspect. Returns `None` for the price of enterprises, which negotiate it.
-    pub fn beside(&self, plan: Plan, concern: Concern) -> Option<Beside> {
+    pub fn position(&self, plan: Plan, concern: FitCriterion) -> Option<RangePosition> {
         let own = &self.plans[plan];
         match concern {
-            Concern::Price if self.group.is_enterprise() => None,
-            Concern::Price => Some(self.budget.beside(own.price)),
-            Concern::Quality => Some(self.floor.beside(own.quality)),
-            Concern::Quota => Some(self.usage.beside(own.quota)),
+            FitCriterion::Price if self.group.is_enterprise() => None,
+            FitCriterion::Price => Some(self.budget.position_of(own.lead_price)),
+            FitCriterion::Quality => Some(self.floor.position_of(own.quality)),
+            FitCriterion::Quota => Some(self.usage.position_of(own.quota)),
         }
     }
 
     /// Returns the smallest deficit that the whole range allows; `None` if no deficit is certain.
-    pub fn missing(&self, plan: Plan, concern: Concern) -> Option<f64> {
+    pub fn certain_gap(&self, plan: Plan, concern: FitCriterion) -> Option<f64> {
         let own = &self.plans[plan];
-        match (concern, self.beside(plan, concern)?) {
-            (Concern::Price, Beside::Above) => Some(own.price - self.budget.most),
-            (Concern::Quality, Beside::Below) => Some(self.floor.least - own.quality),
-            (Concern::Quota, Beside::Below) => Some(self.usage.least - own.quota),
+        match (concern, self.position(plan, concern)?) {
+            (FitCriterion::Price, RangePosition::Above) => Some(own.lead_price - self.budget.most),
+            (FitCriterion::Quality, RangePosition::Below) => Some(self.floor.least - own.quality),
+            (FitCriterion::Quota, RangePosition::Below) => Some(self.usage.least - own.quota),
             _ => None,
         }
     }
 
     /// Describes what a plan lacks, and the aspects that are uncertain.
-    pub fn lacks(&self, plan: Plan) -> String {
+    pub fn describe_gaps(&self, plan: Plan) -> String {
         let own = &self.plans[plan];
-        if own.list <= 0.0 {
+        if own.list_price <= 0.0 {
             return "has no price".to_owned();
         }
-        let certain = |concern: &Concern| Some((*concern, self.missing(plan, *concern)?));
-        let missing: Vec<(Concern, f64)> = Concern::ALL.iter().filter_map(certain).collect();
-        let inside = |concern: &&Concern| self.beside(plan, **concern) == Some(Beside::Inside);
-        let open: Vec<&str> = Concern::ALL.iter().filter(inside).map(|concern| concern.id()).collect();
+        let certain = |concern: &FitCriterion| Some((*concern, self.certain_gap(plan, *concern)?));
+        let missing: Vec<(FitCriterion, f64)> = FitCriterion::ALL.iter().filter_map(certain).collect();
+        let inside = |concern: &&FitCriterion| self.position(plan, **concern) == Some(RangePosition::InRange);
+        let open: Vec<&str> = FitCriterion::ALL.iter().filter(inside).map(|concern| concern.name()).collect();
         let open = if open.is_empty() {
             String::new()
         } else {
@@ -284,98 +285,98 @@ impl Fit {
         match (missing.is_empty(), open.is_empty()) {
             (true, true) => "meets the estimated needs".to_owned(),
             (true, false) => open,
-            (false, true) => lacks_in_words(&missing),
-            (false, false) => format!("{}; {open}", lacks_in_words(&missing)),
+            (false, true) => describe_certain_gaps(&missing),
+            (false, false) => format!("{}; {open}", describe_certain_gaps(&missing)),
         }
     }
 
     /// Describes the day of the estimates and their age: `day 94 (12 days ago)`.
-    pub fn studied(&self) -> String {
-        let age = match self.age {
+    pub fn describe_study_day(&self) -> String {
+        let age = match self.age_days {
             0 => "today".to_owned(),
             1 => "1 day ago".to_owned(),
             days => format!("{days} days ago"),
         };
-        format!("day {} ({age})", self.as_of)
+        format!("day {} ({age})", self.study_day)
     }
 
     /// Returns the full comparison as lines of text.
-    pub fn lines(&self) -> Vec<String> {
+    pub fn describe_lines(&self) -> Vec<String> {
         let company = self.group.is_enterprise();
-        let error = percent(self.noise, 0);
+        let error = percent(self.max_relative_error, 0);
         let mut lines = vec![
             format!(
                 "{}: study level {} (±{error}), required quality and budget as of {}",
                 self.group,
                 self.level,
-                self.studied()
+                self.describe_study_day()
             ),
             format!(
                 "  quality  required {}; {}",
-                self.floor.quality(),
-                self.each(|own| format!("{:.4}", own.quality))
+                self.floor.format_quality(),
+                self.format_plans(|own| format!("{:.4}", own.quality))
             ),
             format!(
                 "  price    budget {}{}; {}",
-                self.budget.money(),
+                self.budget.format_money(),
                 if company { " a seat" } else { "" },
-                self.each(price_in_words)
+                self.format_plans(format_price)
             ),
             format!(
                 "  quota    usage {} units a day{}; {}",
-                self.usage.units(),
+                self.usage.format_units(),
                 if company { " of the smallest enterprise" } else { "" },
-                self.each(|own| whole(own.quota))
+                self.format_plans(|own| format_whole(own.quota))
             ),
         ];
         match self.last_week {
             Some(week) => {
-                lines.push(format!("  leads    last week {}", week.in_words()));
-                lines.push(format!("           last 4 weeks {}", self.recent.in_words()));
+                lines.push(format!("  leads    last week {}", week.describe()));
+                lines.push(format!("           last 4 weeks {}", self.recent.describe()));
             }
             None => lines.push("  leads    no week has run".to_owned()),
         }
-        lines.extend(Plan::ALL.map(|plan| format!("  {plan}        {}", self.lacks(plan))));
+        lines.extend(Plan::ALL.map(|plan| format!("  {plan}        {}", self.describe_gaps(plan))));
         lines
     }
 
-    fn each(&self, write: impl Fn(&PlanFit) -> String) -> String {
+    fn format_plans(&self, write: impl Fn(&PlanFit) -> String) -> String {
         let plans: Vec<String> =
             self.plans.iter().map(|own| format!("{} {}", own.plan, write(own))).collect();
         plans.join(", ")
     }
 }
 
-fn lacks_in_words(missing: &[(Concern, f64)]) -> String {
+fn describe_certain_gaps(missing: &[(FitCriterion, f64)]) -> String {
     let (price, lacks): (Vec<_>, Vec<_>) =
-        missing.iter().copied().partition(|(concern, _)| *concern == Concern::Price);
-    let mut parts: Vec<String> = price.into_iter().map(lack_in_words).collect();
+        missing.iter().copied().partition(|(concern, _)| *concern == FitCriterion::Price);
+    let mut parts: Vec<String> = price.into_iter().map(describe_gap).collect();
     if !lacks.is_empty() {
-        let lacks: Vec<String> = lacks.into_iter().map(lack_in_words).collect();
+        let lacks: Vec<String> = lacks.into_iter().map(describe_gap).collect();
         parts.push(format!("lacks {}", lacks.join(", ")));
     }
     parts.join("; ")
 }
 
-fn lack_in_words((concern, amount): (Concern, f64)) -> String {
+fn describe_gap((concern, amount): (FitCriterion, f64)) -> String {
     match concern {
-        Concern::Price => format!(
+        FitCriterion::Price => format!(
             "price too high (by at least {})",
             if amount < 1.0 { cents(amount) } else { dollars(amount) }
         ),
-        Concern::Quality => format!("quality (at least {amount:.4})"),
-        Concern::Quota => format!("quota (at least {} units a day)", whole(amount.ceil())),
+        FitCriterion::Quality => format!("quality (at least {amount:.4})"),
+        FitCriterion::Quota => format!("quota (at least {} units a day)", format_whole(amount.ceil())),
     }
 }
 
-fn price_in_words(own: &PlanFit) -> String {
-    let list = price_to_cents(own.list);
+fn format_price(own: &PlanFit) -> String {
+    let list = price_to_cents(own.list_price);
     let mut less = Vec::new();
-    if own.price < own.list {
-        less.push(format!("{} for leads", price_to_cents(own.price)));
+    if own.lead_price < own.list_price {
+        less.push(format!("{} for leads", price_to_cents(own.lead_price)));
     }
-    if own.billed < own.list {
-        less.push(format!("{} billed", price_to_cents(own.billed)));
+    if own.billed_price < own.list_price {
+        less.push(format!("{} billed", price_to_cents(own.billed_price)));
     }
     if less.is_empty() { list } else { format!("{list} ({})", less.join(", ")) }
 }
@@ -385,19 +386,19 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::lead_costs::{SPELL, pair_costs};
-    use crate::test_kit::played;
+    use crate::lead_costs::{WINDOW_WEEKS, lead_costs_by_pair};
+    use crate::test_kit::play_weeks;
     use novamind_database::number_at;
     use novamind_record::trajectory::record::Via;
 
-    fn number(session: &mut Session, sql: &str) -> f64 {
+    fn query_number(session: &mut Session, sql: &str) -> f64 {
         number_at(&session.query(sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}")).rows[0], 0)
     }
 
     #[test]
-    fn leads_are_split_and_priced_as_the_tables_have_them() {
-        let mut session = played(6);
-        let (all, costs) = (fits(&session), pair_costs(session.company().group_weeks()));
+    fn lead_flow_matches_the_tables() {
+        let mut session = play_weeks(6);
+        let (all, costs) = (fits(&session), lead_costs_by_pair(session.company().group_weeks()));
         let mut by_mouth = 0;
         for fit in &all {
             let week = fit.last_week.expect("a week has run");
@@ -407,35 +408,35 @@ mod tests {
                     fit.group
                 )
             };
-            assert_eq!(f64::from(week.leads), number(&mut session, &of("")), "{}", fit.group);
-            let network = number(&mut session, &of("AND acquisition_source = 'network'"));
+            assert_eq!(f64::from(week.leads), query_number(&mut session, &of("")), "{}", fit.group);
+            let network = query_number(&mut session, &of("AND acquisition_source = 'network'"));
             assert_eq!(f64::from(week.word_of_mouth), network, "{}", fit.group);
-            assert_eq!(week.paid + week.word_of_mouth, week.leads);
+            assert_eq!(week.channel_leads + week.word_of_mouth, week.leads);
             by_mouth += week.word_of_mouth;
         }
         assert!(by_mouth > 0 && !costs.is_empty());
         for pair in &costs {
             let (channel, group) = (pair.channel.id(), pair.group);
-            let from = 42 - 7 * SPELL;
+            let from = 42 - 7 * WINDOW_WEEKS;
             let of = |what: &str| {
                 format!(
                     "SELECT {what} FROM ad_channel_leads WHERE channel_id = '{channel}' AND group_id = '{group}' AND day > \
                      {from}"
                 )
             };
-            assert_eq!(f64::from(pair.recent.leads), number(&mut session, &of("sum(leads_generated)")));
-            assert_eq!(pair.recent.spend, number(&mut session, &of("sum(spend)")));
+            assert_eq!(f64::from(pair.recent.leads), query_number(&mut session, &of("sum(leads_generated)")));
+            assert_eq!(pair.recent.spend, query_number(&mut session, &of("sum(spend)")));
             let bills = format!(
                 "SELECT count(*) FROM customers c JOIN subscriptions s USING (customer_id) WHERE s.first_billing_done = 1 \
                  AND c.group_id = '{group}' AND c.acquisition_source = '{channel}' AND c.created_day > {from}"
             );
-            assert_eq!(pair.recent.billed.map(f64::from), Some(number(&mut session, &bills)));
+            assert_eq!(pair.recent.first_bills.map(f64::from), Some(query_number(&mut session, &bills)));
         }
     }
 
     #[test]
-    fn what_is_missing_holds_for_every_truth_in_the_range() {
-        let mut session = played(0);
+    fn certain_gap_holds_for_every_true_value_in_range() {
+        let mut session = play_weeks(0);
         let quotas = json!({"A": 1, "B": 250_000, "C": 1_200_000});
         for (tool, arguments) in [
             ("set_prices", json!({"A": 12, "B": 25, "C": 900})),
@@ -450,21 +451,28 @@ mod tests {
             let own = session.params().group(fit.group);
             [own.c_max_mean, own.usage_demand_mean, own.q_min_mean]
         };
-        assert!(fit.budget.beside(budget) == Beside::Inside && fit.floor.beside(floor) == Beside::Inside);
-        assert_eq!((fit.as_of, fit.age, fit.plans[Plan::A].price), (0, 0, 7.0));
-        let over = fit.missing(Plan::C, Concern::Price).expect("above every budget");
+        assert!(
+            fit.budget.position_of(budget) == RangePosition::InRange
+                && fit.floor.position_of(floor) == RangePosition::InRange
+        );
+        assert_eq!((fit.study_day, fit.age_days, fit.plans[Plan::A].lead_price), (0, 0, 7.0));
+        let over = fit.certain_gap(Plan::C, FitCriterion::Price).expect("above every budget");
         assert!((over - (895.0 - fit.budget.most)).abs() < 1e-9 && over <= 895.0 - budget);
-        let short = fit.missing(Plan::A, Concern::Quota).expect("a unit is too little");
-        assert!(short <= usage - 1.0 && fit.missing(Plan::B, Concern::Quota).is_none());
+        let short = fit.certain_gap(Plan::A, FitCriterion::Quota).expect("a unit is too little");
+        assert!(short <= usage - 1.0 && fit.certain_gap(Plan::B, FitCriterion::Quota).is_none());
         let quality = fit.plans[Plan::A].quality;
-        if let Some(short) = fit.missing(Plan::A, Concern::Quality) {
+        if let Some(short) = fit.certain_gap(Plan::A, FitCriterion::Quality) {
             assert!(short <= floor - quality, "{short}");
         }
-        assert!(fit.lacks(Plan::A).contains("quota (at least "), "{}", fit.lacks(Plan::A));
-        assert!(fit.lacks(Plan::C).contains("price too high (by at least $"), "{}", fit.lacks(Plan::C));
+        assert!(fit.describe_gaps(Plan::A).contains("quota (at least "), "{}", fit.describe_gaps(Plan::A));
+        assert!(
+            fit.describe_gaps(Plan::C).contains("price too high (by at least $"),
+            "{}",
+            fit.describe_gaps(Plan::C)
+        );
         let enterprise = all.iter().find(|fit| fit.group.is_enterprise()).expect("E1");
-        assert_eq!(enterprise.beside(Plan::C, Concern::Price), None, "enterprises negotiate");
-        let text = fit.lines().join("\n");
+        assert_eq!(enterprise.position(Plan::C, FitCriterion::Price), None, "enterprises negotiate");
+        let text = fit.describe_lines().join("\n");
         for words in [
             "required quality and budget as of day 0 (today)",
             "budget $",
@@ -477,14 +485,19 @@ mod tests {
 
     #[test]
     fn quality_and_floor_are_kept_week_by_week() {
-        let session = played(5);
+        let session = play_weeks(5);
         let now = session.company().delivered_quality();
         let (weeks, estimates) = (session.company().group_weeks(), session.company().estimates());
         for own in &estimates {
             let last = &weeks[weeks.len() - 1][own.group];
             let quality =
                 now.iter().find(|quality| quality.group == own.group).map(|quality| quality.by_plan);
-            assert_eq!((last.quality, last.floor), (quality, Some(own.range(own.floor))), "{}", own.group);
+            assert_eq!(
+                (last.quality, last.floor),
+                (quality, Some(own.true_range(own.required_quality))),
+                "{}",
+                own.group
+            );
         }
         let s1 = estimates[0].group;
         assert!(weeks[0][s1].quality != weeks[4][s1].quality, "development changes it");

@@ -1,7 +1,7 @@
 //! Enterprises by group and stage: arrived, requested an offer, signed.
 
-use super::fit::{Beside, TruthRange};
-use super::words::{count, whole};
+use super::fit::{RangePosition, TrueValueRange};
+use super::formatting::{format_whole, pluralize};
 use novamind_session::identifiers::{ByGroup, Group, Plan};
 use novamind_session::{DeliveredQuality, Estimates, GroupWeek, Session};
 
@@ -11,23 +11,23 @@ pub struct Funnel {
     /// Group.
     pub group: Group,
     /// Enterprises that arrived.
-    pub came: u32,
+    pub enterprises: u32,
     /// Enterprises that requested an offer. The others found no plan with sufficient quality.
-    pub asked: u32,
+    pub requests: u32,
     /// Enterprises that signed.
-    pub signed: u32,
+    pub deals: u32,
     /// Enterprises that found no sufficient plan in the last four weeks.
-    pub turned_away_lately: u32,
+    pub recently_lost: u32,
     /// The plan that delivers the highest quality to the group, and that quality.
-    pub best: Option<(Plan, f64)>,
+    pub best_quality: Option<(Plan, f64)>,
     /// Its quota, units a day.
     pub quota: f64,
     /// Usage of the smallest enterprise, units a day.
-    pub usage: TruthRange,
+    pub usage: TrueValueRange,
     /// Mean required quality of the group.
-    pub floor: TruthRange,
+    pub floor: TrueValueRange,
     /// Day of the estimate of required quality.
-    pub as_of: u32,
+    pub study_day: u32,
 }
 
 /// Returns the funnel of every known group of enterprises, in their fixed order.
@@ -59,45 +59,45 @@ fn funnel(
     });
     Funnel {
         group: own.group,
-        came: sum(|week| week.leads),
-        asked: sum(|week| week.asked),
-        signed: sum(|week| week.signed),
-        turned_away_lately: sum_of(lately, |week| week.leads - week.asked),
-        best,
+        enterprises: sum(|week| week.leads),
+        requests: sum(|week| week.asked),
+        deals: sum(|week| week.signed),
+        recently_lost: sum_of(lately, |week| week.leads - week.asked),
+        best_quality: best,
         quota: best.map_or(0.0, |(plan, _)| quotas[plan.index()]),
-        usage: own.account_range().into(),
-        floor: TruthRange::behind(own.floor, own.noise),
-        as_of: own.as_of,
+        usage: own.account_usage_range().into(),
+        floor: TrueValueRange::from_estimate(own.required_quality, own.max_relative_error),
+        study_day: own.as_of,
     }
 }
 
 impl Funnel {
     /// Returns the number of enterprises that found no plan with sufficient quality.
-    pub fn turned_away(&self) -> u32 {
-        self.came.saturating_sub(self.asked)
+    pub fn lost_before_request(&self) -> u32 {
+        self.enterprises.saturating_sub(self.requests)
     }
 
     /// Describes the funnel in one line. Adds the comparison if enterprises turned away in the last four
     /// weeks.
-    pub fn in_words(&self) -> String {
+    pub fn describe(&self) -> String {
         let mut text = format!(
             "{}: {} arrived, {} found no plan good enough, {} requested an offer, {} signed",
             self.group,
-            count(self.came, "enterprise"),
-            whole(f64::from(self.turned_away())),
-            whole(f64::from(self.asked)),
-            whole(f64::from(self.signed))
+            pluralize(self.enterprises, "enterprise"),
+            format_whole(f64::from(self.lost_before_request())),
+            format_whole(f64::from(self.requests)),
+            format_whole(f64::from(self.deals))
         );
-        if let Some((plan, delivered)) = self.best.filter(|_| self.turned_away_lately > 0) {
-            let (floor, day) = (self.floor.quality(), self.as_of);
+        if let Some((plan, delivered)) = self.best_quality.filter(|_| self.recently_lost > 0) {
+            let (floor, day) = (self.floor.format_quality(), self.study_day);
             text += &format!(
                 "; {plan} delivers {delivered:.4}, their mean required quality is {floor} (as of day {day})"
             );
-            if self.usage.beside(self.quota) != Beside::Above {
+            if self.usage.position_of(self.quota) != RangePosition::Above {
                 text += &format!(
                     "; its quota is {}, the smallest enterprises need {} units a day",
-                    whole(self.quota),
-                    self.usage.units()
+                    format_whole(self.quota),
+                    self.usage.format_units()
                 );
             }
         }
@@ -115,9 +115,9 @@ mod tests {
     use novamind_session::{NewRun, Storage};
 
     #[test]
-    fn companies_are_counted_as_the_tables_have_them() {
+    fn funnel_counts_match_the_tables() {
         let new = NewRun { seed: Some(11), cash: Some(2e7), storage: Storage::Memory, ..NewRun::default() };
-        let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+        let mut session = Session::create(new, &Configuration::bundled()).expect("a run");
         let ads = json!({"E1": 4000, "E2": 4000, "E3": 4000});
         for (tool, arguments) in [
             ("set_prices", json!({"A": 14, "B": 32, "C": 55})),
@@ -156,21 +156,21 @@ mod tests {
                     "SELECT count(DISTINCT c.customer_id) FROM customers c {table} WHERE c.group_id = '{group}' {condition}"
                 )
             };
-            assert_eq!(own.came, number(of("", "")), "{group}");
+            assert_eq!(own.enterprises, number(of("", "")), "{group}");
             let turns = "JOIN enterprise_turns t ON t.customer_id = c.customer_id";
-            assert_eq!(own.asked, number(of(turns, "AND t.thread_type = 'new_lead'")), "{group}");
+            assert_eq!(own.requests, number(of(turns, "AND t.thread_type = 'new_lead'")), "{group}");
             let signed = "AND t.thread_type = 'new_lead' AND t.close_reason = 'accepted'";
-            assert_eq!(own.signed, number(of(turns, signed)), "{group}");
+            assert_eq!(own.deals, number(of(turns, signed)), "{group}");
         }
         assert!(
-            all.iter().any(|own| own.signed > 0) && all.iter().any(|own| own.turned_away() > 0),
+            all.iter().any(|own| own.deals > 0) && all.iter().any(|own| own.lost_before_request() > 0),
             "{all:?}"
         );
-        let away = all.iter().find(|own| own.turned_away() > 0).expect("some");
-        assert!(away.in_words().contains("found no plan good enough"), "{}", away.in_words());
-        let lately = all.iter().find(|own| own.turned_away_lately > 0).expect("some, lately");
+        let away = all.iter().find(|own| own.lost_before_request() > 0).expect("some");
+        assert!(away.describe().contains("found no plan good enough"), "{}", away.describe());
+        let lately = all.iter().find(|own| own.recently_lost > 0).expect("some, lately");
         assert!(
-            lately.in_words().contains(" delivers ") && lately.in_words().contains("required quality is ")
+            lately.describe().contains(" delivers ") && lately.describe().contains("required quality is ")
         );
     }
 }

@@ -1,9 +1,9 @@
 //! Notable days of a run.
 
-use super::words::{count, money, whole};
-use novamind_base::notation::signed_dollars;
+use super::formatting::{format_money, format_whole, pluralize};
+use novamind_base::formatting::signed_dollars;
 use novamind_record::figures::WeekFigures;
-use novamind_record::trajectory::record::Ended;
+use novamind_record::trajectory::record::RunEndReason;
 
 /// A notable day.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -15,44 +15,44 @@ pub struct Highlight {
 }
 
 /// Number of outages that are listed; further ones are counted.
-const OUTAGES_TOLD: usize = 3;
+const MAX_LISTED_OUTAGES: usize = 3;
 
 /// Returns the highlights of a run by day.
 pub fn highlights(
     weeks: &[WeekFigures],
     cash_by_day: &[f64],
     outages: &[(u32, u32)],
-    ended: Option<Ended>,
+    ended: Option<RunEndReason>,
 ) -> Vec<Highlight> {
     let mut found: Vec<Highlight> = Vec::new();
     let mut add = |day: u32, text: String| found.push(Highlight { day, text });
-    firsts(weeks, &mut add);
-    extremes(weeks, cash_by_day, &mut add);
-    for (day, minutes) in outages.iter().take(OUTAGES_TOLD) {
+    add_first_times(weeks, &mut add);
+    add_extremes(weeks, cash_by_day, &mut add);
+    for (day, minutes) in outages.iter().take(MAX_LISTED_OUTAGES) {
         add(*day, format!("outage of {minutes} minutes"));
     }
-    if let Some((day, _)) = outages.last().filter(|_| outages.len() > OUTAGES_TOLD) {
-        let more = count((outages.len() - OUTAGES_TOLD) as u32, "more outage");
+    if let Some((day, _)) = outages.last().filter(|_| outages.len() > MAX_LISTED_OUTAGES) {
+        let more = pluralize((outages.len() - MAX_LISTED_OUTAGES) as u32, "more outage");
         add(*day, format!("last of {more}"));
     }
     let last = cash_by_day.len().saturating_sub(1) as u32;
-    if ended == Some(Ended::Bankruptcy) {
+    if ended == Some(RunEndReason::Bankruptcy) {
         add(last, "bankrupt".to_owned());
     }
     found.sort_by_key(|highlight| highlight.day);
     found
 }
 
-fn firsts(weeks: &[WeekFigures], add: &mut impl FnMut(u32, String)) {
+fn add_first_times(weeks: &[WeekFigures], add: &mut impl FnMut(u32, String)) {
     let first = |fits: fn(&WeekFigures) -> bool| weeks.iter().find(|week| fits(week));
     if let Some(week) = first(|week| week.individual_subscribers > 0) {
         add(
             week.day,
-            format!("first subscribers: {} that week", whole(f64::from(week.individual_subscribers))),
+            format!("first subscribers: {} that week", format_whole(f64::from(week.individual_subscribers))),
         );
     }
     if let Some(week) = first(|week| week.enterprise_seats > 0) {
-        let seats = count(week.enterprise_seats, "seat");
+        let seats = pluralize(week.enterprise_seats, "seat");
         add(week.day, format!("first enterprise signed that week: {seats}"));
     }
     if let Some(week) = first(|week| week.cash_change > 0.0) {
@@ -60,7 +60,7 @@ fn firsts(weeks: &[WeekFigures], add: &mut impl FnMut(u32, String)) {
     }
 }
 
-fn extremes(weeks: &[WeekFigures], cash_by_day: &[f64], add: &mut impl FnMut(u32, String)) {
+fn add_extremes(weeks: &[WeekFigures], cash_by_day: &[f64], add: &mut impl FnMut(u32, String)) {
     // One week is neither the best nor the worst.
     if weeks.len() >= 3 {
         let by_change =
@@ -76,16 +76,16 @@ fn extremes(weeks: &[WeekFigures], cash_by_day: &[f64], add: &mut impl FnMut(u32
         }
     }
     if let Some(week) = peak_week(weeks, |week| week.individual_subscribers) {
-        add(week.day, format!("peak subscribers: {}", whole(f64::from(week.individual_subscribers))));
+        add(week.day, format!("peak subscribers: {}", format_whole(f64::from(week.individual_subscribers))));
     }
     if let Some(week) = peak_week(weeks, |week| week.enterprise_seats) {
-        add(week.day, format!("peak enterprise seats: {}", whole(f64::from(week.enterprise_seats))));
+        add(week.day, format!("peak enterprise seats: {}", format_whole(f64::from(week.enterprise_seats))));
     }
     if let Some((day, cash)) = highest_cash(cash_by_day).filter(|(day, _)| *day > 0) {
-        add(day, format!("peak cash: {}", money(cash)));
+        add(day, format!("peak cash: {}", format_money(cash)));
     }
     if let Some((day, cash)) = lowest_cash(cash_by_day).filter(|(day, cash)| *day > 0 && *cash >= 0.0) {
-        add(day, format!("lowest cash: {}", money(cash)));
+        add(day, format!("lowest cash: {}", format_money(cash)));
     }
 }
 
@@ -122,13 +122,13 @@ mod tests {
     }
 
     #[test]
-    fn firsts_extremes_and_the_end_are_told_in_order() {
+    fn highlights_are_ordered_by_day() {
         let weeks =
             [week(7, 0, 0, -50.0), week(14, 30, 0, 20.0), week(21, 30, 12, 90.0), week(28, 10, 12, -200.0)];
         let mut cash = vec![100.0; 29];
         (cash[21], cash[28]) = (160.0, -40.0);
         let outages = [(3, 30), (9, 10), (10, 20), (11, 5), (25, 40)];
-        let told = highlights(&weeks, &cash, &outages, Some(Ended::Bankruptcy));
+        let told = highlights(&weeks, &cash, &outages, Some(RunEndReason::Bankruptcy));
         let lines: Vec<String> = told.iter().map(|one| format!("{} {}", one.day, one.text)).collect();
         assert_eq!(
             lines,
@@ -152,10 +152,10 @@ mod tests {
     }
 
     #[test]
-    fn the_partial_week_of_a_bankruptcy_is_never_the_best() {
+    fn partial_bankruptcy_week_is_never_the_best() {
         let cut_short = WeekFigures { days_run: 2, ..week(23, 0, 0, -10.0) };
         let weeks = [week(7, 0, 0, -50.0), week(14, 0, 0, -40.0), week(21, 0, 0, -60.0), cut_short];
-        let told = highlights(&weeks, &[100.0; 24], &[], Some(Ended::Bankruptcy));
+        let told = highlights(&weeks, &[100.0; 24], &[], Some(RunEndReason::Bankruptcy));
         let best = told.iter().find(|one| one.text.contains("best week")).expect("a best week");
         assert_eq!((best.day, best.text.as_str()), (14, "best week for cash: -$40"));
     }

@@ -4,20 +4,23 @@
 use serde_json::{Map, Value, json};
 
 use super::fit::Fit;
-use super::words::range;
-use novamind_session::truth_behind;
+use super::formatting::format_range;
+use novamind_session::true_value_range;
 
-const ESTIMATED: [&str; 3] = ["estimates", "network_influence", "reputation_influence"];
+const ESTIMATE_FIELDS: [&str; 3] = ["estimates", "network_influence", "reputation_influence"];
 
 /// Returns the answer about a group with ranges in place of estimates, and their day.
 pub fn insights_as_ranges(answer: &Value, fit: &Fit) -> Value {
     let Value::Object(fields) = answer else { return answer.clone() };
     let mut shown = Map::new();
     for (name, value) in fields {
-        let estimated = ESTIMATED.contains(&name.as_str());
-        shown.insert(name.clone(), if estimated { ranges(value, fit.noise) } else { value.clone() });
+        let estimated = ESTIMATE_FIELDS.contains(&name.as_str());
+        shown.insert(
+            name.clone(),
+            if estimated { replace_with_ranges(value, fit.max_relative_error) } else { value.clone() },
+        );
         if name == "noise" {
-            shown.insert("as_of".to_owned(), json!(fit.studied()));
+            shown.insert("as_of".to_owned(), json!(fit.describe_study_day()));
         }
     }
     Value::Object(shown)
@@ -30,30 +33,30 @@ pub fn overview_with_ages(answer: &Value, fits: &[Fit]) -> Value {
     for group in groups.into_iter().flatten().filter_map(Value::as_object_mut) {
         let fit = fits.iter().find(|fit| group.get("group_id").is_some_and(|id| id == fit.group.id()));
         if let Some(fit) = fit {
-            group.insert("as_of".to_owned(), json!(fit.studied()));
+            group.insert("as_of".to_owned(), json!(fit.describe_study_day()));
         }
     }
     shown
 }
 
-fn ranges(value: &Value, noise: f64) -> Value {
+fn replace_with_ranges(value: &Value, noise: f64) -> Value {
     match value {
         Value::Object(fields) => {
-            fields.iter().map(|(name, value)| (name.clone(), ranges(value, noise))).collect()
+            fields.iter().map(|(name, value)| (name.clone(), replace_with_ranges(value, noise))).collect()
         }
-        Value::Array(items) => items.iter().map(|item| ranges(item, noise)).collect(),
-        other => other.as_f64().map_or(other.clone(), |estimate| json!(written(estimate, noise))),
+        Value::Array(items) => items.iter().map(|item| replace_with_ranges(item, noise)).collect(),
+        other => other.as_f64().map_or(other.clone(), |estimate| json!(format_noise_range(estimate, noise))),
     }
 }
 
 /// Formats the range with enough decimals for two digits of its lower end.
-fn written(estimate: f64, noise: f64) -> String {
-    let (least, most) = truth_behind(estimate, noise);
+fn format_noise_range(estimate: f64, noise: f64) -> String {
+    let (least, most) = true_value_range(estimate, noise);
     let decimals = match least.abs() {
         size if size >= 10.0 || most == 0.0 => 0,
         size if size >= 0.1 => 3,
         size if size >= 0.001 => 5,
         _ => 7,
     };
-    range(least, most, decimals)
+    format_range(least, most, decimals)
 }

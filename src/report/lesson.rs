@@ -1,12 +1,12 @@
 //! Text for the events and pages of a lesson.
 
-use super::words::money;
-use novamind_base::notation::{cents, compact, parse_number, percent, short_dollars};
-use novamind_course::{GoalPage, LessonPage, LessonQuestion};
+use super::formatting::format_money;
+use novamind_base::formatting::{cents, compact_number, parse_number, percent, short_dollars};
+use novamind_course::{GoalStatus, LessonQuestion, LessonStatus};
 use novamind_record::trajectory::record::{LessonEvent, LessonNote};
 
 /// Returns the word for an event.
-pub fn word(event: LessonEvent) -> &'static str {
+pub fn event_name(event: LessonEvent) -> &'static str {
     match event {
         LessonEvent::Begun => "begun",
         LessonEvent::Guess => "guess",
@@ -18,9 +18,9 @@ pub fn word(event: LessonEvent) -> &'static str {
 }
 
 /// Describes a line of kind `lesson` without access to the lesson itself.
-pub fn in_words(note: &LessonNote) -> String {
+pub fn describe_note(note: &LessonNote) -> String {
     let number = note.number.unwrap_or(1);
-    let value = note.value.map(compact).unwrap_or_else(|| "none".to_owned());
+    let value = note.value.map(compact_number).unwrap_or_else(|| "none".to_owned());
     match note.event {
         LessonEvent::Begun if number > 1 => format!("step {} started, try {number}", note.step),
         LessonEvent::Begun => format!("step {} started", note.step),
@@ -36,30 +36,30 @@ pub fn in_words(note: &LessonNote) -> String {
 }
 
 /// Returns a lesson page, as the student sees it, as lines of text.
-pub fn page_in_words(page: &LessonPage) -> Vec<String> {
-    let mut lines = vec![heading(page)];
+pub fn describe_page(page: &LessonStatus) -> Vec<String> {
+    let mut lines = vec![step_heading(page)];
     lines.extend(page.text.lines().map(str::to_owned));
     if let Some(question) = &page.question {
         lines.push(String::new());
-        lines.extend(question_in_words(question));
+        lines.extend(describe_question(question));
     }
     if !page.goals.is_empty() {
         lines.push(String::new());
-        lines.extend(page.goals.iter().map(goal_in_words));
+        lines.extend(page.goals.iter().map(describe_goal));
     }
     for (at, hint) in page.hints.iter().enumerate() {
-        lines.push(format!("Hint {} of {}: {hint}", at + 1, page.hints_in_all));
+        lines.push(format!("Hint {} of {}: {hint}", at + 1, page.hint_count));
     }
     for (day, say) in &page.pitfalls {
         lines.push(format!("Day {day}: {say}"));
     }
     lines.push(String::new());
-    lines.push(next_in_words(page));
+    lines.push(describe_next_action(page));
     lines
 }
 
 /// Names the lesson, step and week.
-pub fn heading(page: &LessonPage) -> String {
+pub fn step_heading(page: &LessonStatus) -> String {
     let part = page.part.as_ref().map(|part| format!(" · {part}")).unwrap_or_default();
     let again = if page.try_number > 1 { format!(", try {}", page.try_number) } else { String::new() };
     format!(
@@ -74,16 +74,16 @@ pub fn heading(page: &LessonPage) -> String {
 }
 
 /// Describes the question of a step, the student's guess and the outcome.
-pub fn question_in_words(question: &LessonQuestion) -> Vec<String> {
+pub fn describe_question(question: &LessonQuestion) -> Vec<String> {
     let mut lines = vec![format!("Your guess: {}", question.text)];
     lines.extend(question.choices.iter().enumerate().map(|(at, choice)| format!("  {}) {choice}", at + 1)));
-    lines.extend(guess_and_outcome(question));
+    lines.extend(describe_guess_and_outcome(question));
     lines
 }
 
 /// Describes the guess, and the outcome if it is known.
-pub fn guess_and_outcome(question: &LessonQuestion) -> Vec<String> {
-    let written = |value: f64| guess_in_words(question, value);
+pub fn describe_guess_and_outcome(question: &LessonQuestion) -> Vec<String> {
+    let written = |value: f64| format_guess(question, value);
     let is_choice = !question.choices.is_empty();
     let said = |choice: &str, number: &str, value: f64| match is_choice {
         true => format!("{choice}: {}.", written(value)),
@@ -101,7 +101,7 @@ pub fn guess_and_outcome(question: &LessonQuestion) -> Vec<String> {
 }
 
 /// Returns whether a question asks for a share from 0 to 1.
-pub fn is_share(question: &LessonQuestion) -> bool {
+pub fn asks_for_share(question: &LessonQuestion) -> bool {
     question.unit.starts_with("share")
 }
 
@@ -109,87 +109,91 @@ pub fn is_share(question: &LessonQuestion) -> bool {
 ///
 /// # Errors
 /// Returns a message with an example if the text is not such a number.
-pub fn typed_guess(question: &LessonQuestion, text: &str) -> Result<f64, String> {
+pub fn parse_guess(question: &LessonQuestion, text: &str) -> Result<f64, String> {
     let text = text.trim();
     let value = match text.strip_suffix('%') {
-        Some(bare) if is_share(question) => parse_number(bare).map(|value| value / 100.0),
+        Some(bare) if asks_for_share(question) => parse_number(bare).map(|value| value / 100.0),
         Some(bare) if question.unit == "%" => parse_number(bare),
         Some(_) => None,
         None => parse_number(text),
     };
-    let wanted = match (question.choices.is_empty(), is_share(question)) {
+    let wanted = match (question.choices.is_empty(), asks_for_share(question)) {
         (false, _) => "answer with the number of a choice",
         (true, true) => "enter a share from 0 to 1, for example 0.4 or 40%",
         (true, false) => "enter a number, for example 12,000 or $1.2M",
     };
-    value.filter(|value| !is_share(question) || (0.0..=1.0).contains(value)).ok_or_else(|| wanted.to_owned())
+    value
+        .filter(|value| !asks_for_share(question) || (0.0..=1.0).contains(value))
+        .ok_or_else(|| wanted.to_owned())
 }
 
 /// Formats a guess or an outcome.
-pub fn guess_in_words(question: &LessonQuestion, value: f64) -> String {
+pub fn format_guess(question: &LessonQuestion, value: f64) -> String {
     match question.choices.get((value - 1.0).max(0.0) as usize) {
         Some(choice) => choice.clone(),
-        None if is_share(question) => percent(value, 0),
+        None if asks_for_share(question) => percent(value, 0),
         None if question.unit == "$" => short_dollars(value),
         None if question.unit == "%" => format!("{value:.0}%"),
-        None if question.unit.is_empty() => compact(value),
-        None => format!("{} {}", compact(value), question.unit),
+        None if question.unit.is_empty() => compact_number(value),
+        None => format!("{} {}", compact_number(value), question.unit),
     }
 }
 
 /// Describes a goal and its current value.
-pub fn goal_in_words(goal: &GoalPage) -> String {
+pub fn describe_goal(goal: &GoalStatus) -> String {
     let mark = match goal.met {
         Some(true) => "reached",
         Some(false) => "missed",
         None => "goal",
     };
-    let at = goal_at(goal).map(|at| format!(": {at}")).unwrap_or_default();
+    let at = describe_goal_progress(goal).map(|at| format!(": {at}")).unwrap_or_default();
     format!("{mark}: {}{at}", goal.text)
 }
 
 /// Describes a goal's current value, compared with the target if it is known.
-pub fn goal_at(goal: &GoalPage) -> Option<String> {
-    let value = goal_amount(goal, goal.value?);
+pub fn describe_goal_progress(goal: &GoalStatus) -> Option<String> {
+    let value = format_goal_amount(goal, goal.value?);
     Some(match (goal.bound, goal.of_good_play) {
         (None, _) => format!("{value} so far; the target is shown at the end of the step"),
         (Some(bound), Some(share)) => {
-            let good = goal_amount(goal, bound / share);
+            let good = format_goal_amount(goal, bound / share);
             format!(
                 "{value}, at least {} ({} of the reference play's {good})",
-                goal_amount(goal, bound),
+                format_goal_amount(goal, bound),
                 percent(share, 1)
             )
         }
-        (Some(bound), None) if goal.wants_least => format!("{value}, at most {}", goal_amount(goal, bound)),
-        (Some(bound), None) => format!("{value}, at least {}", goal_amount(goal, bound)),
+        (Some(bound), None) if goal.wants_least => {
+            format!("{value}, at most {}", format_goal_amount(goal, bound))
+        }
+        (Some(bound), None) => format!("{value}, at least {}", format_goal_amount(goal, bound)),
     })
 }
 
 /// Formats an amount in the unit of a goal.
-pub fn goal_amount(goal: &GoalPage, value: f64) -> String {
+pub fn format_goal_amount(goal: &GoalStatus, value: f64) -> String {
     match goal.in_dollars {
         true if value.abs() < 1000.0 => cents(value),
-        true => money(value),
-        false => compact(value),
+        true => format_money(value),
+        false => compact_number(value),
     }
 }
 
-fn next_in_words(page: &LessonPage) -> String {
+fn describe_next_action(page: &LessonStatus) -> String {
     let open = page.question.as_ref().is_some_and(|question| question.guess.is_none());
     match page.next_part {
         Some(part) => format!(
             "This part is complete. `lesson next` starts part {part}; `again {}` repeats the step.",
             page.step + 1
         ),
-        None if page.is_over => {
+        None if page.is_finished => {
             format!(
                 "The lesson is complete. `debrief` shows the result; `again {}` repeats the step.",
                 page.step + 1
             )
         }
         None if open => "Answer with `guess ANSWER`. Then `next` runs a week.".to_owned(),
-        None if page.hints.len() < page.hints_in_all => "`next` runs a week. `hint` shows a hint.".to_owned(),
+        None if page.hints.len() < page.hint_count => "`next` runs a week. `hint` shows a hint.".to_owned(),
         None => "`next` runs a week.".to_owned(),
     }
 }

@@ -1,60 +1,60 @@
 //! Writes a page as Markdown that is readable as source and rendered.
 
 use super::page::{Bar, Block, Chart, Curve, Page, Plot, Table};
-use super::plot::{LEVELS, level};
-use novamind_base::notation::acts;
+use super::plot::{SPARKLINE_CHARS, sparkline_char};
+use novamind_base::formatting::is_control_or_bidi;
 
-const BAR: usize = 24;
-const TREND: usize = 60;
+const BAR_WIDTH: usize = 24;
+const TREND_WIDTH: usize = 60;
 
-pub fn write(page: &Page) -> String {
-    let tags: Vec<String> = page.tags.iter().map(|tag| escaped(tag)).collect();
+pub fn to_markdown(page: &Page) -> String {
+    let tags: Vec<String> = page.tags.iter().map(|tag| escape(tag)).collect();
     let mut parts = vec![
-        format!("# {}", escaped(&page.title)),
-        format!("**{}**", escaped(&page.headline)),
+        format!("# {}", escape(&page.title)),
+        format!("**{}**", escape(&page.headline)),
         tags.join(" · "),
     ];
-    parts.extend(page.blocks.iter().map(block));
+    parts.extend(page.blocks.iter().map(block_markdown));
     parts.push("---".to_owned());
-    parts.push(escaped(&page.foot));
+    parts.push(escape(&page.footer));
     parts.join("\n\n") + "\n"
 }
 
-fn block(block: &Block) -> String {
+fn block_markdown(block: &Block) -> String {
     match block {
-        Block::Heading(text) => format!("## {}", escaped(text)),
-        Block::Text(text) => escaped(text),
-        Block::Note(text) => format!("*{}*", escaped(text)),
-        Block::Warning(text) => format!("> **{}**", escaped(text)),
-        Block::Table(own) => table(own),
-        Block::Facts(facts) => table(&Table {
+        Block::Heading(text) => format!("## {}", escape(text)),
+        Block::Text(text) => escape(text),
+        Block::Note(text) => format!("*{}*", escape(text)),
+        Block::Warning(text) => format!("> **{}**", escape(text)),
+        Block::Table(own) => table_markdown(own),
+        Block::Facts(facts) => table_markdown(&Table {
             columns: vec![("", false), ("", true), ("", false)],
             rows: facts
                 .iter()
                 .map(|fact| vec![fact.name.clone(), fact.value.clone(), fact.note.clone()])
                 .collect(),
         }),
-        Block::Bars(bars) => bar_table(bars),
-        Block::Chart(chart) => chart_in_words(chart),
+        Block::Bars(bars) => bars_markdown(bars),
+        Block::Chart(chart) => chart_markdown(chart),
         Block::Folded { title, note, lines, points } => {
-            let mut parts = vec![format!("### {}", escaped(title)), escaped(note)];
-            parts.extend(lines.iter().map(|line| escaped(line)));
+            let mut parts = vec![format!("### {}", escape(title)), escape(note)];
+            parts.extend(lines.iter().map(|line| escape(line)));
             if !points.is_empty() {
-                parts.push(list(points));
+                parts.push(list_markdown(points));
             }
             parts.join("\n\n")
         }
     }
 }
 
-fn list(lines: &[String]) -> String {
-    lines.iter().map(|line| format!("- {}", escaped(line))).collect::<Vec<_>>().join("\n")
+fn list_markdown(lines: &[String]) -> String {
+    lines.iter().map(|line| format!("- {}", escape(line))).collect::<Vec<_>>().join("\n")
 }
 
-fn table(table: &Table) -> String {
-    let head: Vec<String> = table.columns.iter().map(|(name, _)| escaped(name)).collect();
+fn table_markdown(table: &Table) -> String {
+    let head: Vec<String> = table.columns.iter().map(|(name, _)| escape(name)).collect();
     let rows: Vec<Vec<String>> =
-        table.rows.iter().map(|row| row.iter().map(|cell| escaped(cell)).collect()).collect();
+        table.rows.iter().map(|row| row.iter().map(|cell| escape(cell)).collect()).collect();
     let width = |at: usize| {
         let cells = rows.iter().filter_map(|row| row.get(at)).chain(head.get(at));
         cells.map(|cell| cell.chars().count()).max().unwrap_or(0).max(3)
@@ -76,29 +76,29 @@ fn table(table: &Table) -> String {
     lines.join("\n")
 }
 
-fn bar_table(bars: &[Bar]) -> String {
+fn bars_markdown(bars: &[Bar]) -> String {
     let row = |bar: &Bar| {
-        let filled = (bar.share.clamp(0.0, 1.0) * BAR as f64).round() as usize;
-        let name = if bar.own { format!("{} ◀", bar.name) } else { bar.name.clone() };
-        vec![name, bar.shown.clone(), "█".repeat(filled)]
+        let filled = (bar.share.clamp(0.0, 1.0) * BAR_WIDTH as f64).round() as usize;
+        let name = if bar.is_highlighted { format!("{} ◀", bar.name) } else { bar.name.clone() };
+        vec![name, bar.value_text.clone(), "█".repeat(filled)]
     };
-    table(&Table {
+    table_markdown(&Table {
         columns: vec![("", false), ("", true), ("", false)],
         rows: bars.iter().map(row).collect(),
     })
 }
 
-fn chart_in_words(chart: &Chart) -> String {
-    let mut parts = vec![format!("**{}.** {}", escaped(&chart.title), escaped(&chart.summary))];
+fn chart_markdown(chart: &Chart) -> String {
+    let mut parts = vec![format!("**{}.** {}", escape(&chart.title), escape(&chart.summary))];
     let trends: Vec<(String, String)> = match &chart.plot {
         Plot::Lines { curves, .. } => {
             // The curves of one chart share a scale so that they can be compared.
-            let all: Vec<f64> = curves.iter().flat_map(values_of).collect();
-            let trend = |own: &Curve| trend_between(&values_of(own), extremes(&all));
+            let all: Vec<f64> = curves.iter().flat_map(curve_values).collect();
+            let trend = |own: &Curve| sparkline_between(&curve_values(own), min_and_max(&all));
             curves.iter().map(|curve| (curve.name.clone(), trend(curve))).collect()
         }
-        Plot::Stacks { parts, .. } => {
-            parts.iter().map(|part| (part.name.clone(), trend(&part.values))).collect()
+        Plot::Stacks { series: parts, .. } => {
+            parts.iter().map(|part| (part.name.clone(), sparkline(&part.values))).collect()
         }
     };
     let width = trends.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
@@ -107,40 +107,41 @@ fn chart_in_words(chart: &Chart) -> String {
     parts.join("\n\n")
 }
 
-fn values_of(curve: &Curve) -> Vec<f64> {
+fn curve_values(curve: &Curve) -> Vec<f64> {
     curve.points.iter().map(|point| point.1).collect()
 }
 
 /// Draws values as one row of bars, scaled from the smallest to the largest; costs count by their amount.
-fn trend(values: &[f64]) -> String {
+fn sparkline(values: &[f64]) -> String {
     let is_cost = values.iter().all(|own| *own <= 0.0);
-    let sizes: Vec<f64> = picked(values).into_iter().map(|own| if is_cost { -own } else { own }).collect();
-    trend_between(&sizes, extremes(&sizes))
+    let sizes: Vec<f64> =
+        sample_values(values).into_iter().map(|own| if is_cost { -own } else { own }).collect();
+    sparkline_between(&sizes, min_and_max(&sizes))
 }
 
-fn picked(values: &[f64]) -> Vec<f64> {
-    let count = values.len().min(TREND);
+fn sample_values(values: &[f64]) -> Vec<f64> {
+    let count = values.len().min(TREND_WIDTH);
     (0..count).map(|at| values[at * (values.len() - 1) / (count - 1).max(1)]).collect()
 }
 
-fn extremes(values: &[f64]) -> [f64; 2] {
+fn min_and_max(values: &[f64]) -> [f64; 2] {
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
     [least, values.iter().copied().fold(f64::NEG_INFINITY, f64::max)]
 }
 
 /// Draws values as one row of bars between two limits.
-fn trend_between(values: &[f64], [least, most]: [f64; 2]) -> String {
+fn sparkline_between(values: &[f64], [least, most]: [f64; 2]) -> String {
     let height = |value: &f64| match most > least {
-        true => level((value - least) / (most - least)),
-        false => LEVELS[3],
+        true => sparkline_char((value - least) / (most - least)),
+        false => SPARKLINE_CHARS[3],
     };
-    picked(values).iter().map(height).collect()
+    sample_values(values).iter().map(height).collect()
 }
 
 /// Escapes text for Markdown: one line, without markup.
-pub fn escaped(text: &str) -> String {
+pub fn escape(text: &str) -> String {
     let flat: Vec<&str> = text.split_whitespace().collect();
-    let letters: Vec<char> = flat.join(" ").chars().filter(|letter| !acts(*letter)).collect();
+    let letters: Vec<char> = flat.join(" ").chars().filter(|letter| !is_control_or_bidi(*letter)).collect();
     let mut safe = String::with_capacity(letters.len());
     for (at, letter) in letters.iter().enumerate() {
         let inside_word =
@@ -167,28 +168,31 @@ mod tests {
     use super::*;
 
     #[test]
-    fn text_means_itself() {
-        assert_eq!(escaped("a|b <i> *x*\n_y_ set_prices"), "a\\|b \\<i\\> \\*x\\* \\_y\\_ set_prices");
-        assert_eq!(escaped("# no"), "\\# no");
-        assert_eq!(escaped("-$1,200"), "-$1,200");
-        assert_eq!(escaped("\u{1b}[31m"), "\\[31m");
+    fn escaped_text_has_no_markup() {
+        assert_eq!(escape("a|b <i> *x*\n_y_ set_prices"), "a\\|b \\<i\\> \\*x\\* \\_y\\_ set_prices");
+        assert_eq!(escape("# no"), "\\# no");
+        assert_eq!(escape("-$1,200"), "-$1,200");
+        assert_eq!(escape("\u{1b}[31m"), "\\[31m");
     }
 
     #[test]
-    fn columns_stand_below_each_other() {
+    fn table_columns_are_aligned() {
         let own = Table {
             columns: vec![("group", false), ("leads", true)],
             rows: vec![vec!["S1".to_owned(), "1,200".to_owned()], vec!["D_S01".to_owned(), "7".to_owned()]],
         };
-        assert_eq!(table(&own), "| group | leads |\n| ----- | ----: |\n| S1    | 1,200 |\n| D_S01 |     7 |");
+        assert_eq!(
+            table_markdown(&own),
+            "| group | leads |\n| ----- | ----: |\n| S1    | 1,200 |\n| D_S01 |     7 |"
+        );
     }
 
     #[test]
-    fn trends_show_how_values_ran() {
-        assert_eq!(trend(&[0.0, 7.0, 3.0]), "▁█▄");
-        assert_eq!(trend(&[-10.0, -20.0, -20.0]), "▁██");
-        assert_eq!(trend(&[1.0]), "▄");
-        assert_eq!(trend(&[]), "");
-        assert_eq!(trend(&(0..500).map(f64::from).collect::<Vec<_>>()).chars().count(), TREND);
+    fn sparkline_follows_values() {
+        assert_eq!(sparkline(&[0.0, 7.0, 3.0]), "▁█▄");
+        assert_eq!(sparkline(&[-10.0, -20.0, -20.0]), "▁██");
+        assert_eq!(sparkline(&[1.0]), "▄");
+        assert_eq!(sparkline(&[]), "");
+        assert_eq!(sparkline(&(0..500).map(f64::from).collect::<Vec<_>>()).chars().count(), TREND_WIDTH);
     }
 }

@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Serialize;
 
-use super::books::ChannelRow;
-use novamind_record::trajectory::record::Ended;
+use super::database_figures::ChannelRow;
+use novamind_record::trajectory::record::RunEndReason;
 use novamind_session::identifiers::{Channel, Group};
 use novamind_session::{
     Decisions, ForecastScore, JournalEntry, ScoredForecast, Session, SettingId, filed_forecasts,
@@ -33,7 +33,7 @@ pub const PLANNING_WORDS: [&str; 16] = [
 
 /// All behavior measures of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Measures {
+pub struct BehaviorMeasures {
     /// Number of days that the company survived.
     pub survival_days: u32,
     /// Final or current cash, dollars.
@@ -49,44 +49,42 @@ pub struct Measures {
     /// Scores of the forecasts filed before the first four weeks, by horizon.
     pub first_forecasts: Vec<ForecastScore>,
     /// Share of advertising on the truly best channels. `None` for unfinished runs and if nothing was spent.
-    pub truly_best: Option<TrulyBest>,
+    pub truly_best: Option<TrueBestChannelSpend>,
     /// Use of tools.
     pub tools: ToolUse,
     /// Length and planning words of rationales.
     pub planning: Planning,
 }
 
-impl Measures {
+impl BehaviorMeasures {
     /// Computes the measures of a run, given its advertising results.
-    pub fn of(session: &Session, channels: &[ChannelRow]) -> Measures {
+    pub fn from_session(session: &Session, channels: &[ChannelRow]) -> BehaviorMeasures {
         let (journal, day) = (session.journal(), session.day());
-        Measures {
+        BehaviorMeasures {
             survival_days: survival_days(session.ended(), day, session.manifest().days),
             cash: session.cash_by_day().last().copied().unwrap_or(session.manifest().cash),
             channels: best_tried_channel_share(channels),
             targeted_development: targeted_development(session.company().decisions()),
             forecasts: session.company().forecast_scores(),
-            filled_naively: filled_naively(journal),
+            filled_naively: naive_forecast_weeks(journal),
             first_forecasts: first_forecasts(journal, session.cash_by_day()),
-            truly_best: truly_best_channel_share(channels, |group| {
-                session.company().truly_best_channel(group)
-            }),
+            truly_best: true_best_channel_share(channels, |group| session.company().true_best_channel(group)),
             tools: tool_use(journal),
-            planning: planning(journal),
+            planning: planning_measures(journal),
         }
     }
 }
 
 /// Returns the number of days that the company survived: to bankruptcy, or so far.
-pub fn survival_days(ended: Option<Ended>, day: u32, last_day: u32) -> u32 {
+pub fn survival_days(ended: Option<RunEndReason>, day: u32, last_day: u32) -> u32 {
     match ended {
-        Some(Ended::Horizon) => last_day,
+        Some(RunEndReason::Horizon) => last_day,
         _ => day,
     }
 }
 
 /// Minimum number of leads for a channel to be named the best.
-pub const ENOUGH_LEADS: f64 = 3.0;
+pub const MIN_CHANNEL_LEADS: f64 = 3.0;
 
 /// The channel with the most leads per dollar for a group.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -140,7 +138,7 @@ pub fn best_tried_channel_share(rows: &[ChannelRow]) -> Option<ChannelSkill> {
             let paid: Vec<&ChannelRow> =
                 rows.iter().filter(|row| row.group == group && row.spend > 0.0).collect();
             let spend = paid.iter().map(|row| row.spend).sum();
-            GroupAds { group: group.to_owned(), tried: paid.len(), spend, best: best_of(&paid, spend) }
+            GroupAds { group: group.to_owned(), tried: paid.len(), spend, best: best_channel(&paid, spend) }
         })
         .collect();
     groups.sort_by(|left, right| right.spend.total_cmp(&left.spend).then(left.group.cmp(&right.group)));
@@ -151,14 +149,14 @@ pub fn best_tried_channel_share(rows: &[ChannelRow]) -> Option<ChannelSkill> {
     (!groups.is_empty()).then_some(ChannelSkill { share, groups })
 }
 
-fn best_of(paid: &[&ChannelRow], spend: f64) -> Option<BestChannel> {
+fn best_channel(paid: &[&ChannelRow], spend: f64) -> Option<BestChannel> {
     let yield_of = |row: &ChannelRow| row.leads / row.spend;
     let best = paid.iter().max_by(|left, right| {
         // Ties: larger spending first, then alphabetical order.
         let by_spend = left.spend.total_cmp(&right.spend);
         yield_of(left).total_cmp(&yield_of(right)).then(by_spend).then(right.channel.cmp(&left.channel))
     })?;
-    (paid.len() > 1 && best.leads >= ENOUGH_LEADS).then(|| BestChannel {
+    (paid.len() > 1 && best.leads >= MIN_CHANNEL_LEADS).then(|| BestChannel {
         channel: best.channel.clone(),
         leads_per_thousand: yield_of(best) * 1000.0,
         share: best.spend / spend,
@@ -168,7 +166,7 @@ fn best_of(paid: &[&ChannelRow], spend: f64) -> Option<BestChannel> {
 /// Share of advertising on the truly best channels: those with the highest yield of all five at the start of the run,
 /// which is hidden from players.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct TrulyBest {
+pub struct TrueBestChannelSpend {
     /// Share of all advertising on the truly best channel of its group. Random spending reaches a fifth.
     pub share: f64,
     /// The share by group.
@@ -176,10 +174,10 @@ pub struct TrulyBest {
 }
 
 /// Returns the share of advertising on the truly best channels. `None` if nothing was spent or they are unknown.
-pub fn truly_best_channel_share(
+pub fn true_best_channel_share(
     rows: &[ChannelRow],
     best: impl Fn(Group) -> Option<Channel>,
-) -> Option<TrulyBest> {
+) -> Option<TrueBestChannelSpend> {
     let mut by_group: BTreeMap<&str, (f64, f64)> = BTreeMap::new();
     for row in rows.iter().filter(|row| row.spend > 0.0) {
         let channel = best(Group::parse(&row.group)?)?;
@@ -189,20 +187,20 @@ pub fn truly_best_channel_share(
     }
     let (all, on_best) = by_group.values().fold((0.0, 0.0), |sum, own| (sum.0 + own.0, sum.1 + own.1));
     let shares = by_group.iter().map(|(group, (all, on_best))| ((*group).to_owned(), on_best / all));
-    (all > 0.0).then(|| TrulyBest { share: on_best / all, groups: shares.collect() })
+    (all > 0.0).then(|| TrueBestChannelSpend { share: on_best / all, groups: shares.collect() })
 }
 
 /// Number of weeks that count as the first.
-pub const FIRST_WEEKS: usize = 4;
+pub const FIRST_WEEK_COUNT: usize = 4;
 
 /// Returns the scores of forecasts filed before the first four weeks, by horizon.
 pub fn first_forecasts(journal: &[JournalEntry], cash_by_day: &[f64]) -> Vec<ForecastScore> {
     let filed = filed_forecasts(journal, cash_by_day);
     let days: BTreeSet<u32> = filed.iter().map(|one| one.day).collect();
-    let last = days.iter().nth(FIRST_WEEKS - 1).or(days.last()).copied().unwrap_or(0);
+    let last = days.iter().nth(FIRST_WEEK_COUNT - 1).or(days.last()).copied().unwrap_or(0);
     let first: Vec<ScoredForecast> = filed.into_iter().filter(|one| one.day <= last).collect();
     let horizons: BTreeSet<u32> = first.iter().map(|one| one.forecast.horizon_days).collect();
-    horizons.into_iter().map(|horizon| ForecastScore::of(horizon, &first)).collect()
+    horizons.into_iter().map(|horizon| ForecastScore::from_forecasts(horizon, &first)).collect()
 }
 
 /// Returns the targeted share of development spending over the simulated days; `None` if nothing was spent.
@@ -243,7 +241,7 @@ pub struct ToolUse {
 
 /// Returns the entropy of the shares divided by that of equal shares: 1 for equal use, near 0 if one dominates.
 /// `None` with fewer than two counts.
-pub fn evenness(counts: &[u32]) -> Option<f64> {
+pub fn normalized_entropy(counts: &[u32]) -> Option<f64> {
     let all: f64 = counts.iter().map(|count| f64::from(*count)).sum();
     let used = counts.iter().filter(|count| **count > 0);
     let entropy: f64 =
@@ -267,7 +265,7 @@ pub fn tool_use(journal: &[JournalEntry]) -> ToolUse {
         counts.into_iter().map(|(tool, count)| (tool.to_owned(), count)).collect();
     tools.sort_by(|left, right| right.1.cmp(&left.1).then_with(|| left.0.cmp(&right.0)));
     let calls = tools.iter().map(|(_, count)| count).sum();
-    let evenness = evenness(&tools.iter().map(|(_, count)| *count).collect::<Vec<_>>());
+    let evenness = normalized_entropy(&tools.iter().map(|(_, count)| *count).collect::<Vec<_>>());
     ToolUse { calls, per_week: f64::from(calls) / f64::from(weeks.max(1)), tools, evenness }
 }
 
@@ -284,7 +282,7 @@ pub struct Planning {
 
 /// Word counts of a text.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
-pub struct Wording {
+pub struct WordCounts {
     /// All words.
     pub words: usize,
     /// Number of [`PLANNING_WORDS`].
@@ -293,12 +291,12 @@ pub struct Wording {
     pub ifs: usize,
 }
 
-impl Wording {
+impl WordCounts {
     /// Counts the words of a text.
-    pub fn of(text: &str) -> Wording {
+    pub fn from_text(text: &str) -> WordCounts {
         let bare = text.split(|letter: char| !letter.is_alphabetic()).map(str::to_lowercase);
         let weighing: Vec<String> = bare.filter(|word| PLANNING_WORDS.contains(&word.as_str())).collect();
-        Wording {
+        WordCounts {
             words: text.split_whitespace().count(),
             planning: weighing.len(),
             ifs: weighing.iter().filter(|word| *word == "if").count(),
@@ -328,12 +326,12 @@ pub fn planning_sentences(text: &str) -> Vec<String> {
         }
         sentences.push(sentence);
     }
-    sentences.retain(|sentence| Wording::of(sentence).planning > 0);
+    sentences.retain(|sentence| WordCounts::from_text(sentence).planning > 0);
     sentences
 }
 
-impl std::ops::AddAssign for Wording {
-    fn add_assign(&mut self, other: Wording) {
+impl std::ops::AddAssign for WordCounts {
+    fn add_assign(&mut self, other: WordCounts) {
         self.words += other.words;
         self.planning += other.planning;
         self.ifs += other.ifs;
@@ -341,19 +339,19 @@ impl std::ops::AddAssign for Wording {
 }
 
 /// Measures the length of rationales and their share of planning words.
-pub fn planning(journal: &[JournalEntry]) -> Planning {
-    let (mut rationales, mut all) = (0u32, Wording::default());
+pub fn planning_measures(journal: &[JournalEntry]) -> Planning {
+    let (mut rationales, mut all) = (0u32, WordCounts::default());
     for entry in journal {
         let JournalEntry::Advance { rationale, .. } = entry else { continue };
         rationales += 1;
-        all += Wording::of(rationale);
+        all += WordCounts::from_text(rationale);
     }
     let each = |count: usize| count as f64 / f64::from(rationales.max(1));
     Planning { rationales, words_each: each(all.words), planning_each: each(all.planning) }
 }
 
 /// Returns the number of weeks with naive forecasts, and of all weeks.
-pub fn filled_naively(journal: &[JournalEntry]) -> (u32, u32) {
+pub fn naive_forecast_weeks(journal: &[JournalEntry]) -> (u32, u32) {
     let filed = journal.iter().filter_map(|entry| match entry {
         JournalEntry::Advance { filled_naively, .. } => Some(filled_naively.contains(&true)),
         _ => None,
@@ -365,7 +363,7 @@ pub fn filled_naively(journal: &[JournalEntry]) -> (u32, u32) {
 mod tests {
     use super::*;
     use crate::test_kit;
-    use novamind_session::Change;
+    use novamind_session::SettingChange;
 
     fn ads(group: &str, channel: &str, leads: f64, spend: f64) -> ChannelRow {
         ChannelRow { group: group.to_owned(), channel: channel.to_owned(), leads, spend }
@@ -396,7 +394,7 @@ mod tests {
     }
 
     #[test]
-    fn money_on_the_truly_best_channel_is_told_from_the_rest() {
+    fn true_best_channel_share_is_computed() {
         let best = |group: Group| {
             Some(if group.id() == "S1" { Channel::ContentMarketing } else { Channel::ReferralProgram })
         };
@@ -405,27 +403,27 @@ mod tests {
             ads("S1", "linkedin", 0.0, 50.0),
             ads("S3", "referral_program", 0.0, 20.0),
         ];
-        let told = truly_best_channel_share(&rows, best).expect("money was spent");
+        let told = true_best_channel_share(&rows, best).expect("money was spent");
         assert_eq!((told.share, told.groups["S1"], told.groups["S3"]), (0.5, 0.375, 1.0));
         // All spending on one wrong channel: no comparison, and no share on the best.
         let wrong = [ads("S1", "linkedin", 50.0, 100.0)];
-        assert_eq!(truly_best_channel_share(&wrong, best).map(|told| told.share), Some(0.0));
+        assert_eq!(true_best_channel_share(&wrong, best).map(|told| told.share), Some(0.0));
         assert_eq!(best_tried_channel_share(&wrong).and_then(|skill| skill.share), None);
-        assert_eq!(truly_best_channel_share(&rows, |_| None), None, "an unfinished run");
-        assert_eq!(truly_best_channel_share(&[], best), None);
+        assert_eq!(true_best_channel_share(&rows, |_| None), None, "an unfinished run");
+        assert_eq!(true_best_channel_share(&[], best), None);
     }
 
     #[test]
-    fn calls_on_equal_tools_are_even() {
-        assert_eq!(evenness(&[3, 3]), Some(1.0));
-        assert_eq!((evenness(&[3]), evenness(&[])), (None, None));
-        let uneven = evenness(&[9, 1]).expect("two tools");
+    fn equal_counts_have_entropy_one() {
+        assert_eq!(normalized_entropy(&[3, 3]), Some(1.0));
+        assert_eq!((normalized_entropy(&[3]), normalized_entropy(&[])), (None, None));
+        let uneven = normalized_entropy(&[9, 1]).expect("two tools");
         assert!((uneven - 0.468_995_593_589_281).abs() < 1e-12, "{uneven}");
     }
 
     #[test]
-    fn the_first_forecasts_are_those_of_four_weeks() {
-        let session = test_kit::played(6);
+    fn first_forecasts_cover_four_weeks() {
+        let session = test_kit::play_weeks(6);
         let first = first_forecasts(session.journal(), session.cash_by_day());
         assert_eq!(
             first.iter().map(|score| (score.horizon_days, score.scored)).collect::<Vec<_>>(),
@@ -437,8 +435,8 @@ mod tests {
     #[test]
     fn targeted_development_counts_days_in_force() {
         let s1 = Group::parse("S1").expect("a group");
-        let set = |setting, new| Change { setting, old: 0.0, new };
-        let week = |day: u32, changes: Vec<Change>| Decisions {
+        let set = |setting, new| SettingChange { setting, old: 0.0, new };
+        let week = |day: u32, changes: Vec<SettingChange>| Decisions {
             day,
             until: day + 7,
             changes,
@@ -458,15 +456,15 @@ mod tests {
 
     #[test]
     fn tools_and_rationales_are_counted() {
-        let session = test_kit::played(4);
+        let session = test_kit::play_weeks(4);
         let tools = tool_use(session.journal());
         assert_eq!((tools.calls, tools.per_week), (8, 2.0));
         assert_eq!(tools.tools[0], ("set_prices".to_owned(), 2));
-        let planning = planning(session.journal());
+        let planning = planning_measures(session.journal());
         assert_eq!(planning.rationales, 4);
         assert_eq!(planning.planning_each, 0.5, "if, otherwise");
-        assert_eq!(filled_naively(session.journal()), (4, 4));
-        assert_eq!(super::planning(&[]), Planning::default());
+        assert_eq!(naive_forecast_weeks(session.journal()), (4, 4));
+        assert_eq!(super::planning_measures(&[]), Planning::default());
     }
 
     #[test]
@@ -481,8 +479,8 @@ mod tests {
 
     #[test]
     fn survival_ends_with_the_company() {
-        assert_eq!(survival_days(Some(Ended::Horizon), 500, 500), 500);
-        assert_eq!(survival_days(Some(Ended::Bankruptcy), 131, 500), 131);
+        assert_eq!(survival_days(Some(RunEndReason::Horizon), 500, 500), 500);
+        assert_eq!(survival_days(Some(RunEndReason::Bankruptcy), 131, 500), 131);
         assert_eq!(survival_days(None, 84, 500), 84);
     }
 }

@@ -4,13 +4,13 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use novamind_base::notation::dollars;
+use novamind_base::formatting::dollars;
 use novamind_record::folder::configuration::Configuration;
-use novamind_tools::Refusal;
+use novamind_tools::Rejection;
 
 /// Result of a policy in the world of a run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Opponent {
+pub struct OpponentResult {
     /// Policy name.
     pub policy: String,
     /// Last simulated day.
@@ -25,25 +25,25 @@ pub struct Opponent {
 
 /// A run and its opponents.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Opponents {
+pub struct OpponentResults {
     /// Day of comparison: the last day of the run's world, or of a lesson's part.
     pub day: u32,
     /// The policies, highest score first.
-    pub policies: Vec<Opponent>,
+    pub policies: Vec<OpponentResult>,
 }
 
 /// Plays the opponents of the run in a folder while the callback returns true. Returns `None` if it was stopped.
-pub type PlayOpponents =
-    fn(&Path, &Configuration, &(dyn Fn() -> bool + Sync)) -> Result<Option<Opponents>, Refusal>;
+pub type PlayOpponentsFn =
+    fn(&Path, &Configuration, &(dyn Fn() -> bool + Sync)) -> Result<Option<OpponentResults>, Rejection>;
 
-impl Opponent {
+impl OpponentResult {
     /// Returns the final cash in dollars; 0 after a bankruptcy.
     pub fn score(&self) -> f64 {
         if self.is_bankrupt { 0.0 } else { self.cash }
     }
 
     /// Describes the end.
-    pub fn in_words(&self) -> String {
+    pub fn describe(&self) -> String {
         match &self.stopped {
             Some(why) => format!("{} when it stopped on day {}: {why}", dollars(self.cash), self.day),
             None if self.is_bankrupt => format!("bankrupt on day {}", self.day),
@@ -52,14 +52,14 @@ impl Opponent {
     }
 }
 
-impl Opponents {
+impl OpponentResults {
     /// Describes the comparison.
-    pub fn in_words(&self) -> String {
+    pub fn describe(&self) -> String {
         format!("each policy plays this run's world from day 0 to day {}, with the same seed", self.day)
     }
 
     /// Returns how many have a higher score.
-    pub fn ahead_of(&self, score: f64) -> usize {
+    pub fn count_ahead_of(&self, score: f64) -> usize {
         self.policies.iter().filter(|own| own.score() > score).count()
     }
 }

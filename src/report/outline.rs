@@ -2,50 +2,50 @@
 
 mod charts;
 
-use super::measures::{ENOUGH_LEADS, Measures, PLANNING_WORDS};
-use super::page::{Bar, Block, Fact, Page, Table};
-use super::ranking::{Whose, published_targeted_shares};
-use super::story::{Ruin, Story};
-use super::words::{cash_change_in_words, count, money, origin_in_words, whole};
-use novamind_base::notation::{capital, grouped, percent, signed_dollars};
-use novamind_record::trajectory::record::Ended;
+use super::formatting::{describe_cash_change, describe_origin, format_money, format_whole, pluralize};
+use super::measures::{BehaviorMeasures, MIN_CHANNEL_LEADS, PLANNING_WORDS};
+use super::page::{Bar, Block, NamedValue, Page, Table};
+use super::ranking::{ResultOwner, published_targeted_shares};
+use super::run_report::{Bankruptcy, RunReport};
+use novamind_base::formatting::{capitalize, grouped_number, percent, signed_dollars};
+use novamind_record::trajectory::record::RunEndReason;
 use novamind_session::ModelStamp;
 
-pub fn page_of(story: &Story) -> Page {
-    let seen = &story.seen;
+pub fn report_page(story: &RunReport) -> Page {
+    let seen = &story.observation;
     let mut blocks = Vec::new();
-    if let Some(ruin) = &story.ruin {
-        blocks.extend(ruined(ruin));
+    if let Some(ruin) = &story.bankruptcy {
+        blocks.extend(bankruptcy_blocks(ruin));
     }
-    blocks.push(Block::Facts(result(story)));
-    blocks.extend(story.books.missing.iter().map(|what| Block::Warning(format!("Not included: {what}"))));
+    blocks.push(Block::Facts(result_facts(story)));
+    blocks.extend(story.database.missing.iter().map(|what| Block::Warning(format!("Not included: {what}"))));
     blocks.push(Block::Heading("Cash"));
-    blocks.extend(charts::cash(story));
-    blocks.extend(charts::income_and_costs(story));
+    blocks.extend(charts::cash_chart(story));
+    blocks.extend(charts::income_and_cost_chart(story));
     if story.shows_published() {
-        blocks.extend(rank(story));
+        blocks.extend(ranking_blocks(story));
     }
-    blocks.extend(highlights(story));
-    blocks.extend(customers(story));
-    blocks.extend(forecasts(story));
-    blocks.extend(behaviour(&story.measures, story.shows_published()));
-    blocks.extend(decisions(story));
+    blocks.extend(highlight_blocks(story));
+    blocks.extend(customer_blocks(story));
+    blocks.extend(forecast_blocks(story));
+    blocks.extend(behavior_blocks(&story.measures, story.shows_published()));
+    blocks.extend(decision_blocks(story));
     let mut tags = vec![
         format!("run {}", seen.run),
-        format!("{} days", whole(f64::from(seen.last_day))),
+        format!("{} days", format_whole(f64::from(seen.last_day))),
         format!("scenario {}", seen.scenario),
         format!("{} mode", seen.mode),
     ];
     tags.extend(seen.seed.map(|seed| format!("seed {seed}")));
-    tags.extend(seen.voice.iter().map(ModelStamp::in_words));
-    tags.extend(story.origin.iter().map(origin_in_words));
+    tags.extend(seen.voice.iter().map(ModelStamp::describe));
+    tags.extend(story.origin.iter().map(describe_origin));
     tags.extend(seen.participant.iter().map(|who| format!("played by {who}")));
     Page {
         title: format!("NovaMind · run {}", seen.run),
         headline: story.headline(),
         tags,
         blocks,
-        foot: format!(
+        footer: format!(
             "Recorded by NovaMind console {}. All figures are visible to players; the run can be replayed to the same \
              state from its trajectory.",
             story.version
@@ -53,88 +53,90 @@ pub fn page_of(story: &Story) -> Page {
     }
 }
 
-fn result(story: &Story) -> Vec<Fact> {
-    let seen = &story.seen;
+fn result_facts(story: &RunReport) -> Vec<NamedValue> {
+    let seen = &story.observation;
     let score = match (seen.ended, seen.score) {
-        (_, Some(score)) => Fact::new("Score", money(score), rank_in_words(story)),
-        (Some(Ended::Abandoned), None) => Fact::new("Score", "none", "abandoned"),
-        (_, None) => Fact::new("Cash", money(seen.cash), cash_change_in_words(seen)),
+        (_, Some(score)) => NamedValue::new("Score", format_money(score), describe_rank(story)),
+        (Some(RunEndReason::Abandoned), None) => NamedValue::new("Score", "none", "abandoned"),
+        (_, None) => NamedValue::new("Cash", format_money(seen.cash), describe_cash_change(seen)),
     };
     let lived = story.measures.survival_days;
-    let last_day = whole(f64::from(seen.last_day));
+    let last_day = format_whole(f64::from(seen.last_day));
     let most = story.weeks.iter().map(|week| week.individual_subscribers).max().unwrap_or(0);
     let seats = story.weeks.iter().map(|week| week.enterprise_seats).max().unwrap_or(0);
     // The runway from committed settings and recent weeks' income and usage, not from the change since the start.
-    let runway = match (seen.ended, seen.weeks_of_cash()) {
+    let runway = match (seen.ended, seen.whole_runway_weeks()) {
         (Some(_), _) => String::new(),
         (None, None) => "at current costs and income, cash lasts to the last day".to_owned(),
-        (None, Some(weeks)) => format!("at current costs and income, cash lasts {}", count(weeks, "week")),
+        (None, Some(weeks)) => {
+            format!("at current costs and income, cash lasts {}", pluralize(weeks, "week"))
+        }
     };
     let change = signed_dollars(seen.cash - story.start_cash);
     vec![
         score,
-        Fact::new("Days", whole(f64::from(lived)), format!("of {last_day}")),
-        Fact::new("Since the start", change, runway),
-        Fact::new(
+        NamedValue::new("Days", format_whole(f64::from(lived)), format!("of {last_day}")),
+        NamedValue::new("Since the start", change, runway),
+        NamedValue::new(
             "Subscribers",
-            whole(f64::from(seen.subscribers)),
-            format!("peak {}", whole(f64::from(most))),
+            format_whole(f64::from(seen.subscribers)),
+            format!("peak {}", format_whole(f64::from(most))),
         ),
-        Fact::new(
+        NamedValue::new(
             "Enterprise seats",
-            whole(f64::from(seen.seats)),
-            format!("peak {}", whole(f64::from(seats))),
+            format_whole(f64::from(seen.seats)),
+            format!("peak {}", format_whole(f64::from(seats))),
         ),
-        Fact::new(
+        NamedValue::new(
             "Recurring revenue",
-            money(seen.last_week.map_or(0.0, |week| week.recurring_revenue)),
+            format_money(seen.last_week.map_or(0.0, |week| week.recurring_revenue)),
             "a month",
         ),
     ]
 }
 
-fn rank_in_words(story: &Story) -> String {
-    match story.standing.rank {
-        Some(rank) => format!("rank {rank} of {}", story.standing.places.len()),
+fn describe_rank(story: &RunReport) -> String {
+    match story.ranking.rank {
+        Some(rank) => format!("rank {rank} of {}", story.ranking.entries.len()),
         None => String::new(),
     }
 }
 
-fn ruined(ruin: &Ruin) -> Vec<Block> {
+fn bankruptcy_blocks(ruin: &Bankruptcy) -> Vec<Block> {
     let mut blocks = vec![Block::Heading("How it ended")];
     blocks.push(Block::Text(format!(
         "Cash fell below zero on day {}, which ended the run. {}",
         ruin.day,
-        ruin.turned.join(" ")
+        ruin.turning_points.join(" ")
     )));
     if !ruin.costs.is_empty() {
         let most = ruin.costs.iter().map(|cost| cost.share).fold(0.0, f64::max);
         blocks.push(Block::Text("Costs by category:".to_owned()));
-        let bar = |cost: &super::turn::Cost| Bar {
+        let bar = |cost: &super::bankruptcy::CostShare| Bar {
             name: cost.name.to_owned(),
-            shown: format!("{} · {}", money(cost.dollars), percent(cost.share, 0)),
+            value_text: format!("{} · {}", format_money(cost.dollars), percent(cost.share, 0)),
             share: cost.share / most,
-            own: false,
+            is_highlighted: false,
         };
         blocks.push(Block::Bars(ruin.costs.iter().map(bar).collect()));
     }
     blocks
 }
 
-fn rank(story: &Story) -> Vec<Block> {
-    let standing = &story.standing;
-    let most = standing.places.iter().map(|place| place.cash).fold(1.0, f64::max);
+fn ranking_blocks(story: &RunReport) -> Vec<Block> {
+    let standing = &story.ranking;
+    let most = standing.entries.iter().map(|place| place.cash).fold(1.0, f64::max);
     let bar = |place: &super::ranking::RankedRun| Bar {
         name: place.name.clone(),
-        shown: money(place.cash),
+        value_text: format_money(place.cash),
         share: (place.cash / most).clamp(0.0, 1.0),
-        own: place.whose == Whose::Own,
+        is_highlighted: place.owner == ResultOwner::ThisRun,
     };
     let told = match standing.rank {
         Some(_) => {
-            format!("{}: final cash, the best of three runs of each agent.", capital(&standing.in_words()))
+            format!("{}: final cash, the best of three runs of each agent.", capitalize(&standing.describe()))
         }
-        None if !standing.obstacles.is_empty() => format!("{}.", capital(&standing.in_words())),
+        None if !standing.obstacles.is_empty() => format!("{}.", capitalize(&standing.describe())),
         None => "The run has no score to compare. Published results: final cash, the best of three \
                  runs of each agent."
             .to_owned(),
@@ -142,14 +144,14 @@ fn rank(story: &Story) -> Vec<Block> {
     let mut blocks = vec![
         Block::Heading("Comparison with published results"),
         Block::Text(told),
-        Block::Bars(standing.places.iter().map(bar).collect()),
+        Block::Bars(standing.entries.iter().map(bar).collect()),
     ];
     blocks.extend(standing.caveat.clone().map(Block::Note));
     blocks.push(Block::Note(format!("Source: {}.", standing.source)));
     blocks
 }
 
-fn highlights(story: &Story) -> Vec<Block> {
+fn highlight_blocks(story: &RunReport) -> Vec<Block> {
     if story.highlights.is_empty() {
         return Vec::new();
     }
@@ -163,26 +165,26 @@ fn highlights(story: &Story) -> Vec<Block> {
     ]
 }
 
-fn customers(story: &Story) -> Vec<Block> {
+fn customer_blocks(story: &RunReport) -> Vec<Block> {
     let mut blocks = vec![Block::Heading("Customers")];
     let before = blocks.len();
-    blocks.extend(charts::people(story));
-    blocks.extend(charts::groups(story));
-    if !story.books.groups.is_empty() {
-        let row = |book: &super::books::GroupBook| {
+    blocks.extend(charts::subscriber_chart(story));
+    blocks.extend(charts::group_chart(story));
+    if !story.database.groups.is_empty() {
+        let row = |book: &super::database_figures::GroupHistory| {
             let now = book.active.last().copied().unwrap_or(0.0);
             let most = book.active.iter().copied().fold(0.0, f64::max);
             let seats = match book.group.is_enterprise() {
-                true => whole(book.seats.last().copied().unwrap_or(0.0)),
+                true => format_whole(book.seats.last().copied().unwrap_or(0.0)),
                 false => String::new(),
             };
             vec![
                 book.group.to_string(),
-                whole(book.leads),
-                whole(now),
-                whole(most),
+                format_whole(book.leads),
+                format_whole(now),
+                format_whole(most),
                 seats,
-                money(book.revenue),
+                format_money(book.revenue),
             ]
         };
         blocks.push(Block::Table(Table {
@@ -194,7 +196,7 @@ fn customers(story: &Story) -> Vec<Block> {
                 ("seats billed", true),
                 ("billed a month", true),
             ],
-            rows: story.books.groups.iter().map(row).collect(),
+            rows: story.database.groups.iter().map(row).collect(),
         }));
     }
     if blocks.len() == before {
@@ -203,7 +205,7 @@ fn customers(story: &Story) -> Vec<Block> {
     blocks
 }
 
-fn forecasts(story: &Story) -> Vec<Block> {
+fn forecast_blocks(story: &RunReport) -> Vec<Block> {
     let mut blocks = vec![Block::Heading("Forecasts")];
     let scored: Vec<_> = story.measures.forecasts.iter().filter(|score| score.scored > 0).collect();
     if scored.is_empty() {
@@ -212,13 +214,14 @@ fn forecasts(story: &Story) -> Vec<Block> {
     }
     if !story.shows_calibration() {
         let due: u32 = scored.iter().map(|score| score.scored).sum();
-        let text = format!("{} came due. Scores are shown when the run has ended.", count(due, "forecast"));
+        let text =
+            format!("{} came due. Scores are shown when the run has ended.", pluralize(due, "forecast"));
         blocks.push(Block::Text(text));
         return blocks;
     }
     let row = |score: &&novamind_session::ForecastScore| {
         vec![
-            count(score.horizon_days / 7, "week"),
+            pluralize(score.horizon_days / 7, "week"),
             score.scored.to_string(),
             percent(f64::from(score.covered) / f64::from(score.scored), 0),
             percent(score.mean_error, 1),
@@ -243,25 +246,25 @@ fn forecasts(story: &Story) -> Vec<Block> {
     if naive > 0 {
         blocks.push(Block::Note(format!(
             "In {naive} of {}, at least one forecast was naive.",
-            count(all, "week")
+            pluralize(all, "week")
         )));
     }
-    blocks.extend(charts::forecasts(story));
+    blocks.extend(charts::forecast_charts(story));
     blocks
 }
 
 /// Formats leads per thousand dollars; small values keep decimals.
-fn per_thousand(leads: f64) -> String {
-    grouped(leads, if leads < 1.0 { 3 } else { 1 })
+fn format_leads_per_thousand(leads: f64) -> String {
+    grouped_number(leads, if leads < 1.0 { 3 } else { 1 })
 }
 
-fn behaviour(measures: &Measures, published: bool) -> Vec<Block> {
+fn behavior_blocks(measures: &BehaviorMeasures, published: bool) -> Vec<Block> {
     let mut blocks = vec![Block::Heading("How it was played")];
     let none = || "–".to_owned();
     let (least, most) = published_targeted_shares();
     let planning = &measures.planning;
     blocks.push(Block::Facts(vec![
-        Fact::new(
+        NamedValue::new(
             "Advertising on the best channel",
             measures
                 .channels
@@ -269,10 +272,10 @@ fn behaviour(measures: &Measures, published: bool) -> Vec<Block> {
                 .and_then(|skill| skill.share)
                 .map_or_else(none, |share| percent(share, 0)),
             format!(
-                "of spending on groups with two paid channels and at least {ENOUGH_LEADS} leads from the best"
+                "of spending on groups with two paid channels and at least {MIN_CHANNEL_LEADS} leads from the best"
             ),
         ),
-        Fact::new(
+        NamedValue::new(
             "Targeted development",
             measures.targeted_development.map_or_else(none, |share| percent(share, 0)),
             match published {
@@ -280,12 +283,12 @@ fn behaviour(measures: &Measures, published: bool) -> Vec<Block> {
                 false => String::new(),
             },
         ),
-        Fact::new(
+        NamedValue::new(
             "Calls per week",
             format!("{:.2}", measures.tools.per_week),
-            format!("{} in total", whole(f64::from(measures.tools.calls))),
+            format!("{} in total", format_whole(f64::from(measures.tools.calls))),
         ),
-        Fact::new(
+        NamedValue::new(
             "Planning words",
             format!("{:.1}", planning.planning_each),
             format!("per rationale of {:.0} words", planning.words_each),
@@ -296,10 +299,10 @@ fn behaviour(measures: &Measures, published: bool) -> Vec<Block> {
             let best = ads.best.as_ref();
             vec![
                 ads.group.clone(),
-                money(ads.spend),
+                format_money(ads.spend),
                 ads.tried.to_string(),
                 best.map_or_else(none, |best| best.channel.replace('_', " ")),
-                best.map_or_else(none, |best| per_thousand(best.leads_per_thousand)),
+                best.map_or_else(none, |best| format_leads_per_thousand(best.leads_per_thousand)),
                 best.map_or_else(none, |best| percent(best.share, 0)),
             ]
         };
@@ -316,7 +319,7 @@ fn behaviour(measures: &Measures, published: bool) -> Vec<Block> {
         }));
         blocks.push(Block::Note(format!(
             "The best channel has the most leads per dollar among the paid channels. None is named if \
-                 only one was paid, or if the best brought fewer than {ENOUGH_LEADS} leads."
+                 only one was paid, or if the best brought fewer than {MIN_CHANNEL_LEADS} leads."
         )));
     }
     if !measures.tools.tools.is_empty() {
@@ -330,22 +333,22 @@ fn behaviour(measures: &Measures, published: bool) -> Vec<Block> {
     blocks
 }
 
-fn decisions(story: &Story) -> Vec<Block> {
+fn decision_blocks(story: &RunReport) -> Vec<Block> {
     let mut blocks = vec![Block::Heading("Decisions by week")];
-    if story.chapters.is_empty() {
+    if story.decision_periods.is_empty() {
         blocks.push(Block::Text("No week has run yet.".to_owned()));
     }
-    for chapter in &story.chapters {
+    for chapter in &story.decision_periods {
         let weeks = match chapter.last_week == chapter.week {
             true => format!("Week {}", chapter.week),
             false => format!("Weeks {} to {}", chapter.week, chapter.last_week),
         };
-        let title = format!("{weeks} · day {} to {}", chapter.day, chapter.until);
-        let note = format!("{} → {}", signed_dollars(chapter.cash_change), money(chapter.cash));
-        let points: Vec<String> = chapter.changes.iter().chain(&chapter.deeds).cloned().collect();
+        let title = format!("{weeks} · day {} to {}", chapter.day, chapter.end_day);
+        let note = format!("{} → {}", signed_dollars(chapter.cash_change), format_money(chapter.cash));
+        let points: Vec<String> = chapter.changes.iter().chain(&chapter.actions).cloned().collect();
         let mut lines = Vec::new();
-        if !chapter.why.is_empty() {
-            lines.push(format!("“{}”", chapter.why));
+        if !chapter.rationale.is_empty() {
+            lines.push(format!("“{}”", chapter.rationale));
         }
         if points.is_empty() {
             lines.push("No changes.".to_owned());

@@ -12,7 +12,7 @@ pub struct Page {
     /// Content.
     pub blocks: Vec<Block>,
     /// Origin of the page.
-    pub foot: String,
+    pub footer: String,
 }
 
 /// An element of a page.
@@ -27,7 +27,7 @@ pub enum Block {
     /// A warning.
     Warning(String),
     /// Key figures.
-    Facts(Vec<Fact>),
+    Facts(Vec<NamedValue>),
     /// A table.
     Table(Table),
     /// Values as horizontal bars.
@@ -49,7 +49,7 @@ pub enum Block {
 
 /// A named value.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Fact {
+pub struct NamedValue {
     /// Name.
     pub name: String,
     /// Value.
@@ -58,10 +58,10 @@ pub struct Fact {
     pub note: String,
 }
 
-impl Fact {
+impl NamedValue {
     /// Returns a named value.
-    pub fn new(name: impl Into<String>, value: impl Into<String>, note: impl Into<String>) -> Fact {
-        Fact { name: name.into(), value: value.into(), note: note.into() }
+    pub fn new(name: impl Into<String>, value: impl Into<String>, note: impl Into<String>) -> NamedValue {
+        NamedValue { name: name.into(), value: value.into(), note: note.into() }
     }
 }
 
@@ -80,11 +80,11 @@ pub struct Bar {
     /// Name.
     pub name: String,
     /// Formatted value.
-    pub shown: String,
+    pub value_text: String,
     /// Length, 0 to 1.
     pub share: f64,
     /// Whether the bar is highlighted.
-    pub own: bool,
+    pub is_highlighted: bool,
 }
 
 /// A chart over days or weeks.
@@ -95,11 +95,11 @@ pub struct Chart {
     /// Text alternative of the chart.
     pub summary: String,
     /// Unit of the horizontal axis.
-    pub across: &'static str,
+    pub x_label: &'static str,
     /// Whether values are dollars.
-    pub dollars: bool,
+    pub is_in_dollars: bool,
     /// Limits of the vertical axis, if outliers would flatten the rest.
-    pub within: Option<(f64, f64)>,
+    pub y_limits: Option<(f64, f64)>,
     /// Data of the chart.
     pub plot: Plot,
 }
@@ -117,9 +117,9 @@ pub enum Plot {
     /// Stacked bars; positive parts go up, negative ones down.
     Stacks {
         /// Position of each bar on the horizontal axis.
-        at: Vec<f64>,
+        positions: Vec<f64>,
         /// Parts.
-        parts: Vec<Part>,
+        series: Vec<StackSeries>,
     },
 }
 
@@ -143,7 +143,7 @@ pub struct Band {
 
 /// A part of stacked bars.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Part {
+pub struct StackSeries {
     /// Name.
     pub name: String,
     /// One value for each bar.

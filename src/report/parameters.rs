@@ -5,7 +5,7 @@ use serde_json::Value;
 use novamind_session::{ChangedParameter, ChangedParameters};
 
 /// Describes a change: `group.S1.c_max_mean: 50 → 300, from day 30`.
-pub fn set_in_words(set: &ChangedParameter, today: u32) -> String {
+pub fn describe_changed_parameter(set: &ChangedParameter, today: u32) -> String {
     let ChangedParameter { key, old, new, from_day } = set;
     let change = if old == new { format!("{new}, unchanged") } else { format!("{old} → {new}") };
     match from_day {
@@ -15,17 +15,17 @@ pub fn set_in_words(set: &ChangedParameter, today: u32) -> String {
 }
 
 /// Describes a recorded change: `set leads.saturation_base: 1 → 0.9 from day 30`.
-pub fn entry_in_words(key: &str, [old, new]: [&Value; 2], from_day: Option<u32>) -> String {
-    format!("set {key}: {old} → {new}{}", since_in_words(from_day))
+pub fn describe_parameter_entry(key: &str, [old, new]: [&Value; 2], from_day: Option<u32>) -> String {
+    format!("set {key}: {old} → {new}{}", describe_start_day(from_day))
 }
 
 /// Returns ` from day 30`, or an empty string for an immediate change.
-pub fn since_in_words(from_day: Option<u32>) -> String {
+pub fn describe_start_day(from_day: Option<u32>) -> String {
     from_day.map_or(String::new(), |day| format!(" from day {day}"))
 }
 
 /// Lists the parameters that differ from the scenario, and those scheduled for a later day.
-pub fn changed_in_words(changed: &ChangedParameters) -> Vec<String> {
+pub fn describe_changed_parameters(changed: &ChangedParameters) -> Vec<String> {
     let against = match &changed.scenario {
         Some(name) => format!("scenario {name}"),
         None => "the start of the run".to_owned(),
@@ -36,7 +36,7 @@ pub fn changed_in_words(changed: &ChangedParameters) -> Vec<String> {
         count => vec![format!("{count} parameters differ from {against}:")],
     };
     lines.extend(
-        changed.in_force.iter().map(|own| format!("  {}: {} → {}", own.key, shown(&own.old), own.new)),
+        changed.in_force.iter().map(|own| format!("  {}: {} → {}", own.key, format_value(&own.old), own.new)),
     );
     if !changed.waiting.is_empty() {
         lines.push("scheduled for a later day:".to_owned());
@@ -50,7 +50,7 @@ pub fn changed_in_words(changed: &ChangedParameters) -> Vec<String> {
     lines
 }
 
-fn shown(value: &Value) -> String {
+fn format_value(value: &Value) -> String {
     if value.is_null() { "nothing".to_owned() } else { value.to_string() }
 }
 
@@ -64,27 +64,27 @@ mod tests {
     }
 
     #[test]
-    fn a_change_says_what_was_what_is_and_from_when() {
+    fn change_names_old_value_new_value_and_day() {
         let now = changed("a.b", json!(50), json!(300), None);
-        assert_eq!(set_in_words(&now, 7), "a.b: 50 → 300, effective from day 8");
+        assert_eq!(describe_changed_parameter(&now, 7), "a.b: 50 → 300, effective from day 8");
         let later = changed("a.b", json!(0.5), json!([1, 2]), Some(30));
-        assert_eq!(set_in_words(&later, 7), "a.b: 0.5 → [1,2], from day 30");
+        assert_eq!(describe_changed_parameter(&later, 7), "a.b: 0.5 → [1,2], from day 30");
         assert_eq!(
-            set_in_words(&changed("a.b", json!(1), json!(1), Some(9)), 7),
+            describe_changed_parameter(&changed("a.b", json!(1), json!(1), Some(9)), 7),
             "a.b: 1, unchanged, from day 9"
         );
     }
 
     #[test]
-    fn the_list_names_the_scenario_and_what_waits() {
+    fn list_names_scenario_and_pending_changes() {
         let mut all =
             ChangedParameters { scenario: Some("default".to_owned()), in_force: vec![], waiting: vec![] };
-        assert_eq!(changed_in_words(&all), ["no parameter differs from scenario default"]);
+        assert_eq!(describe_changed_parameters(&all), ["no parameter differs from scenario default"]);
         all.in_force = vec![changed("a.b", json!(50), json!(300), None)];
         all.waiting = vec![changed("c.d", json!(1), json!(2), Some(30))];
         all.scenario = None;
         assert_eq!(
-            changed_in_words(&all),
+            describe_changed_parameters(&all),
             [
                 "1 parameter differs from the start of the run:",
                 "  a.b: 50 → 300",

@@ -9,82 +9,82 @@ use serde_json::Value;
 
 pub use sentences::margin_sentences;
 
-use super::words::money;
-use novamind_base::notation::{cents, compact, percent};
-use novamind_database::{Cell, Rows, number_at, text_at};
+use super::formatting::format_money;
+use novamind_base::formatting::{cents, compact_number, percent};
+use novamind_database::{Cell, QueryResult, number_at, text_at};
 use novamind_session::identifiers::{ByPlan, Group, Plan};
-use novamind_session::{Session, query_refusal};
-use novamind_tools::{Refusal, ToolId};
+use novamind_session::{Session, query_rejection};
+use novamind_tools::{Rejection, ToolId};
 
-const SUBSCRIBERS: &str = include_str!("../../assets/readings/subscribers.sql");
-const USAGE: &str = include_str!("../../assets/readings/usage.sql");
-const MONTH: f64 = 30.0;
+const SUBSCRIBERS_SQL: &str = include_str!("../../assets/readings/subscribers.sql");
+const USAGE_SQL: &str = include_str!("../../assets/readings/usage.sql");
+const DAYS_PER_MONTH: f64 = 30.0;
 /// Shown in place of margins until usage has been measured.
-const NOTHING_MEASURED: &str = "no margins: usage has not been measured yet";
+const NO_USAGE_MESSAGE: &str = "no margins: usage has not been measured yet";
 
 /// Subscribers of a plan, their payments and their usage on the last day.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct PlanUse {
+pub struct PlanUsage {
     /// Active subscriptions.
     pub customers: f64,
     /// Seats of the active subscriptions.
     pub seats: f64,
     /// Revenue of the active subscriptions, dollars a month.
-    pub monthly: f64,
+    pub monthly_revenue: f64,
     /// Subscriptions that could use the product on the last day.
-    pub accounts: f64,
+    pub measured_subscriptions: f64,
     /// Their seats.
-    pub users: f64,
+    pub measured_seats: f64,
     /// Their usage on the last day, units.
-    pub units: f64,
+    pub measured_units: f64,
     /// Their revenue, dollars a month.
-    pub paid_by_users: f64,
+    pub measured_revenue: f64,
 }
 
-impl PlanUse {
-    fn plus(self, other: PlanUse) -> PlanUse {
-        PlanUse {
+impl PlanUsage {
+    fn add(self, other: PlanUsage) -> PlanUsage {
+        PlanUsage {
             customers: self.customers + other.customers,
             seats: self.seats + other.seats,
-            monthly: self.monthly + other.monthly,
-            accounts: self.accounts + other.accounts,
-            users: self.users + other.users,
-            units: self.units + other.units,
-            paid_by_users: self.paid_by_users + other.paid_by_users,
+            monthly_revenue: self.monthly_revenue + other.monthly_revenue,
+            measured_subscriptions: self.measured_subscriptions + other.measured_subscriptions,
+            measured_seats: self.measured_seats + other.measured_seats,
+            measured_units: self.measured_units + other.measured_units,
+            measured_revenue: self.measured_revenue + other.measured_revenue,
         }
     }
 
     /// Returns units a day and seat; `None` without subscriptions on the last day.
-    pub fn usage(&self) -> Option<f64> {
-        (self.users > 0.0).then(|| self.units / self.users)
+    pub fn units_per_seat(&self) -> Option<f64> {
+        (self.measured_seats > 0.0).then(|| self.measured_units / self.measured_seats)
     }
 
     /// Returns the compute cost in dollars a month and seat, given dollars a unit.
-    pub fn compute(&self, unit_cost: f64) -> Option<f64> {
-        self.usage().map(|usage| usage * MONTH * unit_cost)
+    pub fn compute_cost(&self, unit_cost: f64) -> Option<f64> {
+        self.units_per_seat().map(|usage| usage * DAYS_PER_MONTH * unit_cost)
     }
 
     /// Returns revenue in dollars a month and seat of the subscriptions with measured usage, or of all if none has
     /// any.
-    pub fn revenue(&self) -> Option<f64> {
-        match self.users > 0.0 {
-            true => Some(self.paid_by_users / self.users),
-            false => (self.seats > 0.0).then(|| self.monthly / self.seats),
+    pub fn revenue_per_seat(&self) -> Option<f64> {
+        match self.measured_seats > 0.0 {
+            true => Some(self.measured_revenue / self.measured_seats),
+            false => (self.seats > 0.0).then(|| self.monthly_revenue / self.seats),
         }
     }
 
-    fn measured_revenue(&self) -> Option<f64> {
-        self.revenue().filter(|_| self.usage().is_some())
+    fn measured_revenue_per_seat(&self) -> Option<f64> {
+        self.revenue_per_seat().filter(|_| self.units_per_seat().is_some())
     }
 
     /// Returns the share of revenue left after compute, given dollars a unit.
     pub fn margin(&self, unit_cost: f64) -> Option<f64> {
-        margin(self.revenue()?, self.compute(unit_cost)?)
+        margin(self.revenue_per_seat()?, self.compute_cost(unit_cost)?)
     }
 
     /// Returns the margin for accounts that use their full quota, units a day.
-    fn margin_of_full_quota(&self, quota: f64, unit_cost: f64) -> Option<f64> {
-        let full = PlanUse { units: self.accounts * quota, ..*self };
+    fn margin_at_full_quota(&self, quota: f64, unit_cost: f64) -> Option<f64> {
+        let full = PlanUsage { measured_units: self.measured_subscriptions * quota, ..*self };
         full.margin(unit_cost)
     }
 }
@@ -95,67 +95,67 @@ fn margin(price: f64, compute: f64) -> Option<f64> {
 
 /// Revenue and usage by group and plan.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Sales {
-    held: Vec<(Group, Plan, PlanUse)>,
-    used: Vec<(Group, Plan, PlanUse)>,
+pub struct PlanSales {
+    subscribed: Vec<(Group, Plan, PlanUsage)>,
+    used: Vec<(Group, Plan, PlanUsage)>,
 }
 
-impl Sales {
+impl PlanSales {
     /// Reads the database of a run without recording the queries.
     ///
     /// # Errors
     /// Returns an error if the run has no database or it cannot be read.
-    pub fn of(session: &Session) -> Result<Sales, Refusal> {
+    pub fn load(session: &Session) -> Result<PlanSales, Rejection> {
         session.wait_for_database()?;
         let (connection, limits) = (session.database().open_connection()?, session.company().query_limits());
-        let mut sales = Sales::default();
-        sales.take_subscribers(&connection.ask(SUBSCRIBERS, limits).map_err(query_refusal)?);
-        sales.take_usage(&connection.ask(USAGE, limits).map_err(query_refusal)?);
+        let mut sales = PlanSales::default();
+        sales.add_subscribers(&connection.query(SUBSCRIBERS_SQL, limits).map_err(query_rejection)?);
+        sales.add_usage(&connection.query(USAGE_SQL, limits).map_err(query_rejection)?);
         Ok(sales)
     }
 
     /// Adds rows of group, plan, customers, seats, dollars a month.
-    pub fn take_subscribers(&mut self, rows: &Rows) {
-        self.held = by_plan(rows, |row| PlanUse {
+    pub fn add_subscribers(&mut self, rows: &QueryResult) {
+        self.subscribed = by_plan(rows, |row| PlanUsage {
             customers: number_at(row, 2),
             seats: number_at(row, 3),
-            monthly: number_at(row, 4),
-            ..PlanUse::default()
+            monthly_revenue: number_at(row, 4),
+            ..PlanUsage::default()
         });
     }
 
     /// Adds rows of group, plan, accounts, seats, units, dollars a month.
-    pub fn take_usage(&mut self, rows: &Rows) {
-        self.used = by_plan(rows, |row| PlanUse {
-            accounts: number_at(row, 2),
-            users: number_at(row, 3),
-            units: number_at(row, 4),
-            paid_by_users: number_at(row, 5),
-            ..PlanUse::default()
+    pub fn add_usage(&mut self, rows: &QueryResult) {
+        self.used = by_plan(rows, |row| PlanUsage {
+            measured_subscriptions: number_at(row, 2),
+            measured_seats: number_at(row, 3),
+            measured_units: number_at(row, 4),
+            measured_revenue: number_at(row, 5),
+            ..PlanUsage::default()
         });
     }
 
     fn is_measured(&self) -> bool {
-        Plan::ALL.into_iter().any(|plan| self.of_plan(plan).usage().is_some())
+        Plan::ALL.into_iter().any(|plan| self.usage_of_plan(plan).units_per_seat().is_some())
     }
 
     /// Returns the sum over all groups.
-    pub fn of_plan(&self, plan: Plan) -> PlanUse {
+    pub fn usage_of_plan(&self, plan: Plan) -> PlanUsage {
         self.sum(|_, own| own == plan)
     }
 
-    fn by_group(&self, plan: Plan) -> Vec<(Group, PlanUse)> {
+    fn by_group(&self, plan: Plan) -> Vec<(Group, PlanUsage)> {
         let of = |group: Group| (group, self.sum(|own, of| own == group && of == plan));
         Group::all().map(of).filter(|(_, own)| own.customers > 0.0).collect()
     }
 
-    fn sum(&self, counts: impl Fn(Group, Plan) -> bool) -> PlanUse {
-        let own = self.held.iter().chain(&self.used).filter(|(group, plan, _)| counts(*group, *plan));
-        own.fold(PlanUse::default(), |sum, (_, _, more)| sum.plus(*more))
+    fn sum(&self, counts: impl Fn(Group, Plan) -> bool) -> PlanUsage {
+        let own = self.subscribed.iter().chain(&self.used).filter(|(group, plan, _)| counts(*group, *plan));
+        own.fold(PlanUsage::default(), |sum, (_, _, more)| sum.add(*more))
     }
 }
 
-fn by_plan(rows: &Rows, read: impl Fn(&[Cell]) -> PlanUse) -> Vec<(Group, Plan, PlanUse)> {
+fn by_plan(rows: &QueryResult, read: impl Fn(&[Cell]) -> PlanUsage) -> Vec<(Group, Plan, PlanUsage)> {
     let own =
         |row: &Vec<Cell>| Some((Group::parse(text_at(row, 0))?, Plan::parse(text_at(row, 1))?, read(row)));
     rows.rows.iter().filter_map(own).collect()
@@ -163,7 +163,7 @@ fn by_plan(rows: &Rows, read: impl Fn(&[Cell]) -> PlanUse) -> Vec<(Group, Plan, 
 
 /// Terms of a plan under a draft.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PlanTerms {
+pub struct DraftPlanTerms {
     /// List price, dollars a month and seat.
     pub price: f64,
     /// Model tier.
@@ -172,7 +172,7 @@ pub struct PlanTerms {
     pub quota: f64,
 }
 
-impl PlanTerms {
+impl DraftPlanTerms {
     /// Returns dollars a unit on the current model tier; `None` if the tier is unknown.
     fn unit_cost(&self, models: &[(u8, f64)]) -> Option<f64> {
         models.iter().find(|(tier, _)| *tier == self.tier).map(|(_, unit_cost)| *unit_cost)
@@ -181,7 +181,7 @@ impl PlanTerms {
 
 /// Setting that a form changes, which determines the margins to show.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Lever {
+pub enum MarginSetting {
     /// List prices: also shows margins at the list price.
     Price,
     /// Model tiers.
@@ -190,26 +190,26 @@ pub enum Lever {
     Quota,
 }
 
-impl Lever {
+impl MarginSetting {
     /// Returns the setting of a tool if it affects margins.
-    pub fn of(tool: ToolId) -> Option<Lever> {
+    pub fn from_tool(tool: ToolId) -> Option<MarginSetting> {
         match tool {
-            ToolId::SetPrices => Some(Lever::Price),
-            ToolId::SetModelTiers => Some(Lever::Tier),
-            ToolId::SetUsageQuotas => Some(Lever::Quota),
+            ToolId::SetPrices => Some(MarginSetting::Price),
+            ToolId::SetModelTiers => Some(MarginSetting::Tier),
+            ToolId::SetUsageQuotas => Some(MarginSetting::Quota),
             _ => None,
         }
     }
 
     /// Returns the terms of plans after a call of the tool with these arguments.
-    pub fn apply(self, mut terms: ByPlan<PlanTerms>, arguments: &Value) -> ByPlan<PlanTerms> {
+    pub fn apply(self, mut terms: ByPlan<DraftPlanTerms>, arguments: &Value) -> ByPlan<DraftPlanTerms> {
         for plan in Plan::ALL {
             let Some(value) = arguments.get(plan.id()).and_then(Value::as_f64) else { continue };
             let own = &mut terms[plan];
             match self {
-                Lever::Price => own.price = value,
-                Lever::Tier => own.tier = value as u8,
-                Lever::Quota => own.quota = value,
+                MarginSetting::Price => own.price = value,
+                MarginSetting::Tier => own.tier = value as u8,
+                MarginSetting::Quota => own.quota = value,
             }
         }
         terms
@@ -218,73 +218,74 @@ impl Lever {
 
 /// Returns a table of margins for every plan and model tier: a header, then lines.
 pub fn margin_lines(
-    sales: &Sales,
-    terms: &ByPlan<PlanTerms>,
-    lever: Lever,
+    sales: &PlanSales,
+    terms: &ByPlan<DraftPlanTerms>,
+    lever: MarginSetting,
     models: &[(u8, f64)],
     day: u32,
 ) -> Vec<String> {
     if !sales.is_measured() {
-        return vec![NOTHING_MEASURED.to_owned()];
+        return vec![NO_USAGE_MESSAGE.to_owned()];
     }
     let mut lines = vec![format!("gross margin by model tier at day-{day} usage; [ ] current")];
     let tiers: String = models.iter().map(|(tier, _)| format!("{:>8}", format!("T{tier} "))).collect();
     lines.push(format!("{:<16}{tiers}", "a month and seat").trim_end().to_owned());
     for plan in Plan::ALL {
-        let (own, set) = (sales.of_plan(plan), terms[plan]);
+        let (own, set) = (sales.usage_of_plan(plan), terms[plan]);
         let row = |label: String, margin: &dyn Fn(f64) -> Option<f64>| {
-            let cell =
-                |(tier, unit_cost): &(u8, f64)| format!("{:>8}", cell(margin(*unit_cost), *tier == set.tier));
+            let cell = |(tier, unit_cost): &(u8, f64)| {
+                format!("{:>8}", format_cell(margin(*unit_cost), *tier == set.tier))
+            };
             let cells: String = models.iter().map(cell).collect();
             format!("{label:<16}{cells}").trim_end().to_owned()
         };
-        let Some(paid) = own.measured_revenue() else {
+        let Some(paid) = own.measured_revenue_per_seat() else {
             lines.push(format!("{plan} no usage on day {day}"));
             continue;
         };
         lines.push(row(format!("{plan} paid {}", cents(paid)), &|unit_cost| own.margin(unit_cost)));
         match lever {
-            Lever::Price if differs(set.price, paid) => {
+            MarginSetting::Price if differs_by_a_cent(set.price, paid) => {
                 let label = format!("{plan} list {}", cents(set.price));
-                lines.push(row(label, &|unit_cost| margin(set.price, own.compute(unit_cost)?)));
+                lines.push(row(label, &|unit_cost| margin(set.price, own.compute_cost(unit_cost)?)));
             }
-            Lever::Quota => {
-                let label = format!("{plan} at quota {}", compact(set.quota));
-                lines.push(row(label, &|unit_cost| own.margin_of_full_quota(set.quota, unit_cost)));
+            MarginSetting::Quota => {
+                let label = format!("{plan} at quota {}", compact_number(set.quota));
+                lines.push(row(label, &|unit_cost| own.margin_at_full_quota(set.quota, unit_cost)));
             }
             _ => {}
         }
     }
-    lines.extend(Plan::ALL.into_iter().filter_map(|plan| by_group(sales, plan, terms[plan], models)));
+    lines.extend(Plan::ALL.into_iter().filter_map(|plan| describe_groups(sales, plan, terms[plan], models)));
     lines
 }
 
 /// Returns the margins of every plan on its own model tier, for small windows: a header, then one line per plan.
 pub fn margin_summary(
-    sales: &Sales,
-    terms: &ByPlan<PlanTerms>,
-    lever: Lever,
+    sales: &PlanSales,
+    terms: &ByPlan<DraftPlanTerms>,
+    lever: MarginSetting,
     models: &[(u8, f64)],
     day: u32,
 ) -> Vec<String> {
     if !sales.is_measured() {
-        return vec![NOTHING_MEASURED.to_owned()];
+        return vec![NO_USAGE_MESSAGE.to_owned()];
     }
     let line = |plan: Plan| {
-        let (own, set) = (sales.of_plan(plan), terms[plan]);
-        let Some(paid) = own.measured_revenue() else {
+        let (own, set) = (sales.usage_of_plan(plan), terms[plan]);
+        let Some(paid) = own.measured_revenue_per_seat() else {
             return format!("{plan} no usage on day {day}");
         };
         let unit_cost = set.unit_cost(models);
-        let told = |margin: &dyn Fn(f64) -> Option<f64>| in_words(unit_cost.and_then(margin));
+        let told = |margin: &dyn Fn(f64) -> Option<f64>| format_margin(unit_cost.and_then(margin));
         let also = match lever {
-            Lever::Price if differs(set.price, paid) => {
-                let margin = told(&|unit_cost| margin(set.price, own.compute(unit_cost)?));
+            MarginSetting::Price if differs_by_a_cent(set.price, paid) => {
+                let margin = told(&|unit_cost| margin(set.price, own.compute_cost(unit_cost)?));
                 format!(", list {} {margin}", cents(set.price))
             }
-            Lever::Quota => {
-                let margin = told(&|unit_cost| own.margin_of_full_quota(set.quota, unit_cost));
-                format!(", at quota {} {margin}", compact(set.quota))
+            MarginSetting::Quota => {
+                let margin = told(&|unit_cost| own.margin_at_full_quota(set.quota, unit_cost));
+                format!(", at quota {} {margin}", compact_number(set.quota))
             }
             _ => String::new(),
         };
@@ -300,16 +301,21 @@ pub fn margin_summary(
 }
 
 /// Returns whether a list price differs from the price paid by at least half a cent.
-fn differs(list: f64, paid: f64) -> bool {
+fn differs_by_a_cent(list: f64, paid: f64) -> bool {
     list > 0.0 && (list - paid).abs() >= 0.005
 }
 
 /// Lists the margins of a plan's groups on its model tier; `None` if only one group has the plan.
-fn by_group(sales: &Sales, plan: Plan, set: PlanTerms, models: &[(u8, f64)]) -> Option<String> {
+fn describe_groups(
+    sales: &PlanSales,
+    plan: Plan,
+    set: DraftPlanTerms,
+    models: &[(u8, f64)],
+) -> Option<String> {
     let unit_cost = set.unit_cost(models)?;
-    let told = |(group, own): &(Group, PlanUse)| {
+    let told = |(group, own): &(Group, PlanUsage)| {
         let margin = own.margin(unit_cost).map_or("–".to_owned(), |margin| percent(margin, 0));
-        format!("{group} {margin} of {}", own.revenue().map_or("–".to_owned(), money))
+        format!("{group} {margin} of {}", own.revenue_per_seat().map_or("–".to_owned(), format_money))
     };
     let groups = sales.by_group(plan);
     (groups.len() > 1).then(|| {
@@ -319,15 +325,15 @@ fn by_group(sales: &Sales, plan: Plan, set: PlanTerms, models: &[(u8, f64)]) -> 
 }
 
 /// Formats a margin. Losses above about ten times the price are all shown as `loss`.
-fn in_words(margin: Option<f64>) -> String {
+fn format_margin(margin: Option<f64>) -> String {
     margin.map_or("–".to_owned(), |margin| match margin < -9.99 {
         true => "loss".to_owned(),
         false => percent(margin, 0),
     })
 }
 
-fn cell(margin: Option<f64>, is_set: bool) -> String {
-    let text = in_words(margin);
+fn format_cell(margin: Option<f64>, is_set: bool) -> String {
+    let text = format_margin(margin);
     if is_set { format!("[{text}]") } else { format!("{text} ") }
 }
 
@@ -336,11 +342,11 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::test_kit::played;
+    use crate::test_kit::play_weeks;
     use novamind_session::CoreSettings;
 
-    fn terms(core: &CoreSettings) -> ByPlan<PlanTerms> {
-        ByPlan::from_fn(|plan| PlanTerms {
+    fn terms(core: &CoreSettings) -> ByPlan<DraftPlanTerms> {
+        ByPlan::from_fn(|plan| DraftPlanTerms {
             price: core.prices[plan],
             tier: core.tiers[plan],
             quota: core.quotas[plan].units(),
@@ -348,9 +354,9 @@ mod tests {
     }
 
     #[test]
-    fn margins_are_those_of_the_tables_on_every_model() {
-        let mut session = played(6);
-        let sales = Sales::of(&session).expect("a database");
+    fn margins_match_the_tables_on_every_model() {
+        let mut session = play_weeks(6);
+        let sales = PlanSales::load(&session).expect("a database");
         let sql =
             "SELECT (SELECT sum(o.effective_price * o.seat_count) / sum(o.seat_count) FROM daily_usage u
                     JOIN subscriptions o ON o.customer_id = u.customer_id AND o.status = 'subscribed'
@@ -360,31 +366,33 @@ mod tests {
                     WHERE u.day = 42 AND o.plan = 'B')";
         let row = session.query(sql).expect("figures").rows.remove(0);
         let (paid, units) = (number_at(&row, 0), number_at(&row, 1));
-        let own = sales.of_plan(Plan::B);
+        let own = sales.usage_of_plan(Plan::B);
         for unit_cost in [0.0003, 0.002, 0.03] {
             let expected = 1.0 - units * unit_cost / paid;
             assert!((own.margin(unit_cost).expect("a margin") - expected).abs() < 1e-9);
         }
         let models = session.company().tool_limits().unit_costs();
         let now = terms(&session.settings().core);
-        let draft = Lever::Tier.apply(now, &json!({"B": 3}));
-        let lines = margin_lines(&sales, &draft, Lever::Tier, &models, 42);
+        let draft = MarginSetting::Tier.apply(now, &json!({"B": 3}));
+        let lines = margin_lines(&sales, &draft, MarginSetting::Tier, &models, 42);
         assert!(lines[0].contains("at day-42 usage"), "{lines:?}");
         let line = lines.iter().find(|line| line.starts_with("B paid ")).expect("plan B");
         let on_3 = format!("[{}]", percent(own.margin(models[2].1).expect("a margin"), 0));
         assert!(line.contains(&cents(paid)) && line.contains(&on_3), "{line} without {on_3}");
-        let dear = Lever::Price.apply(now, &json!({"B": 250}));
-        let lines = margin_lines(&sales, &dear, Lever::Price, &models, 42);
+        let dear = MarginSetting::Price.apply(now, &json!({"B": 250}));
+        let lines = margin_lines(&sales, &dear, MarginSetting::Price, &models, 42);
         let line = lines.iter().find(|line| line.starts_with("B list $250.00")).expect("the list price");
         let on_2 = format!("[{}]", percent(1.0 - units * models[1].1 / 250.0, 0));
         assert!(line.contains(&on_2), "{line} without {on_2}");
-        let full_quota = Lever::Quota.apply(now, &json!({"B": 300}));
-        let lines = margin_lines(&sales, &full_quota, Lever::Quota, &models, 42);
+        let full_quota = MarginSetting::Quota.apply(now, &json!({"B": 300}));
+        let lines = margin_lines(&sales, &full_quota, MarginSetting::Quota, &models, 42);
         let line = lines.iter().find(|line| line.starts_with("B at quota 300")).expect("the quota");
-        let full = 1.0 - own.accounts * 300.0 / own.users * 30.0 * models[1].1 / paid;
+        let full = 1.0 - own.measured_subscriptions * 300.0 / own.measured_seats * 30.0 * models[1].1 / paid;
         assert!(line.contains(&format!("[{}]", percent(full, 0))), "{line} without {full}");
         // The summary for small windows shows the same margins.
-        for (lever, draft) in [(Lever::Price, &dear), (Lever::Quota, &full_quota), (Lever::Tier, &now)] {
+        for (lever, draft) in
+            [(MarginSetting::Price, &dear), (MarginSetting::Quota, &full_quota), (MarginSetting::Tier, &now)]
+        {
             let lines = margin_lines(&sales, draft, lever, &models, 42);
             let set = |line: &str| Some(line.split_once('[')?.1.split_once(']')?.0.to_owned());
             let of_b = |line: &&String| line.starts_with("B ") && !line.starts_with("B by");
@@ -402,25 +410,26 @@ mod tests {
     }
 
     #[test]
-    fn who_has_just_signed_changes_no_margin() {
-        let before = PlanUse {
+    fn new_subscribers_do_not_change_margins() {
+        let before = PlanUsage {
             customers: 55.0,
             seats: 55.0,
-            monthly: 4_400.0,
-            accounts: 55.0,
-            users: 55.0,
-            units: 33_952.0,
-            paid_by_users: 4_400.0,
+            monthly_revenue: 4_400.0,
+            measured_subscriptions: 55.0,
+            measured_seats: 55.0,
+            measured_units: 33_952.0,
+            measured_revenue: 4_400.0,
         };
-        let joined = PlanUse { customers: 650.0, seats: 650.0, monthly: 47_900.0, ..before };
-        assert_eq!((joined.margin(0.006), joined.revenue()), (before.margin(0.006), Some(80.0)));
+        let joined = PlanUsage { customers: 650.0, seats: 650.0, monthly_revenue: 47_900.0, ..before };
+        assert_eq!((joined.margin(0.006), joined.revenue_per_seat()), (before.margin(0.006), Some(80.0)));
     }
 
     #[test]
-    fn nothing_measured_is_said_and_not_guessed() {
-        let session = played(0);
-        let sales = Sales::of(&session).expect("a database");
-        let lines = margin_lines(&sales, &terms(&session.settings().core), Lever::Price, &[(1, 0.0003)], 0);
+    fn missing_usage_is_reported() {
+        let session = play_weeks(0);
+        let sales = PlanSales::load(&session).expect("a database");
+        let lines =
+            margin_lines(&sales, &terms(&session.settings().core), MarginSetting::Price, &[(1, 0.0003)], 0);
         assert_eq!(lines, ["no margins: usage has not been measured yet"]);
     }
 }

@@ -2,8 +2,8 @@
 
 use unicode_width::UnicodeWidthStr;
 
-use super::words::tick;
-use novamind_base::notation::compact;
+use super::formatting::format_tick;
+use novamind_base::formatting::compact_number;
 
 /// Scale of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,7 +26,7 @@ impl AxisScale {
     }
 
     /// Maps a value to its position on the axis; NaN if it has none.
-    pub fn placed(self, value: f64) -> f64 {
+    pub fn position(self, value: f64) -> f64 {
         match self {
             AxisScale::Linear | AxisScale::Whole => value,
             AxisScale::Logarithmic if value > 0.0 => libm::log10(value),
@@ -36,54 +36,55 @@ impl AxisScale {
 }
 
 /// Size and axes of a text chart.
-pub struct Frame {
+pub struct PlotArea {
     /// Width in characters, including labels.
     pub width: usize,
     /// Height in lines, excluding the labels below.
     pub height: usize,
     /// Horizontal axis.
-    pub across: AxisScale,
+    pub x_scale: AxisScale,
     /// Vertical axis.
-    pub up: AxisScale,
+    pub y_scale: AxisScale,
 }
 
-const OF_REPORTS: Frame = Frame { width: 81, height: 14, across: AxisScale::Linear, up: AxisScale::Linear };
+const REPORT_AREA: PlotArea =
+    PlotArea { width: 81, height: 14, x_scale: AxisScale::Linear, y_scale: AxisScale::Linear };
 
-const LABELS: usize = 11;
+const LABEL_WIDTH: usize = 11;
 
 /// Bar heights of a sparkline, lowest first.
-pub const LEVELS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
+pub const SPARKLINE_CHARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 
 /// Returns the sparkline character for a share from 0 to 1.
-pub fn level(share: f64) -> char {
-    let highest = LEVELS.len() - 1;
-    LEVELS[((share * highest as f64).round() as usize).min(highest)]
+pub fn sparkline_char(share: f64) -> char {
+    let highest = SPARKLINE_CHARS.len() - 1;
+    SPARKLINE_CHARS[((share * highest as f64).round() as usize).min(highest)]
 }
 
 /// A series drawn with a character; later ones cover earlier ones.
-pub struct Drawn<'a> {
+pub struct PlotSeries<'a> {
     /// Character.
-    pub sign: char,
+    pub mark: char,
     /// Points.
     pub points: &'a [(f64, f64)],
     /// Whether the points are connected.
     pub is_line: bool,
 }
 
-pub(super) fn plot(drawn: &[Drawn<'_>]) -> String {
-    plot_in(&OF_REPORTS, drawn)
+pub(super) fn plot_report(drawn: &[PlotSeries<'_>]) -> String {
+    plot_in(&REPORT_AREA, drawn)
 }
 
 /// Draws series in a frame; empty without points.
-pub fn plot_in(frame: &Frame, drawn: &[Drawn<'_>]) -> String {
-    let (columns, rows) = (frame.width.saturating_sub(LABELS).max(8), frame.height.max(2));
-    let placed = |(x, y): &(f64, f64)| (frame.across.placed(*x), frame.up.placed(*y));
+pub fn plot_in(frame: &PlotArea, drawn: &[PlotSeries<'_>]) -> String {
+    let (columns, rows) = (frame.width.saturating_sub(LABEL_WIDTH).max(8), frame.height.max(2));
+    let placed = |(x, y): &(f64, f64)| (frame.x_scale.position(*x), frame.y_scale.position(*y));
     let all = || {
         let points = drawn.iter().flat_map(|own| own.points);
         points.filter(|own| placed(own).0.is_finite() && placed(own).1.is_finite())
     };
-    let Some((left, right)) = reach(all().map(|point| point.0)) else { return String::new() };
-    let Some((low, high)) = reach(all().map(|point| point.1)) else { return String::new() };
+    let Some((left, right)) = padded_range(all().map(|point| point.0)) else { return String::new() };
+    let Some((low, high)) = padded_range(all().map(|point| point.1)) else { return String::new() };
     let (from, to) = (placed(&(left, low)), placed(&(right, high)));
     let mut cells = vec![vec![' '; columns]; rows];
     let place = |share: f64, size: usize| ((share * (size - 1) as f64).round() as usize).min(size - 1);
@@ -96,33 +97,37 @@ pub fn plot_in(frame: &Frame, drawn: &[Drawn<'_>]) -> String {
     };
     for own in drawn {
         let points: Vec<(f64, f64)> = own.points.iter().map(placed).collect();
-        points.iter().for_each(|(x, y)| put(*x, *y, own.sign));
+        points.iter().for_each(|(x, y)| put(*x, *y, own.mark));
         for pair in points.windows(2).filter(|_| own.is_line) {
             for at in 0..=columns {
                 let share = at as f64 / columns as f64;
-                put(between(pair[0].0, pair[1].0, share), between(pair[0].1, pair[1].1, share), own.sign);
+                put(
+                    interpolate(pair[0].0, pair[1].0, share),
+                    interpolate(pair[0].1, pair[1].1, share),
+                    own.mark,
+                );
             }
         }
     }
     let mut text = String::new();
     for (at, row) in cells.iter().enumerate() {
         let label = match at {
-            0 => compact(high),
-            at if at == rows - 1 => compact(low),
+            0 => compact_number(high),
+            at if at == rows - 1 => compact_number(low),
             _ => String::new(),
         };
         text += format!("{label:>9} |{}", row.iter().collect::<String>()).trim_end();
         text.push('\n');
     }
-    let width = columns.saturating_sub(compact(left).chars().count());
-    text + &format!("{:>10} {}{:>width$}\n", "", compact(left), compact(right))
+    let width = columns.saturating_sub(compact_number(left).chars().count());
+    text + &format!("{:>10} {}{:>width$}\n", "", compact_number(left), compact_number(right))
 }
 
 /// Draws horizontal bars, each between its label and its value.
 pub fn bars(points: &[(f64, f64)], width: usize) -> String {
     let most = points.iter().map(|point| point.1).filter(|own| own.is_finite()).fold(0.0, f64::max);
     let (labels, values): (Vec<String>, Vec<String>) =
-        points.iter().map(|(x, y)| (tick(*x), compact(*y))).unzip();
+        points.iter().map(|(x, y)| (format_tick(*x), compact_number(*y))).unzip();
     let widest = |texts: &[String]| texts.iter().map(|text| text.width()).max().unwrap_or(0);
     let (before, behind) = (widest(&labels), widest(&values));
     let room = width.saturating_sub(before + behind + 3).max(4);
@@ -134,12 +139,12 @@ pub fn bars(points: &[(f64, f64)], width: usize) -> String {
     text
 }
 
-fn between(from: f64, to: f64, share: f64) -> f64 {
+fn interpolate(from: f64, to: f64, share: f64) -> f64 {
     from + (to - from) * share
 }
 
 /// Returns the range of the values, widened if it is empty; `None` without values.
-fn reach(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
+fn padded_range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     let (least, most) =
         values.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), own| (least.min(own), most.max(own)));
     let apart = most - least > 1e-9 * most.abs().max(least.abs()).min(1.0);
@@ -156,35 +161,35 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_line_goes_from_corner_to_corner_and_the_lit_one_lies_above() {
+    fn line_spans_the_corners_and_later_series_are_on_top() {
         let (pale, lit) = ([(0.0, 0.0), (10.0, 100.0)], [(0.0, 100.0), (10.0, 0.0)]);
-        let line = |sign, points| Drawn { sign, points, is_line: true };
-        let text = plot(&[line('.', &pale), line('#', &lit)]);
+        let line = |sign, points| PlotSeries { mark: sign, points, is_line: true };
+        let text = plot_report(&[line('.', &pale), line('#', &lit)]);
         let rows: Vec<&str> = text.lines().collect();
-        assert_eq!(rows.len(), OF_REPORTS.height + 1);
+        assert_eq!(rows.len(), REPORT_AREA.height + 1);
         assert!(rows[0].starts_with("      100 |#") && rows[0].ends_with('.'), "{text}");
-        assert!(rows[OF_REPORTS.height - 1].trim_end().ends_with('#'), "{text}");
-        assert_eq!(plot(&[]), "");
-        assert!(plot(&[line('.', &[(1.0, 1.0)])]).contains('.'), "a single point is drawn");
+        assert!(rows[REPORT_AREA.height - 1].trim_end().ends_with('#'), "{text}");
+        assert_eq!(plot_report(&[]), "");
+        assert!(plot_report(&[line('.', &[(1.0, 1.0)])]).contains('.'), "a single point is drawn");
     }
 
     #[test]
-    fn a_power_is_a_straight_line_where_both_axes_are_logarithmic() {
+    fn power_law_is_straight_on_log_axes() {
         let points: Vec<(f64, f64)> =
             (0..=4).map(|at| libm::pow(10.0, f64::from(at))).map(|x| (x, x * x)).collect();
         let scale = AxisScale::Logarithmic;
-        let frame = Frame { width: LABELS + 21, height: 21, across: scale, up: scale };
-        let text = plot_in(&frame, &[Drawn { sign: '*', points: &points, is_line: true }]);
+        let frame = PlotArea { width: LABEL_WIDTH + 21, height: 21, x_scale: scale, y_scale: scale };
+        let text = plot_in(&frame, &[PlotSeries { mark: '*', points: &points, is_line: true }]);
         for (at, row) in text.lines().take(21).enumerate() {
-            assert_eq!(row.find('*').map(|place| place - LABELS), Some(20 - at), "{text}");
+            assert_eq!(row.find('*').map(|place| place - LABEL_WIDTH), Some(20 - at), "{text}");
         }
         assert!(text.lines().all(|line| line.chars().count() <= frame.width), "{text}");
         let nothing = [(0.0, 1.0), (-1.0, 5.0)];
-        assert_eq!(plot_in(&frame, &[Drawn { sign: '*', points: &nothing, is_line: true }]), "");
+        assert_eq!(plot_in(&frame, &[PlotSeries { mark: '*', points: &nothing, is_line: true }]), "");
     }
 
     #[test]
-    fn bars_are_as_long_as_their_values() {
+    fn bar_length_is_proportional() {
         let text = bars(&[(1.0, 10.0), (2.0, 5.0), (3.0, 0.0)], 30);
         let lengths: Vec<usize> = text.lines().map(|line| line.matches('█').count()).collect();
         assert_eq!(lengths, [24, 12, 0], "{text}");

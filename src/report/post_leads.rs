@@ -1,16 +1,16 @@
 //! Leads by group in the week before and after a post. Only counts: visible data does not record which leads a post
 //! brought.
 
-use super::words::whole;
+use super::formatting::format_whole;
 use novamind_session::GroupWeek;
 use novamind_session::identifiers::{ByGroup, Group};
 
 /// Returns lines about the leads before and after a decision day; empty until a week has run after it.
-pub fn leads_around(day: u32, weeks: &[ByGroup<GroupWeek>], known: &[Group]) -> Vec<String> {
+pub fn lead_lines_around(day: u32, weeks: &[ByGroup<GroupWeek>], known: &[Group]) -> Vec<String> {
     let after = day as usize / 7;
     let Some(later) = weeks.get(after).filter(|_| day.is_multiple_of(7)) else { return Vec::new() };
     let before = after.checked_sub(1).and_then(|at| weeks.get(at));
-    let count = |week: &ByGroup<GroupWeek>, group: Group| whole(f64::from(week[group].leads));
+    let count = |week: &ByGroup<GroupWeek>, group: Group| format_whole(f64::from(week[group].leads));
     let told: Vec<String> = known
         .iter()
         .map(|group| {
@@ -27,26 +27,26 @@ pub fn leads_around(day: u32, weeks: &[ByGroup<GroupWeek>], known: &[Group]) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_kit::played;
+    use crate::test_kit::play_weeks;
     use novamind_database::number_at;
 
     #[test]
     fn leads_are_counted_on_both_sides_of_the_day() {
-        let mut session = played(4);
+        let mut session = play_weeks(4);
         let known = session.company().observe().known_groups;
-        let told = leads_around(14, session.company().group_weeks(), &known);
+        let told = lead_lines_around(14, session.company().group_weeks(), &known);
         let mut leads = |from: u32| {
             let sql = format!(
                 "SELECT count(*) FROM customers WHERE group_id = 'S1' AND created_day > {from} AND created_day <= {from} + 7"
             );
-            whole(number_at(&session.query(&sql).expect("a count").rows[0], 0))
+            format_whole(number_at(&session.query(&sql).expect("a count").rows[0], 0))
         };
         let expected = format!("S1 {} → {}", leads(7), leads(14));
         assert!(told[0].contains(&expected), "{told:?} without {expected}");
-        let first = leads_around(0, session.company().group_weeks(), &known);
+        let first = lead_lines_around(0, session.company().group_weeks(), &known);
         assert!(first[0].contains("S1 – → "), "{first:?}");
         assert!(
-            leads_around(28, session.company().group_weeks(), &known).is_empty(),
+            lead_lines_around(28, session.company().group_weeks(), &known).is_empty(),
             "no week has run since"
         );
     }

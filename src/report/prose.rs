@@ -5,7 +5,7 @@ use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
 /// Style of a piece of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Face {
+pub enum TextStyle {
     /// Plain text.
     Text,
     /// Emphasized.
@@ -15,11 +15,11 @@ pub enum Face {
 }
 
 /// A line of a screen, in styled pieces.
-pub type ProseLine = Vec<(String, Face)>;
+pub type ProseLine = Vec<(String, TextStyle)>;
 
 /// An element of the source.
 #[derive(Debug, PartialEq)]
-enum Passage {
+enum MarkdownBlock {
     Heading(String),
     Paragraph(String),
     /// A list item: marker and text.
@@ -31,42 +31,43 @@ enum Passage {
 }
 
 /// Formats text in lines of at most `width` columns.
-pub fn laid_out(text: &str, width: usize) -> Vec<ProseLine> {
+pub fn lay_out(text: &str, width: usize) -> Vec<ProseLine> {
     let width = width.max(1);
     let mut lines: Vec<ProseLine> = Vec::new();
-    for block in blocks(text) {
+    for block in parse_blocks(text) {
         match block {
-            Passage::Heading(text) => {
-                let shown = faced(&text).into_iter().map(|(letter, _)| (letter, Face::Heading)).collect();
-                lines.extend(filled(shown, "", "", width));
+            MarkdownBlock::Heading(text) => {
+                let shown =
+                    styled_chars(&text).into_iter().map(|(letter, _)| (letter, TextStyle::Heading)).collect();
+                lines.extend(wrap_chars(shown, "", "", width));
             }
-            Passage::Paragraph(text) => lines.extend(filled(faced(&text), "", "", width)),
-            Passage::Item(mark, text) => {
+            MarkdownBlock::Paragraph(text) => lines.extend(wrap_chars(styled_chars(&text), "", "", width)),
+            MarkdownBlock::Item(mark, text) => {
                 let beside = " ".repeat(mark.width());
-                lines.extend(filled(faced(&text), &mark, &beside, width));
+                lines.extend(wrap_chars(styled_chars(&text), &mark, &beside, width));
             }
-            Passage::Quote(text) => lines.extend(filled(faced(&text), "  ", "  ", width)),
-            Passage::Verbatim(text) => {
-                let letters = text.chars().map(|letter| (letter, Face::Text)).collect();
+            MarkdownBlock::Quote(text) => lines.extend(wrap_chars(styled_chars(&text), "  ", "  ", width)),
+            MarkdownBlock::Verbatim(text) => {
+                let letters = text.chars().map(|letter| (letter, TextStyle::Text)).collect();
                 lines.extend(match text.width() <= width {
-                    true => vec![vec![(text, Face::Text)]],
-                    false => filled(letters, "", "", width),
+                    true => vec![vec![(text, TextStyle::Text)]],
+                    false => wrap_chars(letters, "", "", width),
                 });
             }
-            Passage::Blank => lines.push(Vec::new()),
+            MarkdownBlock::Blank => lines.push(Vec::new()),
         }
     }
     lines
 }
 
 /// Formats text without styles in lines of at most `width` columns.
-pub fn as_plain(text: &str, width: usize) -> String {
+pub fn to_plain_text(text: &str, width: usize) -> String {
     let line = |line: ProseLine| line.into_iter().map(|(piece, _)| piece).collect::<String>();
-    laid_out(text, width).into_iter().map(line).collect::<Vec<_>>().join("\n")
+    lay_out(text, width).into_iter().map(line).collect::<Vec<_>>().join("\n")
 }
 
-fn blocks(text: &str) -> Vec<Passage> {
-    let mut blocks: Vec<Passage> = Vec::new();
+fn parse_blocks(text: &str) -> Vec<MarkdownBlock> {
+    let mut blocks: Vec<MarkdownBlock> = Vec::new();
     let mut fenced = false;
     // Whether the line before ended a block.
     let mut ends = true;
@@ -78,36 +79,40 @@ fn blocks(text: &str) -> Vec<Passage> {
         }
         let broken = line.ends_with("  ") || bare.ends_with('\\');
         let said = bare.strip_suffix('\\').unwrap_or(bare).trim_end();
-        let fresh = match kind_of(bare, indent) {
-            _ if fenced => Some(Passage::Verbatim(line.trim_end().to_owned())),
+        let fresh = match line_start(bare, indent) {
+            _ if fenced => Some(MarkdownBlock::Verbatim(line.trim_end().to_owned())),
             Some(block) => Some(block),
             None => match blocks.last_mut().filter(|_| !ends) {
-                Some(Passage::Paragraph(text) | Passage::Item(_, text) | Passage::Quote(text)) => {
+                Some(
+                    MarkdownBlock::Paragraph(text)
+                    | MarkdownBlock::Item(_, text)
+                    | MarkdownBlock::Quote(text),
+                ) => {
                     text.push(' ');
                     text.push_str(said);
                     None
                 }
-                _ if indent >= 4 => Some(Passage::Verbatim(line.trim_end().to_owned())),
-                _ => Some(Passage::Paragraph(said.to_owned())),
+                _ if indent >= 4 => Some(MarkdownBlock::Verbatim(line.trim_end().to_owned())),
+                _ => Some(MarkdownBlock::Paragraph(said.to_owned())),
             },
         };
         match (fresh, blocks.last_mut()) {
             (None, _) => {}
-            (Some(Passage::Blank), None | Some(Passage::Blank)) => {}
-            (Some(Passage::Quote(more)), Some(Passage::Quote(text))) if !ends => {
+            (Some(MarkdownBlock::Blank), None | Some(MarkdownBlock::Blank)) => {}
+            (Some(MarkdownBlock::Quote(more)), Some(MarkdownBlock::Quote(text))) if !ends => {
                 text.push(' ');
                 text.push_str(&more);
             }
             (Some(block), last) => {
                 // Lists and headings are separated from the text around them.
                 let apart = match (last.as_deref(), &block) {
-                    (None | Some(Passage::Blank), _) | (_, Passage::Blank) => false,
-                    (Some(Passage::Heading(_)), _) | (_, Passage::Heading(_)) => true,
-                    (Some(Passage::Item(..)), Passage::Paragraph(_)) => true,
+                    (None | Some(MarkdownBlock::Blank), _) | (_, MarkdownBlock::Blank) => false,
+                    (Some(MarkdownBlock::Heading(_)), _) | (_, MarkdownBlock::Heading(_)) => true,
+                    (Some(MarkdownBlock::Item(..)), MarkdownBlock::Paragraph(_)) => true,
                     _ => false,
                 };
                 if apart {
-                    blocks.push(Passage::Blank);
+                    blocks.push(MarkdownBlock::Blank);
                 }
                 blocks.push(block);
             }
@@ -115,63 +120,63 @@ fn blocks(text: &str) -> Vec<Passage> {
         ends = broken
             || matches!(
                 blocks.last(),
-                Some(Passage::Heading(_) | Passage::Verbatim(_) | Passage::Blank) | None
+                Some(MarkdownBlock::Heading(_) | MarkdownBlock::Verbatim(_) | MarkdownBlock::Blank) | None
             );
     }
-    while blocks.last() == Some(&Passage::Blank) {
+    while blocks.last() == Some(&MarkdownBlock::Blank) {
         blocks.pop();
     }
     blocks
 }
 
 /// Returns the element that a line starts, by its first characters; `None` for ordinary text.
-fn kind_of(bare: &str, indent: usize) -> Option<Passage> {
+fn line_start(bare: &str, indent: usize) -> Option<MarkdownBlock> {
     if bare.is_empty() {
-        return Some(Passage::Blank);
+        return Some(MarkdownBlock::Blank);
     }
     let marks = bare.chars().take_while(|letter| *letter == '#').count();
     if let (1..=6, Some(text)) = (marks, bare[marks..].strip_prefix(' ')) {
-        return Some(Passage::Heading(text.trim().trim_end_matches('#').trim_end().to_owned()));
+        return Some(MarkdownBlock::Heading(text.trim().trim_end_matches('#').trim_end().to_owned()));
     }
     if bare.len() >= 3 && ["-", "*", "_", "="].iter().any(|rule| bare.replace(rule, "").trim().is_empty()) {
         // A rule, or the underline of a heading, has no text.
-        return Some(Passage::Blank);
+        return Some(MarkdownBlock::Blank);
     }
     if bare.starts_with('|') {
-        return Some(Passage::Verbatim(bare.to_owned()));
+        return Some(MarkdownBlock::Verbatim(bare.to_owned()));
     }
     if let Some(text) = bare.strip_prefix("> ") {
-        return Some(Passage::Quote(text.trim().to_owned()));
+        return Some(MarkdownBlock::Quote(text.trim().to_owned()));
     }
     let margin = " ".repeat(indent.min(8));
     if let Some(text) = ["- ", "* ", "+ "].iter().find_map(|mark| bare.strip_prefix(mark)) {
-        return Some(Passage::Item(format!("{margin}· "), text.trim().to_owned()));
+        return Some(MarkdownBlock::Item(format!("{margin}· "), text.trim().to_owned()));
     }
     let digits = bare.chars().take_while(char::is_ascii_digit).count();
     let numbered = (1..=3).contains(&digits).then(|| bare[digits..].strip_prefix(". ")).flatten();
-    numbered.map(|text| Passage::Item(format!("{margin}{}. ", &bare[..digits]), text.trim().to_owned()))
+    numbered.map(|text| MarkdownBlock::Item(format!("{margin}{}. ", &bare[..digits]), text.trim().to_owned()))
 }
 
 /// Returns the characters of a text without marks, each with its style.
-fn faced(text: &str) -> Vec<(char, Face)> {
+fn styled_chars(text: &str) -> Vec<(char, TextStyle)> {
     let letters: Vec<char> = text.chars().collect();
     let mut found = Vec::new();
     let mut at = 0;
     while at < letters.len() {
         let rest = &letters[at..];
         if rest[0] == '\\' && rest.get(1).is_some_and(char::is_ascii_punctuation) {
-            found.push((rest[1], Face::Text));
+            found.push((rest[1], TextStyle::Text));
             at += 2;
             continue;
         }
         let before = at.checked_sub(1).map(|before| letters[before]);
-        match marked(rest, before) {
+        match emphasized_span(rest, before) {
             Some((inner, taken)) => {
-                found.extend(inner.iter().map(|letter| (*letter, Face::Strong)));
+                found.extend(inner.iter().map(|letter| (*letter, TextStyle::Strong)));
                 at += taken;
             }
             None => {
-                found.push((rest[0], Face::Text));
+                found.push((rest[0], TextStyle::Text));
                 at += 1;
             }
         }
@@ -180,12 +185,12 @@ fn faced(text: &str) -> Vec<(char, Face)> {
 }
 
 /// Returns the characters between two equal marks at the start of a text, and the length including the marks.
-fn marked(rest: &[char], before: Option<char>) -> Option<(&[char], usize)> {
+fn emphasized_span(rest: &[char], before: Option<char>) -> Option<(&[char], usize)> {
     const MARKS: [&[char]; 5] = [&['*', '*'], &['_', '_'], &['*'], &['_'], &['`']];
     let mark = MARKS.into_iter().find(|mark| rest.starts_with(mark))?;
     let inner = &rest[mark.len()..];
     let opens = inner.first().is_some_and(|letter| !letter.is_whitespace());
-    // Underscores within a name like `filled_naively` are not marks.
+    // Underscores within a name like `naive_forecast_weeks` are not marks.
     let in_word = mark[0] == '_' && before.is_some_and(char::is_alphanumeric);
     if !opens || in_word {
         return None;
@@ -202,11 +207,12 @@ fn marked(rest: &[char], before: Option<char>) -> Option<(&[char], usize)> {
 }
 
 /// Breaks characters into lines, between words if possible. `first` precedes the first line, `next` the others.
-fn filled(letters: Vec<(char, Face)>, first: &str, next: &str, width: usize) -> Vec<ProseLine> {
-    let width_of =
-        |word: &[(char, Face)]| word.iter().map(|(letter, _)| letter.width().unwrap_or(0)).sum::<usize>();
+fn wrap_chars(letters: Vec<(char, TextStyle)>, first: &str, next: &str, width: usize) -> Vec<ProseLine> {
+    let width_of = |word: &[(char, TextStyle)]| {
+        word.iter().map(|(letter, _)| letter.width().unwrap_or(0)).sum::<usize>()
+    };
     let room = width.saturating_sub(first.width()).max(1);
-    let mut rows: Vec<Vec<(char, Face)>> = vec![Vec::new()];
+    let mut rows: Vec<Vec<(char, TextStyle)>> = vec![Vec::new()];
     let words = letters.split(|(letter, _)| letter.is_whitespace()).filter(|word| !word.is_empty());
     for word in words {
         let row = rows.last_mut().filter(|row| !row.is_empty());
@@ -214,7 +220,7 @@ fn filled(letters: Vec<(char, Face)>, first: &str, next: &str, width: usize) -> 
             Some(row) if width_of(row) + 1 + width_of(word) <= room => {
                 // A blank between two words of the same style has that style.
                 let face = row.last().map(|(_, face)| *face).filter(|face| *face == word[0].1);
-                row.push((' ', face.unwrap_or(Face::Text)));
+                row.push((' ', face.unwrap_or(TextStyle::Text)));
                 row.extend(word);
                 continue;
             }
@@ -231,11 +237,11 @@ fn filled(letters: Vec<(char, Face)>, first: &str, next: &str, width: usize) -> 
             }
         }
     }
-    let line = |(at, row): (usize, Vec<(char, Face)>)| {
+    let line = |(at, row): (usize, Vec<(char, TextStyle)>)| {
         let before = if at == 0 { first } else { next };
         let mut line: ProseLine = Vec::new();
         if !before.is_empty() {
-            line.push((before.to_owned(), Face::Text));
+            line.push((before.to_owned(), TextStyle::Text));
         }
         for (letter, face) in row {
             match line.last_mut() {
@@ -252,30 +258,30 @@ fn filled(letters: Vec<(char, Face)>, first: &str, next: &str, width: usize) -> 
 mod tests {
     use super::*;
 
-    const CONSENT: &str = "# Taking part\n\nYou run **four simulated\nweeks** of a company. Names like filled_naively\nand 3 * 4 \
+    const CONSENT_TEXT: &str = "# Taking part\n\nYou run **four simulated\nweeks** of a company. Names like filled_naively\nand 3 * 4 \
                            stay.\n- one *thing*\n  that goes on\n- `withdraw` erases it\n1. first\n\n> said\n> twice\n\n    as it   \
                            is\n```\n# no heading\n```\nSigned: A\\_B  \nNext line\n";
 
     #[test]
-    fn headings_lists_and_strong_words_are_shown_as_such() {
+    fn headings_lists_and_emphasis_are_styled() {
         assert_eq!(
-            as_plain(CONSENT, 40),
+            to_plain_text(CONSENT_TEXT, 40),
             "Taking part\n\nYou run four simulated weeks of a\ncompany. Names like filled_naively and 3\n* 4 stay.\n\
              · one thing that goes on\n· withdraw erases it\n1. first\n\n  said twice\n\n    as it   is\n# no heading\n\
              Signed: A_B\nNext line"
         );
-        let lines = laid_out(CONSENT, 40);
-        assert_eq!(lines[0], [("Taking part".to_owned(), Face::Heading)]);
-        let (text, strong) = (Face::Text, Face::Strong);
+        let lines = lay_out(CONSENT_TEXT, 40);
+        assert_eq!(lines[0], [("Taking part".to_owned(), TextStyle::Heading)]);
+        let (text, strong) = (TextStyle::Text, TextStyle::Strong);
         let third = [("You run ", text), ("four simulated weeks", strong), (" of a", text)];
         assert_eq!(lines[2], third.map(|(piece, face)| (piece.to_owned(), face)));
     }
 
     #[test]
-    fn no_word_is_lost_and_no_line_too_wide_at_any_width() {
+    fn wrapping_keeps_every_word_within_the_width() {
         let bare = |text: &str| text.chars().filter(|letter| letter.is_alphanumeric()).collect::<String>();
         for text in [
-            CONSENT,
+            CONSENT_TEXT,
             "**open",
             "a ** b",
             "*",
@@ -288,7 +294,7 @@ mod tests {
             "\\",
         ] {
             for width in 1..60 {
-                let shown = as_plain(text, width);
+                let shown = to_plain_text(text, width);
                 assert_eq!(bare(&shown), bare(text), "{width}: {shown}");
                 // The minimum width is a list marker and one double-width character.
                 let widest = shown.lines().map(UnicodeWidthStr::width).max().unwrap_or(0);

@@ -1,40 +1,40 @@
 //! The protocol of a study as a document for preregistration, computed from the study, its parameters and the columns
 //! of the tables.
 
-use crate::tables::headings;
-use novamind_base::notation::{dollars, grouped};
+use crate::tables::table_headings;
+use novamind_base::formatting::{dollars, grouped_number};
 use novamind_record::error::RunError;
 use novamind_record::folder::configuration::Configuration;
 use novamind_record::rules::{AtLimit, DraftsKept, FreeText, ResultsShown, TimeLimits};
-use novamind_session::{BREAK_SECONDS, FAST_WEEK_SECONDS, IDLE_AFTER};
+use novamind_session::{FAST_WEEK_SECONDS, IDLE_TIMEOUT, MIN_BREAK_SECONDS};
 use novamind_study::{
-    ASSIGNMENT_FILE, Assignment, AuditKind, Form, Moment, PracticeOffer, Questionnaire, SeedPlan, Study,
-    lab_public_key_of,
+    ASSIGNMENT_FILE, AnswerFormat, Assignment, FindingKind, Occasion, PracticeOffer, Questionnaire, SeedPlan,
+    Study, load_lab_public_key,
 };
 
 /// Returns the protocol as Markdown.
 ///
 /// # Errors
 /// Returns an error if the scenario of the session or the practice cannot be read.
-pub fn protocol(study: &Study, configuration: &Configuration) -> Result<String, RunError> {
+pub fn protocol_markdown(study: &Study, configuration: &Configuration) -> Result<String, RunError> {
     let chapters = [
-        heading(study),
-        world(study, configuration)?,
-        participants(study),
-        procedure(study),
-        rules(study),
-        time(),
-        questions(study),
-        measures(),
-        exclusion(),
-        checklist(study),
-        consent(study),
+        heading_section(study),
+        world_section(study, configuration)?,
+        participants_section(study),
+        procedure_section(study),
+        rules_section(study),
+        time_section(),
+        questions_section(study),
+        measures_section(),
+        exclusion_section(),
+        checklist_section(study),
+        consent_section(study),
     ];
     Ok(chapters.join("\n"))
 }
 
-fn heading(study: &Study) -> String {
-    let key = lab_public_key_of(&study.folder).ok().flatten();
+fn heading_section(study: &Study) -> String {
+    let key = load_lab_public_key(&study.folder).ok().flatten();
     let signed = key.map_or("There is no lab key: archives are not signed.".to_owned(), |key| {
         format!("Archives are signed by the lab key {}.", key.fingerprint())
     });
@@ -47,14 +47,14 @@ fn heading(study: &Study) -> String {
     )
 }
 
-fn world(study: &Study, configuration: &Configuration) -> Result<String, RunError> {
+fn world_section(study: &Study, configuration: &Configuration) -> Result<String, RunError> {
     let of = |name: &str, days: Option<u32>, cash: Option<f64>| -> Result<String, RunError> {
-        let scenario = configuration.scenario(name)?;
-        let params = configuration.parameters(&scenario, &[], false)?;
-        let (own_days, own_cash) = configuration.terms(&scenario, false)?;
+        let scenario = configuration.load_scenario(name)?;
+        let params = configuration.load_parameters(&scenario, &[], false)?;
+        let (own_days, own_cash) = configuration.days_and_cash(&scenario, false)?;
         Ok(format!(
             "scenario {name}, {} days, {} on day 0, parameters {}",
-            grouped(f64::from(days.unwrap_or(own_days)), 0),
+            grouped_number(f64::from(days.unwrap_or(own_days)), 0),
             dollars(cash.unwrap_or(own_cash)),
             params.digest()
         ))
@@ -75,14 +75,14 @@ fn world(study: &Study, configuration: &Configuration) -> Result<String, RunErro
     if let Some(model) = &protocol.voice {
         text += &format!(
             "- Language model: {}; a week waits at most {} seconds for it, then uses the built-in voice.\n",
-            model.stamp().in_words(),
+            model.stamp().describe(),
             model.seconds_a_week
         );
     }
     Ok(text)
 }
 
-fn participants(study: &Study) -> String {
+fn participants_section(study: &Study) -> String {
     let seeds = &study.protocol.seeds;
     let listed = |numbers: &[u64]| numbers.iter().map(u64::to_string).collect::<Vec<_>>().join(", ");
     let plan = match seeds.plan {
@@ -104,20 +104,21 @@ fn participants(study: &Study) -> String {
         ),
     };
     let places = study.assignment.as_ref().map_or("Any label is accepted.".to_owned(), |assignment| {
-        format!("{} labels are assigned{}.", assignment.places.len(), drawn(study, assignment))
+        format!("{} labels are assigned{}.", assignment.rows.len(), describe_assignment(study, assignment))
     });
     format!("## Participants\n\n{places} {plan}{conditions} Participants do not see seeds.\n")
 }
 
 /// Describes how the assignment was drawn, as far as it can be reproduced, and its digest.
-fn drawn(study: &Study, assignment: &Assignment) -> String {
+fn describe_assignment(study: &Study, assignment: &Assignment) -> String {
     let seeds = &study.protocol.seeds;
-    let labels: Vec<String> = assignment.places.iter().map(|place| place.label.clone()).collect();
+    let labels: Vec<String> = assignment.rows.iter().map(|place| place.label.clone()).collect();
     let draw = seeds.draw.unwrap_or(1);
-    let is_drawn = Assignment::in_blocks(&labels, &seeds.of_block(), &seeds.conditions, draw) == *assignment;
+    let is_drawn = Assignment::randomize_in_blocks(&labels, &seeds.block_seeds(), &seeds.conditions, draw)
+        == *assignment;
     let blocks = match (seeds.plan, is_drawn) {
         (SeedPlan::One | SeedPlan::Assigned, _) if seeds.conditions.is_empty() => String::new(),
-        (_, true) => format!("in blocks of {}, drawn with seed {draw}, ", seeds.cells()),
+        (_, true) => format!("in blocks of {}, drawn with seed {draw}, ", seeds.cell_count()),
         (_, false) => format!("not as `novamind study assign` draws them with seed {draw}, "),
     };
     let digest = std::fs::read(study.folder.join(ASSIGNMENT_FILE))
@@ -125,7 +126,7 @@ fn drawn(study: &Study, assignment: &Assignment) -> String {
     format!(" ({blocks}BLAKE3 hash of assignment.csv {digest})")
 }
 
-fn procedure(study: &Study) -> String {
+fn procedure_section(study: &Study) -> String {
     let mut steps = vec!["Label. Labels that are not assigned are rejected and counted."];
     if study.consent.is_some() {
         steps.push("Consent to the text below. If a participant declines, no run is created; the list of visits keeps the label and the refusal.");
@@ -145,8 +146,8 @@ fn procedure(study: &Study) -> String {
     )
 }
 
-fn rules(study: &Study) -> String {
-    let rules = study.rules();
+fn rules_section(study: &Study) -> String {
+    let rules = study.session_rules();
     let yes = |on: bool| if on { "yes" } else { "no" };
     let results = match rules.results {
         ResultsShown::None => "that the run has ended",
@@ -186,10 +187,10 @@ fn rules(study: &Study) -> String {
         );
     }
     text += &format!("| Stopping the clock asks for a reason | {} |\n", yes(rules.pause_reason));
-    text + &limits(&rules.limits)
+    text + &limit_rows(&rules.limits)
 }
 
-fn limits(limits: &TimeLimits) -> String {
+fn limit_rows(limits: &TimeLimits) -> String {
     let all = [
         ("Active minutes per week of the company", limits.week_minutes),
         ("Active minutes per session", limits.session_minutes),
@@ -215,7 +216,7 @@ fn limits(limits: &TimeLimits) -> String {
     )
 }
 
-fn time() -> String {
+fn time_section() -> String {
     format!(
         "## Time\n\n\
          - Active: the run is open and in front, its clock runs, no question of the study is open, and the participant is not idle.\n\
@@ -226,63 +227,72 @@ fn time() -> String {
          - Simulation time belongs to none of these classes.\n\
          - A week decided in less than {} active seconds counts as implausibly fast.\n\
          - Limits count active time.\n",
-        IDLE_AFTER.as_secs(),
-        BREAK_SECONDS,
+        IDLE_TIMEOUT.as_secs(),
+        MIN_BREAK_SECONDS,
         FAST_WEEK_SECONDS
     )
 }
 
-fn questions(study: &Study) -> String {
+fn questions_section(study: &Study) -> String {
     if study.questionnaires.is_empty() {
         return "## Questions\n\nNone.\n".to_owned();
     }
     let mut text = "## Questions\n".to_owned();
     for own in &study.questionnaires {
-        text += &format!("\n**{}** ({})\n\n", own.title, when(own));
+        text += &format!("\n**{}** ({})\n\n", own.title, describe_questionnaire_time(own));
         for question in &own.questions {
             let required = if question.required { ", required" } else { ", optional" };
-            text += &format!("- `{}`: {} ({}{required})\n", question.id, question.text, form(&question.form));
+            text += &format!(
+                "- `{}`: {} ({}{required})\n",
+                question.id,
+                question.text,
+                form_questions(&question.form)
+            );
         }
     }
     text
 }
 
-fn when(own: &Questionnaire) -> String {
+fn describe_questionnaire_time(own: &Questionnaire) -> String {
     match own.when {
-        Moment::Before => "before the first week".to_owned(),
-        Moment::Weeks => {
+        Occasion::Before => "before the first week".to_owned(),
+        Occasion::Weeks => {
             let weeks: Vec<String> = own.weeks.iter().map(u32::to_string).collect();
             format!("after weeks {}", weeks.join(", "))
         }
-        Moment::Break => {
+        Occasion::Break => {
             "whenever the participant resumes the run or restarts the clock, even after a short break"
                 .to_owned()
         }
-        Moment::End => "at the end".to_owned(),
+        Occasion::End => "at the end".to_owned(),
     }
 }
 
-fn form(form: &Form) -> String {
+fn form_questions(form: &AnswerFormat) -> String {
     match form {
-        Form::Likert { points, low, high } if low.is_empty() && high.is_empty() => format!("1 to {points}"),
-        Form::Likert { points, low, high } => format!("1 = {low} to {points} = {high}"),
-        Form::Number { min, max, unit } => {
+        AnswerFormat::Likert { points, low, high } if low.is_empty() && high.is_empty() => {
+            format!("1 to {points}")
+        }
+        AnswerFormat::Likert { points, low, high } => format!("1 = {low} to {points} = {high}"),
+        AnswerFormat::Number { min, max, unit } => {
             let end = |end: &Option<f64>| end.map_or("…".to_owned(), |end| end.to_string());
             format!("a number from {} to {} {unit}", end(min), end(max)).trim_end().to_owned()
         }
-        Form::Choice { options, several } => {
+        AnswerFormat::Choice { options, several } => {
             format!("{} of: {}", if *several { "any" } else { "one" }, options.join(" / "))
         }
-        Form::Text { most } => format!("text, at most {most} characters"),
-        Form::Attention { options, expected } => format!("check: {expected} of {}", options.join(" / ")),
+        AnswerFormat::Text { most } => format!("text, at most {most} characters"),
+        AnswerFormat::Attention { options, expected } => {
+            format!("check: {expected} of {}", options.join(" / "))
+        }
     }
 }
 
 /// Returns the definition of every column of every table. Measures are defined where they are computed.
-fn measures() -> String {
+fn measures_section() -> String {
     let mut text =
         "## Measures\n\nComputed by the program; `columns.csv` is exported with the tables.\n".to_owned();
-    for (table, columns) in headings() {
+    for (table, columns) in table_headings() {
         text += &format!("\n### {table}\n\n| Column | Unit | Definition |\n|---|---|---|\n");
         for column in columns {
             text +=
@@ -292,8 +302,8 @@ fn measures() -> String {
     text
 }
 
-fn exclusion() -> String {
-    let of_sessions = AuditKind::ALL.iter().filter(|kind| **kind != AuditKind::NothingExamined);
+fn exclusion_section() -> String {
+    let of_sessions = FindingKind::ALL.iter().filter(|kind| **kind != FindingKind::NothingExamined);
     let grave: Vec<&str> = of_sessions.map(|kind| kind.title()).collect();
     format!(
         "## Exclusion\n\nRun `novamind study audit` before inspecting any result. It reads only the records: it cannot detect a run \
@@ -304,7 +314,7 @@ fn exclusion() -> String {
     )
 }
 
-fn checklist(study: &Study) -> String {
+fn checklist_section(study: &Study) -> String {
     let points = [
         "`novamind study check` on every machine.".to_owned(),
         format!("The digest on every machine is {}.", &study.digest[..16]),
@@ -316,7 +326,7 @@ fn checklist(study: &Study) -> String {
     format!("## Checklist\n\n{}", lines.concat())
 }
 
-fn consent(study: &Study) -> String {
+fn consent_section(study: &Study) -> String {
     match &study.consent {
         None => "## Consent\n\nNo text is shown.\n".to_owned(),
         Some(text) => {

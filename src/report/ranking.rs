@@ -5,13 +5,15 @@ use std::sync::OnceLock;
 
 use serde::{Deserialize, Serialize};
 
-use super::comparable::{Obstacle, PUBLISHED_DAYS, PUBLISHED_SEED, RunTerms, obstacles_in_words};
-use super::words::dollar_tick;
+use super::formatting::format_dollar_tick;
+use super::ranking_eligibility::{
+    PUBLISHED_DAYS, PUBLISHED_SEED, RankingCriteria, RankingObstacle, describe_obstacles,
+};
 use novamind_session::Observation;
 
 /// The published results, read from a bundled file.
 #[derive(Debug, Deserialize)]
-pub struct Published {
+pub struct PublishedResults {
     /// Source of the results.
     pub source: String,
     /// Cash on day 0, dollars.
@@ -23,12 +25,12 @@ pub struct Published {
     /// Share of advertising that reaches the best channel with random spending.
     pub best_channel_random_share: f64,
     /// Results of agents.
-    pub agent: Vec<Agent>,
+    pub agent: Vec<PublishedAgent>,
 }
 
 /// Results of one agent.
 #[derive(Debug, Deserialize, Serialize)]
-pub struct Agent {
+pub struct PublishedAgent {
     /// Model.
     pub name: String,
     /// Number of runs that ended with cash below zero.
@@ -51,8 +53,8 @@ pub struct Agent {
 }
 
 /// Returns the published results.
-pub fn published() -> &'static Published {
-    static READ: OnceLock<Published> = OnceLock::new();
+pub fn published_results() -> &'static PublishedResults {
+    static READ: OnceLock<PublishedResults> = OnceLock::new();
     READ.get_or_init(|| {
         toml::from_str(include_str!("../../assets/paper-results.toml"))
             .expect("the bundled results are valid")
@@ -61,13 +63,13 @@ pub fn published() -> &'static Published {
 
 /// Origin of a result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Whose {
+pub enum ResultOwner {
     /// Best of three runs of a published agent.
     Agent,
     /// The published rule-based baseline.
     Baseline,
     /// This run.
-    Own,
+    ThisRun,
 }
 
 /// A result with its origin.
@@ -78,38 +80,38 @@ pub struct RankedRun {
     /// Cash at the end, dollars.
     pub cash: f64,
     /// Origin.
-    pub whose: Whose,
+    pub owner: ResultOwner,
 }
 
 /// All results, the best first.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Standing {
+pub struct Ranking {
     /// Results, including this run's if it has a comparable score.
-    pub places: Vec<RankedRun>,
+    pub entries: Vec<RankedRun>,
     /// Rank of this run, from 1.
     pub rank: Option<usize>,
     /// Reasons not to rank this run; empty if it is ranked, or will be when it has a score.
-    pub obstacles: Vec<Obstacle>,
+    pub obstacles: Vec<RankingObstacle>,
     /// Terms of the published runs, if this run has a different seed.
     pub caveat: Option<String>,
     /// Source of the published results.
     pub source: String,
 }
 
-impl Standing {
+impl Ranking {
     /// Returns the best results and those around this run's.
-    pub fn around(&self, best: usize, beside: usize) -> Vec<&RankedRun> {
-        let own = self.places.iter().position(|place| place.whose == Whose::Own);
+    pub fn top_and_neighbors(&self, best: usize, beside: usize) -> Vec<&RankedRun> {
+        let own = self.entries.iter().position(|place| place.owner == ResultOwner::ThisRun);
         let wanted = |at: usize| at < best || own.is_some_and(|own| own.abs_diff(at) <= beside);
-        self.places.iter().enumerate().filter(|(at, _)| wanted(*at)).map(|(_, place)| place).collect()
+        self.entries.iter().enumerate().filter(|(at, _)| wanted(*at)).map(|(_, place)| place).collect()
     }
 
     /// Describes the rank.
-    pub fn in_words(&self) -> String {
+    pub fn describe(&self) -> String {
         match self.rank {
-            Some(rank) => format!("rank {rank} of {} among the published results", self.places.len()),
+            Some(rank) => format!("rank {rank} of {} among the published results", self.entries.len()),
             None if !self.obstacles.is_empty() => {
-                format!("not ranked: {}", obstacles_in_words(&self.obstacles))
+                format!("not ranked: {}", describe_obstacles(&self.obstacles))
             }
             None => "the published results".to_owned(),
         }
@@ -117,34 +119,44 @@ impl Standing {
 }
 
 /// Ranks a score among the published results; in ties, published results come first.
-pub fn standing(score: Option<f64>, seen: &Observation) -> Standing {
-    let place = |name: &str, cash: f64, whose: Whose| RankedRun { name: name.to_owned(), cash, whose };
-    let mut places: Vec<RankedRun> =
-        published().agent.iter().map(|agent| place(&agent.name, agent.best_cash, Whose::Agent)).collect();
-    places.push(place("Rule-based baseline", published().rule_based_baseline, Whose::Baseline));
-    let obstacles = RunTerms::of_observation(seen).obstacles();
+pub fn rank_score(score: Option<f64>, seen: &Observation) -> Ranking {
+    let place =
+        |name: &str, cash: f64, whose: ResultOwner| RankedRun { name: name.to_owned(), cash, owner: whose };
+    let mut places: Vec<RankedRun> = published_results()
+        .agent
+        .iter()
+        .map(|agent| place(&agent.name, agent.best_cash, ResultOwner::Agent))
+        .collect();
+    places.push(place("Rule-based baseline", published_results().rule_based_baseline, ResultOwner::Baseline));
+    let obstacles = RankingCriteria::from_observation(seen).obstacles();
     let ranked = score.filter(|_| obstacles.is_empty());
-    places.extend(ranked.map(|score| place("You", score, Whose::Own)));
+    places.extend(ranked.map(|score| place("You", score, ResultOwner::ThisRun)));
     places.sort_by(|left, right| right.cash.total_cmp(&left.cash));
     let rank = ranked.map(|score| 1 + places.iter().filter(|place| place.cash > score).count());
-    Standing { places, rank, obstacles, caveat: caveat(seen), source: published().source.clone() }
+    Ranking {
+        entries: places,
+        rank,
+        obstacles,
+        caveat: caveat(seen),
+        source: published_results().source.clone(),
+    }
 }
 
 /// Compares two results of cash and days survived: more cash is greater, then longer survival. The published tables
 /// choose an agent's best run this way; a bankrupt company has no cash.
-pub fn by_result(one: (f64, u32), other: (f64, u32)) -> Ordering {
+pub fn compare_results(one: (f64, u32), other: (f64, u32)) -> Ordering {
     one.0.total_cmp(&other.0).then(one.1.cmp(&other.1))
 }
 
 /// Returns how many of the published best runs ended with less cash, and how many there are.
-pub fn beaten(cash: f64) -> (usize, usize) {
-    let agents = &published().agent;
+pub fn count_beaten(cash: f64) -> (usize, usize) {
+    let agents = &published_results().agent;
     (agents.iter().filter(|agent| agent.best_cash < cash).count(), agents.len())
 }
 
 /// Returns the lowest and the highest published targeted share of development spending.
 pub fn published_targeted_shares() -> (f64, f64) {
-    let shares = published().agent.iter().filter_map(|agent| agent.targeted_development_share);
+    let shares = published_results().agent.iter().filter_map(|agent| agent.targeted_development_share);
     shares.fold((1.0, 0.0), |(least, most), share| (f64::min(least, share), f64::max(most, share)))
 }
 
@@ -154,12 +166,12 @@ fn caveat(seen: &Observation) -> Option<String> {
         Some(seed) => format!("seed {seed}"),
         None => "a seed that is not shown".to_owned(),
     };
-    Some(format!("{}; this run: {own}.", published_terms()))
+    Some(format!("{}; this run: {own}.", describe_published_conditions()))
 }
 
 /// Describes the terms of the published runs, without a full stop.
-pub fn published_terms() -> String {
-    let start = dollar_tick(published().start_cash);
+pub fn describe_published_conditions() -> String {
+    let start = format_dollar_tick(published_results().start_cash);
     format!("Published: seed {PUBLISHED_SEED}, {PUBLISHED_DAYS} days, {start} at the start")
 }
 
@@ -172,51 +184,51 @@ mod tests {
     use novamind_session::{NewRun, Session};
 
     #[test]
-    fn a_score_stands_among_the_published_ones() {
-        let mut seen = test_kit::played(0).company().observe();
+    fn score_is_ranked_among_published_results() {
+        let mut seen = test_kit::play_weeks(0).company().observe();
         (seen.seed, seen.last_day) = (Some(42), 500);
         assert_eq!(seen.scenario, "default");
-        let good = standing(Some(14_208_331.0), &seen);
+        let good = rank_score(Some(14_208_331.0), &seen);
         assert_eq!((good.rank, good.caveat.clone()), (Some(2), None));
-        assert_eq!(good.in_words(), "rank 2 of 18 among the published results");
-        let names: Vec<&str> = good.around(1, 1).iter().map(|place| place.name.as_str()).collect();
+        assert_eq!(good.describe(), "rank 2 of 18 among the published results");
+        let names: Vec<&str> = good.top_and_neighbors(1, 1).iter().map(|place| place.name.as_str()).collect();
         assert_eq!(names, ["Rule-based baseline", "You", "Claude Fable 5"]);
-        let ruined = standing(Some(0.0), &seen);
+        let ruined = rank_score(Some(0.0), &seen);
         assert_eq!(ruined.rank, Some(14), "four published agents also have no cash");
-        assert_eq!(ruined.places.last().map(|place| place.whose), Some(Whose::Own));
-        assert_eq!(standing(None, &seen).rank, None);
+        assert_eq!(ruined.entries.last().map(|place| place.owner), Some(ResultOwner::ThisRun));
+        assert_eq!(rank_score(None, &seen).rank, None);
         seen.seed = Some(7);
-        assert_eq!(standing(Some(0.0), &seen).rank, Some(14), "a different seed stays comparable");
+        assert_eq!(rank_score(Some(0.0), &seen).rank, Some(14), "a different seed stays comparable");
         assert!(published_targeted_shares().0 < published_targeted_shares().1);
     }
 
     #[test]
-    fn a_run_of_other_terms_is_not_ranked_and_says_why() {
-        let mut seen = test_kit::played(0).company().observe();
+    fn incomparable_run_is_not_ranked() {
+        let mut seen = test_kit::play_weeks(0).company().observe();
         for (days, ranked) in [(500, true), (28, false)] {
             seen.last_day = days;
-            let standing = standing(Some(2e6), &seen);
+            let standing = rank_score(Some(2e6), &seen);
             assert_eq!(standing.rank.is_some(), ranked, "{days}");
-            assert_eq!(standing.places.iter().any(|place| place.whose == Whose::Own), ranked);
-            assert_eq!(standing.in_words() == "not ranked: 28 days instead of 500", !ranked);
+            assert_eq!(standing.entries.iter().any(|place| place.owner == ResultOwner::ThisRun), ranked);
+            assert_eq!(standing.describe() == "not ranked: 28 days instead of 500", !ranked);
         }
     }
 
     #[test]
-    fn the_better_result_has_more_cash_and_then_the_longer_life() {
-        assert_eq!(by_result((5.0, 500), (4.0, 500)), Ordering::Greater);
-        assert_eq!(by_result((0.0, 90), (0.0, 131)), Ordering::Less);
-        assert_eq!((beaten(0.0), beaten(1.0), beaten(1e9)), ((0, 16), (4, 16), (16, 16)));
+    fn results_compare_by_cash_then_survival() {
+        assert_eq!(compare_results((5.0, 500), (4.0, 500)), Ordering::Greater);
+        assert_eq!(compare_results((0.0, 90), (0.0, 131)), Ordering::Less);
+        assert_eq!((count_beaten(0.0), count_beaten(1.0), count_beaten(1e9)), ((0, 16), (4, 16), (16, 16)));
     }
 
     #[test]
-    fn changed_parameters_are_no_shipped_scenario() {
+    fn changed_parameters_prevent_ranking() {
         let own = |scenario: &str, overrides: &[(&str, &str)]| {
             let overrides =
                 overrides.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
             let new =
                 NewRun { scenario: scenario.to_owned(), mode: Mode::Debug, overrides, ..NewRun::default() };
-            Session::create(new, &Configuration::shipped())
+            Session::create(new, &Configuration::bundled())
                 .expect("a run")
                 .company()
                 .observe()
@@ -229,9 +241,9 @@ mod tests {
     }
 
     #[test]
-    fn other_luck_is_named() {
-        let mut seen = test_kit::played(0).company().observe();
-        let caveat = |seen: &Observation| standing(None, seen).caveat;
+    fn other_seed_is_named() {
+        let mut seen = test_kit::play_weeks(0).company().observe();
+        let caveat = |seen: &Observation| rank_score(None, seen).caveat;
         assert_eq!(
             caveat(&seen).as_deref(),
             Some("Published: seed 42, 500 days, $1M at the start; this run: seed 7.")

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use novamind_base::notation::grouped;
+use novamind_base::formatting::grouped_number;
 use novamind_session::{LateProject, Observation, ResearchMeans, ResearchOutlook, ResearchSpread};
 
 /// Returns lines about a project before it is started: duration first, then gain.
@@ -14,20 +14,22 @@ pub fn outlook_lines(outlook: &ResearchOutlook) -> Vec<String> {
         )];
     }
     let Some(spread) = spread else { return Vec::new() };
-    vec![time_in_words(spread, *earliest, *last_day), gain_in_words(spread)]
+    vec![describe_duration(spread, *earliest, *last_day), describe_gain(spread)]
 }
 
-fn time_in_words(spread: &ResearchSpread, earliest: u32, last_day: u32) -> String {
+fn describe_duration(spread: &ResearchSpread, earliest: u32, last_day: u32) -> String {
     let [quarter, half, three_quarters] = spread.quartile_days;
-    let by_the_end = format!("{} by the last day ({last_day})", of_100(spread.by_last_day));
+    let by_the_end = format!("{} by the last day ({last_day})", format_of_100(spread.by_last_day));
     if quarter > earliest {
         return format!(
             "half of all projects finish between day {quarter} and {three_quarters}; {by_the_end}"
         );
     }
     // The minimum duration hides the lower quartiles.
-    let mut parts =
-        vec![format!("{} chance of finishing on day {earliest}, the earliest", of_100(spread.at_earliest))];
+    let mut parts = vec![format!(
+        "{} chance of finishing on day {earliest}, the earliest",
+        format_of_100(spread.at_earliest)
+    )];
     if half > earliest {
         parts.push(format!("50% by day {half}"));
     }
@@ -37,9 +39,9 @@ fn time_in_words(spread: &ResearchSpread, earliest: u32, last_day: u32) -> Strin
     format!("{}; {by_the_end}", parts.join(", "))
 }
 
-fn gain_in_words(spread: &ResearchSpread) -> String {
+fn describe_gain(spread: &ResearchSpread) -> String {
     let [quarter, _, three_quarters] = spread.quartile_gains;
-    let least = match of_100(spread.at_least_gain).as_str() {
+    let least = match format_of_100(spread.at_least_gain).as_str() {
         "less than 1%" => String::new(),
         share => format!("; {share} gain the minimum, {:+}", spread.least_gain),
     };
@@ -47,7 +49,7 @@ fn gain_in_words(spread: &ResearchSpread) -> String {
 }
 
 /// Formats a share as a whole percentage: `62%`.
-fn of_100(share: f64) -> String {
+fn format_of_100(share: f64) -> String {
     match (share * 100.0).round() {
         0.0 => "less than 1%".to_owned(),
         100.0 if share < 1.0 => "more than 99%".to_owned(),
@@ -56,12 +58,12 @@ fn of_100(share: f64) -> String {
 }
 
 /// Formats the mean duration of a tier in whole days: `39`, or `≥30` if only a lower bound is known.
-pub fn mean_days(means: &ResearchMeans) -> String {
-    format!("{}{}", if means.are_lower_bounds { "≥" } else { "" }, grouped(means.days, 0))
+pub fn format_mean_days(means: &ResearchMeans) -> String {
+    format!("{}{}", if means.are_lower_bounds { "≥" } else { "" }, grouped_number(means.days, 0))
 }
 
 /// Formats the mean gain of a tier in quality: `+0.0402`, or `≥0.0400` if only a lower bound is known.
-pub fn mean_gain(means: &ResearchMeans, decimals: usize) -> String {
+pub fn format_mean_gain(means: &ResearchMeans, decimals: usize) -> String {
     format!("{}{:.decimals$}", if means.are_lower_bounds { "≥" } else { "+" }, means.gain)
 }
 
@@ -70,21 +72,21 @@ pub fn projects_with_means(answer: &Value, means: &[ResearchMeans]) -> Value {
     let mut shown = answer.clone();
     let tiers = shown.get_mut("tiers").and_then(Value::as_array_mut).into_iter().flatten();
     for (tier, means) in tiers.filter_map(Value::as_object_mut).zip(means) {
-        tier.insert("mean_days".to_owned(), mean_days(means).into());
-        tier.insert("mean_quality_boost".to_owned(), mean_gain(means, 4).into());
+        tier.insert("mean_days".to_owned(), format_mean_days(means).into());
+        tier.insert("mean_quality_boost".to_owned(), format_mean_gain(means, 4).into());
     }
     shown
 }
 
 /// Returns a line for each project that was started since the last week and finishes after the last day.
-pub fn late_lines(seen: &Observation) -> Vec<String> {
+pub fn late_project_lines(seen: &Observation) -> Vec<String> {
     let new = seen.late_projects.iter().filter(|project| project.is_new);
-    let line = |project: &LateProject| late_in_words(&project.id, project.due_day, seen.last_day);
+    let line = |project: &LateProject| describe_late_project(&project.id, project.due_day, seen.last_day);
     new.map(line).collect()
 }
 
 /// States that a project finishes after the last day.
-pub fn late_in_words(project: &str, due_day: u32, last_day: u32) -> String {
+pub fn describe_late_project(project: &str, due_day: u32, last_day: u32) -> String {
     format!("R&D project {project} finishes on day {due_day}, after the last day ({last_day})")
 }
 
@@ -108,11 +110,11 @@ mod tests {
             projection: false,
             ..NewRun::default()
         };
-        Session::create(new, &Configuration::shipped()).expect("a run")
+        Session::create(new, &Configuration::bundled()).expect("a run")
     }
 
     #[test]
-    fn the_spread_is_told_before_the_project_is_paid() {
+    fn outlook_shows_the_spread_before_purchase() {
         let session = run(500, Mode::Sandbox);
         let told = |tier: u8| outlook_lines(&session.company().research_outlook(tier));
         assert_eq!(
@@ -138,12 +140,12 @@ mod tests {
     }
 
     #[test]
-    fn mean_days_are_never_less_than_the_earliest_day() {
+    fn mean_days_are_at_least_the_minimum() {
         let told = |mode| {
             let session = run(500, mode);
             let means = session.company().research_means();
             assert_eq!(means[4], session.company().research_outlook(5).means);
-            [0, 1, 2, 4].map(|at| (mean_days(&means[at]), mean_gain(&means[at], 4)))
+            [0, 1, 2, 4].map(|at| (format_mean_days(&means[at]), format_mean_gain(&means[at], 4)))
         };
         let words = |days: &str, gain: &str| (days.to_owned(), gain.to_owned());
         assert_eq!(
@@ -169,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn a_run_that_is_too_short_says_so_and_a_late_project_is_named() {
+    fn late_projects_are_named() {
         let session = run(28, Mode::Sandbox);
         let told = outlook_lines(&session.company().research_outlook(2));
         assert_eq!(told, ["no project started now can finish before day 30, after the last day (28)"]);
@@ -183,6 +185,6 @@ mod tests {
         let first = &seen.late_projects[0];
         let words =
             format!("R&D project {} finishes on day {}, after the last day (200)", first.id, first.due_day);
-        assert_eq!(late_lines(&seen)[0], words);
+        assert_eq!(late_project_lines(&seen)[0], words);
     }
 }

@@ -3,38 +3,38 @@
 
 use std::fmt::Write;
 
-use super::page::{Band, Chart, Curve, Part, Plot};
+use super::formatting::{format_dollar_tick, format_money, format_tick, format_whole};
+use super::page::{Band, Chart, Curve, Plot, StackSeries};
 use super::plot::AxisScale;
-use super::words::{dollar_tick, money, tick, whole};
-use novamind_base::notation::escaped_html;
+use novamind_base::formatting::escape_html;
 
 const WIDTH: f64 = 760.0;
 const LEFT: f64 = 66.0;
 const RIGHT: f64 = 14.0;
 const BOTTOM: f64 = 40.0;
-const INSIDE: f64 = 220.0;
-const LEGEND_ROW: f64 = 20.0;
+const PLOT_HEIGHT: f64 = 220.0;
+const LEGEND_ROW_HEIGHT: f64 = 20.0;
 /// Approximate width of a character in the legend.
-const LETTER: f64 = 6.6;
+const LEGEND_LETTER_WIDTH: f64 = 6.6;
 
 /// Scales of a chart's axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Axes {
+pub struct AxisScales {
     /// Horizontal axis.
-    pub across: AxisScale,
+    pub x: AxisScale,
     /// Vertical axis.
-    pub up: AxisScale,
+    pub y: AxisScale,
 }
 
 /// Axes of charts in reports: weeks or days on the horizontal axis.
-const OF_REPORTS: Axes = Axes { across: AxisScale::Whole, up: AxisScale::Linear };
+const REPORT_AXES: AxisScales = AxisScales { x: AxisScale::Whole, y: AxisScale::Linear };
 
 /// A chart of a self-contained file.
-pub struct ChartPart {
+pub struct ScaledChart {
     /// The chart.
     pub chart: Chart,
     /// Its axes.
-    pub axes: Axes,
+    pub axes: AxisScales,
 }
 
 /// A range of values with round steps. On a logarithmic axis it holds logarithms.
@@ -47,7 +47,7 @@ pub(super) struct Scale {
 
 impl Scale {
     /// Returns a scale over values with about `steps` steps, widened to round ends if requested.
-    pub(super) fn of(values: impl Iterator<Item = f64>, steps: f64, round_ends: bool) -> Scale {
+    pub(super) fn new(values: impl Iterator<Item = f64>, steps: f64, round_ends: bool) -> Scale {
         let (mut from, mut to) = values
             .filter(|value| value.is_finite())
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(from, to), value| (from.min(value), to.max(value)));
@@ -64,8 +64,8 @@ impl Scale {
         Scale { from, to, step, kind: AxisScale::Linear }
     }
 
-    fn of_kind(kind: AxisScale, values: impl Iterator<Item = f64>, steps: f64, round_ends: bool) -> Scale {
-        let own = Scale::of(values.map(|value| kind.placed(value)), steps, round_ends);
+    fn for_axis(kind: AxisScale, values: impl Iterator<Item = f64>, steps: f64, round_ends: bool) -> Scale {
+        let own = Scale::new(values.map(|value| kind.position(value)), steps, round_ends);
         match kind {
             AxisScale::Linear => own,
             AxisScale::Whole => Scale { step: own.step.max(1.0), kind, ..own },
@@ -77,12 +77,12 @@ impl Scale {
     }
 
     pub(super) fn share(&self, value: f64) -> f64 {
-        ((self.kind.placed(value) - self.from) / (self.to - self.from)).clamp(0.0, 1.0)
+        ((self.kind.position(value) - self.from) / (self.to - self.from)).clamp(0.0, 1.0)
     }
 
     pub(super) fn ticks(&self) -> Vec<f64> {
         if self.kind == AxisScale::Logarithmic {
-            return self.ticks_of_decades();
+            return self.decade_ticks();
         }
         let first = (self.from / self.step - 1e-9).ceil() as i64;
         let last = (self.to / self.step + 1e-9).floor() as i64;
@@ -90,7 +90,7 @@ impl Scale {
     }
 
     /// Returns powers of ten; if there are few, also 2 and 5 times them.
-    fn ticks_of_decades(&self) -> Vec<f64> {
+    fn decade_ticks(&self) -> Vec<f64> {
         let factors: &[f64] = if self.to - self.from <= 3.0 { &[1.0, 2.0, 5.0] } else { &[1.0] };
         let decades = self.from.floor() as i32..=self.to.ceil() as i32;
         let all = decades.flat_map(|decade| {
@@ -109,30 +109,30 @@ fn round_step(least: f64) -> f64 {
     fitting.unwrap_or(10.0) * magnitude
 }
 
-struct Sheet {
+struct PlotLayout {
     x: Scale,
     y: Scale,
     top: f64,
 }
 
-impl Sheet {
-    fn across(&self, value: f64) -> f64 {
+impl PlotLayout {
+    fn x_position(&self, value: f64) -> f64 {
         LEFT + self.x.share(value) * (WIDTH - LEFT - RIGHT)
     }
 
-    fn down(&self, value: f64) -> f64 {
-        self.top + (1.0 - self.y.share(value)) * INSIDE
+    fn y_position(&self, value: f64) -> f64 {
+        self.top + (1.0 - self.y.share(value)) * PLOT_HEIGHT
     }
 }
 
 /// Draws a chart as SVG for a page; `number` makes its element IDs unique.
 pub fn draw(chart: &Chart, number: usize) -> String {
-    let (inside, height) = drawn(chart, OF_REPORTS);
+    let (inside, height) = draw_plot(chart, REPORT_AXES);
     format!(
         "<svg viewBox=\"0 0 {WIDTH} {height}\" role=\"img\" aria-labelledby=\"t{number} d{number}\">\n\
          <title id=\"t{number}\">{}</title>\n<desc id=\"d{number}\">{}</desc>\n{inside}</svg>\n",
-        escaped_html(&chart.title),
-        escaped_html(&chart.summary)
+        escape_html(&chart.title),
+        escape_html(&chart.summary)
     )
 }
 
@@ -140,47 +140,50 @@ pub fn draw(chart: &Chart, number: usize) -> String {
 const STYLE: &str = include_str!("../../assets/chart.css");
 
 /// Draws charts below each other in one self-contained SVG file, without external scripts or fonts.
-pub fn standing_alone(title: &str, parts: &[ChartPart]) -> String {
-    const HEAD: f64 = 30.0;
+pub fn standalone_svg(title: &str, parts: &[ScaledChart]) -> String {
+    const HEADER_HEIGHT: f64 = 30.0;
     let (mut all, mut below) = (String::new(), 10.0);
     for (at, part) in parts.iter().enumerate() {
-        let (inside, height) = drawn(&part.chart, part.axes);
+        let (inside, height) = draw_plot(&part.chart, part.axes);
         let _ = writeln!(
             all,
             "<g transform=\"translate(0 {below})\" role=\"img\" aria-labelledby=\"t{at} d{at}\">\n\
              <title id=\"t{at}\">{name}</title>\n<desc id=\"d{at}\">{}</desc>\n\
-             <text class=\"name\" x=\"{LEFT}\" y=\"16\">{name}</text>\n<g transform=\"translate(0 {HEAD})\">\n{inside}</g>\n</g>",
-            escaped_html(&part.chart.summary),
-            name = escaped_html(&part.chart.title)
+             <text class=\"name\" x=\"{LEFT}\" y=\"16\">{name}</text>\n<g transform=\"translate(0 {HEADER_HEIGHT})\">\n{inside}</g>\n</g>",
+            escape_html(&part.chart.summary),
+            name = escape_html(&part.chart.title)
         );
-        below += height + HEAD + 10.0;
+        below += height + HEADER_HEIGHT + 10.0;
     }
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {below}\" width=\"{WIDTH}\" height=\"{below}\" \
          font-family=\"Helvetica, Arial, sans-serif\" font-size=\"12\">\n<title>{}</title>\n<style>\n{STYLE}</style>\n\
          <rect class=\"paper\" width=\"{WIDTH}\" height=\"{below}\"/>\n{all}</svg>\n",
-        escaped_html(title)
+        escape_html(title)
     )
 }
 
-fn drawn(chart: &Chart, kinds: Axes) -> (String, f64) {
+fn draw_plot(chart: &Chart, kinds: AxisScales) -> (String, f64) {
     let keys = legend_keys(chart);
-    let (mut svg, rows) = legend(&keys);
-    let sheet =
-        Sheet { x: x_scale(chart, kinds.across), y: y_scale(chart, kinds.up), top: 10.0 + rows * LEGEND_ROW };
-    axes(&mut svg, chart, &sheet);
+    let (mut svg, rows) = draw_legend(&keys);
+    let sheet = PlotLayout {
+        x: x_scale(chart, kinds.x),
+        y: y_scale(chart, kinds.y),
+        top: 10.0 + rows * LEGEND_ROW_HEIGHT,
+    };
+    draw_axes(&mut svg, chart, &sheet);
     match &chart.plot {
         Plot::Lines { curves, band } => {
             band.iter().for_each(|band| draw_band(&mut svg, band, &sheet));
             curves.iter().enumerate().for_each(|(at, curve)| draw_curve(&mut svg, curve, at, &sheet));
         }
-        Plot::Stacks { at, parts } => draw_stacks(&mut svg, at, parts, chart, &sheet),
+        Plot::Stacks { positions: at, series: parts } => draw_stacks(&mut svg, at, parts, chart, &sheet),
     }
-    (svg, sheet.top + INSIDE + BOTTOM)
+    (svg, sheet.top + PLOT_HEIGHT + BOTTOM)
 }
 
 /// Returns the width of one bar: the distance between neighbors.
-fn room_of_bar(at: &[f64]) -> f64 {
+fn bar_spacing(at: &[f64]) -> f64 {
     let least = at.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(f64::INFINITY, f64::min);
     if least.is_finite() && least > 0.0 { least } else { 1.0 }
 }
@@ -192,12 +195,12 @@ fn x_scale(chart: &Chart, kind: AxisScale) -> Scale {
             curves.iter().flat_map(|curve| curve.points.iter().map(|point| point.0)).chain(of_band).collect()
         }
         // Half a bar extends beyond each end.
-        Plot::Stacks { at, .. } => {
-            let half = room_of_bar(at) / 2.0;
+        Plot::Stacks { positions: at, .. } => {
+            let half = bar_spacing(at) / 2.0;
             at.iter().flat_map(|place| [place - half, place + half]).collect()
         }
     };
-    Scale::of_kind(kind, values.into_iter(), 8.0, false)
+    Scale::for_axis(kind, values.into_iter(), 8.0, false)
 }
 
 fn y_scale(chart: &Chart, kind: AxisScale) -> Scale {
@@ -207,14 +210,14 @@ fn y_scale(chart: &Chart, kind: AxisScale) -> Scale {
                 band.iter().flat_map(|band| band.points.iter().flat_map(|point| [point.1, point.2]));
             curves.iter().flat_map(|curve| curve.points.iter().map(|point| point.1)).chain(of_band).collect()
         }
-        Plot::Stacks { at, parts } => {
+        Plot::Stacks { positions: at, series: parts } => {
             let sum = |bar: usize, up: bool| -> f64 {
                 parts.iter().map(|part| part.values[bar]).filter(|value| (*value > 0.0) == up).sum()
             };
             (0..at.len()).flat_map(|bar| [sum(bar, true), sum(bar, false)]).chain([0.0]).collect()
         }
     };
-    if let Some((low, high)) = chart.within {
+    if let Some((low, high)) = chart.y_limits {
         values.iter_mut().for_each(|value| *value = value.clamp(low, high));
     }
     let most = values.iter().copied().fold(0.0, f64::max);
@@ -223,14 +226,14 @@ fn y_scale(chart: &Chart, kind: AxisScale) -> Scale {
     if least > 0.0 && least < 0.5 * most {
         values.push(0.0);
     }
-    Scale::of_kind(kind, values.into_iter(), 5.0, true)
+    Scale::for_axis(kind, values.into_iter(), 5.0, true)
 }
 
-fn axes(svg: &mut String, chart: &Chart, sheet: &Sheet) {
-    let label = |value: f64| if chart.dollars { dollar_tick(value) } else { tick(value) };
+fn draw_axes(svg: &mut String, chart: &Chart, sheet: &PlotLayout) {
+    let label = |value: f64| if chart.is_in_dollars { format_dollar_tick(value) } else { format_tick(value) };
     let right = WIDTH - RIGHT;
     for value in sheet.y.ticks() {
-        let y = sheet.down(value);
+        let y = sheet.y_position(value);
         let class = if value == 0.0 { "zero" } else { "grid" };
         let _ = writeln!(
             svg,
@@ -241,16 +244,16 @@ fn axes(svg: &mut String, chart: &Chart, sheet: &Sheet) {
             "<text class=\"label end\" x=\"{:.1}\" y=\"{:.1}\">{}</text>",
             LEFT - 8.0,
             y + 4.0,
-            escaped_html(&label(value))
+            escape_html(&label(value))
         );
     }
-    let below = sheet.top + INSIDE + 16.0;
+    let below = sheet.top + PLOT_HEIGHT + 16.0;
     for value in sheet.x.ticks() {
-        let x = sheet.across(value);
+        let x = sheet.x_position(value);
         let _ = writeln!(
             svg,
             "<text class=\"label middle\" x=\"{x:.1}\" y=\"{below:.1}\">{}</text>",
-            tick(value)
+            format_tick(value)
         );
     }
     let middle = LEFT + (WIDTH - LEFT - RIGHT) / 2.0;
@@ -258,44 +261,46 @@ fn axes(svg: &mut String, chart: &Chart, sheet: &Sheet) {
         svg,
         "<text class=\"label middle\" x=\"{middle:.1}\" y=\"{:.1}\">{}</text>",
         below + 18.0,
-        escaped_html(chart.across)
+        escape_html(chart.x_label)
     );
 }
 
-fn draw_curve(svg: &mut String, curve: &Curve, at: usize, sheet: &Sheet) {
+fn draw_curve(svg: &mut String, curve: &Curve, at: usize, sheet: &PlotLayout) {
     let has_place =
-        |(x, y): &&(f64, f64)| sheet.x.kind.placed(*x).is_finite() && sheet.y.kind.placed(*y).is_finite();
+        |(x, y): &&(f64, f64)| sheet.x.kind.position(*x).is_finite() && sheet.y.kind.position(*y).is_finite();
     let points: Vec<String> = curve
         .points
         .iter()
         .filter(has_place)
-        .map(|(x, y)| format!("{:.1},{:.1}", sheet.across(*x), sheet.down(*y)))
+        .map(|(x, y)| format!("{:.1},{:.1}", sheet.x_position(*x), sheet.y_position(*y)))
         .collect();
     let _ = writeln!(
         svg,
         "<polyline class=\"line s{}\" points=\"{}\"><title>{}</title></polyline>",
         at + 1,
         points.join(" "),
-        escaped_html(&curve.name)
+        escape_html(&curve.name)
     );
 }
 
-fn draw_band(svg: &mut String, band: &Band, sheet: &Sheet) {
+fn draw_band(svg: &mut String, band: &Band, sheet: &PlotLayout) {
     let upper = band.points.iter().map(|(x, _, upper)| (x, upper));
     let lower = band.points.iter().rev().map(|(x, lower, _)| (x, lower));
-    let points: Vec<String> =
-        upper.chain(lower).map(|(x, y)| format!("{:.1},{:.1}", sheet.across(*x), sheet.down(*y))).collect();
+    let points: Vec<String> = upper
+        .chain(lower)
+        .map(|(x, y)| format!("{:.1},{:.1}", sheet.x_position(*x), sheet.y_position(*y)))
+        .collect();
     let _ = writeln!(
         svg,
         "<polygon class=\"band\" points=\"{}\"><title>{}</title></polygon>",
         points.join(" "),
-        escaped_html(&band.name)
+        escape_html(&band.name)
     );
 }
 
-fn draw_stacks(svg: &mut String, at: &[f64], parts: &[Part], chart: &Chart, sheet: &Sheet) {
-    let width = room_of_bar(at) * (WIDTH - LEFT - RIGHT) / (sheet.x.to - sheet.x.from) * 0.8;
-    let write = |value: f64| if chart.dollars { money(value) } else { whole(value) };
+fn draw_stacks(svg: &mut String, at: &[f64], parts: &[StackSeries], chart: &Chart, sheet: &PlotLayout) {
+    let width = bar_spacing(at) * (WIDTH - LEFT - RIGHT) / (sheet.x.to - sheet.x.from) * 0.8;
+    let write = |value: f64| if chart.is_in_dollars { format_money(value) } else { format_whole(value) };
     for (bar, place) in at.iter().enumerate() {
         let (mut up, mut down) = (0.0, 0.0);
         for (number, part) in parts.iter().enumerate() {
@@ -304,8 +309,10 @@ fn draw_stacks(svg: &mut String, at: &[f64], parts: &[Part], chart: &Chart, shee
                 continue;
             }
             let from = if value > 0.0 { up } else { down };
-            let (top, bottom) =
-                (sheet.down(f64::max(from, from + value)), sheet.down(f64::min(from, from + value)));
+            let (top, bottom) = (
+                sheet.y_position(f64::max(from, from + value)),
+                sheet.y_position(f64::min(from, from + value)),
+            );
             if value > 0.0 {
                 up += value
             } else {
@@ -315,51 +322,54 @@ fn draw_stacks(svg: &mut String, at: &[f64], parts: &[Part], chart: &Chart, shee
                 svg,
                 "<rect class=\"part f{}\" x=\"{:.1}\" y=\"{top:.1}\" width=\"{width:.1}\" height=\"{:.1}\"><title>{} {}: {} {}</title></rect>",
                 number + 1,
-                sheet.across(*place) - width / 2.0,
+                sheet.x_position(*place) - width / 2.0,
                 (bottom - top).max(0.0),
-                escaped_html(chart.across),
+                escape_html(chart.x_label),
                 place,
-                escaped_html(&part.name),
+                escape_html(&part.name),
                 write(value)
             );
         }
     }
 }
 
-enum Sign {
+enum LegendMark {
     Line(usize),
     Area(String),
 }
 
-fn legend_keys(chart: &Chart) -> Vec<(Sign, String)> {
+fn legend_keys(chart: &Chart) -> Vec<(LegendMark, String)> {
     match &chart.plot {
         Plot::Lines { curves, band } => {
-            let lines = curves.iter().enumerate().map(|(at, curve)| (Sign::Line(at + 1), curve.name.clone()));
-            lines.chain(band.iter().map(|band| (Sign::Area("band".to_owned()), band.name.clone()))).collect()
+            let lines =
+                curves.iter().enumerate().map(|(at, curve)| (LegendMark::Line(at + 1), curve.name.clone()));
+            lines
+                .chain(band.iter().map(|band| (LegendMark::Area("band".to_owned()), band.name.clone())))
+                .collect()
         }
-        Plot::Stacks { parts, .. } => {
-            let sign = |at: usize| Sign::Area(format!("part f{}", at + 1));
+        Plot::Stacks { series: parts, .. } => {
+            let sign = |at: usize| LegendMark::Area(format!("part f{}", at + 1));
             parts.iter().enumerate().map(|(at, part)| (sign(at), part.name.clone())).collect()
         }
     }
 }
 
-fn legend(keys: &[(Sign, String)]) -> (String, f64) {
+fn draw_legend(keys: &[(LegendMark, String)]) -> (String, f64) {
     let mut svg = String::new();
     let (mut x, mut row) = (LEFT, 0.0);
     for (sign, name) in keys {
-        let width = 34.0 + name.chars().count() as f64 * LETTER + 18.0;
+        let width = 34.0 + name.chars().count() as f64 * LEGEND_LETTER_WIDTH + 18.0;
         if x + width > WIDTH && x > LEFT {
             (x, row) = (LEFT, row + 1.0);
         }
-        let y = 12.0 + row * LEGEND_ROW;
+        let y = 12.0 + row * LEGEND_ROW_HEIGHT;
         let _ = match sign {
-            Sign::Line(at) => writeln!(
+            LegendMark::Line(at) => writeln!(
                 svg,
                 "<line class=\"line s{at}\" x1=\"{x:.1}\" y1=\"{y:.1}\" x2=\"{:.1}\" y2=\"{y:.1}\"/>",
                 x + 26.0
             ),
-            Sign::Area(class) => writeln!(
+            LegendMark::Area(class) => writeln!(
                 svg,
                 "<rect class=\"{class}\" x=\"{:.1}\" y=\"{:.1}\" width=\"14\" height=\"12\"/>",
                 x + 12.0,
@@ -371,7 +381,7 @@ fn legend(keys: &[(Sign, String)]) -> (String, f64) {
             "<text class=\"label\" x=\"{:.1}\" y=\"{:.1}\">{}</text>",
             x + 33.0,
             y + 4.0,
-            escaped_html(name)
+            escape_html(name)
         );
         x += width;
     }
@@ -384,25 +394,25 @@ mod tests {
 
     #[test]
     fn scales_have_round_steps() {
-        let scale = Scale::of([3.0, 97.0].into_iter(), 5.0, true);
+        let scale = Scale::new([3.0, 97.0].into_iter(), 5.0, true);
         assert_eq!(scale.ticks(), [0.0, 20.0, 40.0, 60.0, 80.0, 100.0]);
-        let below = Scale::of([-1_200_000.0, 800_000.0].into_iter(), 5.0, true);
+        let below = Scale::new([-1_200_000.0, 800_000.0].into_iter(), 5.0, true);
         assert_eq!((below.from, below.to, below.step), (-1_500_000.0, 1_000_000.0, 500_000.0));
-        assert_eq!(Scale::of(std::iter::empty(), 5.0, true).ticks().len(), 6);
-        let flat = Scale::of([7.0, 7.0].into_iter(), 5.0, true);
+        assert_eq!(Scale::new(std::iter::empty(), 5.0, true).ticks().len(), 6);
+        let flat = Scale::new([7.0, 7.0].into_iter(), 5.0, true);
         assert!(flat.from < 7.0 && flat.to > 7.0);
     }
 
     #[test]
-    fn the_highest_value_is_on_top_and_the_lowest_at_the_foot() {
+    fn values_increase_upwards() {
         let scale = || Scale { from: -10.0, to: 30.0, step: 10.0, kind: AxisScale::Linear };
-        let sheet = Sheet { x: scale(), y: scale(), top: 20.0 };
-        let places = [30.0, 10.0, -10.0, 99.0].map(|value| sheet.down(value));
-        assert_eq!(places, [20.0, 20.0 + INSIDE / 2.0, 20.0 + INSIDE, 20.0]);
+        let sheet = PlotLayout { x: scale(), y: scale(), top: 20.0 };
+        let places = [30.0, 10.0, -10.0, 99.0].map(|value| sheet.y_position(value));
+        assert_eq!(places, [20.0, 20.0 + PLOT_HEIGHT / 2.0, 20.0 + PLOT_HEIGHT, 20.0]);
     }
 
     #[test]
-    fn every_coordinate_lies_inside_of_the_drawing() {
+    fn coordinates_are_inside_the_drawing() {
         let wild = Curve {
             name: "a<b".to_owned(),
             points: vec![(0.0, 1.0), (1.0, 1e12), (2.0, f64::NAN), (3.0, -5.0)],
@@ -410,9 +420,9 @@ mod tests {
         let chart = Chart {
             title: "t".to_owned(),
             summary: "s".to_owned(),
-            across: "day",
-            dollars: true,
-            within: Some((0.0, 10.0)),
+            x_label: "day",
+            is_in_dollars: true,
+            y_limits: Some((0.0, 10.0)),
             plot: Plot::Lines { curves: vec![wild], band: None },
         };
         let svg = draw(&chart, 1);
@@ -446,7 +456,7 @@ mod tests {
         (down, across)
     }
 
-    fn place(ticks: &[(f64, f64)], value: f64) -> f64 {
+    fn coordinate_of(ticks: &[(f64, f64)], value: f64) -> f64 {
         ticks.iter().find(|(own, _)| *own == value).unwrap_or_else(|| panic!("no tick {value}: {ticks:?}")).1
     }
 
@@ -463,15 +473,15 @@ mod tests {
         Chart {
             title: "t".to_owned(),
             summary: "s".to_owned(),
-            across: "week",
-            dollars: false,
-            within: None,
+            x_label: "week",
+            is_in_dollars: false,
+            y_limits: None,
             plot,
         }
     }
 
     #[test]
-    fn curves_and_bands_pass_where_the_axes_have_their_values() {
+    fn curves_and_bands_match_the_axes() {
         let values = [(0.0, 0.0), (4.0, 50.0), (6.0, -50.0), (10.0, 100.0)];
         let band: Vec<(f64, f64, f64)> = values.iter().map(|(x, y)| (*x, *y, 100.0)).collect();
         let curve = Curve { name: "c".to_owned(), points: values.to_vec() };
@@ -480,7 +490,7 @@ mod tests {
         let svg = draw(&chart(Plot::Lines { curves: vec![curve, second], band: Some(band) }), 1);
         let (down, across) = ticks(&svg);
         let expected = |points: &[(f64, f64)]| -> Vec<(f64, f64)> {
-            points.iter().map(|(x, y)| (place(&across, *x), place(&down, *y))).collect()
+            points.iter().map(|(x, y)| (coordinate_of(&across, *x), coordinate_of(&down, *y))).collect()
         };
         assert_eq!(points(&svg, "line s1"), expected(&values));
         assert_eq!(points(&svg, "line s2"), expected(&[(2.0, 50.0), (8.0, 0.0)]));
@@ -493,10 +503,11 @@ mod tests {
     }
 
     #[test]
-    fn bars_stand_on_each_other_and_are_as_high_as_their_values() {
-        let part = |name: &str, values: [f64; 2]| Part { name: name.to_owned(), values: values.to_vec() };
+    fn stacked_bar_heights_match_values() {
+        let part =
+            |name: &str, values: [f64; 2]| StackSeries { name: name.to_owned(), values: values.to_vec() };
         let parts = vec![part("a", [40.0, 0.0]), part("b", [20.0, 60.0]), part("c", [-20.0, -40.0])];
-        let svg = draw(&chart(Plot::Stacks { at: vec![1.0, 2.0], parts }), 1);
+        let svg = draw(&chart(Plot::Stacks { positions: vec![1.0, 2.0], series: parts }), 1);
         let (down, across) = ticks(&svg);
         let bars: Vec<(f64, f64, f64)> = svg
             .lines()
@@ -510,31 +521,31 @@ mod tests {
             [(1.0, 40.0, 0.0), (1.0, 60.0, 40.0), (1.0, 0.0, -20.0), (2.0, 60.0, 0.0), (2.0, 0.0, -40.0)];
         assert_eq!(bars.len(), expected.len());
         for ((middle, top, bottom), (week, high, low)) in bars.into_iter().zip(expected) {
-            assert!((middle - place(&across, week)).abs() < 0.11, "week {week}: {middle}");
+            assert!((middle - coordinate_of(&across, week)).abs() < 0.11, "week {week}: {middle}");
             // Coordinates have one decimal.
-            assert!((top - place(&down, high)).abs() < 0.11, "{high} in week {week}: {top}");
-            assert!((bottom - place(&down, low)).abs() < 0.16, "{low} in week {week}: {bottom}");
+            assert!((top - coordinate_of(&down, high)).abs() < 0.11, "{high} in week {week}: {top}");
+            assert!((bottom - coordinate_of(&down, low)).abs() < 0.16, "{low} in week {week}: {bottom}");
         }
     }
 
     #[test]
-    fn decades_are_evenly_apart_on_a_logarithmic_axis() {
-        let own = Scale::of_kind(AxisScale::Logarithmic, [3.0, 70_000.0].into_iter(), 5.0, true);
+    fn decades_are_evenly_spaced_on_log_axis() {
+        let own = Scale::for_axis(AxisScale::Logarithmic, [3.0, 70_000.0].into_iter(), 5.0, true);
         assert_eq!(own.ticks(), [1.0, 10.0, 100.0, 1e3, 1e4, 1e5]);
         let shares: Vec<f64> = own.ticks().into_iter().map(|value| own.share(value)).collect();
         assert!(shares.windows(2).all(|pair| (pair[1] - pair[0] - 0.2).abs() < 1e-12), "{shares:?}");
-        let few = Scale::of_kind(AxisScale::Logarithmic, [10.0, 100.0].into_iter(), 5.0, true);
+        let few = Scale::for_axis(AxisScale::Logarithmic, [10.0, 100.0].into_iter(), 5.0, true);
         assert_eq!(few.ticks(), [10.0, 20.0, 50.0, 100.0]);
     }
 
     #[test]
-    fn a_drawing_that_stands_alone_brings_its_colours_and_keeps_its_charts_apart() {
+    fn standalone_svg_includes_style_and_separates_charts() {
         let curve = Curve { name: "c".to_owned(), points: vec![(0.0, 0.0), (0.5, 1.0)] };
-        let part = || ChartPart {
+        let part = || ScaledChart {
             chart: chart(Plot::Lines { curves: vec![curve.clone()], band: None }),
-            axes: Axes { across: AxisScale::Linear, up: AxisScale::Linear },
+            axes: AxisScales { x: AxisScale::Linear, y: AxisScale::Linear },
         };
-        let svg = standing_alone("a & b", &[part(), part()]);
+        let svg = standalone_svg("a & b", &[part(), part()]);
         assert!(svg.starts_with("<svg xmlns=") && svg.contains("<title>a &amp; b</title>"), "{svg}");
         assert!(svg.contains(".s1 {") && !svg.contains("var("), "the style is complete");
         let heads: Vec<&str> =

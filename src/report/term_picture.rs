@@ -2,21 +2,21 @@
 //! published parameters or an invented customer are used. No picture contains hidden values.
 
 use super::fit::{Fit, fits};
-use super::plot::{Drawn, plot};
-use novamind_base::notation::{compact, percent};
+use super::plot::{PlotSeries, plot_report};
+use novamind_base::formatting::{compact_number, percent};
 use novamind_insight::example_curve;
-use novamind_record::figures::{WeekFigures, churn_of_last_week};
+use novamind_record::figures::{WeekFigures, last_week_churn};
 use novamind_session::identifiers::{ByGroup, Group, Plan};
 use novamind_session::{DeliveredQuality, GroupWeek, Session};
-use novamind_tools::Numbers;
+use novamind_tools::ParameterNumbers;
 
-const CHANGE: f64 = 0.1;
+const EXAMPLE_REPUTATION_CHANGE: f64 = 0.1;
 /// Weeks over which a cohort is followed.
-const WEEKS: u32 = 26;
-const BAR: f64 = 30.0;
+const COHORT_WEEKS: u32 = 26;
+const MAX_BAR_WIDTH: f64 = 30.0;
 
 /// Figures of a run that are visible to its player.
-pub struct SeenFigures<'a> {
+pub struct VisibleFigures<'a> {
     /// Figures of every week.
     pub weeks: &'a [WeekFigures],
     /// Figures of the groups for every week.
@@ -28,7 +28,7 @@ pub struct SeenFigures<'a> {
     /// Base quality before any improvement, and the development bonus shared by all groups.
     pub quality_base: (f64, f64),
     /// Documented parameters.
-    pub numbers: &'a Numbers,
+    pub numbers: &'a ParameterNumbers,
 }
 
 /// A picture of a term.
@@ -59,12 +59,12 @@ pub struct TermLines {
     /// Positions of the plans.
     pub plans: Vec<(Plan, f64, f64)>,
     /// Unit of the horizontal axis.
-    pub across: Across,
+    pub x_axis: TermXAxis,
 }
 
 /// Unit of the horizontal axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Across {
+pub enum TermXAxis {
     /// Dollars.
     Dollars,
     /// Weeks.
@@ -88,56 +88,59 @@ pub fn has_picture(term: &str) -> bool {
 }
 
 /// Returns the picture of a term, if it has one.
-pub fn term_picture(term: &str, seen: &SeenFigures<'_>) -> Option<TermPicture> {
+pub fn term_picture(term: &str, seen: &VisibleFigures<'_>) -> Option<TermPicture> {
     Some(match term {
-        "participation-curve" | "required-quality" => curve(),
-        "fit" => beside_plans(seen.fits),
-        "cohort" => cohort(seen.weeks),
-        "spill-over" => spill_over(seen.numbers),
+        "participation-curve" | "required-quality" => participation_curve(),
+        "fit" => estimates_and_plans(seen.fits),
+        "cohort" => cohort_retention(seen.weeks),
+        "spill-over" => spillover(seen.numbers),
         "quality-bank" => quality_bank(seen),
-        "network-source" => network(seen.group_weeks),
+        "network-source" => word_of_mouth(seen.group_weeks),
         _ => return None,
     })
 }
 
-fn lines(lines: Vec<(&'static str, Vec<(f64, f64)>)>, across: Across) -> Option<TermDrawing> {
-    Some(TermDrawing::Lines(TermLines { lines, band: Vec::new(), plans: Vec::new(), across }))
+fn line_drawing(lines: Vec<(&'static str, Vec<(f64, f64)>)>, across: TermXAxis) -> Option<TermDrawing> {
+    Some(TermDrawing::Lines(TermLines { lines, band: Vec::new(), plans: Vec::new(), x_axis: across }))
 }
 
-fn curve() -> TermPicture {
+fn participation_curve() -> TermPicture {
     TermPicture {
         caption: "Required quality by price, for an example customer with a budget of $50.".to_owned(),
-        drawing: lines(vec![("", example_curve())], Across::Dollars),
+        drawing: line_drawing(vec![("", example_curve())], TermXAxis::Dollars),
     }
 }
 
 /// Compares the plans with the first group among those with the narrowest estimates.
-fn beside_plans(fits: &[Fit]) -> TermPicture {
+fn estimates_and_plans(fits: &[Fit]) -> TermPicture {
     let individuals = fits.iter().filter(|own| !own.group.is_enterprise());
-    let Some(own) = individuals.min_by(|one, other| one.noise.total_cmp(&other.noise)) else {
+    let Some(own) =
+        individuals.min_by(|one, other| one.max_relative_error.total_cmp(&other.max_relative_error))
+    else {
         return TermPicture { caption: "No group of individuals is known yet.".to_owned(), drawing: None };
     };
-    let places = || Plan::ALL.into_iter().map(|plan| (plan, own.plans[plan].price, own.plans[plan].quality));
+    let places =
+        || Plan::ALL.into_iter().map(|plan| (plan, own.plans[plan].lead_price, own.plans[plan].quality));
     let right = places().map(|place| place.1).fold(own.budget.most, f64::max) * 1.05;
     let top = places().map(|place| place.2).fold(own.floor.most, f64::max) * 1.05;
     let upright = |at: f64| ("", vec![(at, 0.0), (at, top)]);
     TermPicture {
         caption: format!(
             "{}, estimates of day {}: plans by price and quality. Shaded: mean required quality. Vertical: mean budget.",
-            own.group, own.as_of
+            own.group, own.study_day
         ),
         drawing: Some(TermDrawing::Lines(TermLines {
             lines: vec![upright(own.budget.least), upright(own.budget.most)],
             band: [0.0, right].map(|at| (at, own.floor.least, own.floor.most)).to_vec(),
             plans: places().collect(),
-            across: Across::Dollars,
+            x_axis: TermXAxis::Dollars,
         })),
     }
 }
 
 /// Projects how much of a cohort remains at last week's churn.
-fn cohort(weeks: &[WeekFigures]) -> TermPicture {
-    let Some(churn) = churn_of_last_week(weeks) else {
+fn cohort_retention(weeks: &[WeekFigures]) -> TermPicture {
+    let Some(churn) = last_week_churn(weeks) else {
         let caption = "No week after one with subscribers has run yet.".to_owned();
         return TermPicture { caption, drawing: None };
     };
@@ -147,32 +150,32 @@ fn cohort(weeks: &[WeekFigures]) -> TermPicture {
             "Share of a cohort that remains after each week, at last week's churn: {}.",
             percent(churn, 1)
         ),
-        drawing: lines(vec![("", (0..=WEEKS).map(left).collect())], Across::Weeks),
+        drawing: line_drawing(vec![("", (0..=COHORT_WEEKS).map(left).collect())], TermXAxis::Weeks),
     }
 }
 
 /// Charts how much of a reputation change reaches a group, by the influence between groups.
-fn spill_over(numbers: &Numbers) -> TermPicture {
+fn spillover(numbers: &ParameterNumbers) -> TermPicture {
     let value = |key| numbers.value(key);
     let both = value("reputation.cross_group_spillover_factor").zip(value("reputation.cross_delta_min_abs"));
     let Some((factor, least)) = both else {
         return TermPicture { caption: String::new(), drawing: None };
     };
     let reaching = |influence: f64| {
-        let spilt = CHANGE * influence * factor;
+        let spilt = EXAMPLE_REPUTATION_CHANGE * influence * factor;
         (influence, if spilt < least { 0.0 } else { spilt })
     };
     let points = (0..=100).map(|step| reaching(f64::from(step) / 100.0)).collect();
     TermPicture {
         caption: format!(
-            "How much of a reputation change of {CHANGE} reaches a group, by influence from 0 to 1."
+            "How much of a reputation change of {EXAMPLE_REPUTATION_CHANGE} reaches a group, by influence from 0 to 1."
         ),
-        drawing: lines(vec![("", points)], Across::Share),
+        drawing: line_drawing(vec![("", points)], TermXAxis::Share),
     }
 }
 
 /// Charts the quality added to the product. How much of it competitors have copied is hidden.
-fn quality_bank(seen: &SeenFigures<'_>) -> TermPicture {
+fn quality_bank(seen: &VisibleFigures<'_>) -> TermPicture {
     let (base, shared) = seen.quality_base;
     let of_group = |own: &DeliveredQuality| (format!("added for {}", own.group), own.group_bonus);
     let groups = seen.quality.iter().map(of_group).filter(|own| own.1 > 0.0);
@@ -185,7 +188,7 @@ fn quality_bank(seen: &SeenFigures<'_>) -> TermPicture {
 }
 
 /// Charts the leads of all groups by week: by word of mouth and paid.
-fn network(weeks: &[ByGroup<GroupWeek>]) -> TermPicture {
+fn word_of_mouth(weeks: &[ByGroup<GroupWeek>]) -> TermPicture {
     if weeks.is_empty() {
         return TermPicture {
             caption: "No week has run yet, so there are no leads.".to_owned(),
@@ -199,75 +202,76 @@ fn network(weeks: &[ByGroup<GroupWeek>]) -> TermPicture {
     };
     TermPicture {
         caption: "Leads of all groups by week: by word of mouth, and through channels.".to_owned(),
-        drawing: lines(
+        drawing: line_drawing(
             vec![
                 ("paid", by_week(GroupWeek::paid_leads)),
                 ("word of mouth", by_week(|week| week.word_of_mouth)),
             ],
-            Across::Weeks,
+            TermXAxis::Weeks,
         ),
     }
 }
 
 impl TermPicture {
     /// Returns the picture as lines of text.
-    pub fn as_text(&self) -> String {
+    pub fn to_text(&self) -> String {
         let drawn = self.drawing.as_ref().map_or(String::new(), |drawing| match drawing {
-            TermDrawing::Lines(own) => own.as_text(),
-            TermDrawing::Bars(bars) => bars_as_text(bars),
+            TermDrawing::Lines(own) => own.to_text(),
+            TermDrawing::Bars(bars) => bars_to_text(bars),
         });
         format!("{}\n{drawn}", self.caption)
     }
 }
 
 impl TermLines {
-    fn as_text(&self) -> String {
+    fn to_text(&self) -> String {
         let ends = |of: fn(&(f64, f64, f64)) -> f64| self.band.iter().map(|end| (end.0, of(end))).collect();
         let edges: [Vec<(f64, f64)>; 2] = [ends(|end| end.1), ends(|end| end.2)];
         let sign = |name: &str| name.chars().next().unwrap_or('*');
-        let mut drawn: Vec<Drawn<'_>> =
-            edges.iter().map(|points| Drawn { sign: ':', points, is_line: true }).collect();
-        drawn.extend(self.lines.iter().map(|(name, points)| Drawn {
-            sign: sign(name),
+        let mut drawn: Vec<PlotSeries<'_>> =
+            edges.iter().map(|points| PlotSeries { mark: ':', points, is_line: true }).collect();
+        drawn.extend(self.lines.iter().map(|(name, points)| PlotSeries {
+            mark: sign(name),
             points,
             is_line: true,
         }));
         let plans: Vec<[(f64, f64); 1]> = self.plans.iter().map(|(_, x, y)| [(*x, *y)]).collect();
         let letter = |plan: Plan| plan.id().chars().next().unwrap_or('?');
-        drawn.extend(self.plans.iter().zip(&plans).map(|((plan, ..), points)| Drawn {
-            sign: letter(*plan),
+        drawn.extend(self.plans.iter().zip(&plans).map(|((plan, ..), points)| PlotSeries {
+            mark: letter(*plan),
             points,
             is_line: false,
         }));
         let named = self.lines.iter().filter(|(name, _)| !name.is_empty());
         let legend: Vec<String> = named.map(|(name, _)| format!("{} {name}", sign(name))).collect();
         let legend = if legend.is_empty() { String::new() } else { format!("  {}\n", legend.join(" · ")) };
-        plot(&drawn) + &legend
+        plot_report(&drawn) + &legend
     }
 }
 
-fn bars_as_text(bars: &[(String, f64)]) -> String {
+fn bars_to_text(bars: &[(String, f64)]) -> String {
     let most = bars.iter().map(|bar| bar.1).fold(0.0, f64::max);
     let width = bars.iter().map(|bar| bar.0.chars().count()).max().unwrap_or(0);
     let line = |(name, value): &(String, f64)| {
-        let cells = if most > 0.0 { (value.max(0.0) / most * BAR).round() as usize } else { 0 };
-        format!("{name:<width$}  {:>7}  {}", compact(*value), "#".repeat(cells)).trim_end().to_owned() + "\n"
+        let cells = if most > 0.0 { (value.max(0.0) / most * MAX_BAR_WIDTH).round() as usize } else { 0 };
+        format!("{name:<width$}  {:>7}  {}", compact_number(*value), "#".repeat(cells)).trim_end().to_owned()
+            + "\n"
     };
     bars.iter().map(line).collect()
 }
 
 /// Returns the picture of a term with figures of a run, if the term has one.
-pub fn term_picture_of(term: &str, session: &Session) -> Option<TermPicture> {
+pub fn term_picture_for_session(term: &str, session: &Session) -> Option<TermPicture> {
     if !has_picture(term) {
         return None;
     }
     let (fits, quality, numbers) = (fits(session), session.company().delivered_quality(), session.numbers());
-    let seen = SeenFigures {
+    let seen = VisibleFigures {
         weeks: session.weeks(),
         group_weeks: session.company().group_weeks(),
         fits: &fits,
         quality: &quality,
-        quality_base: session.company().quality_base(),
+        quality_base: session.company().base_quality(),
         numbers: &numbers,
     };
     term_picture(term, &seen)
@@ -280,14 +284,15 @@ mod tests {
 
     fn picture(term: &str, weeks: usize) -> TermPicture {
         assert!(has_picture(term));
-        term_picture_of(term, &test_kit::played(weeks)).unwrap_or_else(|| panic!("{term} has no picture"))
+        term_picture_for_session(term, &test_kit::play_weeks(weeks))
+            .unwrap_or_else(|| panic!("{term} has no picture"))
     }
 
     #[test]
-    fn every_picture_is_there_from_the_first_day_or_says_why_not() {
+    fn every_picture_exists_or_explains_its_absence() {
         for term in ["participation-curve", "required-quality", "fit", "spill-over", "quality-bank"] {
             let own = picture(term, 0);
-            assert!(own.drawing.is_some() && own.as_text().lines().count() > 2, "{term}: {own:?}");
+            assert!(own.drawing.is_some() && own.to_text().lines().count() > 2, "{term}: {own:?}");
         }
         for term in ["cohort", "network-source"] {
             let own = picture(term, 0);
@@ -298,8 +303,8 @@ mod tests {
     }
 
     #[test]
-    fn what_is_drawn_are_the_figures_of_the_run() {
-        let session = test_kit::played(3);
+    fn pictures_show_the_run_figures() {
+        let session = test_kit::play_weeks(3);
         let Some(TermDrawing::Lines(leads)) = picture("network-source", 3).drawing else {
             panic!("no lines")
         };
@@ -308,22 +313,22 @@ mod tests {
         let drawn: f64 = leads.lines.iter().map(|(_, points)| points[2].1).sum();
         assert_eq!((leads.lines[0].1.len(), drawn), (3, f64::from(all)));
         let Some(TermDrawing::Bars(bars)) = picture("quality-bank", 3).drawing else { panic!("no bars") };
-        assert_eq!((bars[0].1, bars[1].1), session.company().quality_base());
+        assert_eq!((bars[0].1, bars[1].1), session.company().base_quality());
         let Some(TermDrawing::Lines(fit)) = picture("fit", 3).drawing else { panic!("no lines") };
         assert_eq!(fit.plans.len(), 3);
-        let text = picture("fit", 3).as_text();
+        let text = picture("fit", 3).to_text();
         assert!(["A", "B", "C", ":"].iter().all(|sign| text.contains(sign)), "{text}");
     }
 
     #[test]
-    fn a_small_influence_carries_nothing_over() {
+    fn small_influence_has_no_spillover() {
         let Some(TermDrawing::Lines(own)) = picture("spill-over", 0).drawing else { panic!("no lines") };
         let points = &own.lines[0].1;
-        let numbers = Numbers::shipped();
+        let numbers = ParameterNumbers::bundled();
         let value = |key: &str| numbers.value(key).expect("a number");
         let least = value("reputation.cross_delta_min_abs");
         assert!(points.iter().all(|(_, spilt)| *spilt == 0.0 || *spilt >= least));
-        let most = CHANGE * value("reputation.cross_group_spillover_factor");
+        let most = EXAMPLE_REPUTATION_CHANGE * value("reputation.cross_group_spillover_factor");
         assert!((points[100].1 - most).abs() < 1e-12);
     }
 }

@@ -8,23 +8,23 @@ use novamind_record::trajectory::{Line, Trajectory};
 use novamind_session::{NewRun, Session, Storage};
 
 /// Plays a run in memory for some weeks, with sensible beginner's decisions and one change in the third week.
-pub fn played(weeks: usize) -> Session {
-    run(200, 1_000_000.0, weeks, &opening())
+pub fn play_weeks(weeks: usize) -> Session {
+    play_run(200, 1_000_000.0, weeks, &opening_calls())
 }
 
 /// Returns a run in memory that has reached its last day.
-pub fn finished() -> Session {
-    run(35, 1_000_000.0, 5, &opening())
+pub fn finished_run() -> Session {
+    play_run(35, 1_000_000.0, 5, &opening_calls())
 }
 
 /// Returns a run in memory that goes bankrupt from spending.
-pub fn ruined() -> Session {
-    let mut calls = opening();
+pub fn bankrupt_run() -> Session {
+    let mut calls = opening_calls();
     calls.push(("set_targeted_dev_spend", json!({"targeted_spend": {"S1": 16000}})));
-    run(200, 250_000.0, 8, &calls)
+    play_run(200, 250_000.0, 8, &calls)
 }
 
-fn opening() -> Vec<(&'static str, Value)> {
+fn opening_calls() -> Vec<(&'static str, Value)> {
     vec![
         ("set_prices", json!({"A": 12, "B": 25, "C": 55})),
         ("set_model_tiers", json!({"B": 2, "C": 4})),
@@ -42,7 +42,7 @@ fn opening() -> Vec<(&'static str, Value)> {
     ]
 }
 
-fn run(days: u32, cash: f64, weeks: usize, calls: &[(&str, Value)]) -> Session {
+fn play_run(days: u32, cash: f64, weeks: usize, calls: &[(&str, Value)]) -> Session {
     let new = NewRun {
         seed: Some(7),
         days: Some(days),
@@ -51,7 +51,7 @@ fn run(days: u32, cash: f64, weeks: usize, calls: &[(&str, Value)]) -> Session {
         participant: Some("Ada <ada@example.org>".to_owned()),
         ..NewRun::default()
     };
-    let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+    let mut session = Session::create(new, &Configuration::bundled()).expect("a run");
     for week in 0..weeks {
         let call = |session: &mut Session, tool: &str, arguments: &Value| {
             session.call(tool, arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
@@ -76,7 +76,7 @@ fn run(days: u32, cash: f64, weeks: usize, calls: &[(&str, Value)]) -> Session {
 }
 
 /// Records a short run on disk with a variety of events, and returns it with its lines.
-pub fn recorded() -> (Session, Vec<Line>) {
+pub fn recorded_run() -> (Session, Vec<Line>) {
     let runs = tempfile::tempdir().expect("a folder");
     let new = NewRun {
         days: Some(21),
@@ -84,18 +84,18 @@ pub fn recorded() -> (Session, Vec<Line>) {
         storage: Storage::Runs(runs.path().to_owned()),
         ..NewRun::default()
     };
-    let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+    let mut session = Session::create(new, &Configuration::bundled()).expect("a run");
     session.call("set_prices", &json!({"A": 12, "B": 25, "C": 55}), Via::Form).expect("prices");
     session.call("set_prices", &json!({"A": -1}), Via::Form).expect_err("no price");
     session.query("SELECT count(*) FROM ledger").expect("a count");
     session.query("SELECT c_max FROM nowhere").expect_err("no table");
-    session.activity().note_view("cash", "overview", 1500);
-    session.activity().note_view("cash", "overview", 500);
+    session.activity().record_view("cash", "overview", 1500);
+    session.activity().record_view("cash", "overview", 500);
     for rationale in ["If it goes well, we wait", "as planned"] {
         let forecasts = session.company().naive_forecasts();
         session.advance(rationale, &forecasts, Via::Form, &mut |_| {}).expect("a week");
     }
-    session.set_memo("watch costs").expect("a memo");
+    session.set_notes("watch costs").expect("a memo");
     let path = session.folder().expect("a folder").join("trajectory.jsonl");
     let lines = Trajectory::read(&path).expect("it reads").lines;
     (session, lines)

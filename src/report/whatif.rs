@@ -1,22 +1,22 @@
 //! Text and tables for what-if comparisons.
 
-use super::why::{signed, written};
-use super::words::{count, first_change_in_words};
-use novamind_base::notation::{compact, printable, short_dollars};
+use super::formatting::{describe_first_change, pluralize};
+use super::why::{format_figure, format_signed_change};
+use novamind_base::formatting::{compact_number, escape_control_characters, short_dollars};
 use novamind_base::statistics::Interval;
 use novamind_insight::{
-    BranchComparison, BranchFigure, BranchFigures, DecisionDifference, DecisionEdit, Futures, Kin,
-    ParameterDifference,
+    BranchComparison, BranchFigure, BranchFigures, CallDifference, DecisionEdit, Futures,
+    ParameterDifference, RelatedRun,
 };
 use novamind_record::figures::FigureUnit;
 
 // Its simulation can continue beyond the end of the record, with unchanged settings.
-const UNCHANGED: &str = "your decisions unchanged";
+const UNCHANGED_BRANCH_NAME: &str = "your decisions unchanged";
 
 /// Names a branch by its edits.
-pub fn name(edits: &[DecisionEdit]) -> String {
+pub fn branch_name(edits: &[DecisionEdit]) -> String {
     match edits {
-        [] => UNCHANGED.to_owned(),
+        [] => UNCHANGED_BRANCH_NAME.to_owned(),
         edits => edits.iter().map(DecisionEdit::to_string).collect::<Vec<_>>().join("; "),
     }
 }
@@ -39,8 +39,8 @@ pub fn heading(comparison: &BranchComparison, days_per_week: u32) -> String {
 
 /// Describes a branch: number, name and the first day on which it differs.
 pub fn branch_line(number: usize, branch: &BranchFigures) -> String {
-    let name = name(&branch.edits);
-    let since = match (branch.differs_on, branch.edits.is_empty()) {
+    let name = branch_name(&branch.edits);
+    let since = match (branch.first_different_day, branch.edits.is_empty()) {
         (_, true) => String::new(),
         (Some(day), _) => format!(" · differs from day {day}"),
         (None, _) => " · identical on every day".to_owned(),
@@ -49,15 +49,18 @@ pub fn branch_line(number: usize, branch: &BranchFigures) -> String {
 }
 
 /// Lists all changed decisions, newly rejected ones, and rejected ones that would now be accepted.
-pub fn decisions(branch: &BranchFigures, days_per_week: u32) -> Vec<String> {
+pub fn describe_decisions(branch: &BranchFigures, days_per_week: u32) -> Vec<String> {
     let week = |day: u32| day / days_per_week + 1;
-    let differing = alike(&branch.differences).into_iter().map(|calls| difference(&calls, week));
-    let parameters = branch.parameters.iter().map(|own| parameter(own, week(own.day)));
+    let differing = group_equal_differences(&branch.call_differences)
+        .into_iter()
+        .map(|calls| describe_call_differences(&calls, week));
+    let parameters =
+        branch.parameter_differences.iter().map(|own| describe_parameter_difference(own, week(own.day)));
     let refused = branch
-        .refused
+        .rejected
         .iter()
         .map(|(day, what, refusal)| format!("week {}: {what} is rejected: {}", week(*day), refusal.message));
-    let possible = branch.possible.iter().map(|(line, day, tool)| {
+    let possible = branch.newly_accepted.iter().map(|(line, day, tool)| {
         format!(
             "week {}: {} of line {line} was rejected and would now be accepted; it is skipped",
             week(*day),
@@ -68,12 +71,12 @@ pub fn decisions(branch: &BranchFigures, days_per_week: u32) -> Vec<String> {
         .chain(differing)
         .chain(refused)
         .chain(possible)
-        .map(|line| printable(&line).into_owned())
+        .map(|line| escape_control_characters(&line).into_owned())
         .collect()
 }
 
-fn parameter(own: &ParameterDifference, week: u32) -> String {
-    let ParameterDifference { key, was, is, .. } = own;
+fn describe_parameter_difference(own: &ParameterDifference, week: u32) -> String {
+    let ParameterDifference { key, recorded: was, edited: is, .. } = own;
     match (was, is) {
         (_, Some(is)) => format!("week {week}: {key} is set to {is}"),
         (Some(was), None) => format!("week {week}: {key} is not set to {was}"),
@@ -81,11 +84,11 @@ fn parameter(own: &ParameterDifference, week: u32) -> String {
     }
 }
 
-fn alike(differences: &[DecisionDifference]) -> Vec<Vec<&DecisionDifference>> {
-    let mut all: Vec<Vec<&DecisionDifference>> = Vec::new();
+fn group_equal_differences(differences: &[CallDifference]) -> Vec<Vec<&CallDifference>> {
+    let mut all: Vec<Vec<&CallDifference>> = Vec::new();
     for call in differences {
-        let same = |own: &&mut Vec<&DecisionDifference>| {
-            (own[0].tool, &own[0].was, &own[0].is) == (call.tool, &call.was, &call.is)
+        let same = |own: &&mut Vec<&CallDifference>| {
+            (own[0].tool, &own[0].recorded, &own[0].edited) == (call.tool, &call.recorded, &call.edited)
         };
         match all.iter_mut().find(same) {
             Some(own) => own.push(call),
@@ -95,25 +98,25 @@ fn alike(differences: &[DecisionDifference]) -> Vec<Vec<&DecisionDifference>> {
     all
 }
 
-/// Describes calls that differ in the same way: `weeks 20 to 72: set_prices {…} → {…} (53 calls)`.
-fn difference(calls: &[&DecisionDifference], week: impl Fn(u32) -> u32) -> String {
+/// Describes calls that differ in the same way: `weeks 20 to 72: set_prices_validates_and_updates {…} → {…} (53 calls)`.
+fn describe_call_differences(calls: &[&CallDifference], week: impl Fn(u32) -> u32) -> String {
     let [first, .., last] = calls else {
         return calls.first().map_or(String::new(), |only| {
             let line = only.seq.map_or(String::new(), |line| format!(" (line {line})"));
-            let again = only.again.map_or(String::new(), |(day, line)| {
+            let again = only.next_recorded.map_or(String::new(), |(day, line)| {
                 format!("; the run calls {} again in week {} (line {line})", only.tool.name(), week(day))
             });
-            format!("week {}: {}{line}{again}", week(only.day), otherwise(only))
+            format!("week {}: {}{line}{again}", week(only.day), describe_call_difference(only))
         });
     };
     let (from, to) = (week(first.day), week(last.day));
     let weeks = if from == to { format!("week {from}") } else { format!("weeks {from} to {to}") };
-    format!("{weeks}: {} ({})", otherwise(first), count(calls.len() as u32, "call"))
+    format!("{weeks}: {} ({})", describe_call_difference(first), pluralize(calls.len() as u32, "call"))
 }
 
-fn otherwise(call: &DecisionDifference) -> String {
+fn describe_call_difference(call: &CallDifference) -> String {
     let tool = call.tool.name();
-    match (&call.was, &call.is) {
+    match (&call.recorded, &call.edited) {
         (Some(was), Some(is)) => format!("{tool} {was} → {is}"),
         (Some(was), None) => format!("{tool} {was} is skipped"),
         (None, Some(is)) => format!("{tool} {is} is added"),
@@ -122,18 +125,21 @@ fn otherwise(call: &DecisionDifference) -> String {
 }
 
 /// Returns the week after which figures are shown, marked `ahead` if the record ends before it does.
-pub fn week_of_milestone(comparison: &BranchComparison, day: u32, days_per_week: u32) -> String {
+pub fn milestone_label(comparison: &BranchComparison, day: u32, days_per_week: u32) -> String {
     let ahead = if day > comparison.recorded_until { " ahead" } else { "" };
     format!("{}{ahead}", day.div_ceil(days_per_week))
 }
 
 /// Returns headers and rows: one figure at each milestone, by branch, with its difference from the unchanged run.
-pub fn table(comparison: &BranchComparison, days_per_week: u32) -> (Vec<String>, Vec<Vec<String>>) {
-    let cell = |at: usize, figure, day| cell(comparison, &comparison.branches[at], figure, day);
-    table_of(comparison, days_per_week, cell)
+pub fn comparison_table(
+    comparison: &BranchComparison,
+    days_per_week: u32,
+) -> (Vec<String>, Vec<Vec<String>>) {
+    let cell = |at: usize, figure, day| comparison_cell(comparison, &comparison.branches[at], figure, day);
+    build_table(comparison, days_per_week, cell)
 }
 
-fn table_of(
+fn build_table(
     comparison: &BranchComparison,
     days_per_week: u32,
     cell: impl Fn(usize, BranchFigure, u32) -> String,
@@ -144,8 +150,7 @@ fn table_of(
     let mut rows = Vec::new();
     for day in comparison.milestones(days_per_week) {
         for (at, figure) in comparison.figures.iter().enumerate() {
-            let first =
-                if at == 0 { week_of_milestone(comparison, day, days_per_week) } else { String::new() };
+            let first = if at == 0 { milestone_label(comparison, day, days_per_week) } else { String::new() };
             let cells = numbers().map(|branch| cell(branch, *figure, day));
             rows.push([first, figure.name().to_owned()].into_iter().chain(cells).collect());
         }
@@ -154,13 +159,18 @@ fn table_of(
 }
 
 /// Formats a value and its difference from the unchanged run.
-pub fn cell(comparison: &BranchComparison, branch: &BranchFigures, figure: BranchFigure, day: u32) -> String {
-    let [value, more] = cell_in_two(comparison, branch, figure, day);
+pub fn comparison_cell(
+    comparison: &BranchComparison,
+    branch: &BranchFigures,
+    figure: BranchFigure,
+    day: u32,
+) -> String {
+    let [value, more] = comparison_cell_lines(comparison, branch, figure, day);
     if more.is_empty() { value } else { format!("{value} {more}") }
 }
 
 /// Formats a cell as two short lines: the value, and its difference in brackets.
-pub fn cell_in_two(
+pub fn comparison_cell_lines(
     comparison: &BranchComparison,
     branch: &BranchFigures,
     figure: BranchFigure,
@@ -176,26 +186,27 @@ pub fn cell_in_two(
     }
     let base = comparison.branches.first().filter(|_| !branch.edits.is_empty());
     let base = base.and_then(|base| base.value(figure, day)).filter(|base| !base.is_nan());
-    let more = base.map_or(String::new(), |base| format!("({})", signed(figure.unit(), value - base)));
-    [written(figure.unit(), value), more]
+    let more =
+        base.map_or(String::new(), |base| format!("({})", format_signed_change(figure.unit(), value - base)));
+    [format_figure(figure.unit(), value), more]
 }
 
 /// Describes the number of futures and their first redrawn day.
 pub fn futures_heading(futures: &Futures) -> String {
     format!(
         "{} with new random draws after day {}; median, and in brackets the 10th to 90th percentile",
-        count(futures.count, "future"),
+        pluralize(futures.count, "future"),
         futures.redrawn_after
     )
 }
 
 /// Describes how many futures of a branch end in bankruptcy, and how they are counted; `None` without bankruptcies.
-pub fn bankrupt(futures: &Futures, branch: usize) -> Option<String> {
-    let ended = futures.bankrupt(branch);
+pub fn describe_bankruptcies(futures: &Futures, branch: usize) -> Option<String> {
+    let ended = futures.bankruptcy_count(branch);
     (ended > 0).then(|| {
         format!(
             "{branch}: {ended} of {} end in bankruptcy; afterwards, their cash is constant and they have no subscribers",
-            count(futures.count, "future")
+            pluralize(futures.count, "future")
         )
     })
 }
@@ -206,25 +217,25 @@ pub fn futures_table(
     futures: &Futures,
     days_per_week: u32,
 ) -> (Vec<String>, Vec<Vec<String>>) {
-    table_of(comparison, days_per_week, |at, figure, day| futures_cell(futures, at, figure, day))
+    build_table(comparison, days_per_week, |at, figure, day| futures_cell(futures, at, figure, day))
 }
 
 /// Formats a figure over the futures: median, 10th and 90th percentile.
 pub fn futures_cell(futures: &Futures, branch: usize, figure: BranchFigure, day: u32) -> String {
-    let Some(band) = futures.band(branch, figure, day) else { return "—".to_owned() };
-    let value = |value| written(figure.unit(), value);
+    let Some(band) = futures.interval(branch, figure, day) else { return "—".to_owned() };
+    let value = |value| format_figure(figure.unit(), value);
     format!("{} ({} to {})", value(band.median), value(band.low), value(band.high))
 }
 
 /// Formats a cell of the futures as two short lines: the median, and the percentiles.
-pub fn futures_cell_in_two(futures: &Futures, branch: usize, figure: BranchFigure, day: u32) -> [String; 2] {
-    let Some(band) = futures.band(branch, figure, day) else { return ["—".to_owned(), String::new()] };
+pub fn futures_cell_lines(futures: &Futures, branch: usize, figure: BranchFigure, day: u32) -> [String; 2] {
+    let Some(band) = futures.interval(branch, figure, day) else { return ["—".to_owned(), String::new()] };
     let short = |value: f64| match figure.unit() {
         FigureUnit::Dollars => short_dollars(value),
-        FigureUnit::Count => compact(value),
-        unit => written(unit, value),
+        FigureUnit::Count => compact_number(value),
+        unit => format_figure(unit, value),
     };
-    [written(figure.unit(), band.median), format!("{}–{}", short(band.low), short(band.high))]
+    [format_figure(figure.unit(), band.median), format!("{}–{}", short(band.low), short(band.high))]
 }
 
 /// Describes the difference of a branch at the end and its uncertainty; `None` if no future has a value.
@@ -235,7 +246,7 @@ pub fn difference_line(
     figure: BranchFigure,
 ) -> Option<String> {
     let difference = futures.difference(branch, figure, comparison.until)?;
-    let signed = |value| signed(figure.unit(), value);
+    let signed = |value| format_signed_change(figure.unit(), value);
     let interval = difference.interval.map_or(String::new(), |Interval { low, high }| {
         format!(" (95 % interval {} to {})", signed(low), signed(high))
     });
@@ -243,18 +254,18 @@ pub fn difference_line(
         "{}: {} on average{interval}, more in {} of {}",
         figure.name(),
         signed(difference.mean),
-        difference.more,
-        count(difference.of, "future")
+        difference.first_greater,
+        pluralize(difference.pair_count, "future")
     ))
 }
 
 /// Describes a run in the tree of related runs.
-pub fn kin_line(kin: &Kin, own: &str) -> String {
+pub fn related_run_line(kin: &RelatedRun, own: &str) -> String {
     let run = &kin.run;
     let mark = if run.id == own { " (this run)" } else { "" };
-    let left = kin.left_in_week.map_or(String::new(), |week| format!(" · branched in week {week}"));
-    let change = match (&kin.first_change, kin.left_in_week) {
-        (Some(change), Some(_)) => format!(", first change {}", first_change_in_words(change)),
+    let left = kin.branched_in_week.map_or(String::new(), |week| format!(" · branched in week {week}"));
+    let change = match (&kin.first_change, kin.branched_in_week) {
+        (Some(change), Some(_)) => format!(", first change {}", describe_first_change(change)),
         (None, Some(_)) => ", same decisions as its parent".to_owned(),
         _ => String::new(),
     };
@@ -265,7 +276,7 @@ pub fn kin_line(kin: &Kin, own: &str) -> String {
         run.id,
         run.day,
         run.days,
-        novamind_base::notation::dollars(run.cash)
+        novamind_base::formatting::dollars(run.cash)
     )
 }
 
@@ -277,7 +288,7 @@ mod tests {
     use novamind_tools::ToolId;
 
     #[test]
-    fn weeks_after_the_end_of_the_record_are_not_called_played() {
+    fn weeks_after_the_record_are_marked_ahead() {
         let comparison = BranchComparison {
             from: 21,
             until: 49,
@@ -285,25 +296,25 @@ mod tests {
             branches: Vec::new(),
             figures: Vec::new(),
         };
-        let told = |day| week_of_milestone(&comparison, day, 7);
+        let told = |day| milestone_label(&comparison, day, 7);
         assert_eq!([28, 35, 42, 49].map(told), ["4", "5", "6 ahead", "7 ahead"]);
         assert_eq!(
             heading(&comparison, 7),
             "re-simulation of weeks 4 to 7 (days 22 to 49), same random draws; days after 35 were not played: no further \
              decisions, settings unchanged"
         );
-        assert_eq!(name(&[]), "your decisions unchanged");
+        assert_eq!(branch_name(&[]), "your decisions unchanged");
     }
 
     #[test]
-    fn calls_that_differ_alike_are_told_together() {
-        let call = |day, seq, was: Option<f64>, is: Option<f64>| DecisionDifference {
+    fn equal_call_differences_are_combined() {
+        let call = |day, seq, was: Option<f64>, is: Option<f64>| CallDifference {
             day,
             tool: ToolId::SetPrices,
             seq,
-            was: was.map(|price| json!({ "B": price })),
-            is: is.map(|price| json!({ "B": price })),
-            again: (day == 7 && seq.is_none()).then_some((14, 20)),
+            recorded: was.map(|price| json!({ "B": price })),
+            edited: is.map(|price| json!({ "B": price })),
+            next_recorded: (day == 7 && seq.is_none()).then_some((14, 20)),
         };
         let differences = [
             call(7, None, None, Some(9.5)),
@@ -311,8 +322,10 @@ mod tests {
             call(14, Some(20), Some(30.0), None),
             call(21, Some(31), Some(10.0), Some(9.5)),
         ];
-        let told: Vec<String> =
-            alike(&differences).iter().map(|calls| difference(calls, |day| day / 7 + 1)).collect();
+        let told: Vec<String> = group_equal_differences(&differences)
+            .iter()
+            .map(|calls| describe_call_differences(calls, |day| day / 7 + 1))
+            .collect();
         assert_eq!(
             told,
             [

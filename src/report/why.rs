@@ -1,13 +1,15 @@
 //! Text and figures for the causes of a change.
 
-use super::chapters::change_in_words;
-use super::words::{count, number, points, short_week_in_words, whole};
-use novamind_base::notation::{grouped, percent};
-use novamind_insight::{Detail, InputDetail, Why};
+use super::decision_periods::describe_change;
+use super::formatting::{
+    describe_short_week, format_number, format_percentage_points, format_whole, pluralize,
+};
+use novamind_base::formatting::{grouped_number, percent};
+use novamind_insight::{CauseDetail, ChangeExplanation, InputDetail};
 use novamind_record::figures::FigureUnit;
 
 /// Name of the part that no cause explains.
-pub const REST: &str = "residual";
+pub const RESIDUAL_NAME: &str = "residual";
 
 /// A cause with its contribution, or the residual.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,59 +19,64 @@ pub struct CauseLine {
     /// Contribution to the change.
     pub amount: f64,
     /// Contribution with its sign, formatted.
-    pub written: String,
+    pub amount_text: String,
     /// Inputs that differ, old → new.
     pub details: Vec<String>,
 }
 
 /// Returns all causes, largest first, and the residual.
-pub fn lines(why: &Why) -> Vec<CauseLine> {
+pub fn cause_lines(why: &ChangeExplanation) -> Vec<CauseLine> {
     let line = |name, amount, details| {
-        let written = signed(why.quantity.unit(), amount);
-        CauseLine { name, amount, written, details }
+        let written = format_signed_change(why.quantity.unit(), amount);
+        CauseLine { name, amount, amount_text: written, details }
     };
-    let part = |part: &novamind_insight::WhyPart| {
-        line(part.cause.name(), part.amount, part.details.iter().map(in_words).collect())
+    let part = |part: &novamind_insight::CauseContribution| {
+        line(part.cause.name(), part.amount, part.details.iter().map(describe_detail).collect())
     };
-    why.parts.iter().map(part).chain([line(REST, why.rest, Vec::new())]).collect()
+    why.contributions.iter().map(part).chain([line(RESIDUAL_NAME, why.residual, Vec::new())]).collect()
 }
 
 /// Writes the change and its causes: `cancellations +942 = price +938 · competitors +4 · residual 0`.
-pub fn equation(why: &Why) -> String {
+pub fn equation(why: &ChangeExplanation) -> String {
     let parts: Vec<String> =
-        lines(why).iter().map(|line| format!("{} {}", line.name, line.written)).collect();
-    format!("{} {} = {}", why.quantity.name(), signed(why.quantity.unit(), why.change()), parts.join(" · "))
+        cause_lines(why).iter().map(|line| format!("{} {}", line.name, line.amount_text)).collect();
+    format!(
+        "{} {} = {}",
+        why.quantity.name(),
+        format_signed_change(why.quantity.unit(), why.change()),
+        parts.join(" · ")
+    )
 }
 
 /// Writes the figure in both weeks, and their lengths if they differ: `week 20: 195 → 1,137`.
-pub fn heading(why: &Why) -> String {
-    let value = |value| written(why.quantity.unit(), value);
+pub fn heading(why: &ChangeExplanation) -> String {
+    let value = |value| format_figure(why.quantity.unit(), value);
     let [before, own] = why.days;
-    let short = short_week_in_words(own, before).map_or(String::new(), |short| format!(" ({short})"));
+    let short = describe_short_week(own, before).map_or(String::new(), |short| format!(" ({short})"));
     format!("{}, week {}: {} → {}{short}", why.quantity.name(), why.week, value(why.before), value(why.after))
 }
 
 /// Formats a value in a unit.
-pub fn written(unit: FigureUnit, value: f64) -> String {
+pub fn format_figure(unit: FigureUnit, value: f64) -> String {
     match unit {
-        FigureUnit::Dollars => novamind_base::notation::dollars(value + 0.0),
-        FigureUnit::Count => whole(value),
+        FigureUnit::Dollars => novamind_base::formatting::dollars(value + 0.0),
+        FigureUnit::Count => format_whole(value),
         FigureUnit::Share => percent(value, 1),
-        FigureUnit::FineShare => percent(value, 2),
-        FigureUnit::Level => grouped(value, 3),
+        FigureUnit::PreciseShare => percent(value, 2),
+        FigureUnit::Level => grouped_number(value, 3),
     }
 }
 
 /// Formats a change with its sign; shares in percentage points.
-pub fn signed(unit: FigureUnit, change: f64) -> String {
+pub fn format_signed_change(unit: FigureUnit, change: f64) -> String {
     let size = change.abs();
     let text = match unit {
-        FigureUnit::Dollars => format!("${}", grouped(size, 0)),
-        FigureUnit::Count if size < 100.0 && (size - size.round()).abs() > 0.05 => grouped(size, 1),
-        FigureUnit::Count => grouped(size, 0),
-        FigureUnit::Share => points(size, 1),
-        FigureUnit::FineShare => points(size, 2),
-        FigureUnit::Level => grouped(size, 3),
+        FigureUnit::Dollars => format!("${}", grouped_number(size, 0)),
+        FigureUnit::Count if size < 100.0 && (size - size.round()).abs() > 0.05 => grouped_number(size, 1),
+        FigureUnit::Count => grouped_number(size, 0),
+        FigureUnit::Share => format_percentage_points(size, 1),
+        FigureUnit::PreciseShare => format_percentage_points(size, 2),
+        FigureUnit::Level => grouped_number(size, 3),
     };
     let is_nothing = !text.contains(|digit: char| ('1'..='9').contains(&digit));
     match change {
@@ -79,12 +86,12 @@ pub fn signed(unit: FigureUnit, change: f64) -> String {
     }
 }
 
-fn in_words(detail: &Detail) -> String {
+fn describe_detail(detail: &CauseDetail) -> String {
     match detail {
-        Detail::Setting(change) => change_in_words(change),
-        Detail::Happened(times, noun) => count(*times as u32, noun),
-        Detail::Input(InputDetail { name, old, new, is_share }) => {
-            let value = |value: f64| if *is_share { percent(value, 1) } else { number(value) };
+        CauseDetail::Setting(change) => describe_change(change),
+        CauseDetail::Occurred(times, noun) => pluralize(*times as u32, noun),
+        CauseDetail::Input(InputDetail { name, old, new, is_share }) => {
+            let value = |value: f64| if *is_share { percent(value, 1) } else { format_number(value) };
             format!("{name}: {} → {}", value(*old), value(*new))
         }
     }
@@ -93,27 +100,40 @@ fn in_words(detail: &Detail) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use novamind_insight::{Cause, WeekQuantity, WhyPart};
+    use novamind_insight::{Cause, CauseContribution, WeekQuantity};
     use novamind_record::figures::WeekFigure;
     use novamind_tools::ToolId;
 
-    fn why(figure: WeekFigure, before: f64, after: f64, amounts: &[(Cause, f64)]) -> Why {
-        let part =
-            |(cause, amount): &(Cause, f64)| WhyPart { cause: *cause, amount: *amount, details: Vec::new() };
-        let parts: Vec<WhyPart> = amounts.iter().map(part).collect();
-        let quantity = WeekQuantity::of_company(figure).expect("a figure of the company");
+    fn why(figure: WeekFigure, before: f64, after: f64, amounts: &[(Cause, f64)]) -> ChangeExplanation {
+        let part = |(cause, amount): &(Cause, f64)| CauseContribution {
+            cause: *cause,
+            amount: *amount,
+            details: Vec::new(),
+        };
+        let parts: Vec<CauseContribution> = amounts.iter().map(part).collect();
+        let quantity = WeekQuantity::for_company(figure).expect("a figure of the company");
         let rest = after - before - parts.iter().map(|part| part.amount).sum::<f64>();
-        Why { week: 20, quantity, days: [7, 7], before, after, parts, rest, simulations: 4 }
+        ChangeExplanation {
+            week: 20,
+            quantity,
+            days: [7, 7],
+            before,
+            after,
+            contributions: parts,
+            residual: rest,
+            simulation_count: 4,
+        }
     }
 
     #[test]
-    fn an_equation_names_every_cause_with_its_sign_and_the_rest() {
+    fn equation_names_every_cause_and_the_residual() {
         let price = Cause::Calls(ToolId::SetPrices);
-        let told = why(WeekFigure::Cancellations, 195.0, 1137.0, &[(price, 938.0), (Cause::Rivals, 3.5)]);
+        let told =
+            why(WeekFigure::Cancellations, 195.0, 1137.0, &[(price, 938.0), (Cause::Competitors, 3.5)]);
         let equation_told = equation(&told);
         assert_eq!(equation_told, "cancellations +942 = price +938 · rivals +3.5 · residual +0.5");
         assert_eq!(heading(&told), "cancellations, week 20: 195 → 1,137");
-        let short = Why { days: [7, 3], ..told };
+        let short = ChangeExplanation { days: [7, 3], ..told };
         assert_eq!(heading(&short), "cancellations, week 20: 195 → 1,137 (of 3 days, the week before of 7)");
         let told = why(WeekFigure::Conversion, 0.2, 0.19, &[(price, -0.01), (Cause::Service, 0.0)]);
         assert_eq!(equation(&told), "conversion -1.00 pt = price -1.00 pt · load and outages 0 · residual 0");
@@ -122,16 +142,16 @@ mod tests {
     }
 
     #[test]
-    fn details_say_what_was_and_what_is() {
-        let input = |name, old, new, is_share| Detail::Input(InputDetail { name, old, new, is_share });
+    fn details_show_old_and_new_values() {
+        let input = |name, old, new, is_share| CauseDetail::Input(InputDetail { name, old, new, is_share });
         let told = [
-            (Detail::Happened(2, "move"), "2 moves"),
-            (Detail::Happened(1, "call"), "1 call"),
+            (CauseDetail::Occurred(2, "move"), "2 moves"),
+            (CauseDetail::Occurred(1, "call"), "1 call"),
             (input("peak overload", 0.0, 0.131, true), "peak overload: 0.0% → 13.1%"),
             (input("index", 49.0, 50.25, false), "index: 49 → 50.25"),
         ];
         for (detail, words) in told {
-            assert_eq!(in_words(&detail), words);
+            assert_eq!(describe_detail(&detail), words);
         }
     }
 }

@@ -3,15 +3,15 @@
 use serde_json::{Value, json};
 
 use super::grammar::{Action, OfferLine, Price, Rule};
-use super::thread::{AskingThread, Market, TOOLS};
-use novamind_base::notation::{cents, dollars, grouped, percent};
+use super::thread::{PlanEconomics, RULE_TOOLS, ThreadContext};
+use novamind_base::formatting::{cents, dollars, grouped_number, percent};
 use novamind_session::identifiers::Plan;
-use novamind_session::{CompanyNames, Session};
-use novamind_tools::{Refusal, ToolId};
+use novamind_session::{EnterpriseNames, Session};
+use novamind_tools::{Rejection, ToolId};
 
 /// Answer to a thread.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Reply {
+pub enum RuleReply {
     /// An offer of plans and prices.
     Offer(Vec<(Plan, f64)>),
     /// A rejection, which ends the thread.
@@ -20,66 +20,67 @@ pub enum Reply {
 
 /// A thread with its matching rule and answer.
 #[derive(Debug, Clone, PartialEq)]
-pub struct RuledThread {
+pub struct RuleOutcome {
     /// The thread.
-    pub thread: AskingThread,
+    pub thread: ThreadContext,
     /// Index of the matching rule; `None` if no rule matches.
-    pub rule: Option<usize>,
+    pub rule_index: Option<usize>,
     /// The answer, or the reason for sending none.
-    pub reply: Result<Reply, &'static str>,
+    pub reply: Result<RuleReply, &'static str>,
 }
 
 /// Totals over the threads of a rule.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Sums {
+pub struct RuleTotals {
     /// Number of threads that receive an answer.
-    pub companies: u32,
+    pub thread_count: u32,
     /// Seats of these threads.
     pub seats: u32,
     /// Largest possible revenue from them, dollars a month.
-    pub monthly: f64,
+    pub monthly_revenue: f64,
     /// Part of this revenue from enterprises with known compute cost, and that cost, dollars a month.
-    known: (f64, f64),
+    known_margin: (f64, f64),
     /// Number of offers that include a plan whose quota does not cover the enterprise's usage.
     pub above_quota: u32,
     /// Number of threads that receive no answer.
     pub skipped: u32,
 }
 
-impl Sums {
+impl RuleTotals {
     /// Returns the share of revenue left after compute; `None` if no compute cost is known.
     pub fn margin(&self) -> Option<f64> {
-        (self.known.0 > 0.0).then(|| 1.0 - self.known.1 / self.known.0)
+        (self.known_margin.0 > 0.0).then(|| 1.0 - self.known_margin.1 / self.known_margin.0)
     }
 
-    fn add(&mut self, ruled: &RuledThread, market: &Market) {
+    fn add(&mut self, ruled: &RuleOutcome, market: &PlanEconomics) {
         let Ok(reply) = &ruled.reply else {
             self.skipped += 1;
             return;
         };
         let seats = ruled.thread.waiting.seats;
-        self.companies += 1;
+        self.thread_count += 1;
         self.seats += seats;
-        let Reply::Offer(lines) = reply else { return };
+        let RuleReply::Offer(lines) = reply else { return };
         let Some(dearest) = lines.iter().copied().max_by(|left, right| left.1.total_cmp(&right.1)) else {
             return;
         };
         let monthly = dearest.1 * f64::from(seats);
-        self.monthly += monthly;
-        if let Some(wanted) = ruled.thread.needed_quota {
-            self.known = (self.known.0 + monthly, self.known.1 + market.compute(dearest.0, wanted));
+        self.monthly_revenue += monthly;
+        if let Some(wanted) = ruled.thread.required_quota {
+            self.known_margin =
+                (self.known_margin.0 + monthly, self.known_margin.1 + market.compute_cost(dearest.0, wanted));
             let short = |(plan, _): &(Plan, f64)| market.quotas[*plan as usize] < wanted;
             self.above_quota += u32::from(lines.iter().any(short));
         }
     }
 
-    fn in_words(&self, rejects: bool) -> String {
-        let noun = if self.companies == 1 { "enterprise" } else { "enterprises" };
+    fn describe(&self, rejects: bool) -> String {
+        let noun = if self.thread_count == 1 { "enterprise" } else { "enterprises" };
         let seats = if self.seats == 1 { "seat" } else { "seats" };
-        let count = |value: u32| grouped(f64::from(value), 0);
-        let mut words = format!("{} {noun}, {} {seats}", count(self.companies), count(self.seats));
-        if self.companies > 0 && !rejects {
-            words += &format!(", at most {} a month", dollars(self.monthly));
+        let count = |value: u32| grouped_number(f64::from(value), 0);
+        let mut words = format!("{} {noun}, {} {seats}", count(self.thread_count), count(self.seats));
+        if self.thread_count > 0 && !rejects {
+            words += &format!(", at most {} a month", dollars(self.monthly_revenue));
             words += &self
                 .margin()
                 .map_or(String::new(), |margin| format!(", margin after compute {}", percent(margin, 0)));
@@ -96,54 +97,57 @@ impl Sums {
 
 /// Result of applying rules to all waiting threads.
 #[derive(Debug, Clone)]
-pub struct Batch {
+pub struct RuleBatch {
     /// The rules, in order.
     pub rules: Vec<Rule>,
     /// All threads, by deadline.
-    pub threads: Vec<RuledThread>,
+    pub threads: Vec<RuleOutcome>,
     /// Totals by rule, followed by those of threads without a rule.
-    pub sums: Vec<Sums>,
+    pub totals: Vec<RuleTotals>,
 }
 
 /// Returns the tool calls with which rules answer all waiting enterprises.
 ///
 /// # Errors
 /// Returns `rules_not_readable`, or the error of a failed database query.
-pub fn answers_to_companies(text: &str, session: &mut Session) -> Result<Vec<(ToolId, Value)>, Refusal> {
-    let rules =
-        super::parse(text).map_err(|problem| Refusal::at("rules", "rules_not_readable", problem.text))?;
-    let (threads, market) = AskingThread::all(session)?;
-    Ok(Batch::of(rules, threads, &market).calls())
+pub fn calls_for_waiting_threads(
+    text: &str,
+    session: &mut Session,
+) -> Result<Vec<(ToolId, Value)>, Rejection> {
+    let rules = super::parse(text)
+        .map_err(|problem| Rejection::for_field("rules", "rules_not_readable", problem.text))?;
+    let (threads, market) = ThreadContext::read_all(session)?;
+    Ok(RuleBatch::new(rules, threads, &market).tool_calls())
 }
 
-impl Batch {
+impl RuleBatch {
     /// Applies rules to threads.
-    pub fn of(rules: Vec<Rule>, threads: Vec<AskingThread>, market: &Market) -> Batch {
-        let threads: Vec<RuledThread> =
-            threads.into_iter().map(|thread| ruled(&rules, thread, market)).collect();
-        let mut sums = vec![Sums::default(); rules.len() + 1];
+    pub fn new(rules: Vec<Rule>, threads: Vec<ThreadContext>, market: &PlanEconomics) -> RuleBatch {
+        let threads: Vec<RuleOutcome> =
+            threads.into_iter().map(|thread| apply_rules(&rules, thread, market)).collect();
+        let mut sums = vec![RuleTotals::default(); rules.len() + 1];
         for ruled in &threads {
-            sums[ruled.rule.unwrap_or(rules.len())].add(ruled, market);
+            sums[ruled.rule_index.unwrap_or(rules.len())].add(ruled, market);
         }
-        Batch { rules, threads, sums }
+        RuleBatch { rules, threads, totals: sums }
     }
 
     /// Returns the tool calls: offers, then rejections. Empty if nothing is sent.
-    pub fn calls(&self) -> Vec<(ToolId, Value)> {
+    pub fn tool_calls(&self) -> Vec<(ToolId, Value)> {
         let (mut offers, mut ends) = (Vec::new(), Vec::new());
         for ruled in &self.threads {
             let customer = ruled.thread.waiting.customer;
             match &ruled.reply {
-                Ok(Reply::Offer(lines)) => {
+                Ok(RuleReply::Offer(lines)) => {
                     let lines: Vec<Value> =
                         lines.iter().map(|(plan, price)| json!([plan.id(), price])).collect();
                     offers.push(json!([customer, lines]));
                 }
-                Ok(Reply::Rejection) => ends.push(json!({ "customer_id": customer })),
+                Ok(RuleReply::Rejection) => ends.push(json!({ "customer_id": customer })),
                 Err(_) => {}
             }
         }
-        let calls = TOOLS.into_iter().zip([offers, ends]);
+        let calls = RULE_TOOLS.into_iter().zip([offers, ends]);
         let calls = calls.filter(|(_, deals)| !deals.is_empty());
         calls.map(|(tool, deals)| (tool, json!({ "deals": deals }))).collect()
     }
@@ -151,83 +155,87 @@ impl Batch {
     /// Returns a line for each rule, and one for threads without a rule.
     pub fn summary(&self) -> Vec<String> {
         let rule = |(at, rule): (usize, &Rule)| {
-            let sums = self.sums[at].in_words(rule.action == Action::Reject);
+            let sums = self.totals[at].describe(rule.action == Action::Reject);
             format!("{}  {}: {sums}", at + 1, rule.text)
         };
         let mut lines: Vec<String> = self.rules.iter().enumerate().map(rule).collect();
-        let others = self.sums[self.rules.len()].skipped;
+        let others = self.totals[self.rules.len()].skipped;
         if others > 0 {
-            lines.push(format!("–  no rule: {} unanswered", grouped(f64::from(others), 0)));
+            lines.push(format!("–  no rule: {} unanswered", grouped_number(f64::from(others), 0)));
         }
         lines
     }
 
     /// Returns the totals by rule as JSON.
-    pub fn sums_as_json(&self) -> Vec<Value> {
-        let one = |(rule, sums): (&Rule, &Sums)| {
+    pub fn totals_to_json(&self) -> Vec<Value> {
+        let one = |(rule, sums): (&Rule, &RuleTotals)| {
             json!({
                 "rule": rule.text,
-                "companies": sums.companies,
+                "companies": sums.thread_count,
                 "seats": sums.seats,
-                "monthly": json_rounded(sums.monthly, 100.0),
-                "margin": sums.margin().map(|margin| json_rounded(margin, 1e4)),
+                "monthly": rounded_json(sums.monthly_revenue, 100.0),
+                "margin": sums.margin().map(|margin| rounded_json(margin, 1e4)),
                 "above_quota": sums.above_quota,
                 "skipped": sums.skipped,
             })
         };
-        self.rules.iter().zip(&self.sums).map(one).collect()
+        self.rules.iter().zip(&self.totals).map(one).collect()
     }
 }
 
-fn json_rounded(value: f64, steps: f64) -> f64 {
+fn rounded_json(value: f64, steps: f64) -> f64 {
     (value * steps).round() / steps
 }
 
-impl RuledThread {
+impl RuleOutcome {
     /// Describes the answer.
-    pub fn reply_in_words(&self) -> String {
+    pub fn describe_reply(&self) -> String {
         match &self.reply {
-            Ok(Reply::Offer(lines)) => {
+            Ok(RuleReply::Offer(lines)) => {
                 let line = |(plan, price): &(Plan, f64)| format!("{plan} {}", cents(*price));
                 lines.iter().map(line).collect::<Vec<_>>().join(" or ")
             }
-            Ok(Reply::Rejection) => "end the thread".to_owned(),
+            Ok(RuleReply::Rejection) => "end the thread".to_owned(),
             Err(why) => (*why).to_owned(),
         }
     }
 
     /// Returns the fields as JSON.
-    pub fn row(&self, names: &CompanyNames) -> Value {
-        let mut row = json!({ "rule": self.rule.map(|at| at + 1), "sends": self.reply_in_words() });
-        if let (Value::Object(row), Value::Object(fields)) = (&mut row, self.thread.row(names)) {
+    pub fn to_json(&self, names: &EnterpriseNames) -> Value {
+        let mut row = json!({ "rule": self.rule_index.map(|at| at + 1), "sends": self.describe_reply() });
+        if let (Value::Object(row), Value::Object(fields)) = (&mut row, self.thread.to_json(names)) {
             row.extend(fields);
         }
         row
     }
 }
 
-fn ruled(rules: &[Rule], thread: AskingThread, market: &Market) -> RuledThread {
-    let rule = rules.iter().position(|rule| rule.means(&thread));
+fn apply_rules(rules: &[Rule], thread: ThreadContext, market: &PlanEconomics) -> RuleOutcome {
+    let rule = rules.iter().position(|rule| rule.matches(&thread));
     let reply = match rule.map(|at| &rules[at].action) {
         None => Err("no rule matches"),
-        Some(Action::Reject) => Ok(Reply::Rejection),
+        Some(Action::Reject) => Ok(RuleReply::Rejection),
         Some(Action::Accept) => {
-            priced(&[OfferLine { plan: None, price: Price::Asked(1.0) }], &thread, market)
+            price_offer(&[OfferLine { plan: None, price: Price::Asked(1.0) }], &thread, market)
         }
-        Some(Action::Offer(lines)) => priced(lines, &thread, market),
+        Some(Action::Offer(lines)) => price_offer(lines, &thread, market),
     };
-    RuledThread { thread, rule, reply }
+    RuleOutcome { thread, rule_index: rule, reply }
 }
 
 /// Computes the prices of all lines of an offer. If one has no price, no offer is sent.
-fn priced(lines: &[OfferLine], thread: &AskingThread, market: &Market) -> Result<Reply, &'static str> {
+fn price_offer(
+    lines: &[OfferLine],
+    thread: &ThreadContext,
+    market: &PlanEconomics,
+) -> Result<RuleReply, &'static str> {
     let line = |line: &OfferLine| {
         let plan = line.plan.or(thread.asked_plan).ok_or("skipped: no plan asked for")?;
         let last = || thread.waiting.last_offer.iter().find(|(own, _)| *own == plan).map(|(_, price)| *price);
         let price = match line.price {
             Price::Dollars(price) => price,
             Price::Asked(factor) => factor * thread.waiting.asked.ok_or("skipped: no price asked for")?,
-            Price::List(factor) => factor * market.lists[plan as usize],
+            Price::List(factor) => factor * market.list_prices[plan as usize],
             Price::Last(factor) => {
                 factor * last().ok_or("skipped: the last offer did not include that plan")?
             }
@@ -239,17 +247,17 @@ fn priced(lines: &[OfferLine], thread: &AskingThread, market: &Market) -> Result
             Err("skipped: the price would be 0")
         }
     };
-    lines.iter().map(line).collect::<Result<_, _>>().map(Reply::Offer)
+    lines.iter().map(line).collect::<Result<_, _>>().map(RuleReply::Offer)
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::parse;
-    use super::super::usage::SeatUsage;
+    use super::super::seat_usage::SeatUsage;
     use super::*;
     use novamind_session::WaitingThread;
 
-    fn thread(customer: u32, seats: u32, asked: Option<(Plan, f64)>, last: &[(Plan, f64)]) -> AskingThread {
+    fn thread(customer: u32, seats: u32, asked: Option<(Plan, f64)>, last: &[(Plan, f64)]) -> ThreadContext {
         let waiting = WaitingThread {
             thread: customer + 1_000,
             customer,
@@ -262,24 +270,24 @@ mod tests {
             asked: asked.map(|(_, price)| price),
             days_left: customer,
         };
-        AskingThread {
+        ThreadContext {
             waiting,
             asked_plan: asked.map(|(plan, _)| plan),
-            needed_quota: Some(10.0 * f64::from(seats)),
+            required_quota: Some(10.0 * f64::from(seats)),
         }
     }
 
-    fn market() -> Market {
-        Market {
-            lists: [14.0, 32.0, 55.0],
+    fn market() -> PlanEconomics {
+        PlanEconomics {
+            list_prices: [14.0, 32.0, 55.0],
             quotas: [1_000.0, 1_000.0, 5_000.0],
             unit_costs: [0.001, 0.01, 0.1],
             usage: SeatUsage::default(),
-            studied: Default::default(),
+            estimated_usage: Default::default(),
         }
     }
 
-    fn threads() -> Vec<AskingThread> {
+    fn threads() -> Vec<ThreadContext> {
         vec![
             thread(1, 50, None, &[]),
             thread(2, 100, None, &[]),
@@ -288,16 +296,18 @@ mod tests {
         ]
     }
 
-    fn told(rules: &str) -> Vec<(Option<usize>, String)> {
-        let batch = Batch::of(parse(rules).expect("rules"), threads(), &market());
-        batch.threads.iter().map(|ruled| (ruled.rule, ruled.reply_in_words())).collect()
+    fn described_outcomes(rules: &str) -> Vec<(Option<usize>, String)> {
+        let batch = RuleBatch::new(parse(rules).expect("rules"), threads(), &market());
+        batch.threads.iter().map(|ruled| (ruled.rule_index, ruled.describe_reply())).collect()
     }
 
     #[test]
-    fn the_first_rule_that_means_a_thread_answers_it() {
+    fn first_matching_rule_answers_a_thread() {
         let own = |rule: Option<usize>, words: &str| (rule, words.to_owned());
         assert_eq!(
-            told("offer where group = E2 and asked is null: B 85; accept asked >= 18; reject rest"),
+            described_outcomes(
+                "offer where group = E2 and asked is null: B 85; accept asked >= 18; reject rest"
+            ),
             [
                 own(Some(2), "end the thread"),
                 own(Some(0), "B $85.00"),
@@ -306,7 +316,7 @@ mod tests {
             ]
         );
         assert_eq!(
-            told("offer where asked is not null: asked_plan asked*1.1, A list*0.5"),
+            described_outcomes("offer where asked is not null: asked_plan asked*1.1, A list*0.5"),
             [
                 own(None, "no rule matches"),
                 own(None, "no rule matches"),
@@ -315,7 +325,7 @@ mod tests {
             ]
         );
         assert_eq!(
-            told("offer where customer in (3, 1): B last_offer*0.5; accept rest"),
+            described_outcomes("offer where customer in (3, 1): B last_offer*0.5; accept rest"),
             [
                 own(Some(0), "skipped: the last offer did not include that plan"),
                 own(Some(1), "skipped: no plan asked for"),
@@ -326,7 +336,7 @@ mod tests {
     }
 
     #[test]
-    fn every_field_is_asked() {
+    fn every_field_can_be_compared() {
         for (condition, meant) in [
             ("group != e2", vec![1, 3]),
             ("type in (new_lead, plan_change)", vec![1, 2, 3, 4]),
@@ -341,26 +351,26 @@ mod tests {
             ("customer in (2, 4) and asked is null", vec![2]),
         ] {
             let rules = parse(&format!("reject where {condition}")).expect(condition);
-            let batch = Batch::of(rules, threads(), &market());
-            let ruled = batch.threads.iter().filter(|ruled| ruled.rule.is_some());
+            let batch = RuleBatch::new(rules, threads(), &market());
+            let ruled = batch.threads.iter().filter(|ruled| ruled.rule_index.is_some());
             let found: Vec<u32> = ruled.map(|ruled| ruled.thread.waiting.customer).collect();
             assert_eq!(found, meant, "{condition}");
         }
     }
 
     #[test]
-    fn sums_count_companies_seats_money_and_quotas() {
+    fn totals_count_threads_seats_revenue_and_quotas() {
         let rules = parse("accept asked > 0; offer rest: B 10, A 5").expect("rules");
-        let batch = Batch::of(rules, threads(), &market());
-        let accepted = batch.sums[0];
-        assert_eq!((accepted.companies, accepted.seats, accepted.above_quota), (2, 500, 1));
-        assert_eq!(accepted.monthly, 200.0 * 20.0 + 300.0 * 10.0);
+        let batch = RuleBatch::new(rules, threads(), &market());
+        let accepted = batch.totals[0];
+        assert_eq!((accepted.thread_count, accepted.seats, accepted.above_quota), (2, 500, 1));
+        assert_eq!(accepted.monthly_revenue, 200.0 * 20.0 + 300.0 * 10.0);
         // B has a quota of 1,000 units, C of 3,000.
         let compute = 1_000.0 * 30.0 * 0.01 + 3_000.0 * 30.0 * 0.1;
-        assert_eq!(accepted.margin(), Some(1.0 - compute / accepted.monthly));
-        assert_eq!(batch.sums[1].monthly, 10.0 * 150.0);
-        assert_eq!(batch.sums[2], Sums::default());
-        let calls = batch.calls();
+        assert_eq!(accepted.margin(), Some(1.0 - compute / accepted.monthly_revenue));
+        assert_eq!(batch.totals[1].monthly_revenue, 10.0 * 150.0);
+        assert_eq!(batch.totals[2], RuleTotals::default());
+        let calls = batch.tool_calls();
         assert_eq!(calls.len(), 1);
         assert_eq!(
             calls[0].1,

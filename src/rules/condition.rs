@@ -1,6 +1,6 @@
 //! Conditions of rules: comparisons with the fields of a thread.
 
-use super::thread::AskingThread;
+use super::thread::ThreadContext;
 use novamind_session::identifiers::Plan;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -14,7 +14,7 @@ pub(super) enum Field {
     Offers,
     Turn,
     DaysLeft,
-    NeededQuota,
+    RequiredQuota,
     Customer,
 }
 
@@ -31,7 +31,7 @@ pub(super) const FIELDS: [(&str, Field); 13] = [
     ("offers", Field::Offers),
     ("turn", Field::Turn),
     ("days_left", Field::DaysLeft),
-    ("needed_quota", Field::NeededQuota),
+    ("needed_quota", Field::RequiredQuota),
     ("customer", Field::Customer),
 ];
 
@@ -48,7 +48,7 @@ impl Field {
     }
 
     /// Returns the value of a thread; `None` if it has none.
-    fn of(self, thread: &AskingThread) -> Option<Value> {
+    fn value_of(self, thread: &ThreadContext) -> Option<Value> {
         let (own, number) = (&thread.waiting, |value: u32| Value::Number(f64::from(value)));
         Some(match self {
             Field::Group => Value::Word(own.group.to_owned()),
@@ -60,7 +60,7 @@ impl Field {
             Field::Offers => number(own.offers_so_far),
             Field::Turn => number(own.turn),
             Field::DaysLeft => number(own.days_left),
-            Field::NeededQuota => Value::Number(thread.needed_quota?),
+            Field::RequiredQuota => Value::Number(thread.required_quota?),
             Field::Customer => number(own.customer),
         })
     }
@@ -81,7 +81,7 @@ pub(super) enum Comparison {
 }
 
 impl Comparison {
-    fn holds(self, left: &Value, right: &Value) -> bool {
+    fn is_satisfied(self, left: &Value, right: &Value) -> bool {
         use Comparison::{AtLeast, AtMost, Equal, Less, More, NotEqual};
         match (left, right) {
             (Value::Number(left), Value::Number(right)) => match self {
@@ -104,21 +104,22 @@ pub(super) enum Condition {
     Compared(Field, Comparison, Value),
     OneOf(Field, Vec<Value>),
     IsNull(Field),
-    IsThere(Field),
+    IsPresent(Field),
 }
 
 impl Condition {
-    pub(super) fn holds(&self, thread: &AskingThread) -> bool {
+    pub(super) fn is_satisfied(&self, thread: &ThreadContext) -> bool {
         match self {
             Condition::Compared(field, comparison, value) => {
-                field.of(thread).is_some_and(|own| comparison.holds(&own, value))
+                field.value_of(thread).is_some_and(|own| comparison.is_satisfied(&own, value))
             }
             Condition::OneOf(field, values) => {
-                let is_one = |own: Value| values.iter().any(|value| Comparison::Equal.holds(&own, value));
-                field.of(thread).is_some_and(is_one)
+                let is_one =
+                    |own: Value| values.iter().any(|value| Comparison::Equal.is_satisfied(&own, value));
+                field.value_of(thread).is_some_and(is_one)
             }
-            Condition::IsNull(field) => field.of(thread).is_none(),
-            Condition::IsThere(field) => field.of(thread).is_some(),
+            Condition::IsNull(field) => field.value_of(thread).is_none(),
+            Condition::IsPresent(field) => field.value_of(thread).is_some(),
         }
     }
 }

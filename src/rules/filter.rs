@@ -1,8 +1,8 @@
 //! A filter of threads, with the conditions that rules have after `where`.
 
 use super::condition::Condition;
-use super::grammar::{self, Problem};
-use super::thread::AskingThread;
+use super::grammar::{self, RuleError};
+use super::thread::ThreadContext;
 
 /// Conditions that a thread must all meet.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,13 +13,13 @@ impl Filter {
     ///
     /// # Errors
     /// Returns the first problem and its column.
-    pub fn parse(text: &str) -> Result<Filter, Problem> {
-        grammar::conditions(text).map(Filter)
+    pub fn parse(text: &str) -> Result<Filter, RuleError> {
+        grammar::parse_conditions(text).map(Filter)
     }
 
     /// Returns whether a thread meets all conditions.
-    pub fn means(&self, thread: &AskingThread) -> bool {
-        self.0.iter().all(|condition| condition.holds(thread))
+    pub fn matches(&self, thread: &ThreadContext) -> bool {
+        self.0.iter().all(|condition| condition.is_satisfied(thread))
     }
 }
 
@@ -28,7 +28,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_filter_is_what_a_rule_says_after_where() {
+    fn filter_accepts_the_conditions_of_rules() {
         assert!(Filter::parse("group = E2 and asked is null and seats >= 1_000").is_ok());
         for (text, column, part) in [
             ("", 1, "example: seats >= 500"),

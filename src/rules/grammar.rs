@@ -1,15 +1,15 @@
 //! The grammar of rules (docs/interfaces/rules.md#grammar).
 
 use super::condition::{Comparison, Condition, FIELDS, Field, Value};
-use super::thread::AskingThread;
-use novamind_base::nearest;
+use super::thread::ThreadContext;
+use novamind_base::similar_names;
 use novamind_session::identifiers::Plan;
 
-const MOST_LINES: usize = 3;
+const MAX_OFFER_LINES: usize = 3;
 /// Enterprise groups that every run knows. Discovered ones start with `D_E`.
-const FIRST_GROUPS: [&str; 3] = ["E1", "E2", "E3"];
+const INITIAL_GROUPS: [&str; 3] = ["E1", "E2", "E3"];
 /// Kinds of threads that can wait for an answer.
-const KINDS: [&str; 4] = ["new_lead", "churn_prevention", "plan_change", "renegotiation"];
+const THREAD_TYPES: [&str; 4] = ["new_lead", "churn_prevention", "plan_change", "renegotiation"];
 
 /// A rule: conditions and an action.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,8 +21,8 @@ pub struct Rule {
 }
 
 impl Rule {
-    pub(super) fn means(&self, thread: &AskingThread) -> bool {
-        self.conditions.iter().all(|condition| condition.holds(thread))
+    pub(super) fn matches(&self, thread: &ThreadContext) -> bool {
+        self.conditions.iter().all(|condition| condition.is_satisfied(thread))
     }
 }
 
@@ -50,7 +50,7 @@ pub(super) enum Price {
 
 /// A problem of rules and its column.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Problem {
+pub struct RuleError {
     /// Description, with similar names.
     pub text: String,
     /// Column in characters, from 1.
@@ -61,52 +61,52 @@ pub struct Problem {
 ///
 /// # Errors
 /// Returns the first problem and its column.
-pub fn parse(text: &str) -> Result<Vec<Rule>, Problem> {
-    let tokens = tokens(text)?;
-    let mut reader = Reader { text, tokens: &tokens, at: 0 };
+pub fn parse(text: &str) -> Result<Vec<Rule>, RuleError> {
+    let tokens = tokenize(text)?;
+    let mut reader = RuleParser { text, tokens: &tokens, at: 0 };
     let mut rules = Vec::new();
     loop {
-        while reader.take(";") {}
+        while reader.accept(";") {}
         if reader.is_at_end() {
             break;
         }
-        rules.push(reader.rule()?);
-        if !reader.is_at_end() && !reader.take(";") {
-            return Err(reader.problem("the rule ends here: separate rules with ;"));
+        rules.push(reader.parse_rule()?);
+        if !reader.is_at_end() && !reader.accept(";") {
+            return Err(reader.error_here("the rule ends here: separate rules with ;"));
         }
     }
     match rules.is_empty() {
-        true => Err(reader.problem("a rule is expected, for example offer where asked is null: B 85")),
+        true => Err(reader.error_here("a rule is expected, for example offer where asked is null: B 85")),
         false => Ok(rules),
     }
 }
 
 /// Parses conditions without a rule, as they occur after `where`.
-pub(super) fn conditions(text: &str) -> Result<Vec<Condition>, Problem> {
-    let tokens = tokens(text)?;
-    let mut reader = Reader { text, tokens: &tokens, at: 0 };
+pub(super) fn parse_conditions(text: &str) -> Result<Vec<Condition>, RuleError> {
+    let tokens = tokenize(text)?;
+    let mut reader = RuleParser { text, tokens: &tokens, at: 0 };
     if reader.is_at_end() {
-        return Err(reader.problem("a condition is missing, example: seats >= 500"));
+        return Err(reader.error_here("a condition is missing, example: seats >= 500"));
     }
-    let conditions = reader.joined()?;
+    let conditions = reader.parse_joined_conditions()?;
     match reader.is_at_end() {
         true => Ok(conditions),
-        false => Err(reader.problem("the conditions end here: join conditions with and")),
+        false => Err(reader.error_here("the conditions end here: join conditions with and")),
     }
 }
 
 #[derive(Debug, Clone, PartialEq)]
 struct Token {
     text: String,
-    from: usize,
-    to: usize,
+    start: usize,
+    end: usize,
 }
 
 fn column(text: &str, at: usize) -> usize {
     text[..at].chars().count() + 1
 }
 
-fn tokens(text: &str) -> Result<Vec<Token>, Problem> {
+fn tokenize(text: &str) -> Result<Vec<Token>, RuleError> {
     let mut tokens = Vec::new();
     let mut at = 0;
     while let Some(letter) = text[at..].chars().next() {
@@ -122,7 +122,7 @@ fn tokens(text: &str) -> Result<Vec<Token>, Problem> {
                 Some(end) => end + 2,
                 None => {
                     let text_of = "the quotation mark is not closed".to_owned();
-                    return Err(Problem { text: text_of, column: column(text, at) });
+                    return Err(RuleError { text: text_of, column: column(text, at) });
                 }
             },
             _ if is_word(letter) => rest.find(|next| !is_word(next)).unwrap_or(rest.len()),
@@ -133,26 +133,26 @@ fn tokens(text: &str) -> Result<Vec<Token>, Problem> {
                     None if "<>=:,*()-".contains(letter) => 1,
                     None => {
                         let text_of = format!("unexpected character {letter}");
-                        return Err(Problem { text: text_of, column: column(text, at) });
+                        return Err(RuleError { text: text_of, column: column(text, at) });
                     }
                 }
             }
         };
         let own = &rest[..length];
         let said = if own == "\n" { ";" } else { own.trim_matches(['"', '\'']) };
-        tokens.push(Token { text: said.to_owned(), from: at, to: at + length });
+        tokens.push(Token { text: said.to_owned(), start: at, end: at + length });
         at += length;
     }
     Ok(tokens)
 }
 
-struct Reader<'a> {
+struct RuleParser<'a> {
     text: &'a str,
     tokens: &'a [Token],
     at: usize,
 }
 
-impl Reader<'_> {
+impl RuleParser<'_> {
     fn peek(&self) -> Option<&str> {
         self.tokens.get(self.at).map(|token| token.text.as_str())
     }
@@ -161,7 +161,7 @@ impl Reader<'_> {
         self.at == self.tokens.len()
     }
 
-    fn take(&mut self, word: &str) -> bool {
+    fn accept(&mut self, word: &str) -> bool {
         let found = self.peek().is_some_and(|own| own.eq_ignore_ascii_case(word));
         self.at += usize::from(found);
         found
@@ -173,59 +173,59 @@ impl Reader<'_> {
         Some(own)
     }
 
-    fn problem(&self, text: impl Into<String>) -> Problem {
-        let at = self.tokens.get(self.at).map_or(self.text.len(), |token| token.from);
-        Problem { text: text.into(), column: column(self.text, at) }
+    fn error_here(&self, text: impl Into<String>) -> RuleError {
+        let at = self.tokens.get(self.at).map_or(self.text.len(), |token| token.start);
+        RuleError { text: text.into(), column: column(self.text, at) }
     }
 
     /// Returns a problem with the previous word.
-    fn wrong(&mut self, text: impl Into<String>) -> Problem {
+    fn error_at_previous(&mut self, text: impl Into<String>) -> RuleError {
         self.at -= 1;
-        self.problem(text)
+        self.error_here(text)
     }
 
-    fn rule(&mut self) -> Result<Rule, Problem> {
+    fn parse_rule(&mut self) -> Result<Rule, RuleError> {
         let from = self.at;
         let action = self.word().unwrap_or_default().to_lowercase();
         let known = ["offer", "accept", "reject"];
         if !known.contains(&action.as_str()) {
-            let near = or_known(nearest(&action, known.into_iter()), &known);
-            return Err(self.wrong(format!("unknown action {action}; {near}")));
+            let near = suggestion(similar_names(&action, known.into_iter()), &known);
+            return Err(self.error_at_previous(format!("unknown action {action}; {near}")));
         }
-        let conditions = self.conditions(&action)?;
+        let conditions = self.parse_where(&action)?;
         let action = match action.as_str() {
-            "offer" => Action::Offer(self.lines()?),
+            "offer" => Action::Offer(self.parse_offer_lines()?),
             "accept" => Action::Accept,
             _ => Action::Reject,
         };
         let (first, last) = (&self.tokens[from], &self.tokens[self.at - 1]);
-        Ok(Rule { text: self.text[first.from..last.to].to_owned(), conditions, action })
+        Ok(Rule { text: self.text[first.start..last.end].to_owned(), conditions, action })
     }
 
-    fn conditions(&mut self, action: &str) -> Result<Vec<Condition>, Problem> {
-        if self.take("rest") || self.take("all") {
+    fn parse_where(&mut self, action: &str) -> Result<Vec<Condition>, RuleError> {
+        if self.accept("rest") || self.accept("all") {
             return Ok(Vec::new());
         }
-        let named = self.take("where");
+        let named = self.accept("where");
         match self.peek() {
             None | Some(";") => {
-                return Err(self.problem(format!("{action} needs a condition, or rest for all others")));
+                return Err(self.error_here(format!("{action} needs a condition, or rest for all others")));
             }
             Some(":") if !named => {
-                return Err(self.problem("the condition is missing: use where …, or rest for all others"));
+                return Err(self.error_here("the condition is missing: use where …, or rest for all others"));
             }
             _ => {}
         }
-        self.joined()
+        self.parse_joined_conditions()
     }
 
-    fn joined(&mut self) -> Result<Vec<Condition>, Problem> {
-        let mut conditions = vec![self.condition()?];
-        while self.take("and") {
-            conditions.push(self.condition()?);
+    fn parse_joined_conditions(&mut self) -> Result<Vec<Condition>, RuleError> {
+        let mut conditions = vec![self.parse_condition()?];
+        while self.accept("and") {
+            conditions.push(self.parse_condition()?);
         }
         match self.peek() {
-            Some(word) if word.eq_ignore_ascii_case("or") => Err(self.problem(
+            Some(word) if word.eq_ignore_ascii_case("or") => Err(self.error_here(
                 "or is not supported: conditions are joined with and; use in (…) for one of several values, and another \
                  rule for other threads",
             )),
@@ -233,48 +233,51 @@ impl Reader<'_> {
         }
     }
 
-    fn condition(&mut self) -> Result<Condition, Problem> {
-        let Some(name) = self.word() else { return Err(self.problem("a condition is missing")) };
+    fn parse_condition(&mut self) -> Result<Condition, RuleError> {
+        let Some(name) = self.word() else { return Err(self.error_here("a condition is missing")) };
         let lower = name.to_lowercase();
         let Some((_, field)) = FIELDS.into_iter().find(|(known, _)| *known == lower) else {
             let names: Vec<&str> = FIELDS.iter().map(|(name, _)| *name).collect();
-            let near = or_known(nearest(&lower, names.iter().copied()), &names);
-            return Err(self.wrong(format!("unknown field {name}; {near}")));
+            let near = suggestion(similar_names(&lower, names.iter().copied()), &names);
+            return Err(self.error_at_previous(format!("unknown field {name}; {near}")));
         };
-        if self.take("is") {
-            let there = self.take("not");
-            if !self.take("null") {
-                return Err(self.problem("null is expected: is null or is not null"));
+        if self.accept("is") {
+            let there = self.accept("not");
+            if !self.accept("null") {
+                return Err(self.error_here("null is expected: is null or is not null"));
             }
-            return Ok(if there { Condition::IsThere(field) } else { Condition::IsNull(field) });
+            return Ok(if there { Condition::IsPresent(field) } else { Condition::IsNull(field) });
         }
-        if self.take("in") {
-            return self.one_of(field);
+        if self.accept("in") {
+            return self.parse_list_condition(field);
         }
-        let comparison = self.comparison(field)?;
-        if self.take("null") {
+        let comparison = self.parse_comparison(field)?;
+        if self.accept("null") {
             let is = if comparison == Comparison::NotEqual { "is not" } else { "is" };
-            return Err(self.wrong(format!("null cannot be compared: write {lower} {is} null")));
+            return Err(self.error_at_previous(format!("null cannot be compared: write {lower} {is} null")));
         }
-        let value = self.value(field)?;
-        self.refuse_comma_in_number()?;
+        let value = self.parse_value(field)?;
+        self.reject_comma_in_number()?;
         Ok(Condition::Compared(field, comparison, value))
     }
 
     /// Rejects `1,000`, because the comma would separate two numbers.
-    fn refuse_comma_in_number(&mut self) -> Result<(), Problem> {
+    fn reject_comma_in_number(&mut self) -> Result<(), RuleError> {
         let [number, comma, more, ..] = &self.tokens[self.at.saturating_sub(1)..] else { return Ok(()) };
         let digits = |token: &Token| token.text.chars().all(|letter| letter.is_ascii_digit());
-        let adjacent = number.to == comma.from && comma.to == more.from;
+        let adjacent = number.end == comma.start && comma.end == more.start;
         if comma.text != "," || !adjacent || !digits(number) || !digits(more) {
             return Ok(());
         }
         let written = format!("{},{}", number.text, more.text);
         let plain = format!("{}{}", number.text, more.text);
-        Err(self.wrong(format!("{written} has a comma: write {plain} or {}_{}", number.text, more.text)))
+        Err(self.error_at_previous(format!(
+            "{written} has a comma: write {plain} or {}_{}",
+            number.text, more.text
+        )))
     }
 
-    fn comparison(&mut self, field: Field) -> Result<Comparison, Problem> {
+    fn parse_comparison(&mut self, field: Field) -> Result<Comparison, RuleError> {
         use Comparison::{AtLeast, AtMost, Equal, Less, More, NotEqual};
         let comparison = match self.peek() {
             Some("=" | "==") => Equal,
@@ -283,108 +286,110 @@ impl Reader<'_> {
             Some("<=") => AtMost,
             Some(">") => More,
             Some(">=") => AtLeast,
-            _ => return Err(self.problem("a comparison is expected: = != < <= > >=, in, is null")),
+            _ => return Err(self.error_here("a comparison is expected: = != < <= > >=, in, is null")),
         };
         if field.is_word() && !matches!(comparison, Equal | NotEqual) {
-            return Err(self.problem("words can only be compared with = or !="));
+            return Err(self.error_here("words can only be compared with = or !="));
         }
         self.at += 1;
         Ok(comparison)
     }
 
-    fn one_of(&mut self, field: Field) -> Result<Condition, Problem> {
-        if !self.take("(") {
-            return Err(self.problem("a list is expected, for example in (E1, E2)"));
+    fn parse_list_condition(&mut self, field: Field) -> Result<Condition, RuleError> {
+        if !self.accept("(") {
+            return Err(self.error_here("a list is expected, for example in (E1, E2)"));
         }
-        let mut values = vec![self.value(field)?];
-        while self.take(",") {
-            values.push(self.value(field)?);
+        let mut values = vec![self.parse_value(field)?];
+        while self.accept(",") {
+            values.push(self.parse_value(field)?);
         }
-        if !self.take(")") {
-            return Err(self.problem("the bracket of the list is not closed"));
+        if !self.accept(")") {
+            return Err(self.error_here("the bracket of the list is not closed"));
         }
         Ok(Condition::OneOf(field, values))
     }
 
-    fn value(&mut self, field: Field) -> Result<Value, Problem> {
+    fn parse_value(&mut self, field: Field) -> Result<Value, RuleError> {
         if !field.is_word() {
-            return Ok(Value::Number(self.number()?));
+            return Ok(Value::Number(self.parse_number()?));
         }
-        let Some(word) = self.word() else { return Err(self.problem("a value is missing")) };
+        let Some(word) = self.word() else { return Err(self.error_here("a value is missing")) };
         // Does not reveal whether an undiscovered group exists.
         let word = if field == Field::Group { word.to_uppercase() } else { word };
         if word.starts_with("D_E") {
             return Ok(Value::Word(word));
         }
         let known: Vec<&str> = match field {
-            Field::Group => FIRST_GROUPS.to_vec(),
+            Field::Group => INITIAL_GROUPS.to_vec(),
             Field::AskedPlan => Plan::ALL.map(Plan::id).to_vec(),
-            _ => KINDS.to_vec(),
+            _ => THREAD_TYPES.to_vec(),
         };
         match known.iter().find(|known| known.eq_ignore_ascii_case(&word)) {
             Some(known) => Ok(Value::Word((*known).to_owned())),
             None => {
-                let near = or_known(nearest(&word, known.iter().copied()), &known);
-                Err(self.wrong(format!("unknown value {word}; {near}")))
+                let near = suggestion(similar_names(&word, known.iter().copied()), &known);
+                Err(self.error_at_previous(format!("unknown value {word}; {near}")))
             }
         }
     }
 
-    fn number(&mut self) -> Result<f64, Problem> {
-        let Some(word) = self.word() else { return Err(self.problem("a number is missing")) };
+    fn parse_number(&mut self) -> Result<f64, RuleError> {
+        let Some(word) = self.word() else { return Err(self.error_here("a number is missing")) };
         match word.replace('_', "").parse::<f64>().ok().filter(|number| number.is_finite()) {
             Some(number) => Ok(number),
-            None => Err(self.wrong(format!("a number is expected, not {word}"))),
+            None => Err(self.error_at_previous(format!("a number is expected, not {word}"))),
         }
     }
 
-    fn lines(&mut self) -> Result<Vec<OfferLine>, Problem> {
-        if !self.take(":") {
-            return Err(self.problem("a colon and the offer are missing, for example : B 85"));
+    fn parse_offer_lines(&mut self) -> Result<Vec<OfferLine>, RuleError> {
+        if !self.accept(":") {
+            return Err(self.error_here("a colon and the offer are missing, for example : B 85"));
         }
-        let mut lines = vec![self.line()?];
-        while self.take(",") {
-            if lines.len() == MOST_LINES {
-                return Err(self.problem(format!("an offer has at most {MOST_LINES} plans")));
+        let mut lines = vec![self.parse_offer_line()?];
+        while self.accept(",") {
+            if lines.len() == MAX_OFFER_LINES {
+                return Err(self.error_here(format!("an offer has at most {MAX_OFFER_LINES} plans")));
             }
-            lines.push(self.line()?);
+            lines.push(self.parse_offer_line()?);
         }
         Ok(lines)
     }
 
-    fn line(&mut self) -> Result<OfferLine, Problem> {
-        let Some(word) = self.word() else { return Err(self.problem("a plan and a price are missing")) };
+    fn parse_offer_line(&mut self) -> Result<OfferLine, RuleError> {
+        let Some(word) = self.word() else { return Err(self.error_here("a plan and a price are missing")) };
         let plan = match Plan::parse(&word.to_uppercase()) {
             Some(plan) => Some(plan),
             None if word.eq_ignore_ascii_case("asked_plan") => None,
-            None => return Err(self.wrong(format!("unknown plan {word}: use A, B, C or asked_plan"))),
+            None => {
+                return Err(self.error_at_previous(format!("unknown plan {word}: use A, B, C or asked_plan")));
+            }
         };
-        let price = self.price()?;
-        self.refuse_comma_in_number()?;
+        let price = self.parse_price()?;
+        self.reject_comma_in_number()?;
         Ok(OfferLine { plan, price })
     }
 
-    fn price(&mut self) -> Result<Price, Problem> {
+    fn parse_price(&mut self) -> Result<Price, RuleError> {
         const NAMES: [&str; 3] = ["asked", "list", "last_offer"];
         let Some(word) = self.peek().map(str::to_lowercase) else {
-            return Err(self.problem("a price is missing"));
+            return Err(self.error_here("a price is missing"));
         };
         if !word.starts_with(char::is_alphabetic) {
-            let price = self.number()?;
+            let price = self.parse_number()?;
             return if price > 0.0 {
                 Ok(Price::Dollars(price))
             } else {
-                Err(self.wrong("the price must be above 0"))
+                Err(self.error_at_previous("the price must be above 0"))
             };
         }
         if !NAMES.contains(&word.as_str()) {
-            let near = or_known(nearest(&word, NAMES.into_iter()), &NAMES);
-            return Err(self.problem(format!("unknown price {word}: use dollars, or {near}")));
+            let near = suggestion(similar_names(&word, NAMES.into_iter()), &NAMES);
+            return Err(self.error_here(format!("unknown price {word}: use dollars, or {near}")));
         }
         self.at += 1;
-        let factor = if self.take("*") { self.number()? } else { 1.0 };
+        let factor = if self.accept("*") { self.parse_number()? } else { 1.0 };
         if factor <= 0.0 {
-            return Err(self.wrong("the factor must be above 0"));
+            return Err(self.error_at_previous("the factor must be above 0"));
         }
         Ok(match word.as_str() {
             "asked" => Price::Asked(factor),
@@ -395,7 +400,7 @@ impl Reader<'_> {
 }
 
 /// Suggests similar names, or lists the known ones.
-fn or_known(near: Vec<&str>, known: &[&str]) -> String {
+fn suggestion(near: Vec<&str>, known: &[&str]) -> String {
     match near.is_empty() {
         true => format!("known: {}", known.join(", ")),
         false => format!("did you mean {}?", near.join(" or ")),
@@ -409,7 +414,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rules_are_read_with_their_words() {
+    fn parse_accepts_all_rule_forms() {
         let text = "offer where group = E2 and asked is null: b $85, asked_plan asked*0.95, C list * 0.9;\n\
                     accept asked >= 18\nreject rest";
         let rules = parse(text).expect("rules");
@@ -429,7 +434,7 @@ mod tests {
     }
 
     #[test]
-    fn problems_name_their_column_and_what_is_near() {
+    fn errors_name_column_and_similar_words() {
         for (text, column, part) in [
             ("", 1, "a rule is expected"),
             ("ofer rest: B 3", 1, "did you mean offer"),
@@ -465,7 +470,7 @@ mod tests {
     }
 
     #[test]
-    fn groups_that_nobody_found_are_not_named() {
+    fn suggestions_omit_undiscovered_groups() {
         let problem = parse("accept group = D_S0").expect_err("not an enterprise group");
         assert!(problem.text.ends_with("known: E1, E2, E3"), "{problem:?}");
         for group in ["D_E01", "d_e99"] {

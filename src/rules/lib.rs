@@ -10,12 +10,12 @@ mod condition;
 mod filter;
 mod grammar;
 mod offer_row;
+mod seat_usage;
 mod thread;
-mod usage;
 
-pub use batch::{Batch, RuledThread, answers_to_companies};
+pub use batch::{RuleBatch, RuleOutcome, calls_for_waiting_threads};
 pub use filter::Filter;
-pub use grammar::{Problem, Rule, parse};
-pub use offer_row::offer_of;
-pub use thread::{AskingThread, LAST_LETTERS, Letters, Market, plan_in};
-pub use usage::{SEAT_USAGE, SeatUsage};
+pub use grammar::{Rule, RuleError, parse};
+pub use offer_row::parse_offer;
+pub use seat_usage::{SEAT_USAGE_SQL, SeatUsage};
+pub use thread::{LAST_MESSAGES_SQL, PlanEconomics, RequestedPlans, ThreadContext, first_plan_in};

@@ -6,7 +6,7 @@ use novamind_session::identifiers::Plan;
 
 /// Returns the plans and prices that the player offered, and the price that an enterprise asked for, in dollars a
 /// month and seat, from the JSON of a row.
-pub fn offer_of(json: &str) -> (Vec<(Plan, f64)>, Option<f64>) {
+pub fn parse_offer(json: &str) -> (Vec<(Plan, f64)>, Option<f64>) {
     let value: Value = serde_json::from_str(json).unwrap_or(Value::Null);
     let one = |offer: &Value| {
         Some((Plan::parse(offer.get("plan")?.as_str()?)?, offer.get("price_per_seat")?.as_f64()?))
@@ -22,9 +22,9 @@ mod tests {
     #[test]
     fn offers_are_read_from_their_json() {
         let two = r#"[{"plan": "A", "price_per_seat": 18.5, "contract_months": 1}, {"plan": "Z", "price_per_seat": 1}]"#;
-        assert_eq!(offer_of(two), (vec![(Plan::A, 18.5)], None));
-        assert_eq!(offer_of(r#"{"price": 27.34}"#), (vec![], Some(27.34)));
-        assert_eq!(offer_of("{}"), (vec![], None));
-        assert_eq!(offer_of("broken"), (vec![], None));
+        assert_eq!(parse_offer(two), (vec![(Plan::A, 18.5)], None));
+        assert_eq!(parse_offer(r#"{"price": 27.34}"#), (vec![], Some(27.34)));
+        assert_eq!(parse_offer("{}"), (vec![], None));
+        assert_eq!(parse_offer("broken"), (vec![], None));
     }
 }

@@ -4,35 +4,35 @@ use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
 
-use super::usage::{SEAT_USAGE, SeatUsage};
-use novamind_base::notation::json_number;
-use novamind_database::{Rows, number_at, text_at};
+use super::seat_usage::{SEAT_USAGE_SQL, SeatUsage};
+use novamind_base::formatting::json_number;
+use novamind_database::{QueryResult, number_at, text_at};
 use novamind_session::identifiers::{Group, Plan};
-use novamind_session::{CompanyNames, Session, WaitingThread};
-use novamind_tools::{Refusal, ToolId};
+use novamind_session::{EnterpriseNames, Session, WaitingThread};
+use novamind_tools::{Rejection, ToolId};
 
 /// Query for the last messages of enterprises. A thread ends a week after its last message.
-pub const LAST_LETTERS: &str = include_str!("../../assets/readings/last_letters.sql");
+pub const LAST_MESSAGES_SQL: &str = include_str!("../../assets/readings/last_letters.sql");
 
-const MONTH: f64 = 30.0;
+const DAYS_PER_MONTH: f64 = 30.0;
 
 /// The plan that enterprises named in their latest message, by thread: with a price, or as a wish.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Letters(BTreeMap<u32, Plan>);
+pub struct RequestedPlans(BTreeMap<u32, Plan>);
 
-impl Letters {
-    /// Reads the rows of [`LAST_LETTERS`].
-    pub fn read(rows: &Rows) -> Letters {
+impl RequestedPlans {
+    /// Reads the rows of [`LAST_MESSAGES_SQL`].
+    pub fn from_rows(rows: &QueryResult) -> RequestedPlans {
         let plan = |row: &Vec<novamind_database::Cell>| {
             let plan = other_plan_in(text_at(row, 1), Plan::parse(text_at(row, 2)))?;
             Some((number_at(row, 0) as u32, plan))
         };
-        Letters(rows.rows.iter().filter_map(plan).collect())
+        RequestedPlans(rows.rows.iter().filter_map(plan).collect())
     }
 }
 
 /// Returns the first plan that a text names.
-pub fn plan_in(text: &str) -> Option<Plan> {
+pub fn first_plan_in(text: &str) -> Option<Plan> {
     plans_in(text).first().copied()
 }
 
@@ -54,9 +54,9 @@ fn plans_in(text: &str) -> Vec<Plan> {
 
 /// Plans on sale and the usage of a seat.
 #[derive(Debug, Clone, Default)]
-pub struct Market {
+pub struct PlanEconomics {
     /// List prices, dollars a month.
-    pub lists: [f64; 3],
+    pub list_prices: [f64; 3],
     /// Quotas, units a day and customer.
     pub quotas: [f64; 3],
     /// Compute cost, dollars a unit.
@@ -64,60 +64,60 @@ pub struct Market {
     /// Measured usage.
     pub usage: SeatUsage,
     /// Usage estimated by the last study, units a day and seat.
-    pub studied: BTreeMap<Group, f64>,
+    pub estimated_usage: BTreeMap<Group, f64>,
 }
 
-impl Market {
+impl PlanEconomics {
     /// Returns the plans and usage of a run today.
-    pub fn of(session: &Session, usage: SeatUsage) -> Market {
+    pub fn from_session(session: &Session, usage: SeatUsage) -> PlanEconomics {
         let (core, terms) = (&session.settings().core, session.company().tool_limits());
         let unit_cost = |plan: Plan| {
             let model = terms.models.iter().find(|model| model.tier == core.tiers[plan]);
             model.map_or(0.0, |model| model.unit_cost)
         };
         let studied = session.company().estimates().into_iter().map(|own| (own.group, own.usage)).collect();
-        Market {
-            lists: Plan::ALL.map(|plan| core.prices[plan]),
+        PlanEconomics {
+            list_prices: Plan::ALL.map(|plan| core.prices[plan]),
             quotas: Plan::ALL.map(|plan| core.quotas[plan].units()),
             unit_costs: Plan::ALL.map(unit_cost),
             usage,
-            studied,
+            estimated_usage: studied,
         }
     }
 
     /// Returns the usage of all seats of an enterprise, units a day.
-    pub fn wanted(&self, group: &str, seats: u32) -> Option<f64> {
-        let studied = || Group::parse(group).and_then(|group| self.studied.get(&group)).copied();
-        self.usage.measured(group).or_else(studied).map(|units| units * f64::from(seats))
+    pub fn required_usage(&self, group: &str, seats: u32) -> Option<f64> {
+        let studied = || Group::parse(group).and_then(|group| self.estimated_usage.get(&group)).copied();
+        self.usage.measured_usage(group).or_else(studied).map(|units| units * f64::from(seats))
     }
 
     /// Returns the compute cost of an enterprise on a plan, dollars a month. All its seats share one quota.
-    pub fn compute(&self, plan: Plan, wanted: f64) -> f64 {
-        wanted.min(self.quotas[plan as usize]) * MONTH * self.unit_costs[plan as usize]
+    pub fn compute_cost(&self, plan: Plan, wanted: f64) -> f64 {
+        wanted.min(self.quotas[plan as usize]) * DAYS_PER_MONTH * self.unit_costs[plan as usize]
     }
 }
 
 /// A waiting thread with all fields that rules use.
 #[derive(Debug, Clone, PartialEq)]
-pub struct AskingThread {
+pub struct ThreadContext {
     /// The thread in the session.
     pub waiting: WaitingThread,
     /// Plan that the enterprise named with its price, or whose price it asked for.
     pub asked_plan: Option<Plan>,
     /// Usage of all its seats, units a day: the quota that covers them.
-    pub needed_quota: Option<f64>,
+    pub required_quota: Option<f64>,
 }
 
-impl AskingThread {
+impl ThreadContext {
     /// Collects the fields of a waiting thread.
-    pub fn of(waiting: &WaitingThread, letters: &Letters, market: &Market) -> AskingThread {
+    pub fn new(waiting: &WaitingThread, letters: &RequestedPlans, market: &PlanEconomics) -> ThreadContext {
         let only = || match waiting.last_offer.as_slice() {
             [(plan, _)] if waiting.asked.is_some() => Some(*plan),
             _ => None,
         };
-        AskingThread {
+        ThreadContext {
             asked_plan: letters.0.get(&waiting.thread).copied().or_else(only),
-            needed_quota: market.wanted(waiting.group, waiting.seats),
+            required_quota: market.required_usage(waiting.group, waiting.seats),
             waiting: waiting.clone(),
         }
     }
@@ -126,31 +126,31 @@ impl AskingThread {
     ///
     /// # Errors
     /// Returns an error if the database cannot be read.
-    pub fn all(session: &mut Session) -> Result<(Vec<AskingThread>, Market), Refusal> {
-        let letters = Letters::read(&session.look_into_database(LAST_LETTERS)?);
-        let usage = SeatUsage::read(&session.look_into_database(SEAT_USAGE)?);
-        let market = Market::of(session, usage);
+    pub fn read_all(session: &mut Session) -> Result<(Vec<ThreadContext>, PlanEconomics), Rejection> {
+        let letters = RequestedPlans::from_rows(&session.query_unrecorded(LAST_MESSAGES_SQL)?);
+        let usage = SeatUsage::from_rows(&session.query_unrecorded(SEAT_USAGE_SQL)?);
+        let market = PlanEconomics::from_session(session, usage);
         let waiting = session.company().observe().waiting;
-        let threads = waiting.iter().map(|own| AskingThread::of(own, &letters, &market));
+        let threads = waiting.iter().map(|own| ThreadContext::new(own, &letters, &market));
         Ok((threads.collect(), market))
     }
 
     /// Returns the fields as JSON, with the name of the enterprise.
-    pub fn row(&self, names: &CompanyNames) -> Value {
-        let mut row = json!({ "company": names.of(self.waiting.customer) });
+    pub fn to_json(&self, names: &EnterpriseNames) -> Value {
+        let mut row = json!({ "company": names.name(self.waiting.customer) });
         if let (Value::Object(row), Value::Object(fields)) = (&mut row, json!(self.waiting)) {
             row.extend(fields);
             row.insert("asked_plan".to_owned(), json!(self.asked_plan.map(Plan::id)));
             row.insert(
                 "needed_quota".to_owned(),
-                json!(self.needed_quota.map(|units| json_number(units.round()))),
+                json!(self.required_quota.map(|units| json_number(units.round()))),
             );
         }
         row
     }
 }
 
-pub(super) const TOOLS: [ToolId; 2] = [ToolId::SendEnterpriseDeal, ToolId::RejectEnterpriseDeal];
+pub(super) const RULE_TOOLS: [ToolId; 2] = [ToolId::SendEnterpriseDeal, ToolId::RejectEnterpriseDeal];
 
 #[cfg(test)]
 mod tests {
@@ -166,12 +166,12 @@ mod tests {
             ("a plan", None),
             ("plan Bravo", None),
         ] {
-            assert_eq!(plan_in(text), plan, "{text}");
+            assert_eq!(first_plan_in(text), plan, "{text}");
         }
     }
 
     #[test]
-    fn a_wish_names_the_plan_that_the_company_does_not_have() {
+    fn request_names_a_plan_other_than_the_current_one() {
         for (text, present, plan) in [
             ("We think of plan A rather than plan B for our 78 seats.", Some(Plan::B), Some(Plan::A)),
             ("Our 210 seats do not need all of plan C; what about plan B?", Some(Plan::C), Some(Plan::B)),

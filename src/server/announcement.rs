@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use novamind_record::error::RunError;
-use novamind_record::files::write_whole;
+use novamind_record::files::write_atomically;
 use novamind_record::folder::lock::SERVER_FILE;
 
 /// The address of a served run.
@@ -29,13 +29,13 @@ impl Announcement {
     ///
     /// # Errors
     /// The folder cannot be written.
-    pub fn put_up(&self, folder: &Path) -> Result<(), RunError> {
+    pub fn write(&self, folder: &Path) -> Result<(), RunError> {
         let text = serde_json::to_string(self).unwrap_or_default() + "\n";
-        write_whole(&folder.join(SERVER_FILE), text.as_bytes())
+        write_atomically(&folder.join(SERVER_FILE), text.as_bytes())
     }
 
     /// Removes the announcement from a run folder.
-    pub fn take_down(folder: &Path) {
+    pub fn remove(folder: &Path) {
         // Readers of a leftover file check the port first.
         let _ = std::fs::remove_file(folder.join(SERVER_FILE));
     }

@@ -2,22 +2,22 @@
 
 use serde_json::Value;
 
-use super::transcript::{ForeignCall, ForeignTranscript, own_tool};
+use super::transcript::{ForeignCall, ForeignTranscript, tool_name};
 use super::zip::ZipArchive;
 
 /// How to convert an unsupported log.
-const CONVERT: &str =
+const CONVERT_HELP: &str =
     "`inspect log convert --to json --output-dir FOLDER LOG` writes it as JSON, which can be imported";
 
 /// Reads the calls of an `.eval` archive.
 ///
 /// # Errors
 /// It is damaged, or does not have exactly one sample with calls of tools of this program.
-pub(super) fn of_archive(bytes: &[u8], limit: u64) -> Result<ForeignTranscript, String> {
+pub(super) fn parse_archive(bytes: &[u8], limit: u64) -> Result<ForeignTranscript, String> {
     let archive =
         ZipArchive::open(bytes).ok_or("the archive has no readable directory; it may be cut short")?;
     let json = |name: &str| -> Result<Value, String> {
-        let read = archive.read(name, limit).map_err(|problem| format!("{problem}; {CONVERT}"))?;
+        let read = archive.read(name, limit).map_err(|problem| format!("{problem}; {CONVERT_HELP}"))?;
         serde_json::from_slice(&read)
             .map_err(|error| format!("{name} in the archive is not valid JSON ({error})"))
     };
@@ -30,23 +30,23 @@ pub(super) fn of_archive(bytes: &[u8], limit: u64) -> Result<ForeignTranscript, 
     names.sort_unstable();
     names.dedup();
     let samples: Vec<Value> = names.into_iter().map(json).collect::<Result<_, _>>()?;
-    of_log(&header, &samples)
+    parse_log(&header, &samples)
 }
 
 /// Reads the calls of a log in JSON.
 ///
 /// # Errors
 /// It does not have exactly one sample with calls of tools of this program.
-pub(super) fn of_json(log: &Value) -> Result<ForeignTranscript, String> {
-    of_log(log, log["samples"].as_array().map_or(&[], Vec::as_slice))
+pub(super) fn parse_json(log: &Value) -> Result<ForeignTranscript, String> {
+    parse_log(log, log["samples"].as_array().map_or(&[], Vec::as_slice))
 }
 
-fn of_log(header: &Value, samples: &[Value]) -> Result<ForeignTranscript, String> {
+fn parse_log(header: &Value, samples: &[Value]) -> Result<ForeignTranscript, String> {
     let calls: Vec<(&Value, Vec<ForeignCall>)> =
-        samples.iter().map(|sample| (sample, calls_of(sample))).collect();
+        samples.iter().map(|sample| (sample, tool_calls(sample))).collect();
     let calls: Vec<_> = calls.into_iter().filter(|(_, calls)| !calls.is_empty()).collect();
     if calls.len() > 1 {
-        let name = |sample: &Value| format!("{} (epoch {})", text(&sample["id"]), sample["epoch"]);
+        let name = |sample: &Value| format!("{} (epoch {})", text_content(&sample["id"]), sample["epoch"]);
         let names: Vec<String> = calls.iter().map(|(sample, _)| name(sample)).collect();
         return Err(format!(
             "the log has {} samples that call tools of this program: {}. Import a log of one sample",
@@ -68,33 +68,33 @@ fn of_log(header: &Value, samples: &[Value]) -> Result<ForeignTranscript, String
 }
 
 /// Returns the calls in the messages of a sample, in order.
-fn calls_of(sample: &Value) -> Vec<ForeignCall> {
+fn tool_calls(sample: &Value) -> Vec<ForeignCall> {
     let messages = sample["messages"].as_array().map_or(&[][..], Vec::as_slice);
     let mut found = Vec::new();
     for (at, message) in messages.iter().enumerate() {
         for call in message["tool_calls"].as_array().map_or(&[][..], Vec::as_slice) {
-            let Some(tool) = call["function"].as_str().and_then(own_tool) else { continue };
+            let Some(tool) = call["function"].as_str().and_then(tool_name) else { continue };
             let arguments = call["arguments"].as_object().cloned().unwrap_or_default();
-            let accepted = accepted(&messages[at + 1..], &call["id"]);
-            found.push(ForeignCall { place: at + 1, tool: tool.to_owned(), arguments, accepted });
+            let accepted = is_accepted(&messages[at + 1..], &call["id"]);
+            found.push(ForeignCall { position: at + 1, tool: tool.to_owned(), arguments, accepted });
         }
     }
     found
 }
 
 /// Returns whether the answer to a call says that the call was accepted, or `None` if it does not say.
-fn accepted(after: &[Value], id: &Value) -> Option<bool> {
+fn is_accepted(after: &[Value], id: &Value) -> Option<bool> {
     let answer = after.iter().find(|message| message["role"] == "tool" && message["tool_call_id"] == *id)?;
     if !answer["error"].is_null() {
         return Some(false);
     }
     let content = match &answer["content"] {
-        Value::Array(parts) => parts.iter().map(|part| text(&part["text"])).collect(),
-        content => text(content),
+        Value::Array(parts) => parts.iter().map(|part| text_content(&part["text"])).collect(),
+        content => text_content(content),
     };
-    super::transcript::says_accepted(&content)
+    super::transcript::is_acceptance(&content)
 }
 
-fn text(value: &Value) -> String {
+fn text_content(value: &Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }

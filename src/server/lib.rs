@@ -4,28 +4,28 @@
 //! One thread owns the session and executes requests one after the other. Network code runs next to it and never accesses
 //! `session`. Programs use the same session as people, with the same calls, rejections and record lines.
 
+mod agent_page;
 mod announcement;
-mod answering;
 mod client;
+mod current_request;
 mod http;
 mod inspect_log;
 mod mcp;
-mod not_numbers;
+mod non_finite;
 mod openapi;
-mod owner;
-mod page;
 mod remote;
 mod request;
-mod running;
+mod request_handler;
 mod schema;
 mod transcript;
+mod worker;
 mod zip;
 
+pub use agent_page::{PageContext, agent_page, write_documents};
 pub use announcement::Announcement;
 pub use client::write_client;
-pub use http::{HeldPort, HttpOptions, serve_http};
-pub use mcp::{refuse_mcp, serve_mcp};
-pub use page::{PageOf, page, write_documents};
-pub use remote::{Remote, Reply};
-pub use schema::functions;
+pub use http::{BoundPort, HttpOptions, serve_http};
+pub use mcp::{reject_mcp_client, serve_mcp};
+pub use remote::{RemoteServer, ServerResponse};
+pub use schema::function_schemas;
 pub use transcript::{ForeignCall, ForeignTranscript, PlayedTranscript};

@@ -3,10 +3,10 @@
 use serde_json::{Map, Value, json};
 
 use super::schema;
-use novamind_tools::{Numbers, ToolId};
+use novamind_tools::{ParameterNumbers, ToolId};
 
 /// Returns the description.
-pub fn document(numbers: &Numbers) -> Value {
+pub fn document(numbers: &ParameterNumbers) -> Value {
     json!({
         "openapi": "3.1.0",
         "info": {
@@ -19,46 +19,46 @@ pub fn document(numbers: &Numbers) -> Value {
     })
 }
 
-fn paths(numbers: &Numbers) -> Value {
+fn paths(numbers: &ParameterNumbers) -> Value {
     let retries = |tool: ToolId, mut body: Value| {
-        for (name, field) in schema::of_retries(tool) {
+        for (name, field) in schema::retry_fields(tool) {
             body["properties"][name] = field;
         }
         body
     };
-    let next_week = Value::Object(schema::arguments(ToolId::NextWeek.spec(), numbers));
+    let next_week = Value::Object(schema::arguments_schema(ToolId::NextWeek.spec(), numbers));
     let next_week = retries(ToolId::NextWeek, next_week);
     let script = json!({ "type": "object", "required": ["name"],
         "properties": { "name": { "type": "string" }, "content": { "type": "string" } } });
     let script = retries(ToolId::RegisterScript, script);
     let sql = json!({ "type": "object", "required": ["sql"], "properties": { "sql": { "type": "string" } } });
     json!({
-        "/health": { "get": read("Whether the server accepts requests, and the id of its run") },
+        "/health": { "get": get_operation("Whether the server accepts requests, and the id of its run") },
         "/shutdown": { "post": { "summary": "Finish pending requests and close the run",
             "responses": { "200": { "description": "success, run" } } } },
-        "/vars": { "get": read("The current day") },
-        "/dashboard": { "get": read("The dashboard of the last week, and the day") },
-        "/game-status": { "get": read("Day, cash, active subscriptions, last day, and how the run ended") },
-        "/tools": { "get": read("Every tool: arguments, effect, cost, rejections, result") },
-        "/tables": { "get": read("Every table that can be queried, and its columns") },
-        "/call": { "post": write("Call a tool", json!({ "oneOf": calls() }),
+        "/vars": { "get": get_operation("The current day") },
+        "/dashboard": { "get": get_operation("The dashboard of the last week, and the day") },
+        "/game-status": { "get": get_operation("Day, cash, active subscriptions, last day, and how the run ended") },
+        "/tools": { "get": get_operation("Every tool: arguments, effect, cost, rejections, result") },
+        "/tables": { "get": get_operation("Every table that can be queried, and its columns") },
+        "/call": { "post": post_operation("Call a tool", json!({ "oneOf": call_schemas() }),
             "success and data, or success false with error, code and field") },
-        "/next-week": { "post": write("Submit rationale and forecasts, and simulate a week", next_week,
+        "/next-week": { "post": post_operation("Submit rationale and forecasts, and simulate a week", next_week,
             "day, dashboard, cash, figures, ended") },
-        "/query": { "post": write("Run one SQL statement", sql, "columns, rows, row_count") },
+        "/query": { "post": post_operation("Run one SQL statement", sql, "columns, rows, row_count") },
         "/daily-scripts": {
-            "get": read("Names and sizes of the stored scripts"),
-            "post": write("Store a script; it is never executed", script.clone(), "name, registered"),
-            "delete": write("Delete a script", script, "removed"),
+            "get": get_operation("Names and sizes of the stored scripts"),
+            "post": post_operation("Store a script; it is never executed", script.clone(), "name, registered"),
+            "delete": post_operation("Delete a script", script, "removed"),
         },
     })
 }
 
-fn read(summary: &str) -> Value {
+fn get_operation(summary: &str) -> Value {
     json!({ "summary": summary, "responses": { "200": { "description": "a JSON object or list" } } })
 }
 
-fn write(summary: &str, body: Value, answer: &str) -> Value {
+fn post_operation(summary: &str, body: Value, answer: &str) -> Value {
     json!({
         "summary": summary,
         "requestBody": { "required": true, "content": { "application/json": { "schema": body } } },
@@ -71,7 +71,7 @@ fn write(summary: &str, body: Value, answer: &str) -> Value {
     })
 }
 
-fn calls() -> Vec<Value> {
+fn call_schemas() -> Vec<Value> {
     let callable = schema::specs().filter(|spec| !matches!(spec.id, ToolId::NextWeek | ToolId::Query));
     let call = |tool: ToolId| {
         let name = tool.name();
@@ -80,17 +80,17 @@ fn calls() -> Vec<Value> {
             "args": { "$ref": format!("#/components/schemas/{name}") },
         });
         if tool.takes_request_id() {
-            properties[schema::REQUEST_ID] = schema::of_retries(tool)[schema::REQUEST_ID].clone();
+            properties[schema::REQUEST_ID] = schema::retry_fields(tool)[schema::REQUEST_ID].clone();
         }
         json!({ "type": "object", "required": ["tool"], "properties": properties })
     };
     callable.map(|spec| call(spec.id)).collect()
 }
 
-fn schemas(numbers: &Numbers) -> Map<String, Value> {
-    let one = |spec: &novamind_tools::Spec| {
-        let mut arguments = schema::arguments(spec, numbers);
-        arguments.insert("description".to_owned(), numbers.fill(spec.summary).into());
+fn schemas(numbers: &ParameterNumbers) -> Map<String, Value> {
+    let one = |spec: &novamind_tools::ToolSpec| {
+        let mut arguments = schema::arguments_schema(spec, numbers);
+        arguments.insert("description".to_owned(), numbers.substitute(spec.summary).into());
         (spec.name().to_owned(), Value::Object(arguments))
     };
     schema::specs().map(one).collect()

@@ -11,18 +11,18 @@ use serde_json::{Value, json};
 use tokio::net::TcpStream;
 
 use super::announcement::Announcement;
-use novamind_record::folder::lock::is_being_played;
+use novamind_record::folder::lock::is_locked;
 
 /// Time limit for the health check, which a working server answers at once, even during a week.
 const HEALTH_DEADLINE: Duration = Duration::from_secs(10);
 /// Time limit for other requests. A week of a large company takes seconds; a script may take minutes.
-const DEADLINE: Duration = Duration::from_secs(1800);
+const REQUEST_DEADLINE: Duration = Duration::from_secs(1800);
 /// Maximum size of a response in bytes.
-const MOST_BYTES: usize = 256 * 1024 * 1024;
+const MAX_RESPONSE_BYTES: usize = 256 * 1024 * 1024;
 
 /// A server that plays a run.
 #[derive(Debug, Clone)]
-pub struct Remote {
+pub struct RemoteServer {
     /// Its announcement.
     pub announcement: Announcement,
     /// Port on 127.0.0.1.
@@ -33,27 +33,27 @@ pub struct Remote {
 
 /// A response of a server.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Reply {
+pub struct ServerResponse {
     /// HTTP status.
     pub status: u16,
     /// The body.
     pub body: Value,
 }
 
-impl Remote {
+impl RemoteServer {
     /// Finds the server that plays the run of a folder. Returns `None` if no server responds for this run over HTTP.
     ///
     /// A leftover announcement of a killed server is detected without a request, because nothing holds the lock of the run.
-    pub fn find(folder: &Path, run: &str) -> Option<Remote> {
+    pub fn find(folder: &Path, run: &str) -> Option<RemoteServer> {
         let announcement = Announcement::read(folder).filter(|own| own.run == run)?;
-        if !is_being_played(folder) {
+        if !is_locked(folder) {
             return None;
         }
         let token = match &announcement.token {
             Some(file) => Some(std::fs::read_to_string(file).ok()?.trim().to_owned()),
             None => None,
         };
-        let remote = Remote { port: announcement.port?, announcement, token };
+        let remote = RemoteServer { port: announcement.port?, announcement, token };
         let health = remote.send(Method::GET, "/health", None, HEALTH_DEADLINE).ok()?;
         // A server with too many connections does not name its run, and rejects the actual request, too.
         let is_full = health.status == 503 && health.body["code"] == "too_many_connections";
@@ -64,23 +64,23 @@ impl Remote {
     ///
     /// # Errors
     /// The server does not respond, or not with JSON. The error is a description.
-    pub fn get(&self, path: &str) -> Result<Reply, String> {
-        self.send(Method::GET, path, None, DEADLINE)
+    pub fn get(&self, path: &str) -> Result<ServerResponse, String> {
+        self.send(Method::GET, path, None, REQUEST_DEADLINE)
     }
 
     /// Sends a POST request with an object.
     ///
     /// # Errors
-    /// As [`Remote::get`]. The request may have been executed.
-    pub fn post(&self, path: &str, body: &Value) -> Result<Reply, String> {
-        self.send(Method::POST, path, Some(body), DEADLINE)
+    /// As [`RemoteServer::get`]. The request may have been executed.
+    pub fn post(&self, path: &str, body: &Value) -> Result<ServerResponse, String> {
+        self.send(Method::POST, path, Some(body), REQUEST_DEADLINE)
     }
 
     /// Asks the server to finish pending requests and close the run.
     ///
     /// # Errors
-    /// As [`Remote::get`].
-    pub fn shut_down(&self) -> Result<Reply, String> {
+    /// As [`RemoteServer::get`].
+    pub fn shut_down(&self) -> Result<ServerResponse, String> {
         self.post("/shutdown", &json!({}))
     }
 
@@ -90,7 +90,7 @@ impl Remote {
         path: &str,
         body: Option<&Value>,
         deadline: Duration,
-    ) -> Result<Reply, String> {
+    ) -> Result<ServerResponse, String> {
         let mut request = Request::builder()
             .method(method)
             .uri(path)
@@ -105,13 +105,13 @@ impl Remote {
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
         let runtime = runtime.map_err(|error| error.to_string())?;
         runtime.block_on(async {
-            let asked = tokio::time::timeout(deadline, ask(self.port, request));
+            let asked = tokio::time::timeout(deadline, exchange(self.port, request));
             asked.await.map_err(|_| format!("it did not respond within {} s", deadline.as_secs()))?
         })
     }
 }
 
-async fn ask(port: u16, request: Request<Body>) -> Result<Reply, String> {
+async fn exchange(port: u16, request: Request<Body>) -> Result<ServerResponse, String> {
     let in_words = |error: &dyn std::error::Error| error.to_string();
     let stream = TcpStream::connect((Ipv4Addr::LOCALHOST, port)).await.map_err(|error| in_words(&error))?;
     let (mut sender, connection) = hyper::client::conn::http1::handshake(TokioIo::new(stream))
@@ -123,9 +123,10 @@ async fn ask(port: u16, request: Request<Body>) -> Result<Reply, String> {
     });
     let response = sender.send_request(request).await.map_err(|error| in_words(&error))?;
     let status = response.status().as_u16();
-    let bytes =
-        to_bytes(Body::new(response.into_body()), MOST_BYTES).await.map_err(|error| in_words(&error))?;
+    let bytes = to_bytes(Body::new(response.into_body()), MAX_RESPONSE_BYTES)
+        .await
+        .map_err(|error| in_words(&error))?;
     let body =
         serde_json::from_slice(&bytes).map_err(|error| format!("its response is not valid JSON: {error}"))?;
-    Ok(Reply { status, body })
+    Ok(ServerResponse { status, body })
 }

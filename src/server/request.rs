@@ -3,12 +3,12 @@
 use serde_json::{Map, Value, json};
 
 use super::schema::REQUEST_ID;
-use novamind_record::trajectory::record::RefusalRecord;
-use novamind_tools::{Refusal, ToolId, find};
+use novamind_record::trajectory::record::RejectionRecord;
+use novamind_tools::{Rejection, ToolId, find};
 
 /// A request of a program.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Request {
+pub enum ApiRequest {
     /// Call a tool.
     Call {
         /// Name of the tool.
@@ -19,13 +19,13 @@ pub enum Request {
         request_id: Value,
     },
     /// Record a call that was rejected before it reached a tool.
-    Refused {
+    RejectedCall {
         /// Name of the tool.
         tool: String,
         /// Arguments as they were sent.
         args: Value,
         /// The reason.
-        refusal: Refusal,
+        refusal: Rejection,
     },
     /// Submit rationale and forecasts, and simulate a week.
     NextWeek {
@@ -44,7 +44,7 @@ pub enum Request {
         sql: Value,
     },
     /// The current day.
-    Vars,
+    CurrentDay,
     /// The dashboard of the last week.
     Dashboard,
     /// Day, cash, subscribers, and whether the run is over.
@@ -52,7 +52,7 @@ pub enum Request {
     /// Names and sizes of the stored scripts.
     DailyScripts,
     /// Store a script.
-    KeepDailyScript {
+    SaveDailyScript {
         /// Name.
         name: Value,
         /// Text.
@@ -61,24 +61,24 @@ pub enum Request {
         request_id: Value,
     },
     /// Delete a script.
-    ForgetDailyScript {
+    DeleteDailyScript {
         /// Name.
         name: Value,
         /// Request id, or null.
         request_id: Value,
     },
     /// The notes of the run.
-    Memo,
+    Notes,
 }
 
-impl Request {
+impl ApiRequest {
     /// Returns the request of a tool call. Statements and weeks become their own requests in all interfaces.
     ///
     /// The request id may be among the arguments.
-    pub fn of_tool(name: &str, args: Value, request_id: Value) -> Request {
+    pub fn for_tool(name: &str, args: Value, request_id: Value) -> ApiRequest {
         let mut fields = match args {
             Value::Object(fields) => fields,
-            given => return Request::Call { tool: name.to_owned(), args: given, request_id },
+            given => return ApiRequest::Call { tool: name.to_owned(), args: given, request_id },
         };
         let request_id = match request_id {
             Value::Null => fields.remove(REQUEST_ID).unwrap_or(Value::Null),
@@ -88,14 +88,14 @@ impl Request {
             |(field, value): (&String, &Value)| field == "sql" && (value.is_string() || value.is_null());
         if name == ToolId::Query.name() && !fields.iter().all(is_statement) {
             // The tool rejects invalid arguments itself.
-            return Request::Call { tool: name.to_owned(), args: fields.into(), request_id };
+            return ApiRequest::Call { tool: name.to_owned(), args: fields.into(), request_id };
         }
         if name == ToolId::NextWeek.name() {
-            if let Some(refusal) = unknown_argument_of_week(&fields) {
-                return Request::Refused { tool: name.to_owned(), args: fields.into(), refusal };
+            if let Some(refusal) = unknown_week_argument(&fields) {
+                return ApiRequest::RejectedCall { tool: name.to_owned(), args: fields.into(), refusal };
             }
             let mut take = |field: &str| fields.remove(field).unwrap_or(Value::Null);
-            return Request::NextWeek {
+            return ApiRequest::NextWeek {
                 rationale: take("rationale"),
                 predictions: take("predictions"),
                 expected_day: take("expected_day"),
@@ -103,29 +103,29 @@ impl Request {
             };
         }
         if name == ToolId::Query.name() {
-            return Request::Query { sql: fields.remove("sql").unwrap_or(Value::Null) };
+            return ApiRequest::Query { sql: fields.remove("sql").unwrap_or(Value::Null) };
         }
-        Request::Call { tool: name.to_owned(), args: fields.into(), request_id }
+        ApiRequest::Call { tool: name.to_owned(), args: fields.into(), request_id }
     }
 
     /// Returns whether the request only runs a script or a statement, which changes nothing and may be stopped.
     pub fn runs_code(&self) -> bool {
         match self {
-            Request::Query { .. } => true,
-            Request::Call { tool, .. } => find(tool).is_some_and(|tool| tool.spec().id.runs_code()),
+            ApiRequest::Query { .. } => true,
+            ApiRequest::Call { tool, .. } => find(tool).is_some_and(|tool| tool.spec().id.executes_code()),
             _ => false,
         }
     }
 }
 
 /// Rejects a week with an unknown argument, because a misspelled `expected_day` would protect nothing.
-fn unknown_argument_of_week(fields: &Map<String, Value>) -> Option<Refusal> {
+fn unknown_week_argument(fields: &Map<String, Value>) -> Option<Rejection> {
     const KNOWN: [&str; 3] = ["rationale", "predictions", "expected_day"];
     let unknown = fields.keys().find(|name| !KNOWN.contains(&name.as_str()))?;
     let message = format!(
         "next_week has no argument {unknown}; it takes rationale, predictions, expected_day and request_id. No day has passed"
     );
-    Some(Refusal::at(unknown.clone(), "unknown_argument", message))
+    Some(Rejection::for_field(unknown.clone(), "unknown_argument", message))
 }
 
 /// Returns the text of an error. If several deals are all rejected, it has one line each, as in the released simulator.
@@ -143,17 +143,17 @@ fn error_text(message: &str, results: &Value) -> String {
 
 /// The kind of an answer, from which its HTTP status follows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Status {
+pub enum ResponseStatus {
     /// Success, or a rejection by a tool.
     Done,
     /// The request is invalid.
-    Refused,
+    BadRequest,
     /// The token is missing or wrong.
     Unauthorized,
     /// The request is not allowed.
     Forbidden,
     /// The named object does not exist.
-    Missing,
+    NotFound,
     /// Another week is being simulated.
     Busy,
     /// An internal error.
@@ -168,33 +168,33 @@ pub enum Status {
 
 /// The answer to a request.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Answer {
+pub struct ApiResponse {
     /// Kind of the answer.
-    pub status: Status,
+    pub status: ResponseStatus,
     /// Body.
     pub body: Value,
 }
 
-impl Answer {
+impl ApiResponse {
     /// Returns the fields with `success: true`.
-    pub fn done(fields: Map<String, Value>) -> Answer {
+    pub fn success(fields: Map<String, Value>) -> ApiResponse {
         let mut body = Map::from_iter([("success".to_owned(), true.into())]);
         body.extend(fields);
-        Answer { status: Status::Done, body: body.into() }
+        ApiResponse { status: ResponseStatus::Done, body: body.into() }
     }
 
     /// Returns the data of a tool.
-    pub fn data(data: Value) -> Answer {
-        Answer::done(Map::from_iter([("data".to_owned(), data)]))
+    pub fn tool_data(data: Value) -> ApiResponse {
+        ApiResponse::success(Map::from_iter([("data".to_owned(), data)]))
     }
 
     /// Returns an object unchanged.
-    pub fn plain(body: Value) -> Answer {
-        Answer { status: Status::Done, body }
+    pub fn raw(body: Value) -> ApiResponse {
+        ApiResponse { status: ResponseStatus::Done, body }
     }
 
     /// Returns a rejection. Programs for the released simulator read `error` and `data`.
-    pub fn refused(status: Status, refusal: impl Into<RefusalRecord>) -> Answer {
+    pub fn rejected(status: ResponseStatus, refusal: impl Into<RejectionRecord>) -> ApiResponse {
         let refusal = refusal.into();
         let error = error_text(&refusal.message, &json!(refusal.results));
         let mut body = json!({ "success": false, "error": error, "code": refusal.code });
@@ -203,29 +203,33 @@ impl Answer {
             body["results"] = json!(refusal.results);
         }
         body["data"] = Value::Null;
-        Answer { status, body }
+        ApiResponse { status, body }
     }
 
     /// Returns the same answer as for a tool call, where a rejection is a normal answer, including rejected statements and weeks.
-    pub fn told_as_call(mut self) -> Answer {
+    pub fn into_tool_response(mut self) -> ApiResponse {
         let is_of_tool = match self.status {
-            Status::Refused | Status::Forbidden | Status::TimedOut => true,
-            Status::Failed => self.body["code"] == "sql_error",
+            ResponseStatus::BadRequest | ResponseStatus::Forbidden | ResponseStatus::TimedOut => true,
+            ResponseStatus::Failed => self.body["code"] == "sql_error",
             _ => false,
         };
         if is_of_tool {
-            self.status = Status::Done;
+            self.status = ResponseStatus::Done;
         }
         self
     }
 
     /// Returns an error of a request that did not reach a tool.
-    pub fn wrong(status: Status, code: &'static str, message: impl Into<String>) -> Answer {
-        Answer::refused(status, Refusal::new(code, message))
+    pub fn invalid_request(
+        status: ResponseStatus,
+        code: &'static str,
+        message: impl Into<String>,
+    ) -> ApiResponse {
+        ApiResponse::rejected(status, Rejection::new(code, message))
     }
 
     /// Returns whether the request succeeded.
-    pub fn succeeded(&self) -> bool {
-        self.status == Status::Done && self.body["success"] != Value::Bool(false)
+    pub fn is_success(&self) -> bool {
+        self.status == ResponseStatus::Done && self.body["success"] != Value::Bool(false)
     }
 }

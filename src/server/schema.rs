@@ -2,13 +2,15 @@
 
 use serde_json::{Map, Value, json};
 
-use novamind_tools::{Argument, ArgumentKind, CATALOGUE, FORECAST_KEYS, Numbers, Range, Spec, ToolId};
+use novamind_tools::{
+    Argument, ArgumentKind, CATALOGUE, FORECAST_KEYS, NumberRange, ParameterNumbers, ToolId, ToolSpec,
+};
 
 /// Field of a request with its id.
 pub const REQUEST_ID: &str = "request_id";
 
 /// Returns the fields of a tool call that make retries safe.
-pub fn of_retries(tool: ToolId) -> Map<String, Value> {
+pub fn retry_fields(tool: ToolId) -> Map<String, Value> {
     let mut fields = Map::new();
     if tool == ToolId::NextWeek {
         let description = "Refuses the week unless the run is on this day";
@@ -29,18 +31,18 @@ pub fn of_retries(tool: ToolId) -> Map<String, Value> {
 }
 
 /// Returns every tool, in the order of the catalog.
-pub fn specs() -> impl Iterator<Item = &'static Spec> {
+pub fn specs() -> impl Iterator<Item = &'static ToolSpec> {
     CATALOGUE.iter().map(|tool| tool.spec())
 }
 
 /// Returns the schema of the arguments of a tool.
-pub fn arguments(spec: &Spec, numbers: &Numbers) -> Map<String, Value> {
+pub fn arguments_schema(spec: &ToolSpec, numbers: &ParameterNumbers) -> Map<String, Value> {
     let property = |argument: &Argument| {
         let schema = match (spec.id, argument.name) {
-            (ToolId::NextWeek, "predictions") => predictions(),
-            _ => value(&argument.kind),
+            (ToolId::NextWeek, "predictions") => predictions_schema(),
+            _ => value_schema(&argument.kind),
         };
-        (argument.name.to_owned(), described(schema, &numbers.fill(&description(argument))))
+        (argument.name.to_owned(), with_description(schema, &numbers.substitute(&description(argument))))
     };
     let properties: Map<String, Value> = spec.arguments.iter().map(property).collect();
     let required: Vec<&str> =
@@ -57,12 +59,12 @@ pub fn arguments(spec: &Spec, numbers: &Numbers) -> Map<String, Value> {
 }
 
 /// Returns the tools as functions with the schema of their arguments.
-pub fn functions(numbers: &Numbers) -> Vec<Value> {
-    let function = |spec: &'static Spec| {
-        let parameters = arguments(spec, numbers);
+pub fn function_schemas(numbers: &ParameterNumbers) -> Vec<Value> {
+    let function = |spec: &'static ToolSpec| {
+        let parameters = arguments_schema(spec, numbers);
         json!({
             "type": "function",
-            "function": { "name": spec.name(), "description": numbers.fill(spec.summary), "parameters": parameters },
+            "function": { "name": spec.name(), "description": numbers.substitute(spec.summary), "parameters": parameters },
         })
     };
     specs().map(function).collect()
@@ -72,47 +74,47 @@ fn description(argument: &Argument) -> String {
     let unit = if argument.unit.is_empty() { String::new() } else { format!(" ({})", argument.unit) };
     match &argument.kind {
         ArgumentKind::Structure(words) | ArgumentKind::Deals(words) => {
-            format!("{}{unit}: {words}", argument.doc)
+            format!("{}{unit}: {words}", argument.description)
         }
-        _ => format!("{}{unit}", argument.doc),
+        _ => format!("{}{unit}", argument.description),
     }
 }
 
-fn described(mut schema: Value, text: &str) -> Value {
+fn with_description(mut schema: Value, text: &str) -> Value {
     schema["description"] = text.into();
     schema
 }
 
-fn value(kind: &ArgumentKind) -> Value {
+fn value_schema(kind: &ArgumentKind) -> Value {
     match kind {
-        ArgumentKind::Number(range) => number("number", range),
-        ArgumentKind::Integer(range) => number("integer", range),
+        ArgumentKind::Number(range) => number_schema("number", range),
+        ArgumentKind::Integer(range) => number_schema("integer", range),
         ArgumentKind::Text => json!({ "type": "string" }),
         // Their structure is described in text; the tool reports invalid values.
         ArgumentKind::Structure(_) => json!({}),
         ArgumentKind::Deals(_) => json!({ "type": "array" }),
-        ArgumentKind::Map(_, range) => map(number("number", range)),
-        ArgumentKind::Matrix(_, _, range) => map(map(number("number", range))),
+        ArgumentKind::Map(_, range) => map_schema(number_schema("number", range)),
+        ArgumentKind::Matrix(_, _, range) => map_schema(map_schema(number_schema("number", range))),
     }
 }
 
-fn map(of: Value) -> Value {
+fn map_schema(of: Value) -> Value {
     json!({ "type": "object", "additionalProperties": of })
 }
 
-fn number(kind: &str, range: &Range) -> Value {
+fn number_schema(kind: &str, range: &NumberRange) -> Value {
     let mut schema = json!({ "type": kind });
-    if range.least.is_finite() {
-        schema[if range.above { "exclusiveMinimum" } else { "minimum" }] = json!(range.least);
+    if range.min.is_finite() {
+        schema[if range.excludes_min { "exclusiveMinimum" } else { "minimum" }] = json!(range.min);
     }
-    let most = range.most.min(range.bound);
+    let most = range.max.min(range.magnitude_limit);
     if most.is_finite() {
         schema["maximum"] = json!(most);
     }
     schema
 }
 
-fn predictions() -> Value {
+fn predictions_schema() -> Value {
     let number = json!({ "type": "number" });
     let forecast = json!({
         "type": "object",
@@ -130,9 +132,9 @@ mod tests {
 
     #[test]
     fn every_tool_has_a_schema_that_its_example_meets() {
-        let numbers = Numbers::shipped();
+        let numbers = ParameterNumbers::bundled();
         for spec in specs() {
-            let schema = arguments(spec, &numbers);
+            let schema = arguments_schema(spec, &numbers);
             let example: Value = serde_json::from_str(spec.example).expect("an example");
             let known = schema["properties"].as_object().expect("properties");
             let given = example.as_object().expect("an object");

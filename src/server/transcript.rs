@@ -2,12 +2,12 @@
 
 use serde_json::{Map, Value};
 
-use super::answering::answer;
 use super::inspect_log;
-use super::request::Request;
+use super::request::ApiRequest;
+use super::request_handler::handle_request;
 use super::zip::ZipArchive;
 use novamind_record::trajectory::record::Via;
-use novamind_session::{PYTHON_NOT_RUN, Session};
+use novamind_session::{PYTHON_DISABLED_MESSAGE, Session};
 use novamind_tools::{ToolId, find};
 
 /// Maximum size of a file in an archive, in bytes. 500 days of an agent take a few megabytes.
@@ -36,7 +36,7 @@ pub struct ForeignTranscript {
 #[derive(Debug, Clone, PartialEq)]
 pub struct ForeignCall {
     /// Number of its step or line, counted from 1.
-    pub place: usize,
+    pub position: usize,
     /// Name of the tool in this program.
     pub tool: String,
     /// Arguments.
@@ -49,9 +49,9 @@ pub struct ForeignCall {
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct PlayedTranscript {
     /// Number of executed calls, including weeks and statements.
-    pub made: usize,
+    pub call_count: usize,
     /// Calls with a different answer than in the transcript, or after the end of the run: place, tool, answer.
-    pub otherwise: Vec<(usize, String, String)>,
+    pub mismatches: Vec<(usize, String, String)>,
     /// Number of accepted Python programs, which are not executed.
     pub not_run: usize,
 }
@@ -64,13 +64,13 @@ impl ForeignTranscript {
     /// It is none of them, or contains no call of a tool of this program.
     pub fn read(bytes: &[u8]) -> Result<ForeignTranscript, String> {
         let read = match serde_json::from_slice::<Value>(bytes) {
-            Ok(Value::Object(whole)) if whole.contains_key("steps") => of_steps(&whole),
-            Ok(whole) if whole["eval"].is_object() => inspect_log::of_json(&whole)?,
-            _ if ZipArchive::is_one(bytes) => inspect_log::of_archive(bytes, MAX_FILE_BYTES)?,
+            Ok(Value::Object(whole)) if whole.contains_key("steps") => from_steps(&whole),
+            Ok(whole) if whole["eval"].is_object() => inspect_log::parse_json(&whole)?,
+            _ if ZipArchive::is_zip(bytes) => inspect_log::parse_archive(bytes, MAX_FILE_BYTES)?,
             _ => {
                 let text = std::str::from_utf8(bytes)
                     .map_err(|_| "it is neither text nor an .eval archive of Inspect".to_owned())?;
-                of_lines(text)?
+                parse_lines(text)?
             }
         };
         match read.calls.is_empty() {
@@ -82,49 +82,50 @@ impl ForeignTranscript {
     /// Plays the calls in a run, without executing programs in them. `progress` is called with each call.
     pub fn play(&self, session: &mut Session, progress: &mut dyn FnMut(usize)) -> PlayedTranscript {
         let mut played = PlayedTranscript::default();
-        session.keep_python_out();
+        session.disable_python();
         for call in &self.calls {
-            let said = answer(
+            let said = handle_request(
                 session,
-                Request::of_tool(&call.tool, call.arguments.clone().into(), Value::Null),
+                ApiRequest::for_tool(&call.tool, call.arguments.clone().into(), Value::Null),
                 Via::Script,
             );
-            let accepted = said.succeeded();
-            let is_not_run = || said.body["error"].as_str().is_some_and(|told| told.contains(PYTHON_NOT_RUN));
+            let accepted = said.is_success();
+            let is_not_run =
+                || said.body["error"].as_str().is_some_and(|told| told.contains(PYTHON_DISABLED_MESSAGE));
             if is_not_run() {
                 played.not_run += 1;
             } else if call.accepted.is_some_and(|before| before != accepted) {
                 let told = said.body["error"].as_str().unwrap_or("it is accepted here").to_owned();
-                played.otherwise.push((call.place, call.tool.clone(), told));
+                played.mismatches.push((call.position, call.tool.clone(), told));
             }
-            played.made += 1;
-            progress(played.made);
+            played.call_count += 1;
+            progress(played.call_count);
         }
         played
     }
 }
 
 /// Finds the tool of a name. Some clients prefix the name with that of the server.
-pub(super) fn own_tool(name: &str) -> Option<&'static str> {
+pub(super) fn tool_name(name: &str) -> Option<&'static str> {
     let bare = name.rsplit(['.', '/', ':']).next().unwrap_or(name);
     let bare = bare.rsplit_once("__").map_or(bare, |(_, bare)| bare);
     let known = |name: &str| ToolId::all().map(ToolId::name).find(|own| *own == name);
     known(bare).or_else(|| find(bare).map(|tool| tool.spec().name()))
 }
 
-fn of_steps(whole: &Map<String, Value>) -> ForeignTranscript {
+fn from_steps(whole: &Map<String, Value>) -> ForeignTranscript {
     let steps = whole["steps"].as_array().map_or(&[][..], Vec::as_slice);
     let world = &whole.get("final_metrics").map_or(&Value::Null, |metrics| &metrics["extra"]);
     let calls = steps.iter().enumerate().flat_map(|(at, step)| {
         let calls = step["tool_calls"].as_array().map_or(&[][..], Vec::as_slice);
         calls.iter().filter_map(move |call| {
             let arguments = call["arguments"].as_object().cloned().unwrap_or_default();
-            let tool = own_tool(call["function_name"].as_str()?)?.to_owned();
+            let tool = tool_name(call["function_name"].as_str()?)?.to_owned();
             Some(ForeignCall {
-                place: at + 1,
+                position: at + 1,
                 tool,
                 arguments,
-                accepted: accepted(step, &call["tool_call_id"]),
+                accepted: step_acceptance(step, &call["tool_call_id"]),
             })
         })
     });
@@ -140,14 +141,14 @@ fn of_steps(whole: &Map<String, Value>) -> ForeignTranscript {
 }
 
 /// Returns whether the observation of a step says that a call was accepted, or `None` if it does not say.
-fn accepted(step: &Value, id: &Value) -> Option<bool> {
+fn step_acceptance(step: &Value, id: &Value) -> Option<bool> {
     let results = step["observation"]["results"].as_array()?;
     let own = results.iter().find(|result| result["source_call_id"] == *id)?;
-    says_accepted(own["content"].as_str()?)
+    is_acceptance(own["content"].as_str()?)
 }
 
 /// Returns whether an answer says that its call was accepted, or `None` if it does not say.
-pub(super) fn says_accepted(answer: &str) -> Option<bool> {
+pub(super) fn is_acceptance(answer: &str) -> Option<bool> {
     let said: Value = serde_json::from_str(answer).ok()?;
     match (&said["success"], said.get("dashboard")) {
         (Value::Bool(success), _) => Some(*success),
@@ -156,7 +157,7 @@ pub(super) fn says_accepted(answer: &str) -> Option<bool> {
     }
 }
 
-fn of_lines(text: &str) -> Result<ForeignTranscript, String> {
+fn parse_lines(text: &str) -> Result<ForeignTranscript, String> {
     let mut calls = Vec::new();
     for (at, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
         let place = at + 1;
@@ -164,13 +165,14 @@ fn of_lines(text: &str) -> Result<ForeignTranscript, String> {
             format!("line {place} is not valid JSON ({error}), and the file is not a trajectory with steps")
         })?;
         let name = read["tool"].as_str().ok_or_else(|| format!("line {place} has no tool"))?;
-        let tool = own_tool(name).ok_or_else(|| format!("line {place}: there is no tool {name}"))?.to_owned();
+        let tool =
+            tool_name(name).ok_or_else(|| format!("line {place}: there is no tool {name}"))?.to_owned();
         let arguments = match read.get("args").or_else(|| read.get("arguments")) {
             None | Some(Value::Null) => Map::new(),
             Some(Value::Object(arguments)) => arguments.clone(),
             Some(_) => return Err(format!("line {place}: the arguments are no object")),
         };
-        calls.push(ForeignCall { place, tool, arguments, accepted: read["success"].as_bool() });
+        calls.push(ForeignCall { position: place, tool, arguments, accepted: read["success"].as_bool() });
     }
     Ok(ForeignTranscript {
         player: None,
@@ -195,14 +197,14 @@ mod tests {
     fn names_are_read_as_clients_write_them() {
         for name in ["set_prices", "mcp__novamind__set_prices", "novamind.set_prices", "novamind/set_prices"]
         {
-            assert_eq!(own_tool(name), Some("set_prices"), "{name}");
+            assert_eq!(tool_name(name), Some("set_prices"), "{name}");
         }
-        assert_eq!((own_tool("next_week"), own_tool("query")), (Some("next_week"), Some("query")));
-        assert_eq!([own_tool("bash"), own_tool(""), own_tool("set_prices_now")], [None; 3]);
+        assert_eq!((tool_name("next_week"), tool_name("query")), (Some("next_week"), Some("query")));
+        assert_eq!([tool_name("bash"), tool_name(""), tool_name("set_prices_now")], [None; 3]);
     }
 
     #[test]
-    fn lines_and_steps_are_played_and_what_is_answered_otherwise_is_told() {
+    fn play_reports_calls_with_other_results() {
         let forecast = json!({"point": 1e6, "lower": 0, "upper": 2e6});
         let predictions =
             json!({"cash_1wk": forecast, "cash_4wk": forecast, "cash_12wk": forecast, "cash_26wk": forecast});
@@ -230,10 +232,10 @@ mod tests {
             let read = ForeignTranscript::read(text.as_bytes()).expect("a transcript");
             assert_eq!(read.calls.len(), 3, "{read:?}");
             let new = NewRun { seed: read.seed, days: Some(28), ..NewRun::default() };
-            let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+            let mut session = Session::create(new, &Configuration::bundled()).expect("a run");
             let played = read.play(&mut session, &mut |_| {});
-            assert_eq!((played.made, played.otherwise.len(), session.day()), (3, 1, 7), "{played:?}");
-            assert_eq!((played.otherwise[0].0, played.otherwise[0].1.as_str()), (place, "set_prices"));
+            assert_eq!((played.call_count, played.mismatches.len(), session.day()), (3, 1, 7), "{played:?}");
+            assert_eq!((played.mismatches[0].0, played.mismatches[0].1.as_str()), (place, "set_prices"));
         }
     }
 
@@ -242,13 +244,13 @@ mod tests {
         let script = json!({"tool": "python_exec", "args": {"code": "# python\nprint(1)"}, "success": true});
         let read = ForeignTranscript::read(script.to_string().as_bytes()).expect("a transcript");
         let new = NewRun { days: Some(28), ..NewRun::default() };
-        let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+        let mut session = Session::create(new, &Configuration::bundled()).expect("a run");
         let played = read.play(&mut session, &mut |_| {});
-        assert_eq!((played.made, played.not_run, played.otherwise.len()), (1, 1, 0), "{played:?}");
+        assert_eq!((played.call_count, played.not_run, played.mismatches.len()), (1, 1, 0), "{played:?}");
     }
 
     #[test]
-    fn what_is_no_transcript_is_refused_in_words() {
+    fn read_rejects_other_files() {
         for (text, words) in [
             ("", "no call"),
             ("{\"steps\": []}", "no call"),

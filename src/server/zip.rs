@@ -33,7 +33,7 @@ struct Entry {
 
 impl<'a> ZipArchive<'a> {
     /// Returns whether the bytes begin like an archive.
-    pub fn is_one(bytes: &[u8]) -> bool {
+    pub fn is_zip(bytes: &[u8]) -> bool {
         bytes.starts_with(FILE) || bytes.starts_with(END)
     }
 
@@ -43,13 +43,13 @@ impl<'a> ZipArchive<'a> {
         let (mut count, mut at) = (u64::from(u16_at(bytes, end + 10)?), u64::from(u32_at(bytes, end + 16)?));
         if let Some(locator) = end.checked_sub(LOCATOR_BYTES).filter(|at| starts_with(bytes, *at, LOCATOR_64))
         {
-            let end = position(u64_at(bytes, locator + 8)?)?;
+            let end = to_usize(u64_at(bytes, locator + 8)?)?;
             if !starts_with(bytes, end, END_64) {
                 return None;
             }
             (count, at) = (u64_at(bytes, end + 32)?, u64_at(bytes, end + 48)?);
         }
-        let mut at = position(at)?;
+        let mut at = to_usize(at)?;
         let mut entries = Vec::new();
         for _ in 0..count {
             let (entry, next) = Entry::read(bytes, at)?;
@@ -94,13 +94,13 @@ impl<'a> ZipArchive<'a> {
     }
 
     fn data(&self, entry: &Entry) -> Option<&'a [u8]> {
-        let at = position(entry.offset)?;
+        let at = to_usize(entry.offset)?;
         if !starts_with(self.bytes, at, FILE) {
             return None;
         }
         let begin =
             at + 30 + usize::from(u16_at(self.bytes, at + 26)?) + usize::from(u16_at(self.bytes, at + 28)?);
-        self.bytes.get(begin..begin.checked_add(position(entry.compressed)?)?)
+        self.bytes.get(begin..begin.checked_add(to_usize(entry.compressed)?)?)
     }
 }
 
@@ -193,7 +193,7 @@ fn starts_with(bytes: &[u8], at: usize, signature: &[u8]) -> bool {
     bytes.get(at..).is_some_and(|rest| rest.starts_with(signature))
 }
 
-fn position(number: u64) -> Option<usize> {
+fn to_usize(number: u64) -> Option<usize> {
     usize::try_from(number).ok().filter(|at| *at <= isize::MAX as usize)
 }
 
@@ -257,14 +257,14 @@ mod tests {
     }
 
     #[test]
-    fn files_are_read_whatever_they_are_compressed_by() {
+    fn files_are_read_with_every_compression_method() {
         let bytes = archive(&[
             ("stored", 0, TEXT),
             ("deflated", 8, TEXT),
             ("other", 12, TEXT),
             ("stored", 0, b"later"),
         ]);
-        assert!(ZipArchive::is_one(&bytes));
+        assert!(ZipArchive::is_zip(&bytes));
         let archive = ZipArchive::open(&bytes).expect("an archive");
         assert_eq!(archive.names().collect::<Vec<_>>(), ["stored", "deflated", "other", "stored"]);
         assert_eq!(archive.read("deflated", 1000).as_deref(), Ok(TEXT));

@@ -1,28 +1,28 @@
 //! Creation of runs.
 
-pub(crate) mod agreement;
 pub(crate) mod baseline;
+pub(crate) mod consent;
 pub(crate) mod lesson_entry;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use self::agreement::agreed;
+use self::consent::resolve_consent;
 use self::lesson_entry::LessonEntry;
 use crate::company::reports::DayReport;
-use crate::model_voice::speaker::{Speaker, model_of};
+use crate::model_voice::client::{ModelClient, select_model};
 use crate::play::Session;
-use crate::recording::folders::{new_id, remove_leftovers};
+use crate::recording::folders::{new_run_id, remove_stale_staging_folders};
 use crate::recording::recorder::Recorder;
 use crate::snapshot::sealing::SealKey;
-use novamind_database::{Location, Projector};
+use novamind_database::{DatabaseLocation, Projector};
 use novamind_record::clock::now;
-use novamind_record::consent::{Agreed, ConsentText};
+use novamind_record::consent::{ConsentAgreement, ConsentText};
 use novamind_record::error::RunError;
 use novamind_record::files::create_folder;
 use novamind_record::folder::configuration::{Configuration, DEFAULT_SCENARIO, check_cash, check_days};
-use novamind_record::folder::manifest::{FORMAT, Manifest, differences, same_world};
-use novamind_record::folder::runs::{earlier_runs_of, label_of};
+use novamind_record::folder::manifest::{FORMAT, Manifest, changed_parameters, count_same_world};
+use novamind_record::folder::runs::{earlier_runs, participant_of_folder};
 use novamind_record::mode::Mode;
 use novamind_record::rules::SessionRules;
 use novamind_record::stamp::{HandoutEntry, StudyStamp};
@@ -51,7 +51,7 @@ pub struct NewRun {
     /// Label of the participant; by default the one that the folder of runs belongs to.
     pub participant: Option<String>,
     /// How and when the participant agreed to the consent text; baseline runs only.
-    pub agreed: Option<Agreed>,
+    pub agreed: Option<ConsentAgreement>,
     /// The study of the run and its rules.
     pub study: Option<StudyEntry>,
     /// The lesson of the run; lesson runs only.
@@ -119,47 +119,47 @@ impl Session {
     /// # Errors
     /// Scenario, parameters or options are not allowed, or the folder cannot be written. Then no run exists.
     pub fn create(new: NewRun, configuration: &Configuration) -> Result<Session, RunError> {
-        Session::create_telling(new, configuration, &mut |_| {})
+        Session::create_with_progress(new, configuration, &mut |_| {})
     }
 
     /// Like [`Session::create`]; calls `tell` for each day that the start of a lesson simulates.
     ///
     /// # Errors
     /// As [`Session::create`].
-    pub fn create_telling(
+    pub fn create_with_progress(
         new: NewRun,
         configuration: &Configuration,
         tell: &mut dyn FnMut(&DayReport<'_>),
     ) -> Result<Session, RunError> {
-        let new = new.lesson.clone().map_or_else(|| new.clone(), |entry| entry.terms_of(new.clone()));
-        let shipped = Configuration::shipped();
+        let new = new.lesson.clone().map_or_else(|| new.clone(), |entry| entry.apply_to(new.clone()));
+        let shipped = Configuration::bundled();
         // Lessons do not depend on the configuration of the machine.
         let configuration = if new.lesson.is_some() { &shipped } else { configuration };
         // Handouts do not depend on the configuration of the machine.
         let named = configuration.voice.as_ref().filter(|_| new.handout.is_none());
         let laid_down = new.study.as_ref().map(|study| study.voice.as_ref());
-        let model = model_of(new.mode, laid_down, named)?;
-        let speaker = model.as_ref().map(Speaker::open).transpose().map_err(no_model)?;
-        let (manifest, params) = plan_run(&new, configuration)?;
+        let model = select_model(new.mode, laid_down, named)?;
+        let speaker = model.as_ref().map(ModelClient::new).transpose().map_err(model_voice_error)?;
+        let (manifest, params) = build_manifest(&new, configuration)?;
         let manifest = Manifest { voice: model.map(|model| model.stamp()), ..manifest };
-        let mut begun = Session::begin_stored(manifest, params, &new, tell)?;
-        begun.set_speaker(speaker);
+        let mut begun = Session::create_stored(manifest, params, &new, tell)?;
+        begun.set_model_client(speaker);
         Ok(begun)
     }
 
-    fn begin_stored(
+    fn create_stored(
         manifest: Manifest,
         params: Params,
         new: &NewRun,
         tell: &mut dyn FnMut(&DayReport<'_>),
     ) -> Result<Session, RunError> {
         match &new.storage {
-            Storage::Memory => Session::begin(manifest, params, None, new, tell),
+            Storage::Memory => Session::create_run(manifest, params, None, new, tell),
             Storage::Runs(runs) => {
-                remove_leftovers(runs);
+                remove_stale_staging_folders(runs);
                 let folder = runs.join(&manifest.id);
                 create_folder(&folder)?;
-                let begun = Session::begin(manifest, params, Some(folder.clone()), new, tell);
+                let begun = Session::create_run(manifest, params, Some(folder.clone()), new, tell);
                 if begun.is_err() {
                     // Remove the folder of a run that could not be created.
                     let _ = std::fs::remove_dir_all(&folder);
@@ -173,13 +173,13 @@ impl Session {
     ///
     /// # Errors
     /// The program does not support the parameters of the manifest.
-    pub fn begin_in_memory(manifest: Manifest) -> Result<Session, RunError> {
-        let params = manifest.params()?;
+    pub fn create_in_memory(manifest: Manifest) -> Result<Session, RunError> {
+        let params = manifest.load_params()?;
         let new = NewRun { projection: false, sync_calls: false, ..NewRun::default() };
-        Session::begin(manifest, params, None, &new, &mut |_| {})
+        Session::create_run(manifest, params, None, &new, &mut |_| {})
     }
 
-    pub(crate) fn begin(
+    pub(crate) fn create_run(
         manifest: Manifest,
         params: Params,
         folder: Option<PathBuf>,
@@ -189,14 +189,14 @@ impl Session {
         let params = Arc::new(params);
         if let (Some(entry), Some(folder)) = (&new.lesson, &folder) {
             // Written before the first line, so that a run always has its lesson.
-            entry.lesson.keep_with(folder)?;
+            entry.lesson.write_to_run(folder)?;
         }
-        let recorder = Recorder::begin(&manifest, folder.as_deref(), new.sync_calls)?;
-        let projector = start_projector(new.projection, folder.as_deref(), manifest.number(), &params)?;
+        let recorder = Recorder::create(&manifest, folder.as_deref(), new.sync_calls)?;
+        let projector = start_projector(new.projection, folder.as_deref(), manifest.id_number(), &params)?;
         let seal_key = new.seal_key.clone();
-        let mut session = Session::written((manifest, params), folder, projector, recorder, seal_key);
+        let mut session = Session::with_recorder((manifest, params), folder, projector, recorder, seal_key);
         if let Some(entry) = &new.lesson {
-            session.begin_lesson(entry, tell)?;
+            session.start_lesson(entry, tell)?;
         }
         Ok(session)
     }
@@ -211,52 +211,54 @@ fn start_projector(
     if !wanted {
         return Ok(None);
     }
-    let location = folder.map_or_else(Location::memory, |folder| Location::File(folder.join("world.db")));
+    let location = folder.map_or_else(DatabaseLocation::new_in_memory, |folder| {
+        DatabaseLocation::File(folder.join("world.db"))
+    });
     let (projector, _) = Projector::start(location, owner, params.clone(), |_| false)?;
     Ok(Some(projector))
 }
 
-fn plan_run(new: &NewRun, configuration: &Configuration) -> Result<(Manifest, Params), RunError> {
-    let scenario = configuration.scenario(&new.scenario)?;
-    if new.mode == Mode::Baseline && !scenario.shipped {
+fn build_manifest(new: &NewRun, configuration: &Configuration) -> Result<(Manifest, Params), RunError> {
+    let scenario = configuration.load_scenario(&new.scenario)?;
+    if new.mode == Mode::Baseline && !scenario.is_bundled {
         let message = format!("a baseline run needs a bundled scenario; {} is your own file", scenario.name);
-        return Err(RunError::NotPossible(message));
+        return Err(RunError::InvalidRequest(message));
     }
     if new.lesson.is_some() && new.mode != Mode::Lesson {
         let message = format!("a lesson needs mode lesson; the mode is {}", new.mode);
-        return Err(RunError::NotPossible(message));
+        return Err(RunError::InvalidRequest(message));
     }
     if !new.overrides.is_empty() && !matches!(new.mode, Mode::Debug | Mode::Lesson) {
         let message = format!("parameters can be set in debug runs only; the mode is {}", new.mode);
-        return Err(RunError::NotPossible(message));
+        return Err(RunError::InvalidRequest(message));
     }
     if new.fault.is_some() && new.mode != Mode::Debug {
         let message = format!("a fault can be seeded in debug runs only; the mode is {}", new.mode);
-        return Err(RunError::NotPossible(message));
+        return Err(RunError::InvalidRequest(message));
     }
-    let sound = configuration.parameters(&scenario, &new.overrides, new.mode != Mode::Baseline)?;
+    let sound = configuration.load_parameters(&scenario, &new.overrides, new.mode != Mode::Baseline)?;
     let params = Params { fault: new.fault, ..sound };
-    let (days, cash) = scenario.terms(&params);
+    let (days, cash) = scenario.days_and_cash_with(&params);
     let days = new.days.unwrap_or(days);
-    check_days(days).map_err(RunError::NotPossible)?;
+    check_days(days).map_err(RunError::InvalidRequest)?;
     let cash = new.cash.unwrap_or(cash);
-    check_cash(cash).map_err(RunError::NotPossible)?;
+    check_cash(cash).map_err(RunError::InvalidRequest)?;
     let seed = new.seed.unwrap_or(params.run.seed);
     if seed > i64::MAX as u64 {
-        return Err(RunError::NotPossible(format!("a seed can be at most {}, not {seed}", i64::MAX)));
+        return Err(RunError::InvalidRequest(format!("a seed can be at most {}, not {seed}", i64::MAX)));
     }
     let of_folder = match &new.storage {
-        Storage::Runs(runs) => label_of(runs),
+        Storage::Runs(runs) => participant_of_folder(runs),
         Storage::Memory => None,
     };
     let participant = new.participant.clone().or(of_folder);
     let earlier = match &new.storage {
-        Storage::Runs(runs) => earlier_runs_of(runs, participant.as_deref()),
+        Storage::Runs(runs) => earlier_runs(runs, participant.as_deref()),
         Storage::Memory => Vec::new(),
     };
     let (study, rules) = new.study.clone().map(|entry| (entry.stamp, entry.rules)).unzip();
     let consent = match new.mode {
-        Mode::Baseline => agreed(new, participant.as_deref(), configuration)?,
+        Mode::Baseline => resolve_consent(new, participant.as_deref(), configuration)?,
         Mode::Sandbox | Mode::Lesson | Mode::Debug => None,
     };
     let handed_out = new.handout.clone().map_or((None, None), |entry| (entry.run, Some(entry.stamp)));
@@ -264,12 +266,12 @@ fn plan_run(new: &NewRun, configuration: &Configuration) -> Result<(Manifest, Pa
         format: FORMAT,
         version: env!("CARGO_PKG_VERSION").to_owned(),
         mechanics: MECHANICS,
-        id: handed_out.0.unwrap_or_else(new_id),
+        id: handed_out.0.unwrap_or_else(new_run_id),
         created: now(),
         seed,
         days,
         cash,
-        earlier_runs: same_world(&earlier, seed, &scenario.name),
+        earlier_runs: count_same_world(&earlier, seed, &scenario.name),
         scenario: scenario.name,
         mode: new.mode,
         participant,
@@ -280,16 +282,16 @@ fn plan_run(new: &NewRun, configuration: &Configuration) -> Result<(Manifest, Pa
         lesson: new.lesson.as_ref().map(LessonEntry::stamp),
         handout: handed_out.1,
         voice: None,
-        rules: Some(rules.unwrap_or_else(|| SessionRules::of_mode(new.mode))),
+        rules: Some(rules.unwrap_or_else(|| SessionRules::for_mode(new.mode))),
         earlier,
         fault: new.fault,
-        parameters: differences(&params),
+        parameters: changed_parameters(&params),
     };
     Ok((manifest, params))
 }
 
-fn no_model(problem: String) -> RunError {
-    RunError::NotPossible(format!("the language model cannot be used: {problem}. Nothing was recorded"))
+fn model_voice_error(problem: String) -> RunError {
+    RunError::InvalidRequest(format!("the language model cannot be used: {problem}. Nothing was recorded"))
 }
 
 #[cfg(test)]
@@ -298,13 +300,13 @@ mod tests {
     use novamind_record::folder::runs::{all_run_folders, delete_run, list_runs, participant_folder};
 
     #[test]
-    fn participants_have_folders_and_labels_of_their_own() {
+    fn participants_have_separate_folders_and_labels() {
         let place = tempfile::tempdir().expect("a folder");
         let base = place.path().join("runs");
         let play = |runs: &Path| {
             let storage = Storage::Runs(runs.to_owned());
             let new = NewRun { storage, projection: false, days: Some(28), ..NewRun::default() };
-            Session::create(new, &Configuration::shipped()).expect("a run").manifest().clone()
+            Session::create(new, &Configuration::bundled()).expect("a run").manifest().clone()
         };
         let [first, second] = ["P01", "P02"].map(|label| participant_folder(&base, label).expect("a label"));
         assert_eq!(play(&base).participant, None);

@@ -5,14 +5,14 @@ use std::sync::Arc;
 
 use serde_json::{Map, Value, json};
 
-use novamind_base::notation::json_number;
-use novamind_database::query::Limits;
+use novamind_base::formatting::json_number;
+use novamind_database::query::QueryLimits;
 use novamind_database::{
-    Cell, Entry, Interrupt, Location, Position, ProjectionError, Projector, QueryConnection, QueryError,
-    Rows, Scope, Ticket, copy_for_other_programs, query_connection,
+    Cell, DatabaseLocation, Interrupt, ProjectionEntry, ProjectionError, ProjectionPosition, Projector,
+    QueryConnection, QueryError, QueryResult, QueryTicket, Scope, export_sqlite, query_connection,
 };
 use novamind_record::error::RunError;
-use novamind_tools::Refusal;
+use novamind_tools::Rejection;
 use novamind_world::events::Facts;
 
 /// The database of a run. A run without a database discards entries and rejects queries.
@@ -20,44 +20,44 @@ use novamind_world::events::Facts;
 pub struct RunDatabase {
     projector: Option<Projector>,
     /// The complete database file of an ended run; nothing is written any more.
-    finished: Option<Location>,
+    finished_file: Option<DatabaseLocation>,
     /// Connection of this thread; opened with the first query.
     connection: Option<QueryConnection>,
     /// Number of replacements since the run was opened.
-    replaced: u32,
+    replacement_count: u32,
 }
 
 impl RunDatabase {
-    pub(crate) fn of(projector: Option<Projector>) -> RunDatabase {
+    pub(crate) fn new(projector: Option<Projector>) -> RunDatabase {
         RunDatabase { projector, ..RunDatabase::default() }
     }
 
     /// Opens the database file of an ended run.
-    pub(crate) fn finished(location: Location) -> RunDatabase {
-        RunDatabase { finished: Some(location), ..RunDatabase::default() }
+    pub(crate) fn from_file(location: DatabaseLocation) -> RunDatabase {
+        RunDatabase { finished_file: Some(location), ..RunDatabase::default() }
     }
 
     /// Returns the writer of entries.
-    pub fn entries(&self) -> Entries<'_> {
-        Entries(self.projector.as_ref())
+    pub fn entry_writer(&self) -> EntryWriter<'_> {
+        EntryWriter(self.projector.as_ref())
     }
 
     /// Makes all entries so far visible, as of a line.
-    pub(crate) fn commit(&self, position: &Position) {
+    pub(crate) fn commit(&self, position: &ProjectionPosition) {
         if let Some(projector) = &self.projector {
             projector.commit(position.clone());
         }
     }
 
-    pub(crate) fn wait(&self) -> Result<(), ProjectionError> {
-        self.projector.as_ref().map_or(Ok(()), Projector::wait)
+    pub(crate) fn wait_until_written(&self) -> Result<(), ProjectionError> {
+        self.projector.as_ref().map_or(Ok(()), Projector::flush)
     }
 
     /// Calls `work` once all entries so far are written, with the digest of the file if `digest` is set. Calls it
     /// immediately if there is no database.
-    pub(crate) fn then(&self, digest: bool, work: impl FnOnce(Option<String>) + Send + 'static) {
+    pub(crate) fn after_writes(&self, digest: bool, work: impl FnOnce(Option<String>) + Send + 'static) {
         match &self.projector {
-            Some(projector) => projector.then(digest, work),
+            Some(projector) => projector.run_after_commit(digest, work),
             None => work(None),
         }
     }
@@ -68,37 +68,37 @@ impl RunDatabase {
     }
 
     pub(crate) fn replace(&mut self, made_anew: RunDatabase) {
-        *self = RunDatabase { replaced: self.replaced + 1, ..made_anew };
+        *self = RunDatabase { replacement_count: self.replacement_count + 1, ..made_anew };
     }
 
     /// Returns the number of replacements since the run was opened. Connections to an earlier database are stale.
-    pub fn replaced(&self) -> u32 {
-        self.replaced
+    pub fn replacement_count(&self) -> u32 {
+        self.replacement_count
     }
 
     /// Opens a separate connection, for a thread that queries while the session works. Its queries are recorded with
-    /// [`Session::note_query`](crate::Session::note_query).
+    /// [`Session::record_query`](crate::Session::note_query).
     ///
     /// # Errors
     /// The run has no database, or it cannot be read.
-    pub fn open_connection(&self) -> Result<QueryConnection, Refusal> {
-        self.open_connection_to(Scope::Visible)
+    pub fn open_connection(&self) -> Result<QueryConnection, Rejection> {
+        self.open_scoped_connection(Scope::Visible)
     }
 
-    pub(crate) fn open_connection_to(&self, scope: Scope) -> Result<QueryConnection, Refusal> {
-        let connection = match (&self.projector, &self.finished) {
+    pub(crate) fn open_scoped_connection(&self, scope: Scope) -> Result<QueryConnection, Rejection> {
+        let connection = match (&self.projector, &self.finished_file) {
             (Some(projector), _) => projector.connection(scope),
             (None, Some(location)) => query_connection(location, scope).map(|(connection, _)| connection),
-            (None, None) => return Err(Refusal::new("sql_error", "this run has no database")),
+            (None, None) => return Err(Rejection::new("sql_error", "this run has no database")),
         };
-        connection.map_err(|error| Refusal::new("sql_error", error.to_string()))
+        connection.map_err(|error| Rejection::new("sql_error", error.to_string()))
     }
 
     /// Returns the connection of this thread.
     ///
     /// # Errors
     /// The run has no database, or it cannot be read.
-    pub(crate) fn connection(&mut self) -> Result<&QueryConnection, Refusal> {
+    pub(crate) fn connection(&mut self) -> Result<&QueryConnection, Rejection> {
         let connection = match self.connection.take() {
             Some(connection) => connection,
             None => self.open_connection()?,
@@ -110,12 +110,17 @@ impl RunDatabase {
     ///
     /// # Errors
     /// The run has no database.
-    pub fn interrupt(&mut self) -> Result<Interrupt, Refusal> {
+    pub fn interrupt_handle(&mut self) -> Result<Interrupt, Rejection> {
         self.connection().map(QueryConnection::interrupt)
     }
 
-    pub(crate) fn answer(&mut self, ticket: Ticket, sql: &str, limits: Limits) -> Result<Rows, Refusal> {
-        self.connection()?.ask_as(ticket, sql, limits).map_err(query_refusal)
+    pub(crate) fn query(
+        &mut self,
+        ticket: QueryTicket,
+        sql: &str,
+        limits: QueryLimits,
+    ) -> Result<QueryResult, Rejection> {
+        self.connection()?.query_with_ticket(ticket, sql, limits).map_err(query_rejection)
     }
 
     /// Copies the tables into a new file that any SQLite tool can open.
@@ -123,28 +128,28 @@ impl RunDatabase {
     /// # Errors
     /// The run has no database, or the disk fails.
     pub(crate) fn copy_to(&self, file: &Path) -> Result<(), RunError> {
-        match (&self.projector, &self.finished) {
-            (Some(projector), _) => Ok(projector.copy_for_other_programs(file)?),
-            (None, Some(location)) => Ok(copy_for_other_programs(location, file)?),
-            (None, None) => Err(RunError::NotPossible("this run has no database".to_owned())),
+        match (&self.projector, &self.finished_file) {
+            (Some(projector), _) => Ok(projector.export_sqlite(file)?),
+            (None, Some(location)) => Ok(export_sqlite(location, file)?),
+            (None, None) => Err(RunError::InvalidRequest("this run has no database".to_owned())),
         }
     }
 
     #[cfg(test)]
-    pub(crate) fn bound_pages(&self, more: Option<u32>) {
-        self.projector.as_ref().expect("a database").bound_pages(more);
+    pub(crate) fn limit_pages(&self, more: Option<u32>) {
+        self.projector.as_ref().expect("a database").limit_pages(more);
     }
 }
 
 /// Writes entries, from any thread.
 #[derive(Clone, Copy)]
-pub struct Entries<'a>(Option<&'a Projector>);
+pub struct EntryWriter<'a>(Option<&'a Projector>);
 
-impl Entries<'_> {
+impl EntryWriter<'_> {
     /// Sends an entry to the database; creates it only if there is one.
-    pub(crate) fn write(self, entry: impl FnOnce() -> Entry) {
+    pub(crate) fn send(self, entry: impl FnOnce() -> ProjectionEntry) {
         if let Some(projector) = self.0 {
-            projector.write(entry());
+            projector.enqueue(entry());
         }
     }
 
@@ -155,17 +160,17 @@ impl Entries<'_> {
 }
 
 /// Converts the error of a query into the rejection that the caller of a tool receives.
-pub fn query_refusal(error: QueryError) -> Refusal {
+pub fn query_rejection(error: QueryError) -> Rejection {
     let message = match error.position {
         Some(at) => format!("{} (at character {})", error.message, at + 1),
         None => error.message,
     };
-    Refusal::new(error.code, message)
+    Rejection::new(error.code, message)
 }
 
 /// Returns the rejection for a record that cannot be read.
-pub fn not_readable(error: &RunError) -> Refusal {
-    Refusal::new("not_readable", error.to_string())
+pub fn unreadable_record(error: &RunError) -> Rejection {
+    Rejection::new("not_readable", error.to_string())
 }
 
 /// Makes column names unique: the second `n` becomes `n:2`.
@@ -180,10 +185,10 @@ fn unique_names(columns: &[String]) -> Vec<String> {
 }
 
 /// Converts a result to JSON for programs: rows as objects, columns with unique names.
-pub fn rows_as_json(rows: &Rows) -> Map<String, Value> {
+pub fn rows_to_json(rows: &QueryResult) -> Map<String, Value> {
     let columns = unique_names(&rows.columns);
     let object = |row: &Vec<Cell>| {
-        let fields = columns.iter().zip(row).map(|(column, cell)| (column.clone(), cell_as_json(cell)));
+        let fields = columns.iter().zip(row).map(|(column, cell)| (column.clone(), cell_to_json(cell)));
         Value::Object(fields.collect())
     };
     let mut data = Map::from_iter([
@@ -204,7 +209,7 @@ pub fn rows_as_json(rows: &Rows) -> Map<String, Value> {
 }
 
 /// Converts a value to JSON; non-finite numbers become null.
-fn cell_as_json(cell: &Cell) -> Value {
+fn cell_to_json(cell: &Cell) -> Value {
     match cell {
         Cell::Null => Value::Null,
         Cell::Integer(number) => (*number).into(),
@@ -216,14 +221,14 @@ fn cell_as_json(cell: &Cell) -> Value {
 
 /// Adds to the rejection of a query that hidden tables can be queried otherwise. Used only if the run can be
 /// inspected: elsewhere the message must not reveal that the table exists.
-pub fn with_the_way_to_hidden_tables(refusal: Refusal) -> Refusal {
+pub fn with_hidden_table_hint(refusal: Rejection) -> Rejection {
     let named = refusal.message.strip_prefix("there is no table hidden.");
     let Some(name) = named.and_then(|rest| rest.split(';').next()) else { return refusal };
     let message = format!(
         "hidden.{name} is not a visible table; query hidden tables with novamind query --xray, or with xray sql in \
          plain mode"
     );
-    Refusal { message, ..refusal }
+    Rejection { message, ..refusal }
 }
 
 #[cfg(test)]
@@ -231,10 +236,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn columns_of_equal_names_are_all_kept() {
+    fn duplicate_column_names_are_numbered() {
         let columns = ["n", "n", "day", "n", "n:2"].map(str::to_owned).to_vec();
-        let rows = Rows { columns, rows: vec![(1..=5).map(Cell::Integer).collect()], ..Rows::default() };
-        let data = rows_as_json(&rows);
+        let rows = QueryResult {
+            columns,
+            rows: vec![(1..=5).map(Cell::Integer).collect()],
+            ..QueryResult::default()
+        };
+        let data = rows_to_json(&rows);
         assert_eq!(data["columns"], json!(["n", "n:2", "day", "n:3", "n:2:2"]));
         assert_eq!(data["rows"], json!([{ "n": 1, "n:2": 2, "day": 3, "n:3": 4, "n:2:2": 5 }]));
     }

@@ -9,7 +9,7 @@ mod company;
 mod create;
 mod database;
 mod figures;
-mod inside;
+mod inspection;
 mod model_voice;
 mod permission;
 mod play;
@@ -23,79 +23,79 @@ mod snapshot;
 mod view;
 
 pub use archive::{
-    Export, Imported, LabKey, LabPublicKey, Seal, Workshop, import_run, is_archive_name, is_run_name,
-    read_seal_key, write_seal_key,
+    Export, ImportOutcome, LabKey, LabPublicKey, Seal, TemporaryFolder, import_run, is_archive_name,
+    is_run_id, read_seal_key, write_seal_key,
 };
-pub use company::reports::{DayReport, Week};
-pub use company::xray::Xray;
+pub use company::hidden_state::HiddenState;
+pub use company::reports::{DayReport, WeekResult};
 #[cfg(feature = "server")]
 pub use create::baseline::baseline_terms;
 pub use create::lesson_entry::LessonEntry;
 pub use create::{NewRun, Storage, StudyEntry};
-pub use database::{RunDatabase, not_readable, query_refusal, rows_as_json, with_the_way_to_hidden_tables};
+pub use database::{RunDatabase, query_rejection, rows_to_json, unreadable_record, with_hidden_table_hint};
 pub use figures::attendance::{
-    Attendance, AttendedTime, AttendedWeek, Attention, BREAK_SECONDS, FAST_WEEK_SECONDS, TimeSpent,
+    Attendance, AttendedWeek, Attention, FAST_WEEK_SECONDS, MIN_BREAK_SECONDS, TimeSpan, TimeSpent,
 };
-pub use figures::changes::{Change, Decisions};
+pub use figures::cash_rate::CashRate;
+pub use figures::changes::{Decisions, SettingChange};
 pub use figures::dashboard::DeliveredQuality;
-pub use figures::estimates::{Estimates, truth_behind};
+pub use figures::estimates::{Estimates, true_value_range};
 pub use figures::groups::{GroupWeek, PaidLeads};
 pub use figures::journal::JournalEntry;
-pub use figures::naive::{Bands, Coverage, Hindcast, Stage, hindcasts};
-pub use figures::pace::Pace;
-pub use figures::scored_forecast::{ForecastScore, ScoredForecast, Verdict, filed_forecasts};
+pub use figures::naive::{Coverage, ErrorBands, GrowthStage, Hindcast, hindcasts};
+pub use figures::scored_forecast::{ForecastScore, IntervalPosition, ScoredForecast, filed_forecasts};
+pub use figures::session_count::SessionCount;
 pub use figures::setting::{Audience, SettingId, setting_values};
-pub use figures::sitting_count::SittingCount;
-pub use figures::week::{Forecasts, WEEK_OF_ENTRY, entries_of_weeks, naively, week_of};
-pub use inside::look::{Look, WatchedDays};
-pub use inside::shadow::Shadow;
+pub use figures::week::{Forecasts, WEEK_OF_ENTRY_SQL, describe_naive_share, entries_of_weeks_sql, week_of};
+pub use inspection::access::{InspectionPermit, WatchedDays};
+pub use inspection::run_replay::RunReplay;
 #[cfg(all(any(test, feature = "test-kit"), feature = "server"))]
-pub use model_voice::stub::{Manner, Stub};
-pub use novamind_voice::CompanyNames;
+pub use model_voice::stub::{StubBehavior, StubModel};
+pub use novamind_voice::EnterpriseNames;
 pub use novamind_voice::model::settings::{ModelSettings, ModelStamp};
 pub use novamind_world::customers::drift::Expectation;
-pub use novamind_world::enterprise::Answer as CompanyAnswer;
+pub use novamind_world::enterprise::OfferResponse;
 pub use novamind_world::events::{Category, EndCause, Severity, Source};
 pub use novamind_world::fault::Fault;
 pub use novamind_world::identifiers;
 pub use novamind_world::market::competitors::Event as RivalEvent;
 pub use novamind_world::market::surges::Surge;
-pub use novamind_world::reputation::{ReputationCause, Spill, SpillOver};
+pub use novamind_world::reputation::{ReputationCause, Spillover, SpilloverEffect};
 pub use novamind_world::settings::{CoreSettings, Settings};
-pub use permission::{REFUSED_LOOK, may_look_inside};
-pub use play::act::Preview;
-pub use play::companion::Companion;
-pub use play::drafts::{Drafts, UnsentTexts};
-pub use play::lesson::conduct::{lesson_step, weeks_passed};
+pub use permission::{INSPECTION_REJECTED, can_inspect};
+pub use play::drafts::{DraftFile, DraftTexts};
+pub use play::extension::Extension;
+pub use play::idempotent::WeekRequest;
 pub use play::lesson::judging::measure;
-pub use play::lesson::reference::{PartPlay, play_part, play_part_watched};
-pub use play::once::WeekRequest;
-pub use play::open::{Access, end_run};
-pub use play::undo::undone_calls;
-pub use play::{AnswersCompanies, Session};
+pub use play::lesson::progress::{lesson_step, weeks_passed};
+pub use play::lesson::reference::{PartPlay, play_part, play_part_with_hooks};
+pub use play::open::{Access, abandon_run};
+pub use play::tool_call::Preview;
+pub use play::undo::undone_call_lines;
+pub use play::{RuleEvaluator, Session};
 pub use playback::Playback;
-pub use playback::position::{Chapter, Goal, PlaybackPosition, SeekResult};
+pub use playback::position::{Chapter, PlaybackPosition, SeekResult, SeekTarget};
 pub use playback::record_view::RecordView;
-pub use python::PYTHON_NOT_RUN;
+pub use python::PYTHON_DISABLED_MESSAGE;
 pub use recording::RunLog;
-pub use recording::activity::{ActivityLog, IDLE_AFTER, Interface, TIME_LIMIT};
-pub use recording::folders::new_id;
+pub use recording::activity::{ActivityLog, IDLE_TIMEOUT, Interface, TIME_LIMIT_RATIONALE};
+pub use recording::folders::new_run_id;
 pub use recording::machine::Machine;
-pub use recording::personal_clock::TimeLeft;
-pub use recording::recorder::lines_afterwards;
-pub use resume::branch::branch_of_lesson;
-pub use resume::branch::{not_saved, write_past};
-pub use resume::look::record_look;
-pub use resume::rebuild::{connection_to_file, rebuild_database};
-pub use resume::recorded::{Origin, read as read_recorded};
-pub use resume::rescue::{Rescued, rescue};
-pub use resume::unnamed::UnnamedBranch;
+pub use recording::recorder::read_afterwards;
+pub use recording::session_clock::TimeLeft;
+pub use resume::branch::create_lesson_branch;
+pub use resume::branch::{create_branch_files, not_saved_error};
+pub use resume::external_read::record_external_read;
+pub use resume::origin::{Origin, read_origin};
+pub use resume::rebuild::{open_database_file, rebuild_database};
+pub use resume::recovery::{RecoveredRun, recover};
+pub use resume::staged_branch::StagedBranch;
 pub use resume::verify::{Verification, verify, verify_sealed};
 pub use snapshot::integrity::Integrity;
 pub use snapshot::sealing::SealKey;
-pub use view::alike_plans::AlikePlans;
 pub use view::debug_parameters::{ChangedParameter, ChangedParameters, DebugParameters};
-pub use view::observe::{Observation, WaitingThread};
+pub use view::identical_plans::IdenticalPlans;
+pub use view::observation::{Observation, WaitingThread};
 pub use view::research_outlook::{LateProject, ResearchMeans, ResearchOutlook, ResearchSpread};
 pub use view::tool_limits::{CapacityTier, ModelTier, RunningStudy, StudyLevel, ToolLimits};
 pub use view::{CompanyView, best_starting_channel};
@@ -106,12 +106,12 @@ pub mod engine {
     pub use crate::company::facts_chain::StateHash;
     pub use crate::company::feed::Feed;
     pub use crate::company::overrides::{
-        Overrides, ParameterChange, Taken, Unfit, json_of_value, not_allowed, refuse_outside_debug, unknown,
-        value_of_json,
+        Overrides, ParameterChange, ParameterConflict, UpdatedParams, json_to_value, parameter_not_allowed,
+        require_debug_mode, unknown_parameter, value_to_json,
     };
     pub use crate::company::simulation::Simulation;
-    pub use crate::database::{Entries, RunDatabase};
-    pub use crate::figures::capacity_by_usage::UsageRule;
-    pub use crate::figures::changes::changes;
-    pub use crate::figures::groups::{count as count_groups, measured_group, mood_of};
+    pub use crate::database::{EntryWriter, RunDatabase};
+    pub use crate::figures::capacity_by_usage::UsageCapacityRule;
+    pub use crate::figures::changes::setting_changes;
+    pub use crate::figures::groups::{count_day, mean_satisfaction, measure_group};
 }

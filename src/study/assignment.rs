@@ -14,12 +14,12 @@ pub const ASSIGNMENT_FILE: &str = "assignment.csv";
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Assignment {
     /// One place per participant, in the order of the file.
-    pub places: Vec<Place>,
+    pub rows: Vec<AssignmentRow>,
 }
 
 /// A participant's place in the study.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Place {
+pub struct AssignmentRow {
     /// Label.
     pub label: String,
     /// Condition; `None` in a study without conditions.
@@ -84,19 +84,19 @@ impl Assignment {
             };
             let order = whole(3)?.unwrap_or(places.len() as u64 + 1) as u32;
             let condition = Some(cell(1)).filter(|text| !text.is_empty()).map(str::to_owned);
-            places.push(Place { label, condition, seed: whole(2)?, order });
+            places.push(AssignmentRow { label, condition, seed: whole(2)?, order });
         }
-        Ok(Assignment { places })
+        Ok(Assignment { rows: places })
     }
 
     /// Returns the place of a participant.
-    pub fn place(&self, label: &str) -> Option<&Place> {
-        self.places.iter().find(|place| place.label == label)
+    pub fn row_for(&self, label: &str) -> Option<&AssignmentRow> {
+        self.rows.iter().find(|place| place.label == label)
     }
 
     /// Returns the contents of `assignment.csv`.
-    pub fn as_csv(&self) -> String {
-        let line = |place: &Place| {
+    pub fn to_csv(&self) -> String {
+        let line = |place: &AssignmentRow| {
             let seed = place.seed.map_or(String::new(), |seed| seed.to_string());
             format!(
                 "{},{},{seed},{}\n",
@@ -105,12 +105,17 @@ impl Assignment {
                 place.order
             )
         };
-        let lines: String = self.places.iter().map(line).collect();
+        let lines: String = self.rows.iter().map(line).collect();
         format!("{}\n{lines}", COLUMNS.join(","))
     }
 
     /// Assigns the cells of a design to labels. Each block has every cell once, in random order with `draw` as the seed.
-    pub fn in_blocks(labels: &[String], seeds: &[u64], conditions: &[String], draw: u64) -> Assignment {
+    pub fn randomize_in_blocks(
+        labels: &[String],
+        seeds: &[u64],
+        conditions: &[String],
+        draw: u64,
+    ) -> Assignment {
         let conditions: Vec<Option<String>> = match conditions {
             [] => vec![None],
             some => some.iter().cloned().map(Some).collect(),
@@ -121,7 +126,7 @@ impl Assignment {
         };
         let cells: Vec<(Option<String>, Option<u64>)> = conditions.iter().flat_map(cell).collect();
         let places = labels.chunks(cells.len().max(1)).enumerate().flat_map(|(block, labels)| {
-            let order = shuffled(cells.len(), draw, block as u64);
+            let order = shuffled_indexes(cells.len(), draw, block as u64);
             let cells = &cells;
             labels
                 .iter()
@@ -129,16 +134,16 @@ impl Assignment {
                 .map(move |(at, label)| {
                     let (condition, seed) = cells.get(order[at]).cloned().unwrap_or_default();
                     let order = (block * cells.len() + at + 1) as u32;
-                    Place { label: label.clone(), condition, seed, order }
+                    AssignmentRow { label: label.clone(), condition, seed, order }
                 })
                 .collect::<Vec<_>>()
         });
-        Assignment { places: places.collect() }
+        Assignment { rows: places.collect() }
     }
 }
 
 /// Returns the numbers below `count` in a random order for a block: sorted by a keyed hash, the same on every machine.
-fn shuffled(count: usize, draw: u64, block: u64) -> Vec<usize> {
+fn shuffled_indexes(count: usize, draw: u64, block: u64) -> Vec<usize> {
     let key = |at: usize| {
         let drawn = [draw.to_le_bytes(), block.to_le_bytes(), (at as u64).to_le_bytes()].concat();
         *blake3::hash(&blake3::derive_key("novamind block randomisation", &drawn)).as_bytes()
@@ -153,24 +158,24 @@ mod tests {
     use super::*;
 
     #[test]
-    fn blocks_are_balanced_and_come_back_from_the_file() {
+    fn randomized_blocks_are_balanced_and_round_trip() {
         let labels: Vec<String> = (1..=13).map(|number| format!("P{number:02}")).collect();
         let conditions = ["control".to_owned(), "advice".to_owned()];
-        let made = Assignment::in_blocks(&labels, &[3, 5, 8], &conditions, 7);
-        assert_eq!(made, Assignment::in_blocks(&labels, &[3, 5, 8], &conditions, 7));
-        assert_ne!(made, Assignment::in_blocks(&labels, &[3, 5, 8], &conditions, 8));
-        for block in made.places.chunks(6).filter(|block| block.len() == 6) {
+        let made = Assignment::randomize_in_blocks(&labels, &[3, 5, 8], &conditions, 7);
+        assert_eq!(made, Assignment::randomize_in_blocks(&labels, &[3, 5, 8], &conditions, 7));
+        assert_ne!(made, Assignment::randomize_in_blocks(&labels, &[3, 5, 8], &conditions, 8));
+        for block in made.rows.chunks(6).filter(|block| block.len() == 6) {
             let cells: BTreeSet<_> = block.iter().map(|place| (&place.condition, place.seed)).collect();
             assert_eq!(cells.len(), 6);
         }
-        let read = Assignment::parse("assignment.csv", made.as_csv().as_bytes()).expect("it reads");
+        let read = Assignment::parse("assignment.csv", made.to_csv().as_bytes()).expect("it reads");
         assert_eq!(read, made);
-        assert_eq!(read.place("P13").expect("a place").order, 13);
-        assert_eq!(read.place("P14"), None);
+        assert_eq!(read.row_for("P13").expect("a place").order, 13);
+        assert_eq!(read.row_for("P14"), None);
     }
 
     #[test]
-    fn wrong_lines_are_named() {
+    fn parse_errors_name_the_line() {
         for (text, part) in [
             ("label,seed\nP1,3\n", "line 1"),
             ("label,condition,seed,order\nP1,,3,1\nP1,,4,2\n", "line 3"),

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::assignment::Assignment;
 use super::code::CodeCheck;
-use super::keys::seal_key_of;
+use super::keys::load_seal_key;
 use super::questions::Questionnaire;
 use novamind_record::error::RunError;
 use novamind_record::folder::configuration::CONSENT_FILE;
@@ -63,13 +63,13 @@ pub struct Protocol {
     pub practice: Practice,
     /// Display settings for participants.
     #[serde(default)]
-    pub session: SessionPage,
+    pub session: SessionOptions,
     /// Time limits.
     #[serde(default)]
     pub limits: TimeLimits,
     /// Recording settings.
     #[serde(default)]
-    pub record: RecordPage,
+    pub record: RecordOptions,
     /// Language model that words the messages of the runs; `None` for the built-in voice.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub voice: Option<ModelSettings>,
@@ -78,7 +78,7 @@ pub struct Protocol {
     integrity: RemovedSettings,
     /// The experimenter's access.
     #[serde(default)]
-    pub access: AccessPage,
+    pub access: AccessOptions,
 }
 
 /// The company that a session plays.
@@ -123,13 +123,13 @@ pub struct Seeds {
 
 impl Seeds {
     /// Returns the seeds of a block of participants.
-    pub fn of_block(&self) -> Vec<u64> {
+    pub fn block_seeds(&self) -> Vec<u64> {
         if self.block.is_empty() { self.seed.into_iter().collect() } else { self.block.clone() }
     }
 
     /// Returns the size of a block of participants: seeds of a block times conditions.
-    pub fn cells(&self) -> usize {
-        self.of_block().len().max(1) * self.conditions.len().max(1)
+    pub fn cell_count(&self) -> usize {
+        self.block_seeds().len().max(1) * self.conditions.len().max(1)
     }
 }
 
@@ -183,7 +183,7 @@ impl Default for Practice {
 /// Display settings for participants.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct SessionPage {
+pub struct SessionOptions {
     /// Whether the practice run shows the tour.
     pub tour: bool,
     /// Whether alerts recommend actions.
@@ -196,9 +196,9 @@ pub struct SessionPage {
     pub pause_reason: bool,
 }
 
-impl Default for SessionPage {
+impl Default for SessionOptions {
     fn default() -> Self {
-        SessionPage {
+        SessionOptions {
             tour: false,
             advice: false,
             calibration: false,
@@ -211,7 +211,7 @@ impl Default for SessionPage {
 /// Recording settings.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct RecordPage {
+pub struct RecordOptions {
     /// Kinds of activity that are not recorded.
     pub leave_out: Vec<String>,
     /// How much of notes and text answers is recorded.
@@ -220,9 +220,9 @@ pub struct RecordPage {
     pub drafts: DraftsKept,
 }
 
-impl Default for RecordPage {
+impl Default for RecordOptions {
     fn default() -> Self {
-        RecordPage { leave_out: Vec::new(), free_text: FreeText::Kept, drafts: DraftsKept::Lengths }
+        RecordOptions { leave_out: Vec::new(), free_text: FreeText::Kept, drafts: DraftsKept::Lengths }
     }
 }
 
@@ -237,7 +237,7 @@ struct RemovedSettings {
 /// The experimenter's access to functions that participants do not have.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct AccessPage {
+pub struct AccessOptions {
     /// Salted digest of the experimenter's code, as `novamind study code` prints it; `None` if the study has no code.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub code: Option<CodeDigest>,
@@ -253,7 +253,7 @@ impl CodeDigest {
     const ROUNDS: u32 = 100_000;
 
     /// Computes the digest of a code with a salt.
-    pub fn of(code: &str, salt: &str) -> CodeDigest {
+    pub fn from_code(code: &str, salt: &str) -> CodeDigest {
         let mut digest =
             blake3::derive_key("novamind experimenter code", format!("{salt}:{code}").as_bytes());
         for _ in 0..CodeDigest::ROUNDS {
@@ -264,12 +264,12 @@ impl CodeDigest {
     }
 
     /// Whether a code matches the digest.
-    pub fn opens(&self, code: &str) -> bool {
-        self.0.split_once(':').is_some_and(|(salt, _)| CodeDigest::of(code, salt) == *self)
+    pub fn matches(&self, code: &str) -> bool {
+        self.0.split_once(':').is_some_and(|(salt, _)| CodeDigest::from_code(code, salt) == *self)
     }
 
     /// Returns `salt:digest`, as in the file.
-    pub fn as_text(&self) -> &str {
+    pub fn as_str(&self) -> &str {
         &self.0
     }
 }
@@ -279,22 +279,22 @@ impl Study {
     ///
     /// # Errors
     /// Fails if a file is missing or invalid. The error names file, line and key, and what is expected.
-    pub fn read(folder: &Path) -> Result<Study, RunError> {
+    pub fn load(folder: &Path) -> Result<Study, RunError> {
         let path = folder.join(STUDY_FILE);
         let text = std::fs::read_to_string(&path).map_err(RunError::io(&path))?;
-        let protocol = Protocol::read(&path.display().to_string(), &text)?;
-        let consent = read_if_there(&folder.join(CONSENT_FILE))?.filter(|text| !text.trim().is_empty());
-        let files = question_files(folder)?;
+        let protocol = Protocol::parse(&path.display().to_string(), &text)?;
+        let consent = read_optional(&folder.join(CONSENT_FILE))?.filter(|text| !text.trim().is_empty());
+        let files = read_question_files(folder)?;
         let mut questionnaires = Vec::new();
         for (path, text) in &files {
-            questionnaires.push(Questionnaire::read(path, text)?);
+            questionnaires.push(Questionnaire::parse(path, text)?);
         }
         let assignment = Assignment::read(folder)?;
         if assignment.is_none() && protocol.seeds.plan != SeedPlan::One {
             let problem =
                 "this plan needs assignment.csv, which is missing. Create it with `novamind study assign`";
             return Err(
-                ParameterError::of_key(&path.display().to_string(), &text, "seeds.plan", problem).into()
+                ParameterError::for_key(&path.display().to_string(), &text, "seeds.plan", problem).into()
             );
         }
         let mut digest = blake3::Hasher::new_derive_key("novamind study protocol");
@@ -310,23 +310,23 @@ impl Study {
             take(&path.file_name().map(|name| name.to_string_lossy()).unwrap_or_default(), text);
         }
         let digest = digest.finalize().to_hex().to_string();
-        let (folder, seal_key) = (folder.to_owned(), seal_key_of(folder)?);
+        let (folder, seal_key) = (folder.to_owned(), load_seal_key(folder)?);
         Ok(Study { folder, protocol, consent, questionnaires, assignment, digest, seal_key })
     }
 
     /// Returns the first digits of the digest, for messages.
     pub fn short_digest(&self) -> &str {
-        shortened(&self.digest)
+        shorten_digest(&self.digest)
     }
 
     /// Returns a check of the experimenter's code, or `None` if the protocol has no code.
     pub fn code_check(&self) -> Option<CodeCheck> {
         let digest = self.protocol.access.code.clone()?;
-        Some(Arc::new(move |code: &str| digest.opens(code)))
+        Some(Arc::new(move |code: &str| digest.matches(code)))
     }
 
     /// Returns the rules of the study's sessions.
-    pub fn rules(&self) -> SessionRules {
+    pub fn session_rules(&self) -> SessionRules {
         let Protocol { session, record, limits, .. } = &self.protocol;
         SessionRules {
             advice: session.advice,
@@ -359,18 +359,18 @@ impl Protocol {
     }
 
     /// Whether a code gives the experimenter's access. Returns `false` if the protocol has no code.
-    pub fn opens_with(&self, code: Option<&str>) -> bool {
-        matches!((&self.access.code, code), (Some(digest), Some(code)) if digest.opens(code))
+    pub fn accepts_code(&self, code: Option<&str>) -> bool {
+        matches!((&self.access.code, code), (Some(digest), Some(code)) if digest.matches(code))
     }
 
     /// Parses the text of `study.toml`; `source` is its name in errors.
     ///
     /// # Errors
     /// Returns the first problem with its line and key.
-    pub fn read(source: &str, text: &str) -> Result<Protocol, ParameterError> {
+    pub fn parse(source: &str, text: &str) -> Result<Protocol, ParameterError> {
         let protocol: Protocol =
-            toml::from_str(text).map_err(|error| ParameterError::of_toml(source, text, &error))?;
-        protocol.check().map_err(|(key, problem)| ParameterError::of_key(source, text, key, problem))?;
+            toml::from_str(text).map_err(|error| ParameterError::from_toml(source, text, &error))?;
+        protocol.check().map_err(|(key, problem)| ParameterError::for_key(source, text, key, problem))?;
         Ok(protocol)
     }
 
@@ -404,9 +404,10 @@ impl Protocol {
             );
             return Err(("practice.seed", problem));
         }
-        let unknown = self.record.leave_out.iter().find(|kind| !Activity::KINDS.contains(&kind.as_str()));
+        let unknown =
+            self.record.leave_out.iter().find(|kind| !Activity::OPTIONAL_KINDS.contains(&kind.as_str()));
         if let Some(kind) = unknown {
-            let known = Activity::KINDS.join(", ");
+            let known = Activity::OPTIONAL_KINDS.join(", ");
             return Err((
                 "record.leave_out",
                 format!("unknown kind of activity {kind}; the kinds are {known}"),
@@ -419,7 +420,7 @@ impl Protocol {
                 format!("{kind} cannot be left out: times and answers depend on it"),
             ));
         }
-        self.voice.as_ref().map_or(Ok(()), ModelSettings::check).map_err(of_voice)?;
+        self.voice.as_ref().map_or(Ok(()), ModelSettings::check).map_err(voice_problem)?;
         self.limits.check_warning()?;
         let limits = [self.limits.week_minutes, self.limits.session_minutes, self.limits.study_minutes];
         if limits.contains(&Some(0)) {
@@ -430,12 +431,12 @@ impl Protocol {
 }
 
 /// Returns the first 16 digits of a digest, for messages.
-pub(crate) fn shortened(digest: &str) -> &str {
+pub(crate) fn shorten_digest(digest: &str) -> &str {
     digest.get(..16).unwrap_or(digest)
 }
 
 /// Qualifies the key of a problem with the table `voice`.
-fn of_voice((key, problem): (&'static str, String)) -> (&'static str, String) {
+fn voice_problem((key, problem): (&'static str, String)) -> (&'static str, String) {
     let key = match key {
         "endpoint" => "voice.endpoint",
         "model" => "voice.model",
@@ -447,7 +448,7 @@ fn of_voice((key, problem): (&'static str, String)) -> (&'static str, String) {
     (key, problem)
 }
 
-fn read_if_there(path: &Path) -> Result<Option<String>, RunError> {
+fn read_optional(path: &Path) -> Result<Option<String>, RunError> {
     match std::fs::read_to_string(path) {
         Ok(text) => Ok(Some(text)),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
@@ -456,7 +457,7 @@ fn read_if_there(path: &Path) -> Result<Option<String>, RunError> {
 }
 
 /// Reads the question files, sorted by name.
-fn question_files(folder: &Path) -> Result<Vec<(PathBuf, String)>, RunError> {
+fn read_question_files(folder: &Path) -> Result<Vec<(PathBuf, String)>, RunError> {
     let questions = folder.join("questions");
     let entries = match std::fs::read_dir(&questions) {
         Ok(entries) => entries,
@@ -478,11 +479,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn digest_of_a_protocol_is_that_of_its_text() {
+    fn protocol_digest_depends_on_its_text() {
         let folder = tempfile::tempdir().expect("a folder");
         let read = |text: &str| {
             std::fs::write(folder.path().join(STUDY_FILE), text).expect("written");
-            Study::read(folder.path()).expect("a study")
+            Study::load(folder.path()).expect("a study")
         };
         let text = "name = \"pilot\"\ntitle = \"A company\"\n[seeds]\nseed = 7\n";
         let plain = read(text);
@@ -492,6 +493,6 @@ mod tests {
         // A file with removed settings keeps its digest and its rules.
         let old = read(&format!("{text}[integrity]\nwitness = \"/mnt/lab\"\ncode_words = true\n"));
         assert_eq!(old.digest, "9ae42916627507b38d81028fd909f77262e5aad500f01ac8d7a77a6eecbcec06");
-        assert_eq!((old.rules(), old.protocol.removed_settings().len()), (plain.rules(), 2));
+        assert_eq!((old.session_rules(), old.protocol.removed_settings().len()), (plain.session_rules(), 2));
     }
 }

@@ -25,7 +25,7 @@ pub fn make_keys(folder: &Path) -> Result<(LabPublicKey, Vec<PathBuf>), RunError
         [LAB_KEY_FILE, LAB_PUBLIC_KEY_FILE, SEAL_KEY_FILE].map(|name| folder.join(name));
     let orphan = [&public, &seal].into_iter().find(|path| path.exists()).filter(|_| !own.exists());
     if let Some(path) = orphan {
-        return Err(RunError::NotPossible(format!(
+        return Err(RunError::InvalidRequest(format!(
             "{} was derived from a {LAB_KEY_FILE} that is not in this folder. Copy it here, or remove {0}; nothing was written",
             path.display()
         )));
@@ -40,33 +40,33 @@ pub fn make_keys(folder: &Path) -> Result<(LabPublicKey, Vec<PathBuf>), RunError
         key
     };
     if !public.exists() {
-        key.public().write(&public)?;
+        key.public_key().write(&public)?;
         written.push(public);
     }
     if !seal.exists() {
         write_seal_key(&key.seal_secret(), &seal)?;
         written.push(seal);
     }
-    Ok((key.public(), written))
+    Ok((key.public_key(), written))
 }
 
 /// Returns the key that seals a study's snapshots: its `seal.key`, or the default key if there is none.
 ///
 /// # Errors
 /// Fails if the file cannot be read or is not a key.
-pub fn seal_key_of(folder: &Path) -> Result<SealKey, RunError> {
+pub fn load_seal_key(folder: &Path) -> Result<SealKey, RunError> {
     let file = folder.join(SEAL_KEY_FILE);
     if !file.exists() {
         return Ok(SealKey::default());
     }
-    read_seal_key(&file).map(|secret| SealKey::of_study(&secret))
+    read_seal_key(&file).map(|secret| SealKey::with_study_secret(&secret))
 }
 
 /// Returns the lab key in the folder of a study, if there is one.
 ///
 /// # Errors
 /// Fails if the file cannot be read or is not a key.
-pub fn lab_key_of(folder: &Path) -> Result<Option<LabKey>, RunError> {
+pub fn load_lab_key(folder: &Path) -> Result<Option<LabKey>, RunError> {
     let file = folder.join(LAB_KEY_FILE);
     file.exists().then(|| LabKey::read(&file)).transpose()
 }
@@ -75,7 +75,7 @@ pub fn lab_key_of(folder: &Path) -> Result<Option<LabKey>, RunError> {
 ///
 /// # Errors
 /// Fails if the file cannot be read or is not a key.
-pub fn lab_public_key_of(folder: &Path) -> Result<Option<LabPublicKey>, RunError> {
+pub fn load_lab_public_key(folder: &Path) -> Result<Option<LabPublicKey>, RunError> {
     let file = folder.join(LAB_PUBLIC_KEY_FILE);
     file.exists().then(|| LabPublicKey::read(&file)).transpose()
 }
@@ -85,24 +85,24 @@ mod tests {
     use super::*;
 
     #[test]
-    fn keys_that_lack_follow_from_the_one_that_is_there() {
+    fn make_keys_derives_missing_keys() {
         let folder = tempfile::tempdir().expect("a folder");
         let (public, written) = make_keys(folder.path()).expect("keys");
         assert_eq!(written.len(), 3);
-        let seal = seal_key_of(folder.path()).expect("a key");
+        let seal = load_seal_key(folder.path()).expect("a key");
         assert!(seal != SealKey::default());
         std::fs::remove_file(folder.path().join(SEAL_KEY_FILE)).expect("gone");
-        assert!(seal_key_of(folder.path()).expect("none") == SealKey::default());
+        assert!(load_seal_key(folder.path()).expect("none") == SealKey::default());
         let (again, written) = make_keys(folder.path()).expect("keys");
         assert_eq!((again, written), (public, vec![folder.path().join(SEAL_KEY_FILE)]));
-        assert!(seal_key_of(folder.path()).expect("a key") == seal);
-        assert_eq!(lab_public_key_of(folder.path()).expect("a key"), Some(public));
+        assert!(load_seal_key(folder.path()).expect("a key") == seal);
+        assert_eq!(load_lab_public_key(folder.path()).expect("a key"), Some(public));
         // A new lab.key would not match the files of an earlier one.
         std::fs::remove_file(folder.path().join(LAB_KEY_FILE)).expect("gone");
         let problem = make_keys(folder.path()).expect_err("the private key is elsewhere").to_string();
         assert!(problem.contains("lab.pub was derived from a lab.key"), "{problem}");
-        assert!(lab_key_of(folder.path()).expect("none").is_none());
+        assert!(load_lab_key(folder.path()).expect("none").is_none());
         std::fs::write(folder.path().join(SEAL_KEY_FILE), "seal").expect("written");
-        assert!(seal_key_of(folder.path()).is_err(), "a damaged key is an error");
+        assert!(load_seal_key(folder.path()).is_err(), "a damaged key is an error");
     }
 }

@@ -3,31 +3,33 @@
 mod assignment;
 mod audit;
 mod code;
+mod collection;
 mod definition;
-mod due;
-mod gather;
+mod due_questions;
 mod keys;
+mod participant_session;
 mod questions;
 mod remarks;
-mod sittings;
-mod tombstone;
-mod visit;
+mod session_status;
 mod visit_log;
+mod withdrawal;
 
-pub use assignment::{ASSIGNMENT_FILE, Assignment, Place};
-pub use audit::{Audit, AuditFinding, AuditKind, RunFacts, audit};
+pub use assignment::{ASSIGNMENT_FILE, Assignment, AssignmentRow};
+pub use audit::{AuditFinding, AuditReport, FindingKind, RunFacts, audit_study};
 pub use code::CodeCheck;
+pub use collection::{CollectNote, CollectedRuns, FoundRun, FoundVisit, collect_runs, missing_participants};
 pub use definition::{CodeDigest, PracticeOffer, Protocol, STUDY_FILE, SeedPlan, Study};
-pub use due::DueQuestion;
-pub use gather::{CollectNote, FoundRun, FoundVisit, Gathered, gather, missing_places};
+pub use due_questions::DueQuestion;
 pub use keys::{
-    LAB_KEY_FILE, LAB_PUBLIC_KEY_FILE, SEAL_KEY_FILE, lab_key_of, lab_public_key_of, make_keys, seal_key_of,
+    LAB_KEY_FILE, LAB_PUBLIC_KEY_FILE, SEAL_KEY_FILE, load_lab_key, load_lab_public_key, load_seal_key,
+    make_keys,
 };
 pub use novamind_record::folder::configuration::CONSENT_FILE;
-pub use questions::{Form, Moment, Question, Questionnaire};
-pub use remarks::{REMARKS, Remark, remarks, write_remark};
-pub use sittings::{Sitting, SittingState, sittings};
-pub use visit::{DECLINED, NextStep, Visit};
+pub use participant_session::{DECLINED_NOTICE, NextStep, ParticipantSession};
+pub use questions::{AnswerFormat, Occasion, Question, Questionnaire};
+pub use remarks::{REMARKS_FILE, Remark, read_remarks, write_remark};
+pub use session_status::{SessionState, SessionStatus, session_statuses};
 pub use visit_log::{
-    VISITS, VisitEvent, VisitLine, VisitSummary, has_come, record_refused_code, visits, visits_of,
+    VISITS_FILE, VisitEvent, VisitLine, VisitSummary, has_visited, read_study_visits, read_visits,
+    record_rejected_code,
 };

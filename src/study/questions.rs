@@ -20,7 +20,7 @@ pub struct Questionnaire {
     #[serde(default)]
     pub introduction: String,
     /// When it is asked.
-    pub when: Moment,
+    pub when: Occasion,
     /// Weeks after which it is asked, with `when = "weeks"`.
     #[serde(default)]
     pub weeks: Vec<u32>,
@@ -32,7 +32,7 @@ pub struct Questionnaire {
 /// When a questionnaire is asked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Moment {
+pub enum Occasion {
     /// Before the first week of the session.
     Before,
     /// After certain weeks.
@@ -52,7 +52,7 @@ pub struct Question {
     pub text: String,
     /// Form of the answer.
     #[serde(flatten)]
-    pub form: Form,
+    pub form: AnswerFormat,
     /// Whether the question must be answered.
     #[serde(default)]
     pub required: bool,
@@ -61,7 +61,7 @@ pub struct Question {
 /// Form of an answer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "form", rename_all = "lowercase")]
-pub enum Form {
+pub enum AnswerFormat {
     /// A point of a scale.
     Likert {
         /// Number of points, 2 to 11.
@@ -112,24 +112,24 @@ fn most_letters() -> u32 {
     2000
 }
 
-impl Form {
+impl AnswerFormat {
     /// Returns the identifier in records.
     pub fn id(&self) -> &'static str {
         match self {
-            Form::Likert { .. } => "likert",
-            Form::Number { .. } => "number",
-            Form::Choice { .. } => "choice",
-            Form::Text { .. } => "text",
-            Form::Attention { .. } => "attention",
+            AnswerFormat::Likert { .. } => "likert",
+            AnswerFormat::Number { .. } => "number",
+            AnswerFormat::Choice { .. } => "choice",
+            AnswerFormat::Text { .. } => "text",
+            AnswerFormat::Attention { .. } => "attention",
         }
     }
 
     /// Returns the options as they are shown; empty for numbers and text.
     pub fn options(&self) -> Vec<String> {
         match self {
-            Form::Likert { points, .. } => (1..=*points).map(|point| point.to_string()).collect(),
-            Form::Choice { options, .. } | Form::Attention { options, .. } => options.clone(),
-            Form::Number { .. } | Form::Text { .. } => Vec::new(),
+            AnswerFormat::Likert { points, .. } => (1..=*points).map(|point| point.to_string()).collect(),
+            AnswerFormat::Choice { options, .. } | AnswerFormat::Attention { options, .. } => options.clone(),
+            AnswerFormat::Number { .. } | AnswerFormat::Text { .. } => Vec::new(),
         }
     }
 
@@ -137,14 +137,14 @@ impl Form {
     ///
     /// # Errors
     /// Returns a description of a valid answer.
-    pub fn value(&self, typed: &str) -> Result<Value, String> {
+    pub fn parse_answer(&self, typed: &str) -> Result<Value, String> {
         let typed = typed.trim();
         match self {
-            Form::Likert { points, .. } => match typed.parse::<u32>() {
+            AnswerFormat::Likert { points, .. } => match typed.parse::<u32>() {
                 Ok(point) if (1..=*points).contains(&point) => Ok(json!(point)),
                 _ => Err(format!("a number from 1 to {points}")),
             },
-            Form::Number { min, max, unit } => {
+            AnswerFormat::Number { min, max, unit } => {
                 let unit = if unit.is_empty() { String::new() } else { format!(" ({unit})") };
                 let number = typed.replace('_', "").parse::<f64>().ok().filter(|number| number.is_finite());
                 let above = |number: &f64| min.is_none_or(|min| *number >= min);
@@ -158,19 +158,19 @@ impl Form {
                     }
                 })
             }
-            Form::Choice { options, several: true } => {
+            AnswerFormat::Choice { options, several: true } => {
                 let chosen: Option<Vec<&String>> =
-                    typed.split(',').map(|one| chosen(options, one.trim())).collect();
+                    typed.split(',').map(|one| find_option(options, one.trim())).collect();
                 chosen
                     .filter(|chosen| !chosen.is_empty())
                     .map(|chosen| json!(chosen))
                     .ok_or_else(|| format!("numbers from 1 to {}, with commas", options.len()))
             }
-            Form::Choice { options, several: false } | Form::Attention { options, .. } => {
+            AnswerFormat::Choice { options, several: false } | AnswerFormat::Attention { options, .. } => {
                 let none = || format!("a number from 1 to {}", options.len());
-                chosen(options, typed).map(|option| json!(option)).ok_or_else(none)
+                find_option(options, typed).map(|option| json!(option)).ok_or_else(none)
             }
-            Form::Text { most } => match typed.chars().count() {
+            AnswerFormat::Text { most } => match typed.chars().count() {
                 0 => Err("a few words".to_owned()),
                 length if length as u64 > u64::from(*most) => Err(format!("at most {most} characters")),
                 _ => Ok(json!(typed)),
@@ -179,40 +179,42 @@ impl Form {
     }
 
     /// Whether the answer is free text.
-    pub fn is_in_words(&self) -> bool {
-        matches!(self, Form::Text { .. })
+    pub fn is_free_text(&self) -> bool {
+        matches!(self, AnswerFormat::Text { .. })
     }
 
     /// Whether an attention check was answered as expected; `None` for other forms.
-    pub fn is_as_expected(&self, value: &Value) -> Option<bool> {
+    pub fn matches_expected(&self, value: &Value) -> Option<bool> {
         match self {
-            Form::Attention { expected, .. } => Some(value.as_str() == Some(expected)),
+            AnswerFormat::Attention { expected, .. } => Some(value.as_str() == Some(expected)),
             _ => None,
         }
     }
 
-    fn keys(&self) -> &'static [&'static str] {
+    fn allowed_keys(&self) -> &'static [&'static str] {
         match self {
-            Form::Likert { .. } => &["points", "low", "high"],
-            Form::Number { .. } => &["min", "max", "unit"],
-            Form::Choice { .. } => &["options", "several"],
-            Form::Text { .. } => &["most"],
-            Form::Attention { .. } => &["options", "expected"],
+            AnswerFormat::Likert { .. } => &["points", "low", "high"],
+            AnswerFormat::Number { .. } => &["min", "max", "unit"],
+            AnswerFormat::Choice { .. } => &["options", "several"],
+            AnswerFormat::Text { .. } => &["most"],
+            AnswerFormat::Attention { .. } => &["options", "expected"],
         }
     }
 
     fn check(&self) -> Result<(), String> {
         match self {
-            Form::Likert { points, .. } if !(2..=11).contains(points) => {
+            AnswerFormat::Likert { points, .. } if !(2..=11).contains(points) => {
                 Err("a scale has 2 to 11 points".to_owned())
             }
-            Form::Number { min: Some(min), max: Some(max), .. } if min > max => {
+            AnswerFormat::Number { min: Some(min), max: Some(max), .. } if min > max => {
                 Err(format!("min {min} is above max {max}"))
             }
-            Form::Choice { options, .. } | Form::Attention { options, .. } if options.len() < 2 => {
+            AnswerFormat::Choice { options, .. } | AnswerFormat::Attention { options, .. }
+                if options.len() < 2 =>
+            {
                 Err("at least two options are required".to_owned())
             }
-            Form::Attention { options, expected } if !options.contains(expected) => {
+            AnswerFormat::Attention { options, expected } if !options.contains(expected) => {
                 Err(format!("the expected answer {expected:?} is not one of the options"))
             }
             _ => Ok(()),
@@ -221,7 +223,7 @@ impl Form {
 }
 
 /// Finds an option by its number, from 1, or by its text.
-fn chosen<'a>(options: &'a [String], typed: &str) -> Option<&'a String> {
+fn find_option<'a>(options: &'a [String], typed: &str) -> Option<&'a String> {
     let numbered = typed.parse::<usize>().ok().and_then(|number| options.get(number.checked_sub(1)?));
     numbered.or_else(|| options.iter().find(|option| option.eq_ignore_ascii_case(typed)))
 }
@@ -231,14 +233,14 @@ impl Questionnaire {
     ///
     /// # Errors
     /// Returns the first problem with its line and key.
-    pub fn read(path: &Path, text: &str) -> Result<Questionnaire, ParameterError> {
+    pub fn parse(path: &Path, text: &str) -> Result<Questionnaire, ParameterError> {
         let source = path.display().to_string();
         let read: Questionnaire =
-            toml::from_str(text).map_err(|error| ParameterError::of_toml(&source, text, &error))?;
+            toml::from_str(text).map_err(|error| ParameterError::from_toml(&source, text, &error))?;
         let name = path.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
         let questionnaire = Questionnaire { name, ..read };
-        if (questionnaire.when == Moment::Weeks) == questionnaire.weeks.is_empty() {
-            return Err(ParameterError::of_key(
+        if (questionnaire.when == Occasion::Weeks) == questionnaire.weeks.is_empty() {
+            return Err(ParameterError::for_key(
                 &source,
                 text,
                 "weeks",
@@ -249,7 +251,7 @@ impl Questionnaire {
         let tables = tables.get("question").and_then(toml::Value::as_array).cloned().unwrap_or_default();
         let mut known = std::collections::BTreeSet::new();
         for (question, table) in questionnaire.questions.iter().zip(&tables) {
-            let own = [&["id", "text", "form", "required"], question.form.keys()].concat();
+            let own = [&["id", "text", "form", "required"], question.form.allowed_keys()].concat();
             let unknown = table
                 .as_table()
                 .into_iter()
@@ -261,7 +263,7 @@ impl Questionnaire {
                     question.id,
                     own.join(", ")
                 );
-                return Err(ParameterError::of_key(&source, text, key, problem));
+                return Err(ParameterError::for_key(&source, text, key, problem));
             }
             let fits = |letter: u8| letter.is_ascii_alphanumeric() || letter == b'_';
             if question.id.is_empty() || !question.id.bytes().all(fits) {
@@ -269,10 +271,10 @@ impl Questionnaire {
                     "{:?} is not a valid name of a question: use letters, digits, underscores",
                     question.id
                 );
-                return Err(ParameterError::of_key(&source, text, "question", problem));
+                return Err(ParameterError::for_key(&source, text, "question", problem));
             }
             if !known.insert(&question.id) {
-                return Err(ParameterError::of_key(
+                return Err(ParameterError::for_key(
                     &source,
                     text,
                     "question",
@@ -280,7 +282,7 @@ impl Questionnaire {
                 ));
             }
             let problem = |problem: String| {
-                ParameterError::of_key(&source, text, "question", format!("{}: {problem}", question.id))
+                ParameterError::for_key(&source, text, "question", format!("{}: {problem}", question.id))
             };
             question.form.check().map_err(problem)?;
         }
@@ -289,7 +291,7 @@ impl Questionnaire {
 
     /// Whether the questionnaire is asked after a week, counted from 1.
     pub fn is_due_after(&self, week: u32) -> bool {
-        self.when == Moment::Weeks && self.weeks.contains(&week)
+        self.when == Occasion::Weeks && self.weeks.contains(&week)
     }
 }
 
@@ -298,10 +300,10 @@ mod tests {
     use super::*;
 
     fn read(text: &str) -> Result<Questionnaire, String> {
-        Questionnaire::read(Path::new("questions/effort.toml"), text).map_err(|error| error.to_string())
+        Questionnaire::parse(Path::new("questions/effort.toml"), text).map_err(|error| error.to_string())
     }
 
-    const EFFORT: &str = r#"
+    const EFFORT_QUESTIONNAIRE: &str = r#"
 title = "Effort"
 when = "weeks"
 weeks = [4, 12]
@@ -333,15 +335,15 @@ min = 0.0
 "#;
 
     #[test]
-    fn answers_are_read_as_their_forms_say() {
-        let effort = read(EFFORT).expect("it reads");
+    fn parse_answer_follows_the_format() {
+        let effort = read(EFFORT_QUESTIONNAIRE).expect("it reads");
         assert_eq!(effort.name, "effort");
         assert!(effort.is_due_after(4) && !effort.is_due_after(5));
-        let value = |at: usize, typed: &str| effort.questions[at].form.value(typed);
+        let value = |at: usize, typed: &str| effort.questions[at].form.parse_answer(typed);
         assert_eq!(value(0, "7"), Ok(json!(7)));
         assert_eq!(value(0, "8"), Err("a number from 1 to 7".to_owned()));
         assert_eq!(value(1, "2"), Ok(json!("second")));
-        assert_eq!(effort.questions[1].form.is_as_expected(&json!("first")), Some(false));
+        assert_eq!(effort.questions[1].form.matches_expected(&json!("first")), Some(false));
         assert_eq!(value(2, "1, notes"), Ok(json!(["SQL", "notes"])));
         assert!(value(2, "1, none").is_err());
         assert_eq!(value(3, "1_000"), Ok(json!(1000.0)));
@@ -349,7 +351,7 @@ min = 0.0
     }
 
     #[test]
-    fn wrong_questions_are_named() {
+    fn parse_errors_name_the_question() {
         for (from, to, part) in [
             ("points = 7", "points = 1", "2 to 11"),
             ("expected = \"second\"", "expected = \"third\"", "not one of the options"),
@@ -358,7 +360,7 @@ min = 0.0
             ("when = \"weeks\"", "when = \"sometimes\"", "line 3"),
             ("low = \"easy\"", "lowest = \"easy\"", "lowest is not a key of this form"),
         ] {
-            let error = read(&EFFORT.replace(from, to)).expect_err(to);
+            let error = read(&EFFORT_QUESTIONNAIRE.replace(from, to)).expect_err(to);
             assert!(error.contains(part), "{error}");
         }
     }

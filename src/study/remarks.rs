@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize};
 use novamind_record::clock::now;
 use novamind_record::error::RunError;
 use novamind_record::files::append_synced;
-use novamind_record::files::read_regular_text;
+use novamind_record::files::read_regular_text_or_empty;
 
 /// Name of the file.
-pub const REMARKS: &str = "remarks.jsonl";
+pub const REMARKS_FILE: &str = "remarks.jsonl";
 
 /// A remark on a participant.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -28,14 +28,14 @@ pub struct Remark {
 /// # Errors
 /// Fails if the file cannot be written.
 pub fn write_remark(runs: &Path, participant: &str, text: &str) -> Result<(), RunError> {
-    let path = runs.join(REMARKS);
+    let path = runs.join(REMARKS_FILE);
     let remark = Remark { at: now(), participant: participant.to_owned(), text: text.to_owned() };
     let line = serde_json::to_string(&remark).unwrap_or_default() + "\n";
     append_synced(&path, line.as_bytes())
 }
 
 /// Returns the remarks of a folder of runs. Skips lines that cannot be parsed.
-pub fn remarks(runs: &Path) -> Vec<Remark> {
-    let text = read_regular_text(&runs.join(REMARKS));
+pub fn read_remarks(runs: &Path) -> Vec<Remark> {
+    let text = read_regular_text_or_empty(&runs.join(REMARKS_FILE));
     text.lines().filter_map(|line| serde_json::from_str(line).ok()).collect()
 }

@@ -8,12 +8,12 @@ use serde::{Deserialize, Serialize};
 
 use super::definition::Study;
 use novamind_record::clock::now;
-use novamind_record::files::read_regular_text;
+use novamind_record::files::read_regular_text_or_empty;
 use novamind_record::files::{append_synced, create_folder};
 use novamind_session::Machine;
 
 /// Name of the file.
-pub const VISITS: &str = "visits.jsonl";
+pub const VISITS_FILE: &str = "visits.jsonl";
 
 /// A line of the list of visits.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -59,15 +59,15 @@ pub(super) struct VisitLog {
 
 impl VisitLog {
     /// Opens the list in a machine's folder of runs.
-    pub(super) fn of(runs: &Path, study: &Study) -> VisitLog {
-        VisitLog { path: runs.join(VISITS), study: study.digest.clone() }
+    pub(super) fn new(runs: &Path, study: &Study) -> VisitLog {
+        VisitLog { path: runs.join(VISITS_FILE), study: study.digest.clone() }
     }
 
     /// Appends a line. Failures are ignored because the runs are the record.
-    pub(super) fn write(&self, label: &str, event: VisitEvent) {
+    pub(super) fn append(&self, label: &str, event: VisitEvent) {
         let label = label.chars().take(80).collect();
         let line =
-            VisitLine { at: now(), machine: Machine::here().id, study: self.study.clone(), label, event };
+            VisitLine { at: now(), machine: Machine::current().id, study: self.study.clone(), label, event };
         let text = serde_json::to_string(&line).unwrap_or_default() + "\n";
         let _ = self
             .path
@@ -77,20 +77,20 @@ impl VisitLog {
     }
 
     /// Whether the list has an event of a participant of this study.
-    pub(super) fn has(&self, label: &str, event: VisitEvent) -> bool {
-        let lines = visits(&self.path);
+    pub(super) fn contains(&self, label: &str, event: VisitEvent) -> bool {
+        let lines = read_visits(&self.path);
         lines.iter().any(|line| line.study == self.study && line.label == label && line.event == event)
     }
 }
 
 /// Whether a participant with a label has visited a study, by the list in a folder of runs.
-pub fn has_come(study: &Study, runs: &Path, label: &str) -> bool {
-    VisitLog::of(runs, study).has(label, VisitEvent::Came)
+pub fn has_visited(study: &Study, runs: &Path, label: &str) -> bool {
+    VisitLog::new(runs, study).contains(label, VisitEvent::Came)
 }
 
 /// Records that a wrong experimenter's code was entered.
-pub fn record_refused_code(study: &Study, runs: &Path) {
-    VisitLog::of(runs, study).write("", VisitEvent::CodeRefused);
+pub fn record_rejected_code(study: &Study, runs: &Path) {
+    VisitLog::new(runs, study).append("", VisitEvent::CodeRefused);
 }
 
 /// The number of participants who came to a study, by outcome.
@@ -112,7 +112,7 @@ pub struct VisitSummary {
 
 impl VisitSummary {
     /// Summarizes the lines of all machines, given the labels that have runs.
-    pub fn of<'a>(
+    pub fn from_lines<'a>(
         lines: impl IntoIterator<Item = &'a VisitLine>,
         with_runs: &BTreeSet<&str>,
     ) -> VisitSummary {
@@ -165,13 +165,13 @@ pub fn finished_without_run<'a>(
 }
 
 /// Returns the visits to a study on the given machines, each line once: folders may be copies of one another.
-pub fn visits_of(study: &Study, machines: &[PathBuf]) -> BTreeSet<VisitLine> {
-    let lines = machines.iter().flat_map(|runs| visits(&runs.join(VISITS)));
+pub fn read_study_visits(study: &Study, machines: &[PathBuf]) -> BTreeSet<VisitLine> {
+    let lines = machines.iter().flat_map(|runs| read_visits(&runs.join(VISITS_FILE)));
     lines.filter(|line| line.study == study.digest).collect()
 }
 
 /// Returns the lines of a list of visits. Skips lines that cannot be parsed.
-pub fn visits(path: &Path) -> Vec<VisitLine> {
-    let text = read_regular_text(path);
+pub fn read_visits(path: &Path) -> Vec<VisitLine> {
+    let text = read_regular_text_or_empty(path);
     text.lines().filter_map(|line| serde_json::from_str(line).ok()).collect()
 }

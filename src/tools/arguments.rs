@@ -7,11 +7,11 @@ use indexmap::IndexMap;
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Number, Value};
 
-use super::numbers::Numbers;
-use super::refusal::Refusal;
-use super::spec::{ArgumentKind, Range, Spec};
-use super::view::View;
-use novamind_base::notation::plain_numbers;
+use super::parameter_numbers::ParameterNumbers;
+use super::rejection::Rejection;
+use super::spec::{ArgumentKind, NumberRange, ToolSpec};
+use super::tool_context::ToolContext;
+use novamind_base::formatting::normalize_json_numbers;
 use novamind_world::identifiers::{Channel, Group, Plan};
 use novamind_world::settings::{PerCustomer, PerGroup, PerPlan};
 
@@ -23,42 +23,45 @@ impl Arguments {
     /// Checks the names of the arguments of a call. `numbers` fills the placeholders of error messages.
     ///
     /// # Errors
-    /// `wrong_type` if they are not an object, `unknown_argument`, `argument_missing`.
-    pub fn of(
-        spec: &Spec,
+    /// `wrong_type_rejection` if they are not an object, `unknown_argument`, `argument_missing`.
+    pub fn parse(
+        spec: &ToolSpec,
         given: &Value,
-        numbers: impl FnOnce() -> Arc<Numbers>,
-    ) -> Result<Arguments, Refusal> {
+        numbers: impl FnOnce() -> Arc<ParameterNumbers>,
+    ) -> Result<Arguments, Rejection> {
         let mut map = match given {
             Value::Null => Map::new(),
             Value::Object(map) => map.clone(),
             _ => {
-                return Err(Refusal::new(
+                return Err(Rejection::new(
                     "wrong_type",
                     "the arguments must be an object of names and values",
                 ));
             }
         };
-        if let Some(whole) = spec.whole
+        if let Some(whole) = spec.unnamed_argument
             && !map.is_empty()
-            && !map.keys().any(|name| is_named(spec, name))
-            && may_be_whole(spec, &map)
+            && !map.keys().any(|name| is_argument_name(spec, name))
+            && is_unnamed_argument(spec, &map)
         {
             map = Map::from_iter([(whole.to_owned(), Value::Object(map))]);
         }
-        if !spec.own_unknown
-            && let Some(name) = map.keys().find(|name| !is_named(spec, name))
+        if !spec.has_own_unknown_code
+            && let Some(name) = map.keys().find(|name| !is_argument_name(spec, name))
         {
-            let message = format!("{} has no argument {name}; it has {}", spec.name(), names(spec));
-            return Err(Refusal::at(name.clone(), "unknown_argument", message));
+            let message = format!("{} has no argument {name}; it has {}", spec.name(), argument_names(spec));
+            return Err(Rejection::for_field(name.clone(), "unknown_argument", message));
         }
         map.retain(|_, value| !value.is_null());
-        for argument in spec.arguments.iter().filter(|argument| argument.required && !spec.own_missing()) {
+        for argument in
+            spec.arguments.iter().filter(|argument| argument.required && !spec.has_own_missing_code())
+        {
             let given = map.contains_key(argument.name)
                 || argument.alias.is_some_and(|alias| map.contains_key(alias));
             if !given {
-                let message = format!("{} is required: {}", argument.name, numbers().fill(argument.doc));
-                return Err(Refusal::at(argument.name, "argument_missing", message));
+                let message =
+                    format!("{} is required: {}", argument.name, numbers().substitute(argument.description));
+                return Err(Rejection::for_field(argument.name, "argument_missing", message));
             }
         }
         Ok(Arguments(map))
@@ -81,8 +84,8 @@ impl Arguments {
     pub fn read<T>(
         &self,
         name: &'static str,
-        reader: impl FnOnce(&Value, &'static str) -> Result<T, Refusal>,
-    ) -> Result<Option<T>, Refusal> {
+        reader: impl FnOnce(&Value, &'static str) -> Result<T, Rejection>,
+    ) -> Result<Option<T>, Rejection> {
         self.get(name).map(|value| reader(value, name)).transpose()
     }
 
@@ -92,13 +95,13 @@ impl Arguments {
     }
 }
 
-fn is_named(spec: &Spec, name: &str) -> bool {
+fn is_argument_name(spec: &ToolSpec, name: &str) -> bool {
     spec.arguments.iter().any(|argument| argument.name == name || argument.alias == Some(name))
 }
 
 /// Returns whether an object without argument names can be the single argument itself. A deal has a customer or offerings; a
 /// map can have any key.
-fn may_be_whole(spec: &Spec, map: &Map<String, Value>) -> bool {
+fn is_unnamed_argument(spec: &ToolSpec, map: &Map<String, Value>) -> bool {
     let is_deal = spec
         .arguments
         .iter()
@@ -106,115 +109,119 @@ fn may_be_whole(spec: &Spec, map: &Map<String, Value>) -> bool {
     !is_deal || ["customer_id", "offerings"].iter().any(|key| map.contains_key(*key))
 }
 
-fn names(spec: &Spec) -> String {
+fn argument_names(spec: &ToolSpec) -> String {
     let names: Vec<&str> = spec.arguments.iter().map(|argument| argument.name).collect();
     if names.is_empty() { "none".to_owned() } else { names.join(", ") }
 }
 
 /// Returns a JSON number, but not a Boolean or a text.
-pub fn number(value: &Value) -> Option<f64> {
+pub fn json_f64(value: &Value) -> Option<f64> {
     value.as_f64()
 }
 
 /// Returns a JSON integer, including integral floats, but not a Boolean or a text.
-pub fn integer(value: &Value) -> Option<i64> {
+pub fn json_i64(value: &Value) -> Option<i64> {
     let exact = |number: &f64| number.fract() == 0.0 && number.abs() < 9.2e18;
     value.as_i64().or_else(|| value.as_f64().filter(exact).map(|number| number as i64))
 }
 
-impl Range {
+impl NumberRange {
     /// Returns a JSON integer in this range, including integral floats.
-    pub fn whole<T: TryFrom<i64>>(&self, value: &Value) -> Option<T> {
-        let number = integer(value).filter(|number| self.holds(*number as f64))?;
+    pub fn parse_integer<T: TryFrom<i64>>(&self, value: &Value) -> Option<T> {
+        let number = json_i64(value).filter(|number| self.contains(*number as f64))?;
         T::try_from(number).ok()
     }
 }
 
 /// Replaces a setting if a call gives it.
-pub fn replace<T>(now: &mut T, given: Option<T>) {
+pub fn replace_if_given<T>(now: &mut T, given: Option<T>) {
     if let Some(given) = given {
         *now = given;
     }
 }
 
 /// Returns a text argument, or an empty text if it was not given.
-pub fn text<'a>(arguments: &'a Arguments, name: &str) -> Result<&'a str, Refusal> {
+pub fn text_argument<'a>(arguments: &'a Arguments, name: &str) -> Result<&'a str, Rejection> {
     match arguments.get(name) {
         None => Ok(""),
-        Some(value) => value.as_str().ok_or_else(|| wrong_type(name, "text")),
+        Some(value) => value.as_str().ok_or_else(|| wrong_type_rejection(name, "text")),
     }
 }
 
 /// A number in its sent notation: 80 and 80.0 are the same amount, but are written differently.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Sent {
+pub struct SentNumber {
     /// Value.
     pub value: f64,
-    written: Number,
+    number: Number,
 }
 
-impl Sent {
+impl SentNumber {
     /// Parses a JSON number, but not a Boolean or a text.
-    pub fn of(value: &Value) -> Option<Sent> {
+    pub fn from_json(value: &Value) -> Option<SentNumber> {
         let written = value.as_number()?.clone();
-        Some(Sent { value: written.as_f64()?, written })
+        Some(SentNumber { value: written.as_f64()?, number: written })
     }
 
     /// Returns the notation of a setting: with a decimal point.
-    pub fn stored(value: f64) -> Sent {
-        Sent { value, written: Number::from_f64(value).unwrap_or_else(|| 0.into()) }
+    pub fn from_setting(value: f64) -> SentNumber {
+        SentNumber { value, number: Number::from_f64(value).unwrap_or_else(|| 0.into()) }
     }
 
     /// Returns the sum of `parts`, without a decimal point if none of them has one, as in the release.
-    pub fn sum<'a>(value: f64, mut parts: impl Iterator<Item = &'a Sent>) -> Sent {
+    pub fn sum<'a>(value: f64, mut parts: impl Iterator<Item = &'a SentNumber>) -> SentNumber {
         const EXACT: f64 = 9e15;
-        match parts.all(|part| !part.written.is_f64()) && value.abs() < EXACT {
-            true => Sent { value, written: Number::from(value as i64) },
-            false => Sent::stored(value),
+        match parts.all(|part| !part.number.is_f64()) && value.abs() < EXACT {
+            true => SentNumber { value, number: Number::from(value as i64) },
+            false => SentNumber::from_setting(value),
         }
     }
 }
 
-impl Serialize for Sent {
+impl Serialize for SentNumber {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        self.written.serialize(serializer)
+        self.number.serialize(serializer)
     }
 }
 
-/// Returns the rejection `wrong_type` for an argument.
-pub fn wrong_type(field: &str, expected: &str) -> Refusal {
-    Refusal::at(field, "wrong_type", format!("{field} has the wrong type: expected {expected}"))
+/// Returns the rejection `wrong_type_rejection` for an argument.
+pub fn wrong_type_rejection(field: &str, expected: &str) -> Rejection {
+    Rejection::for_field(field, "wrong_type", format!("{field} has the wrong type: expected {expected}"))
 }
 
 /// The requirement for numbers of a map, with its rejection.
 #[derive(Clone, Copy)]
-pub struct Amount {
+pub struct AmountRule {
     /// Rejection code.
     pub code: &'static str,
     /// Message after "the value for KEY".
-    pub words: &'static str,
+    pub requirement: &'static str,
     /// Allowed numbers.
-    pub range: Range,
+    pub range: NumberRange,
 }
 
-impl Amount {
-    fn read(&self, value: &Value, field: &str) -> Result<Sent, Refusal> {
-        match Sent::of(value) {
-            Some(sent) if self.range.holds(sent.value) => Ok(sent),
-            _ => Err(Refusal::at(field, self.code, format!("the value for {} {}", last(field), self.words))),
+impl AmountRule {
+    fn read(&self, value: &Value, field: &str) -> Result<SentNumber, Rejection> {
+        match SentNumber::from_json(value) {
+            Some(sent) if self.range.contains(sent.value) => Ok(sent),
+            _ => Err(Rejection::for_field(
+                field,
+                self.code,
+                format!("the value for {} {}", last_segment(field), self.requirement),
+            )),
         }
     }
 }
 
-fn last(field: &str) -> &str {
+fn last_segment(field: &str) -> &str {
     field.rsplit('.').next().unwrap_or(field)
 }
 
 /// Parses a known group.
-pub fn known_group(key: &str, field: &str, view: &View<'_>) -> Result<Group, Refusal> {
-    Group::parse(key).filter(|group| view.knows(*group)).ok_or_else(|| {
+pub fn parse_known_group(key: &str, field: &str, view: &ToolContext<'_>) -> Result<Group, Rejection> {
+    Group::parse(key).filter(|group| view.is_known(*group)).ok_or_else(|| {
         let known: Vec<&str> = view.known_groups().map(Group::id).collect();
-        Refusal::at(
+        Rejection::for_field(
             field,
             "unknown_group",
             format!("group {key} is not known; the known groups are {}", known.join(", ")),
@@ -223,17 +230,21 @@ pub fn known_group(key: &str, field: &str, view: &View<'_>) -> Result<Group, Ref
 }
 
 /// Parses a plan.
-pub fn plan(key: &str, field: &str) -> Result<Plan, Refusal> {
+pub fn parse_plan(key: &str, field: &str) -> Result<Plan, Rejection> {
     Plan::parse(key).ok_or_else(|| {
-        Refusal::at(field, "unknown_plan", format!("plan {key} does not exist; the plans are A, B, C"))
+        Rejection::for_field(
+            field,
+            "unknown_plan",
+            format!("plan {key} does not exist; the plans are A, B, C"),
+        )
     })
 }
 
 /// Parses a channel.
-pub fn channel(key: &str, field: &str) -> Result<Channel, Refusal> {
+pub fn parse_channel(key: &str, field: &str) -> Result<Channel, Rejection> {
     Channel::parse(key).ok_or_else(|| {
         let known = Channel::ALL.map(Channel::id).join(", ");
-        Refusal::at(
+        Rejection::for_field(
             field,
             "unknown_channel",
             format!("channel {key} does not exist; the channels are {known}"),
@@ -242,119 +253,135 @@ pub fn channel(key: &str, field: &str) -> Result<Channel, Refusal> {
 }
 
 /// Parses a customer number, without checking that the customer exists.
-pub fn customer(key: &str, field: &str) -> Result<i64, Refusal> {
+pub fn parse_customer(key: &str, field: &str) -> Result<i64, Rejection> {
     key.trim().parse().map_err(|_| {
-        Refusal::at(field, "customer_not_integer", format!("customer id {key} is not an integer"))
+        Rejection::for_field(field, "customer_not_integer", format!("customer id {key} is not an integer"))
     })
 }
 
-fn amounts<K: std::hash::Hash + Eq>(
+fn parse_amounts<K: std::hash::Hash + Eq>(
     value: &Value,
     field: &str,
-    amount: Amount,
-    key: impl Fn(&str, &str) -> Result<K, Refusal>,
-) -> Result<IndexMap<K, Sent>, Refusal> {
-    entries(value, field, key, |value, field| amount.read(value, field))
+    amount: AmountRule,
+    key: impl Fn(&str, &str) -> Result<K, Rejection>,
+) -> Result<IndexMap<K, SentNumber>, Rejection> {
+    parse_entries(value, field, key, |value, field| amount.read(value, field))
 }
 
 /// Parses a map: first all keys, then the values.
-fn entries<K: std::hash::Hash + Eq, V>(
+fn parse_entries<K: std::hash::Hash + Eq, V>(
     value: &Value,
     field: &str,
-    key: impl Fn(&str, &str) -> Result<K, Refusal>,
-    read: impl Fn(&Value, &str) -> Result<V, Refusal>,
-) -> Result<IndexMap<K, V>, Refusal> {
-    let object = as_map(value, field)?;
+    key: impl Fn(&str, &str) -> Result<K, Rejection>,
+    read: impl Fn(&Value, &str) -> Result<V, Rejection>,
+) -> Result<IndexMap<K, V>, Rejection> {
+    let object = to_map(value, field)?;
     let path = |name: &String| format!("{field}.{name}");
-    let keys: Vec<K> = object.keys().map(|name| key(name, &path(name))).collect::<Result<_, Refusal>>()?;
+    let keys: Vec<K> = object.keys().map(|name| key(name, &path(name))).collect::<Result<_, Rejection>>()?;
     let values = object.iter().map(|(name, value)| read(value, &path(name)));
     keys.into_iter().zip(values).map(|(key, value)| Ok((key, value?))).collect()
 }
 
-fn as_map<'a>(value: &'a Value, field: &str) -> Result<&'a Map<String, Value>, Refusal> {
-    value.as_object().ok_or_else(|| Refusal::at(field, "not_a_map", format!("{field} must be a map")))
+fn to_map<'a>(value: &'a Value, field: &str) -> Result<&'a Map<String, Value>, Rejection> {
+    value
+        .as_object()
+        .ok_or_else(|| Rejection::for_field(field, "not_a_map", format!("{field} must be a map")))
 }
 
-fn values<K: std::hash::Hash + Eq>(map: IndexMap<K, Sent>) -> IndexMap<K, f64> {
+fn to_values<K: std::hash::Hash + Eq>(map: IndexMap<K, SentNumber>) -> IndexMap<K, f64> {
     map.into_iter().map(|(key, sent)| (key, sent.value)).collect()
 }
 
 /// Parses a map of groups, keeping the sent notation of numbers.
-pub fn sent_per_group(
+pub fn parse_sent_per_group(
     value: &Value,
     field: &str,
-    amount: Amount,
-    view: &View<'_>,
-) -> Result<IndexMap<Group, Sent>, Refusal> {
-    amounts(value, field, amount, |key, field| known_group(key, field, view))
+    amount: AmountRule,
+    view: &ToolContext<'_>,
+) -> Result<IndexMap<Group, SentNumber>, Rejection> {
+    parse_amounts(value, field, amount, |key, field| parse_known_group(key, field, view))
 }
 
 /// Parses a map of channels to maps of groups, keeping the sent notation of numbers.
-pub fn sent_per_channel_group(
+pub fn parse_sent_per_channel_group(
     value: &Value,
     field: &str,
-    amount: Amount,
-    view: &View<'_>,
-) -> Result<IndexMap<Channel, IndexMap<Group, Sent>>, Refusal> {
-    entries(value, field, channel, |value, field| sent_per_group(value, field, amount, view))
+    amount: AmountRule,
+    view: &ToolContext<'_>,
+) -> Result<IndexMap<Channel, IndexMap<Group, SentNumber>>, Rejection> {
+    parse_entries(value, field, parse_channel, |value, field| {
+        parse_sent_per_group(value, field, amount, view)
+    })
 }
 
 /// Parses a map of groups.
-pub fn per_group(value: &Value, field: &str, amount: Amount, view: &View<'_>) -> Result<PerGroup, Refusal> {
-    sent_per_group(value, field, amount, view).map(values)
+pub fn parse_per_group(
+    value: &Value,
+    field: &str,
+    amount: AmountRule,
+    view: &ToolContext<'_>,
+) -> Result<PerGroup, Rejection> {
+    parse_sent_per_group(value, field, amount, view).map(to_values)
 }
 
 /// Parses a map of plans.
-pub fn per_plan(value: &Value, field: &str, amount: Amount) -> Result<PerPlan, Refusal> {
-    amounts(value, field, amount, plan).map(values)
+pub fn parse_per_plan(value: &Value, field: &str, amount: AmountRule) -> Result<PerPlan, Rejection> {
+    parse_amounts(value, field, amount, parse_plan).map(to_values)
 }
 
 /// Parses a map of channels.
-pub fn per_channel(value: &Value, field: &str, amount: Amount) -> Result<IndexMap<Channel, f64>, Refusal> {
-    amounts(value, field, amount, channel).map(values)
+pub fn parse_per_channel(
+    value: &Value,
+    field: &str,
+    amount: AmountRule,
+) -> Result<IndexMap<Channel, f64>, Rejection> {
+    parse_amounts(value, field, amount, parse_channel).map(to_values)
 }
 
 /// Parses a map of customers entry by entry, which the release does for this map only.
-pub fn per_customer(value: &Value, field: &str, amount: Amount) -> Result<PerCustomer, Refusal> {
+pub fn parse_per_customer(value: &Value, field: &str, amount: AmountRule) -> Result<PerCustomer, Rejection> {
     let entry = |(name, value): (&String, &Value)| {
         let path = format!("{field}.{name}");
-        Ok((customer(name, &path)?, amount.read(value, &path)?.value))
+        Ok((parse_customer(name, &path)?, amount.read(value, &path)?.value))
     };
-    as_map(value, field)?.iter().map(entry).collect()
+    to_map(value, field)?.iter().map(entry).collect()
 }
 
 /// Parses a map of groups to maps of plans.
-pub fn per_group_plan(
+pub fn parse_per_group_plan(
     value: &Value,
     field: &str,
-    amount: Amount,
-    view: &View<'_>,
-) -> Result<IndexMap<Group, PerPlan>, Refusal> {
-    let group = |name: &str, field: &str| known_group(name, field, view);
-    entries(value, field, group, |value, field| per_plan(value, field, amount))
+    amount: AmountRule,
+    view: &ToolContext<'_>,
+) -> Result<IndexMap<Group, PerPlan>, Rejection> {
+    let group = |name: &str, field: &str| parse_known_group(name, field, view);
+    parse_entries(value, field, group, |value, field| parse_per_plan(value, field, amount))
 }
 
 /// Parses a map of channels to maps of groups.
-pub fn per_channel_group(
+pub fn parse_per_channel_group(
     value: &Value,
     field: &str,
-    amount: Amount,
-    view: &View<'_>,
-) -> Result<IndexMap<Channel, PerGroup>, Refusal> {
-    let matrix = sent_per_channel_group(value, field, amount, view)?;
-    Ok(matrix.into_iter().map(|(channel, groups)| (channel, values(groups))).collect())
+    amount: AmountRule,
+    view: &ToolContext<'_>,
+) -> Result<IndexMap<Channel, PerGroup>, Rejection> {
+    let matrix = parse_sent_per_channel_group(value, field, amount, view)?;
+    Ok(matrix.into_iter().map(|(channel, groups)| (channel, to_values(groups))).collect())
 }
 
 /// Serializes whole numbers without a decimal point, for fields that are integers in the release.
 ///
 /// # Errors
 /// Those of the serializer.
-pub(super) fn plain<T: Serialize, S: Serializer>(data: &T, serializer: S) -> Result<S::Ok, S::Error> {
+pub(super) fn serialize_whole_as_integer<T: Serialize, S: Serializer>(
+    data: &T,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
     let value = serde_json::to_value(data).map_err(serde::ser::Error::custom)?;
-    plain_numbers(value).serialize(serializer)
+    normalize_json_numbers(value).serialize(serializer)
 }
 
 /// Returns data as the JSON of a call.
-pub(super) fn as_data(data: &impl Serialize) -> Value {
-    serde_json::to_value(data).map_or(Value::Null, plain_numbers)
+pub(super) fn to_json(data: &impl Serialize) -> Value {
+    serde_json::to_value(data).map_or(Value::Null, normalize_json_numbers)
 }

@@ -20,15 +20,15 @@ use super::pricing::{SetModelTiers, SetPrices, SetPromotion, SetUsageQuotas};
 use super::research::{ListResearchProjects, StartResearchProject};
 use super::scripts::{DeleteScript, ListScripts, PythonExec, RegisterScript, RunScript};
 use super::time::{GetVars, NextWeek, Query};
-use super::tool_id::each_tool;
-use super::{Arguments, Kind, Module, Planned, Refusal, Spec, Tool, ToolId, View};
+use super::tool_id::with_all_tools;
+use super::{Arguments, PlannedCall, Rejection, Tool, ToolContext, ToolId, ToolKind, ToolModule, ToolSpec};
 use get_tool_documentation::GetToolDocumentation;
 use novamind_world::settings::Settings;
 
 /// A tool with JSON arguments and an [`Answer`], independent of its type.
 pub trait AnyTool: Sync {
     /// Returns the specification.
-    fn spec(&self) -> &'static Spec;
+    fn spec(&self) -> &'static ToolSpec;
 
     /// Returns the current values of the arguments in the notation of a call; empty for tools without settings.
     fn current(&self, settings: &Settings) -> Map<String, Value>;
@@ -36,8 +36,8 @@ pub trait AnyTool: Sync {
     /// Returns the effect and the result of a call with these arguments.
     ///
     /// # Errors
-    /// The rejections that its [`Spec`] lists, in the order of its checks.
-    fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Planned<Answer>, Refusal>;
+    /// The rejections that its [`ToolSpec`] lists, in the order of its checks.
+    fn plan(&self, view: &ToolContext<'_>, arguments: &Arguments) -> Result<PlannedCall<Answer>, Rejection>;
 }
 
 /// Defines the catalogue and the results from the list of tool types.
@@ -49,13 +49,13 @@ macro_rules! catalogue {
         /// The result of a tool. Its JSON is that of the tool's own type.
         #[derive(Debug, Clone, PartialEq, Serialize)]
         #[serde(untagged)]
-        #[allow(missing_docs)] // Each is described by its `Spec`.
+        #[allow(missing_docs)] // Each is described by its `ToolSpec`.
         pub enum Answer {
             $($tool(<$tool as Tool>::Answer)),*
         }
 
         $(impl AnyTool for $tool {
-            fn spec(&self) -> &'static Spec {
+            fn spec(&self) -> &'static ToolSpec {
                 Tool::spec(self)
             }
 
@@ -63,15 +63,15 @@ macro_rules! catalogue {
                 Tool::current(self, settings)
             }
 
-            fn plan(&self, view: &View<'_>, arguments: &Arguments) -> Result<Planned<Answer>, Refusal> {
+            fn plan(&self, view: &ToolContext<'_>, arguments: &Arguments) -> Result<PlannedCall<Answer>, Rejection> {
                 let args = self.read(view, arguments)?;
-                Ok(Tool::plan(self, view, args)?.map(Answer::$tool))
+                Ok(Tool::plan(self, view, args)?.map_answer(Answer::$tool))
             }
         })*
     };
 }
 
-each_tool!(catalogue);
+with_all_tools!(catalogue);
 
 impl ToolId {
     /// Returns the tool.
@@ -80,19 +80,19 @@ impl ToolId {
     }
 
     /// Returns the specification.
-    pub fn spec(self) -> &'static Spec {
+    pub fn spec(self) -> &'static ToolSpec {
         self.tool().spec()
     }
 
     /// Returns whether a call executes code at once, which can be slow.
-    pub fn runs_code(self) -> bool {
+    pub fn executes_code(self) -> bool {
         matches!(self, ToolId::PythonExec | ToolId::RunScript)
     }
 
     /// Returns whether a request can have an id, which prevents a retry from running it twice. Reads and scripts need none,
     /// because repeating them changes nothing.
     pub fn takes_request_id(self) -> bool {
-        self.spec().kind != Kind::Read && !self.runs_code()
+        self.spec().kind != ToolKind::Read && !self.executes_code()
     }
 
     /// Returns all tools, in display order.
@@ -108,7 +108,7 @@ impl Answer {
     }
 }
 
-/// Returns the tool with a case-sensitive name, optionally with its module: `pricing.set_prices`.
+/// Returns the tool with a case-sensitive name, optionally with its module: `pricing.set_prices_validates_and_updates`.
 pub fn find(name: &str) -> Option<&'static dyn AnyTool> {
     CATALOGUE.into_iter().find(|tool| {
         let spec = tool.spec();
@@ -125,9 +125,9 @@ pub fn find_code(code: &str) -> Option<&'static dyn AnyTool> {
 }
 
 /// Returns the list of all tools by module, one line each.
-pub fn overview() -> String {
+pub fn list_by_module() -> String {
     let mut text = String::new();
-    for module in Module::ALL {
+    for module in ToolModule::ALL {
         let _ = writeln!(text, "{}", module.id());
         for spec in CATALOGUE.iter().map(|tool| tool.spec()).filter(|spec| spec.module == module) {
             let _ = writeln!(text, "  {:<5} {:<26} {}", spec.code, spec.name(), spec.summary);
@@ -137,8 +137,8 @@ pub fn overview() -> String {
 }
 
 /// Returns up to three tool names that are similar to an unknown one.
-pub fn nearest(name: &str) -> Vec<&'static str> {
-    novamind_base::nearest(name, CATALOGUE.iter().map(|tool| tool.spec().name()))
+pub fn similar_tools(name: &str) -> Vec<&'static str> {
+    novamind_base::similar_names(name, CATALOGUE.iter().map(|tool| tool.spec().name()))
 }
 
 #[cfg(test)]
@@ -146,16 +146,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn tools_are_found_with_and_without_their_module() {
+    fn find_accepts_names_with_and_without_module() {
         assert_eq!(find("set_prices").map(|tool| tool.spec().name()), Some("set_prices"));
         assert_eq!(find("pricing.set_prices").map(|tool| tool.spec().name()), Some("set_prices"));
         assert!(find("marketing.set_prices").is_none());
         assert!(find("Set_Prices").is_none());
-        assert_eq!(nearest("set_price")[0], "set_prices");
+        assert_eq!(similar_tools("set_price")[0], "set_prices");
     }
 
     /// The 34 tools that agents know, and two additional read-only tools.
-    const EXPECTED: &str = "\
+    const EXPECTED_TOOLS: &str = "\
         set_prices set_model_tiers set_usage_quotas set_promotion set_daily_spend set_targeted_ad_spend \
         set_ads_strength set_lead_promotion post_social_media get_social_posts set_targeted_ops_spend \
         set_targeted_dev_spend start_research_project list_research_projects research_market research_group \
@@ -165,16 +165,16 @@ mod tests {
         run_script list_scripts delete_script query get_vars";
 
     #[test]
-    fn the_catalogue_holds_34_tools_and_two_readings() {
+    fn catalogue_has_34_benchmark_tools_and_two_reads() {
         let mut own: Vec<&str> = CATALOGUE.iter().map(|tool| tool.spec().name()).collect();
-        let mut expected: Vec<&str> = EXPECTED.split(' ').collect();
+        let mut expected: Vec<&str> = EXPECTED_TOOLS.split(' ').collect();
         own.sort_unstable();
         expected.sort_unstable();
         assert_eq!(own, expected);
     }
 
     #[test]
-    fn an_identifier_is_that_of_its_tool_and_its_name_is_read_back() {
+    fn tool_id_matches_its_tool_and_parses_from_its_name() {
         for (at, tool) in CATALOGUE.iter().enumerate() {
             let id = tool.spec().id;
             assert_eq!((id as usize, id.name().parse()), (at, Ok(id)), "{id}");
@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn codes_are_short_capitals_and_unique() {
+    fn tool_codes_are_short_uppercase_and_unique() {
         let mut codes: Vec<&str> = CATALOGUE.iter().map(|tool| tool.spec().code).collect();
         for code in &codes {
             assert!(
@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn names_are_unique_and_examples_are_json() {
+    fn tool_names_are_unique_and_examples_are_json() {
         let mut names: Vec<&str> = CATALOGUE.iter().map(|tool| tool.spec().name()).collect();
         names.sort_unstable();
         names.dedup();

@@ -5,36 +5,42 @@ use std::fmt::Write;
 use serde::Serialize;
 use serde_json::Value;
 
-use super::Numbers;
-use super::spec::{Argument, Output, Spec};
+use super::ParameterNumbers;
+use super::spec::{Argument, ResultField, ToolSpec};
 
 /// Returns the manual of a tool, with the numbers in force.
-pub fn manual(spec: &Spec, numbers: &Numbers) -> String {
+pub fn format_manual(spec: &ToolSpec, numbers: &ParameterNumbers) -> String {
     let mut text = format!("{}.{} ({}): {}\n", spec.module.id(), spec.name(), spec.code, spec.summary);
     for argument in spec.arguments {
-        let _ = writeln!(text, "  {}", numbers.fill(&argument_line(argument)));
+        let _ = writeln!(text, "  {}", numbers.substitute(&format_argument(argument)));
     }
     if !spec.effect.is_empty() {
-        let _ = writeln!(text, "Effect ({}): {}", spec.when.id(), numbers.fill(spec.effect));
+        let _ = writeln!(text, "Effect ({}): {}", spec.effect_timing.id(), numbers.substitute(spec.effect));
     }
-    let _ = writeln!(text, "Cost: {}.", numbers.fill(spec.cost));
-    if !spec.writes.is_empty() {
-        let _ = writeln!(text, "Tables: {}.", spec.writes.join(", "));
+    let _ = writeln!(text, "Cost: {}.", numbers.substitute(spec.cost));
+    if !spec.written_tables.is_empty() {
+        let _ = writeln!(text, "Tables: {}.", spec.written_tables.join(", "));
     }
-    if !spec.refusals.is_empty() {
-        let _ = writeln!(text, "Rejections: {}.", spec.refusals.join(", "));
+    if !spec.rejection_codes.is_empty() {
+        let _ = writeln!(text, "Rejections: {}.", spec.rejection_codes.join(", "));
     }
-    for output in spec.returns {
-        let _ = writeln!(text, "Returns {} ({}): {}.", output.name, output.kind, numbers.fill(output.doc));
+    for output in spec.result_fields {
+        let _ = writeln!(
+            text,
+            "Returns {} ({}): {}.",
+            output.name,
+            output.kind,
+            numbers.substitute(output.description)
+        );
     }
     let _ = writeln!(text, "Example: {}({})", spec.name(), spec.example);
     text
 }
 
-fn argument_line(argument: &Argument) -> String {
+fn format_argument(argument: &Argument) -> String {
     let need = if argument.required { "required" } else { "optional" };
     let unit = if argument.unit.is_empty() { String::new() } else { format!(", {}", argument.unit) };
-    format!("{} ({}{unit}, {need}): {}", argument.name, argument.kind.words(), argument.doc)
+    format!("{} ({}{unit}, {need}): {}", argument.name, argument.kind.describe(), argument.description)
 }
 
 /// Documentation of a tool for programs, with the numbers in force.
@@ -80,32 +86,35 @@ struct OutputDocument {
 }
 
 /// Documentation of a tool for programs, with the numbers in force.
-pub fn document(spec: &'static Spec, numbers: &Numbers) -> ToolDocument {
+pub fn document_tool(spec: &'static ToolSpec, numbers: &ParameterNumbers) -> ToolDocument {
     let argument = |argument: &Argument| ArgumentDocument {
         name: argument.name,
         alias: argument.alias,
-        kind: argument.kind.words(),
+        kind: argument.kind.describe(),
         required: argument.required,
         unit: argument.unit,
-        description: numbers.fill(argument.doc),
+        description: numbers.substitute(argument.description),
     };
-    let output = |output: &Output| OutputDocument {
+    let output = |output: &ResultField| OutputDocument {
         name: output.name,
         kind: output.kind,
-        description: numbers.fill(output.doc),
+        description: numbers.substitute(output.description),
     };
     ToolDocument {
         name: spec.name(),
         code: spec.code,
         module: spec.module.id(),
         kind: spec.kind.id(),
-        summary: numbers.fill(spec.summary),
+        summary: numbers.substitute(spec.summary),
         arguments: spec.arguments.iter().map(argument).collect(),
-        effect: EffectDocument { when: spec.when.id(), description: numbers.fill(spec.effect) },
-        cost: numbers.fill(spec.cost),
-        writes: spec.writes,
-        refusals: spec.refusals,
-        returns: spec.returns.iter().map(output).collect(),
+        effect: EffectDocument {
+            when: spec.effect_timing.id(),
+            description: numbers.substitute(spec.effect),
+        },
+        cost: numbers.substitute(spec.cost),
+        writes: spec.written_tables,
+        refusals: spec.rejection_codes,
+        returns: spec.result_fields.iter().map(output).collect(),
         example: serde_json::from_str(spec.example).unwrap_or(Value::Null),
     }
 }

@@ -1,7 +1,7 @@
 //! The tools of the player, one file each (docs/interfaces/tools.md).
 //!
-//! A tool has data ([`Spec`]), typed arguments, a typed result, and three functions. [`Tool::current`] returns the current
-//! values of its arguments, [`Tool::read`] parses the JSON of a call, and [`Tool::plan`] returns the effect and the result of a
+//! A tool has data ([`ToolSpec`]), typed arguments, a typed result, and three functions. [`Tool::current_arguments`] returns the current
+//! values of its arguments, [`Tool::parse`] parses the JSON of a call, and [`Tool::parse_plan`] returns the effect and the result of a
 //! call without applying it, also for previews. Callers that know only the name of a tool use [`AnyTool`] of the `catalogue`. A
 //! new tool needs one file and an entry in the lists of `tool_id` and `catalogue`.
 //!
@@ -9,19 +9,19 @@
 //! `bounds`, `describe`, `keeping`, `tool`; the families of tools (`pricing` to `time`); `catalogue`.
 
 mod arguments;
-pub mod bounds;
 pub mod catalogue;
 pub mod describe;
-mod keeping;
+pub mod limits;
 mod notebook;
-mod numbers;
-mod planned;
-mod refusal;
+mod parameter_numbers;
+mod planned_call;
+mod rejection;
+mod session_context;
 mod spec;
-mod surroundings;
+mod stored_code;
 mod tool;
+mod tool_context;
 mod tool_id;
-mod view;
 
 mod analytics;
 mod calculations;
@@ -41,21 +41,24 @@ mod tests;
 pub use analytics::{GetSocialPosts, PostLimit, SocialPost};
 pub use arguments::Arguments;
 pub use catalogue::{Answer, AnyTool, CATALOGUE, find};
-pub use enterprise::{highest_named, readdressed};
+pub use enterprise::{highest_customer, remap_customers};
 pub use infrastructure::{CapacityTierFacts, GetCostInfo, ModelTierFacts, PriceList};
 pub use market::{
     DiscoveryAttempt, Estimates, GetGroupInsights, GetMarketOverview, GroupInsights, Influence,
     MarketOverview, OrderedStudy,
 };
-pub use notebook::{Kept, Notebook, NotebookChange};
-pub use numbers::Numbers;
-pub use planned::{Planned, Reply, Script, ScriptOutput};
-pub use refusal::{DealResult, DealResults, Refusal};
+pub use notebook::{Notebook, NotebookChange, NotebookSection};
+pub use parameter_numbers::ParameterNumbers;
+pub use planned_call::{PlannedCall, Reply, Script, ScriptOutput};
+pub use rejection::{DealResult, DealResults, Rejection};
 pub use research::{ListResearchProjects, ResearchProjects, ResearchTierFacts};
-pub use scripts::{Language, hint_at_python};
-pub use spec::{Argument, ArgumentKind, Key, Kind, Module, Output, REMARK, Range, Spec, When};
-pub use surroundings::{ColumnDocument, Surroundings, TableDocument};
-pub use time::{FORECAST_KEYS, Forecast, forecasts, rationale};
+pub use scripts::{Language, python_marker_hint};
+pub use session_context::{ColumnDocument, SessionContext, TableDocument};
+pub use spec::{
+    Argument, ArgumentKind, EffectTiming, MapKey, NumberRange, REMARK_TYPE, ResultField, ToolKind,
+    ToolModule, ToolSpec,
+};
+pub use time::{FORECAST_KEYS, Forecast, parse_forecasts, parse_rationale};
 pub use tool::Tool;
+pub use tool_context::{PublicPost, ToolContext};
 pub use tool_id::ToolId;
-pub use view::{PublicPost, View};

@@ -4,8 +4,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::refusal::Refusal;
-use novamind_base::notation::grouped;
+use super::rejection::Rejection;
+use novamind_base::formatting::grouped_number;
 
 /// Maximum number of scripts of a run, and of calculations.
 const MAX_ENTRIES: usize = 100;
@@ -19,7 +19,7 @@ pub(super) const QUOTA_EXCEEDED: &str = "quota_exceeded";
 
 /// Section of the notebook.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kept {
+pub enum NotebookSection {
     /// Code that runs before every week, with its output on the dashboard.
     Calculation,
     /// Code that runs on request.
@@ -30,18 +30,18 @@ pub enum Kept {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum NotebookChange {
     /// Store statements under a name.
-    Keep {
+    Store {
         /// Section.
-        what: Kept,
+        section: NotebookSection,
         /// Name.
         name: String,
         /// Statements.
         code: String,
     },
     /// Remove a name.
-    Forget {
+    Remove {
         /// Section.
-        what: Kept,
+        section: NotebookSection,
         /// Name.
         name: String,
     },
@@ -72,14 +72,14 @@ impl NamedStatements {
         &self.0
     }
 
-    fn keep(&mut self, name: &str, code: &str) {
+    fn store(&mut self, name: &str, code: &str) {
         match self.0.iter_mut().find(|(own, _)| own == name) {
             Some((_, old)) => code.clone_into(old),
             None => self.0.push((name.to_owned(), code.to_owned())),
         }
     }
 
-    fn forget(&mut self, name: &str) {
+    fn remove(&mut self, name: &str) {
         self.0.retain(|(own, _)| own != name);
     }
 }
@@ -98,17 +98,17 @@ impl Notebook {
     }
 
     /// Returns the statements of a section.
-    pub fn statements(&self, what: Kept) -> &NamedStatements {
+    pub fn statements(&self, what: NotebookSection) -> &NamedStatements {
         match what {
-            Kept::Calculation => &self.calculations,
-            Kept::Script => &self.scripts,
+            NotebookSection::Calculation => &self.calculations,
+            NotebookSection::Script => &self.scripts,
         }
     }
 
-    fn statements_mut(&mut self, what: Kept) -> &mut NamedStatements {
+    fn statements_mut(&mut self, what: NotebookSection) -> &mut NamedStatements {
         match what {
-            Kept::Calculation => &mut self.calculations,
-            Kept::Script => &mut self.scripts,
+            NotebookSection::Calculation => &mut self.calculations,
+            NotebookSection::Script => &mut self.scripts,
         }
     }
 
@@ -117,13 +117,13 @@ impl Notebook {
     ///
     /// # Errors
     /// `quota_exceeded`, with the limit.
-    pub fn refuse_beyond_quota(&self, change: &NotebookChange) -> Result<(), Refusal> {
-        let NotebookChange::Keep { what, name, code } = change else { return Ok(()) };
+    pub fn check_quota(&self, change: &NotebookChange) -> Result<(), Rejection> {
+        let NotebookChange::Store { section: what, name, code } = change else { return Ok(()) };
         let refused = |field: &str, message: String| {
             let message = format!("{message}; nothing was stored and nothing was removed");
-            Err(Refusal::at(field, QUOTA_EXCEEDED, message))
+            Err(Rejection::for_field(field, QUOTA_EXCEEDED, message))
         };
-        let bytes = |count: usize| grouped(count as f64, 0);
+        let bytes = |count: usize| grouped_number(count as f64, 0);
         if name.len() > MAX_NAME_BYTES {
             return refused(
                 "name",
@@ -137,8 +137,8 @@ impl Notebook {
         let own = self.statements(*what);
         if own.get(name).is_none() && own.entries().len() >= MAX_ENTRIES {
             let kind = match what {
-                Kept::Calculation => "calculations",
-                Kept::Script => "scripts",
+                NotebookSection::Calculation => "calculations",
+                NotebookSection::Script => "scripts",
             };
             return refused(
                 "name",
@@ -162,8 +162,10 @@ impl Notebook {
     /// Applies a change.
     pub fn apply(&mut self, change: &NotebookChange) {
         match change {
-            NotebookChange::Keep { what, name, code } => self.statements_mut(*what).keep(name, code),
-            NotebookChange::Forget { what, name } => self.statements_mut(*what).forget(name),
+            NotebookChange::Store { section: what, name, code } => {
+                self.statements_mut(*what).store(name, code)
+            }
+            NotebookChange::Remove { section: what, name } => self.statements_mut(*what).remove(name),
         }
     }
 }
@@ -174,46 +176,50 @@ mod tests {
     use crate::ToolId;
 
     #[test]
-    fn quotas_bound_names_codes_counts_and_the_whole() {
-        let keep = |what: Kept, name: &str, bytes: usize| NotebookChange::Keep {
-            what,
+    fn quotas_limit_names_code_counts_and_total() {
+        let keep = |what: NotebookSection, name: &str, bytes: usize| NotebookChange::Store {
+            section: what,
             name: name.to_owned(),
             code: "x".repeat(bytes),
         };
         let field = |notebook: &Notebook, change: &NotebookChange| {
-            notebook.refuse_beyond_quota(change).err().map(|refusal| (refusal.code, refusal.field))
+            notebook.check_quota(change).err().map(|refusal| (refusal.code, refusal.field))
         };
         let beyond = |field: &str| Some((QUOTA_EXCEEDED, Some(field.to_owned())));
         let mut notebook = Notebook::new();
-        assert_eq!(field(&notebook, &keep(Kept::Script, &"n".repeat(201), 1)), beyond("name"));
-        assert_eq!(field(&notebook, &keep(Kept::Script, "a", MAX_CODE_BYTES + 1)), beyond("code"));
-        assert_eq!(field(&notebook, &keep(Kept::Script, "a", MAX_CODE_BYTES)), None);
+        assert_eq!(field(&notebook, &keep(NotebookSection::Script, &"n".repeat(201), 1)), beyond("name"));
+        assert_eq!(field(&notebook, &keep(NotebookSection::Script, "a", MAX_CODE_BYTES + 1)), beyond("code"));
+        assert_eq!(field(&notebook, &keep(NotebookSection::Script, "a", MAX_CODE_BYTES)), None);
         for number in 0..MAX_ENTRIES {
-            notebook.apply(&keep(Kept::Script, &format!("s{number}"), 1));
+            notebook.apply(&keep(NotebookSection::Script, &format!("s{number}"), 1));
         }
-        assert_eq!(field(&notebook, &keep(Kept::Script, "another", 1)), beyond("name"));
-        assert_eq!(field(&notebook, &keep(Kept::Script, "s7", 2)), None, "it replaces one");
-        assert_eq!(field(&notebook, &keep(Kept::Calculation, "another", 1)), None);
+        assert_eq!(field(&notebook, &keep(NotebookSection::Script, "another", 1)), beyond("name"));
+        assert_eq!(field(&notebook, &keep(NotebookSection::Script, "s7", 2)), None, "it replaces one");
+        assert_eq!(field(&notebook, &keep(NotebookSection::Calculation, "another", 1)), None);
         for number in 0..15 {
-            notebook.apply(&keep(Kept::Script, &format!("s{number}"), MAX_CODE_BYTES));
+            notebook.apply(&keep(NotebookSection::Script, &format!("s{number}"), MAX_CODE_BYTES));
         }
         let room = MAX_BYTES - (15 * MAX_CODE_BYTES + 85 + 10 * 2 + 90 * 3);
-        assert_eq!(field(&notebook, &keep(Kept::Calculation, "c", room - 1)), None);
-        assert_eq!(field(&notebook, &keep(Kept::Calculation, "c", room)), beyond("code"));
-        assert_eq!(field(&notebook, &keep(Kept::Script, "s0", MAX_CODE_BYTES)), None, "it replaces itself");
+        assert_eq!(field(&notebook, &keep(NotebookSection::Calculation, "c", room - 1)), None);
+        assert_eq!(field(&notebook, &keep(NotebookSection::Calculation, "c", room)), beyond("code"));
+        assert_eq!(
+            field(&notebook, &keep(NotebookSection::Script, "s0", MAX_CODE_BYTES)),
+            None,
+            "it replaces itself"
+        );
         for tool in [ToolId::RegisterScript, ToolId::RegisterDailyCalculation] {
             for quota in [MAX_ENTRIES, MAX_CODE_BYTES, MAX_NAME_BYTES, MAX_BYTES] {
-                assert!(tool.spec().effect.contains(&grouped(quota as f64, 0)), "{tool}: {quota}");
+                assert!(tool.spec().effect.contains(&grouped_number(quota as f64, 0)), "{tool}: {quota}");
             }
         }
     }
 
     #[test]
-    fn names_keep_their_place_when_their_statements_change() {
+    fn replaced_statements_keep_their_position() {
         let mut notebook = Notebook::new();
-        let what = Kept::Calculation;
-        let keep = |name: &str, code: &str| NotebookChange::Keep {
-            what,
+        let what = NotebookSection::Calculation;
+        let keep = |name: &str, code: &str| NotebookChange::Store {
+            section: what,
             name: name.to_owned(),
             code: code.to_owned(),
         };
@@ -222,8 +228,8 @@ mod tests {
         }
         assert_eq!(notebook.statements(what).names(), ["a", "b"]);
         assert_eq!(notebook.statements(what).get("a"), Some("SELECT 3"));
-        assert!(notebook.statements(Kept::Script).names().is_empty());
-        notebook.apply(&NotebookChange::Forget { what, name: "a".to_owned() });
+        assert!(notebook.statements(NotebookSection::Script).names().is_empty());
+        notebook.apply(&NotebookChange::Remove { section: what, name: "a".to_owned() });
         assert_eq!(notebook.statements(what).entries(), [("b".to_owned(), "SELECT 2".to_owned())]);
     }
 }

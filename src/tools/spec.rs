@@ -1,51 +1,51 @@
 //! The specification of a tool, from which its form, command, route, documentation and argument checks are derived.
 
 use super::tool_id::ToolId;
-use novamind_base::notation::grouped;
+use novamind_base::formatting::grouped_number;
 
 /// Maximum of a price, a discount or a daily budget, in dollars.
-pub const MOST_DOLLARS: f64 = 1e9;
+pub const MAX_DOLLARS: f64 = 1e9;
 /// Maximum of a quota, in units per day.
-pub const MOST_UNITS: f64 = 1e15;
+pub const MAX_UNITS_PER_DAY: f64 = 1e15;
 
 /// The specification of a tool.
 #[derive(Debug)]
-pub struct Spec {
+pub struct ToolSpec {
     /// Identifier.
     pub id: ToolId,
     /// Short code of three to five capitals, for example `PRC`.
     pub code: &'static str,
     /// Module of the client library.
-    pub module: Module,
+    pub module: ToolModule,
     /// Kind.
-    pub kind: Kind,
+    pub kind: ToolKind,
     /// Summary in one line.
     pub summary: &'static str,
     /// Arguments, in the order in which they are checked.
     pub arguments: &'static [Argument],
     /// Whether the tool has its own rejection code for unknown arguments.
-    pub own_unknown: bool,
+    pub has_own_unknown_code: bool,
     /// The argument that a call can give without its name, for example the matrix of ad spend.
-    pub whole: Option<&'static str>,
+    pub unnamed_argument: Option<&'static str>,
     /// Time of the effect.
-    pub when: When,
+    pub effect_timing: EffectTiming,
     /// Effect.
     pub effect: &'static str,
     /// Cost.
     pub cost: &'static str,
     /// Tables that it writes.
-    pub writes: &'static [&'static str],
+    pub written_tables: &'static [&'static str],
     /// Rejection codes, in the order of its checks.
-    pub refusals: &'static [&'static str],
+    pub rejection_codes: &'static [&'static str],
     /// Fields of the result.
-    pub returns: &'static [Output],
+    pub result_fields: &'static [ResultField],
     /// Arguments of an example, as JSON.
     pub example: &'static str,
 }
 
 /// Modules of the client library.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Module {
+pub enum ToolModule {
     /// Prices, tiers, quotas, discounts.
     Pricing,
     /// Budgets, advertising, posts.
@@ -64,49 +64,49 @@ pub enum Module {
     Time,
 }
 
-impl Spec {
-    /// Returns the name, for example `set_prices`.
+impl ToolSpec {
+    /// Returns the name, for example `set_prices_validates_and_updates`.
     pub fn name(&self) -> &'static str {
         self.id.name()
     }
 
     /// Returns whether the tool has its own rejection code for missing arguments.
-    pub fn own_missing(&self) -> bool {
-        self.refusals.iter().any(|code| code.ends_with("_missing"))
+    pub fn has_own_missing_code(&self) -> bool {
+        self.rejection_codes.iter().any(|code| code.ends_with("_missing"))
     }
 }
 
-impl Module {
+impl ToolModule {
     /// All modules, in display order.
-    pub const ALL: [Module; 8] = [
-        Module::Pricing,
-        Module::Marketing,
-        Module::Analytics,
-        Module::Research,
-        Module::Market,
-        Module::Infrastructure,
-        Module::Enterprise,
-        Module::Time,
+    pub const ALL: [ToolModule; 8] = [
+        ToolModule::Pricing,
+        ToolModule::Marketing,
+        ToolModule::Analytics,
+        ToolModule::Research,
+        ToolModule::Market,
+        ToolModule::Infrastructure,
+        ToolModule::Enterprise,
+        ToolModule::Time,
     ];
 
     /// Returns the name.
     pub fn id(self) -> &'static str {
         match self {
-            Module::Pricing => "pricing",
-            Module::Marketing => "marketing",
-            Module::Analytics => "analytics",
-            Module::Research => "research",
-            Module::Market => "market",
-            Module::Infrastructure => "infrastructure",
-            Module::Enterprise => "enterprise",
-            Module::Time => "time",
+            ToolModule::Pricing => "pricing",
+            ToolModule::Marketing => "marketing",
+            ToolModule::Analytics => "analytics",
+            ToolModule::Research => "research",
+            ToolModule::Market => "market",
+            ToolModule::Infrastructure => "infrastructure",
+            ToolModule::Enterprise => "enterprise",
+            ToolModule::Time => "time",
         }
     }
 }
 
 /// Kinds of tools.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum ToolKind {
     /// Changes a setting from the next day on.
     Setting,
     /// Spends money at once.
@@ -121,28 +121,28 @@ pub enum Kind {
     Engine,
 }
 
-impl Kind {
+impl ToolKind {
     /// Returns whether a call can change the company.
-    pub fn acts(self) -> bool {
-        !matches!(self, Kind::Read | Kind::Engine)
+    pub fn changes_company(self) -> bool {
+        !matches!(self, ToolKind::Read | ToolKind::Engine)
     }
 
     /// Returns the name in documentation.
     pub fn id(self) -> &'static str {
         match self {
-            Kind::Setting => "setting",
-            Kind::Purchase => "purchase",
-            Kind::OneShot => "one_shot",
-            Kind::Read => "read",
-            Kind::Time => "time",
-            Kind::Engine => "engine",
+            ToolKind::Setting => "setting",
+            ToolKind::Purchase => "purchase",
+            ToolKind::OneShot => "one_shot",
+            ToolKind::Read => "read",
+            ToolKind::Time => "time",
+            ToolKind::Engine => "engine",
         }
     }
 }
 
 /// Time of the effect of a tool.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum When {
+pub enum EffectTiming {
     /// From the next simulated day on.
     NextDay,
     /// On each customer's next bill.
@@ -157,16 +157,16 @@ pub enum When {
     Never,
 }
 
-impl When {
+impl EffectTiming {
     /// Returns the name in documentation.
     pub fn id(self) -> &'static str {
         match self {
-            When::NextDay => "next day",
-            When::NextBilling => "next bill of each customer",
-            When::Now => "at once",
-            When::AtCompletion => "at completion",
-            When::CustomerReply => "when the customer answers",
-            When::Never => "changes nothing",
+            EffectTiming::NextDay => "next day",
+            EffectTiming::NextBilling => "next bill of each customer",
+            EffectTiming::Now => "at once",
+            EffectTiming::AtCompletion => "at completion",
+            EffectTiming::CustomerReply => "when the customer answers",
+            EffectTiming::Never => "changes nothing",
         }
     }
 }
@@ -185,16 +185,16 @@ pub struct Argument {
     /// Unit of its numbers.
     pub unit: &'static str,
     /// Meaning.
-    pub doc: &'static str,
+    pub description: &'static str,
 }
 
 /// Type of an argument.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ArgumentKind {
     /// A number.
-    Number(Range),
+    Number(NumberRange),
     /// An integer.
-    Integer(Range),
+    Integer(NumberRange),
     /// Text.
     Text,
     /// Another list or object, with a description.
@@ -202,23 +202,27 @@ pub enum ArgumentKind {
     /// A list of deals with prices, with a description.
     Deals(&'static str),
     /// A map from a key to a number.
-    Map(Key, Range),
+    Map(MapKey, NumberRange),
     /// A map of maps to a number.
-    Matrix(Key, Key, Range),
+    Matrix(MapKey, MapKey, NumberRange),
 }
 
 impl ArgumentKind {
     /// Returns a description, for example `map channel -> map group -> number, >= 0`.
-    pub fn words(&self) -> String {
+    pub fn describe(&self) -> String {
         match self {
-            ArgumentKind::Number(range) => format!("number, {}", range.whole_words()),
-            ArgumentKind::Integer(range) => format!("whole number, {}", range.whole_words()),
+            ArgumentKind::Number(range) => format!("number, {}", range.describe_with_limit()),
+            ArgumentKind::Integer(range) => format!("whole number, {}", range.describe_with_limit()),
             ArgumentKind::Text => "text".to_owned(),
             ArgumentKind::Structure(words) => (*words).to_owned(),
-            ArgumentKind::Deals(words) => format!("{words}; prices at most {}", grouped(MOST_DOLLARS, 0)),
-            ArgumentKind::Map(key, range) => format!("map {} -> number, {}", key.id(), range.whole_words()),
+            ArgumentKind::Deals(words) => {
+                format!("{words}; prices at most {}", grouped_number(MAX_DOLLARS, 0))
+            }
+            ArgumentKind::Map(key, range) => {
+                format!("map {} -> number, {}", key.id(), range.describe_with_limit())
+            }
             ArgumentKind::Matrix(outer, inner, range) => {
-                format!("map {} -> map {} -> number, {}", outer.id(), inner.id(), range.whole_words())
+                format!("map {} -> map {} -> number, {}", outer.id(), inner.id(), range.describe_with_limit())
             }
         }
     }
@@ -226,68 +230,69 @@ impl ArgumentKind {
 
 /// Allowed numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Range {
+pub struct NumberRange {
     /// Minimum.
-    pub least: f64,
+    pub min: f64,
     /// Whether the minimum itself is excluded.
-    pub above: bool,
+    pub excludes_min: bool,
     /// Maximum.
-    pub most: f64,
+    pub max: f64,
     /// Maximum magnitude, which keeps sums exact.
-    pub bound: f64,
+    pub magnitude_limit: f64,
 }
 
-impl Range {
+impl NumberRange {
     /// Dollars of at least 0.
-    pub const AT_LEAST_ZERO: Range =
-        Range { least: 0.0, above: false, most: f64::INFINITY, bound: MOST_DOLLARS };
+    pub const AT_LEAST_ZERO: NumberRange =
+        NumberRange { min: 0.0, excludes_min: false, max: f64::INFINITY, magnitude_limit: MAX_DOLLARS };
     /// Dollars above 0.
-    pub const ABOVE_ZERO: Range = Range { above: true, ..Range::AT_LEAST_ZERO };
+    pub const ABOVE_ZERO: NumberRange = NumberRange { excludes_min: true, ..NumberRange::AT_LEAST_ZERO };
     /// Units of at least 0.
-    pub const UNITS: Range = Range { bound: MOST_UNITS, ..Range::AT_LEAST_ZERO };
+    pub const UNITS: NumberRange =
+        NumberRange { magnitude_limit: MAX_UNITS_PER_DAY, ..NumberRange::AT_LEAST_ZERO };
     /// Numbers from 0 to 1.
-    pub const SHARE: Range = Range::between(0.0, 1.0);
+    pub const SHARE: NumberRange = NumberRange::between(0.0, 1.0);
 
     /// Returns the range from `least` to `most`, inclusive.
-    pub const fn between(least: f64, most: f64) -> Range {
-        Range { least, above: false, most, bound: f64::INFINITY }
+    pub const fn between(least: f64, most: f64) -> NumberRange {
+        NumberRange { min: least, excludes_min: false, max: most, magnitude_limit: f64::INFINITY }
     }
 
     /// Returns whether a number is in the range.
-    pub fn holds(&self, value: f64) -> bool {
+    pub fn contains(&self, value: f64) -> bool {
         value.is_finite()
-            && value <= self.most
-            && if self.above { value > self.least } else { value >= self.least }
+            && value <= self.max
+            && if self.excludes_min { value > self.min } else { value >= self.min }
     }
 
     /// Returns whether a number is within the maximum magnitude.
-    pub fn fits(&self, value: f64) -> bool {
-        value.abs() <= self.bound
+    pub fn is_within_limit(&self, value: f64) -> bool {
+        value.abs() <= self.magnitude_limit
     }
 
     /// Returns a description with the maximum magnitude.
-    pub fn whole_words(&self) -> String {
-        match self.bound.is_finite() {
-            true => format!("{}, at most {}", self.words(), grouped(self.bound, 0)),
-            false => self.words(),
+    pub fn describe_with_limit(&self) -> String {
+        match self.magnitude_limit.is_finite() {
+            true => format!("{}, at most {}", self.describe(), grouped_number(self.magnitude_limit, 0)),
+            false => self.describe(),
         }
     }
 
     /// Returns a description, for example `> 0`, `0 to 7`, `any`.
-    pub fn words(&self) -> String {
-        match (self.above, self.most.is_finite()) {
-            _ if self.least.is_infinite() => "any".to_owned(),
-            (true, false) => format!("> {}", self.least),
-            (false, false) => format!(">= {}", self.least),
-            (true, true) => format!("> {} to {}", self.least, self.most),
-            (false, true) => format!("{} to {}", self.least, self.most),
+    pub fn describe(&self) -> String {
+        match (self.excludes_min, self.max.is_finite()) {
+            _ if self.min.is_infinite() => "any".to_owned(),
+            (true, false) => format!("> {}", self.min),
+            (false, false) => format!(">= {}", self.min),
+            (true, true) => format!("> {} to {}", self.min, self.max),
+            (false, true) => format!("{} to {}", self.min, self.max),
         }
     }
 }
 
 /// Kind of the keys of a map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Key {
+pub enum MapKey {
     /// Known groups.
     Group,
     /// Plans.
@@ -298,28 +303,28 @@ pub enum Key {
     Customer,
 }
 
-impl Key {
+impl MapKey {
     /// Returns the name in documentation.
     pub fn id(self) -> &'static str {
         match self {
-            Key::Group => "group",
-            Key::Plan => "plan",
-            Key::Channel => "channel",
-            Key::Customer => "customer",
+            MapKey::Group => "group",
+            MapKey::Plan => "plan",
+            MapKey::Channel => "channel",
+            MapKey::Customer => "customer",
         }
     }
 }
 
 /// Type of a result field with a remark, whose wording can change between versions.
-pub const REMARK: &str = "remark";
+pub const REMARK_TYPE: &str = "remark";
 
 /// One field of a result.
 #[derive(Debug)]
-pub struct Output {
+pub struct ResultField {
     /// Name.
     pub name: &'static str,
     /// Description of the type, for example `map plan -> number`.
     pub kind: &'static str,
     /// Unit or meaning.
-    pub doc: &'static str,
+    pub description: &'static str,
 }

@@ -6,35 +6,36 @@ mod market;
 use novamind_world::command::ResolvedCommand;
 use serde_json::{Value, json};
 
-use super::{Arguments, Refusal, View, find};
+use super::{Arguments, Rejection, ToolContext, find};
 use novamind_world::events::Facts;
 use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
 use novamind_world::random::Streams;
 use novamind_world::state::World;
 
-struct Company {
+struct TestCompany {
     params: Params,
     streams: Streams,
     world: World,
 }
 
-impl Company {
-    fn new() -> Company {
-        let params = Params::shipped();
-        let world = World::open(500, 1_000_000.0, &params, &mut Facts::default());
-        Company { params, streams: Streams::new(42), world }
+impl TestCompany {
+    fn new() -> TestCompany {
+        let params = Params::bundled();
+        let world = World::new(500, 1_000_000.0, &params, &mut Facts::default());
+        TestCompany { params, streams: Streams::new(42), world }
     }
 
-    fn try_call(&mut self, name: &str, arguments: Value) -> Result<Value, Refusal> {
+    fn try_call(&mut self, name: &str, arguments: Value) -> Result<Value, Rejection> {
         let tool = find(name).expect("the tool exists");
-        let view = View::new(&self.world, &self.params);
-        let arguments = Arguments::of(tool.spec(), &arguments, || super::Numbers::shipped().into())?;
+        let view = ToolContext::new(&self.world, &self.params);
+        let arguments =
+            Arguments::parse(tool.spec(), &arguments, || super::ParameterNumbers::bundled().into())?;
         let planned = tool.plan(&view, &arguments)?;
-        super::bounds::hold(tool.spec(), &arguments)?;
+        super::limits::check_arguments(tool.spec(), &arguments)?;
         let resolved = self.world.resolve(planned.command, &self.params, &self.streams);
-        let data = planned.reply.without_running(&resolved).expect("no statements").to_json();
-        if !resolved.only_reads() {
+        let data = planned.reply.into_answer_without_script(&resolved).expect("no statements").to_json();
+        if !resolved.is_read_only() {
             self.world.apply(resolved, &self.params, &mut Facts::default());
         }
         Ok(data)
@@ -46,7 +47,7 @@ impl Company {
     }
 
     /// Returns code and field of a rejection, and checks that nothing has changed.
-    fn refused(&mut self, name: &str, arguments: Value) -> (&'static str, Option<String>) {
+    fn call_rejected(&mut self, name: &str, arguments: Value) -> (&'static str, Option<String>) {
         let before = self.world.part_hashes();
         let refusal =
             self.try_call(name, arguments.clone()).expect_err(&format!("{name} {arguments} is invalid"));
@@ -56,24 +57,24 @@ impl Company {
     }
 
     /// Returns the results of each deal of a rejected call.
-    fn refused_results(&mut self, name: &str, arguments: Value) -> Value {
+    fn rejected_results(&mut self, name: &str, arguments: Value) -> Value {
         let refusal = self.try_call(name, arguments).expect_err("a refusal");
         serde_json::to_value(refusal.results).expect("results are JSON")
     }
 
-    fn assert_refused(&mut self, name: &str, cases: &[(Value, &str, &str)]) {
+    fn assert_rejections(&mut self, name: &str, cases: &[(Value, &str, &str)]) {
         for (arguments, code, field) in cases {
-            let (own_code, own_field) = self.refused(name, arguments.clone());
+            let (own_code, own_field) = self.call_rejected(name, arguments.clone());
             assert_eq!((own_code, own_field.as_deref().unwrap_or("")), (*code, *field), "{name} {arguments}");
         }
         let spec = find(name).expect("the tool exists").spec();
         let general = ["wrong_type", "argument_missing", "unknown_argument"];
-        for code in spec.refusals {
+        for code in spec.rejection_codes {
             assert!(cases.iter().any(|(_, tested, _)| tested == code), "{name}: {code} is not tested");
         }
         for (_, code, _) in cases {
             assert!(
-                spec.refusals.contains(code) || general.contains(code),
+                spec.rejection_codes.contains(code) || general.contains(code),
                 "{name}: {code} is not documented"
             );
         }
@@ -81,9 +82,9 @@ impl Company {
 }
 
 #[test]
-fn set_prices() {
-    let mut company = Company::new();
-    company.assert_refused(
+fn set_prices_validates_and_updates() {
+    let mut company = TestCompany::new();
+    company.assert_rejections(
         "set_prices",
         &[
             (json!({}), "nothing_given", ""),
@@ -104,9 +105,9 @@ fn set_prices() {
 }
 
 #[test]
-fn set_model_tiers() {
-    let mut company = Company::new();
-    company.assert_refused(
+fn set_model_tiers_validates_and_updates() {
+    let mut company = TestCompany::new();
+    company.assert_rejections(
         "set_model_tiers",
         &[
             (json!({}), "nothing_given", ""),
@@ -122,9 +123,9 @@ fn set_model_tiers() {
 }
 
 #[test]
-fn set_usage_quotas() {
-    let mut company = Company::new();
-    company.assert_refused(
+fn set_usage_quotas_validates_and_updates() {
+    let mut company = TestCompany::new();
+    company.assert_rejections(
         "set_usage_quotas",
         &[
             (json!({"C": 5}), "quota_missing", "A"),
@@ -147,9 +148,9 @@ fn set_usage_quotas() {
 }
 
 #[test]
-fn set_promotion() {
-    let mut company = Company::new();
-    company.assert_refused(
+fn set_promotion_validates_and_updates() {
+    let mut company = TestCompany::new();
+    company.assert_rejections(
         "set_promotion",
         &[
             (json!({"global_promotion": -1}), "global_promotion_negative", "global_promotion"),
@@ -183,9 +184,9 @@ fn set_promotion() {
 }
 
 #[test]
-fn set_daily_spend() {
-    let mut company = Company::new();
-    company.assert_refused(
+fn set_daily_spend_validates_and_updates() {
+    let mut company = TestCompany::new();
+    company.assert_rejections(
         "set_daily_spend",
         &[
             (json!({}), "nothing_given", ""),
@@ -205,9 +206,9 @@ fn set_daily_spend() {
 }
 
 #[test]
-fn set_targeted_ad_spend() {
-    let mut company = Company::new();
-    company.assert_refused(
+fn set_targeted_ad_spend_validates_and_transposes() {
+    let mut company = TestCompany::new();
+    company.assert_rejections(
         "set_targeted_ad_spend",
         &[
             (json!({}), "argument_missing", "targeted_spend"),
@@ -251,9 +252,9 @@ fn set_targeted_ad_spend() {
 }
 
 #[test]
-fn set_ads_strength() {
-    let mut company = Company::new();
-    company.assert_refused(
+fn set_ads_strength_applies_nothing_after_an_error() {
+    let mut company = TestCompany::new();
+    company.assert_rejections(
         "set_ads_strength",
         &[
             (json!({"global_strength": 1.1}), "global_strength_out_of_range", "global_strength"),
@@ -266,16 +267,16 @@ fn set_ads_strength() {
     );
     // Nothing is applied if a later scope is invalid.
     let wrong = json!({"global_strength": 0.4, "by_group": {"S2": 0.1}, "by_customer": {"5": 3}});
-    assert_eq!(company.refused("set_ads_strength", wrong).0, "strength_out_of_range");
+    assert_eq!(company.call_rejected("set_ads_strength", wrong).0, "strength_out_of_range");
     let data =
         company.call("set_ads_strength", json!({"global_strength": 0.05, "by_customer": {" 42 ": 0.5}}));
     assert_eq!(data, json!({"global": 0.05, "by_group": {}, "by_customer": {"42": 0.5}}));
 }
 
 #[test]
-fn set_lead_promotion() {
-    let mut company = Company::new();
-    company.assert_refused(
+fn set_lead_promotion_validates_and_updates() {
+    let mut company = TestCompany::new();
+    company.assert_rejections(
         "set_lead_promotion",
         &[
             (json!({"global_promotion": -1}), "global_promotion_negative", "global_promotion"),
@@ -295,9 +296,9 @@ fn set_lead_promotion() {
 }
 
 #[test]
-fn set_targeted_ops_spend() {
-    let mut company = Company::new();
-    company.assert_refused(
+fn set_targeted_ops_spend_keeps_other_scopes() {
+    let mut company = TestCompany::new();
+    company.assert_rejections(
         "set_targeted_ops_spend",
         &[
             (json!({"by_group": {}, "targeted_spend": {}}), "both_aliases", "targeted_spend"),
@@ -323,9 +324,9 @@ fn set_targeted_ops_spend() {
 }
 
 #[test]
-fn set_targeted_dev_spend() {
-    let mut company = Company::new();
-    company.assert_refused(
+fn set_targeted_dev_spend_validates_and_updates() {
+    let mut company = TestCompany::new();
+    company.assert_rejections(
         "set_targeted_dev_spend",
         &[
             (json!({}), "argument_missing", "targeted_spend"),
@@ -344,10 +345,10 @@ fn set_targeted_dev_spend() {
 }
 
 #[test]
-fn start_research_project() {
-    let mut company = Company::new();
+fn start_research_project_charges_the_price_once() {
+    let mut company = TestCompany::new();
     company.call("start_research_project", json!({"tier": 1}));
-    company.assert_refused(
+    company.assert_rejections(
         "start_research_project",
         &[
             (json!({}), "argument_missing", "tier"),
@@ -368,8 +369,8 @@ fn start_research_project() {
 }
 
 #[test]
-fn refusals_of_large_amounts_name_the_bound() {
-    let mut company = Company::new();
+fn rejections_of_large_amounts_name_the_limit() {
+    let mut company = TestCompany::new();
     for (tool, arguments, message) in [
         ("set_prices", json!({"B": 1.1e9}), "B is too large: at most $1,000,000,000/month"),
         (
@@ -385,15 +386,18 @@ fn refusals_of_large_amounts_name_the_bound() {
     ] {
         let refusal = company.try_call(tool, arguments).expect_err("too large");
         assert_eq!(refusal.message, message);
-        let manual = super::describe::manual(find(tool).expect("a tool").spec(), &super::Numbers::shipped());
+        let manual = super::describe::format_manual(
+            find(tool).expect("a tool").spec(),
+            &super::ParameterNumbers::bundled(),
+        );
         assert!(manual.contains(", at most 1,000,000,000"));
     }
     company.call("set_prices", json!({"B": 1e9}));
 }
 
 #[test]
-fn money_in_refusals_is_rounded_as_shown() {
-    let mut company = Company::new();
+fn rejections_round_dollars_as_displayed() {
+    let mut company = TestCompany::new();
     company.world.finance.cash = 166_666.99;
     let refusal = company.try_call("start_research_project", json!({"tier": 1})).expect_err("too dear");
     assert_eq!(refusal.message, "costs $166,667, cash is $166,667");
@@ -403,9 +407,9 @@ fn money_in_refusals_is_rounded_as_shown() {
 }
 
 #[test]
-fn set_capacity_tier() {
-    let mut company = Company::new();
-    company.assert_refused(
+fn set_capacity_tier_validates_and_updates() {
+    let mut company = TestCompany::new();
+    company.assert_rejections(
         "set_capacity_tier",
         &[
             (json!({}), "argument_missing", "tier"),
@@ -422,33 +426,33 @@ fn set_capacity_tier() {
 }
 
 /// Returns a company with two leads (customers 2 and 3), a subscriber (4), an individual (5), and a lost lead (6).
-fn with_companies() -> Company {
-    use novamind_world::enterprise::Standing;
-    use novamind_world::test_kit::company_of;
+fn company_with_enterprises() -> TestCompany {
+    use novamind_world::enterprise::EnterpriseStatus;
+    use novamind_world::test_kit::plain_enterprise;
     use novamind_world::test_kit::subscriber;
-    let mut company = Company::new();
+    let mut company = TestCompany::new();
     let (e1, s1) = (Group::parse("E1").expect("a group"), Group::parse("S1").expect("a group"));
     let world = &mut company.world;
     let mut facts = Facts::default();
-    world.customers.arrive(0, e1, 3);
-    world.customers.arrive(0, s1, 1);
-    world.customers.arrive(0, e1, 1);
+    world.customers.record_arrival(0, e1, 3);
+    world.customers.record_arrival(0, s1, 1);
+    world.customers.record_arrival(0, e1, 1);
     let row =
         |customer: u32, n| novamind_world::customers::columns::Subscriber { customer, n, ..subscriber(n) };
     for (customer, n) in [(2, 1), (3, 2)] {
-        let lead = company_of(e1, n, customer, Standing::Lead(row(customer, n)));
-        world.enterprise.open_lead(0, lead, &mut facts);
+        let lead = plain_enterprise(e1, n, customer, EnterpriseStatus::Lead(row(customer, n)));
+        world.enterprise.open_lead_thread(0, lead, &mut facts);
     }
     world.customers.groups[e1].activate(row(4, 3));
-    world.enterprise.companies.push(company_of(e1, 3, 4, Standing::Subscriber));
+    world.enterprise.companies.push(plain_enterprise(e1, 3, 4, EnterpriseStatus::Subscriber));
     company
 }
 
 #[test]
-fn send_enterprise_deal() {
-    let mut company = with_companies();
+fn send_enterprise_deal_rejects_invalid_deals() {
+    let mut company = company_with_enterprises();
     let deal = |deals: Value| json!({ "deals": deals });
-    company.assert_refused(
+    company.assert_rejections(
         "send_enterprise_deal",
         &[
             (json!({}), "deals_missing", "deals"),
@@ -497,8 +501,8 @@ fn send_enterprise_deal() {
 }
 
 #[test]
-fn a_call_of_which_no_deal_is_sent_says_why_for_each() {
-    let mut company = with_companies();
+fn fully_rejected_deals_report_each_reason() {
+    let mut company = company_with_enterprises();
     let deals = json!({"deals": [[99, [["B", 5]]], [2, []], [5, [["B", 5]]], [6, [["B", 5]]]]});
     let told = json!([
         {"customer_id": 2, "error": "offerings required"},
@@ -506,23 +510,23 @@ fn a_call_of_which_no_deal_is_sent_says_why_for_each() {
         {"customer_id": 5, "error": "not enterprise"},
         {"customer_id": 6, "error": "no subscription"},
     ]);
-    assert_eq!(company.refused_results("send_enterprise_deal", deals), told);
+    assert_eq!(company.rejected_results("send_enterprise_deal", deals), told);
     let deals = json!({"deals": [77, "x"]});
     let told = json!([{"error": "invalid format"}, {"customer_id": 77, "error": "no active thread"}]);
-    assert_eq!(company.refused_results("reject_enterprise_deal", deals), told);
+    assert_eq!(company.rejected_results("reject_enterprise_deal", deals), told);
     // A rejection of the whole call has no results.
     let none = json!({"deals": []});
-    assert_eq!(company.refused_results("send_enterprise_deal", none), json!([]));
+    assert_eq!(company.rejected_results("send_enterprise_deal", none), json!([]));
 }
 
 /// Returns the offerings of the latest turn of a customer's open thread.
-fn offered(company: &Company, customer: u32) -> Vec<(&'static str, f64)> {
+fn latest_offer(company: &TestCompany, customer: u32) -> Vec<(&'static str, f64)> {
     let thread = company.world.enterprise.open_threads().newest(customer).expect("an open thread");
-    thread.offerings().iter().map(|offering| (offering.plan.id(), offering.price)).collect()
+    thread.last_offerings().iter().map(|offering| (offering.plan.id(), offering.price)).collect()
 }
 
 #[test]
-fn deals_may_be_written_in_many_ways() {
+fn send_enterprise_deal_accepts_all_notations() {
     for deals in [
         json!([[2, [["B", 31.5]]]]),
         json!([["2", [["B", "31.5", 12]]]]),
@@ -530,23 +534,23 @@ fn deals_may_be_written_in_many_ways() {
         json!({"customer_id": 2, "offerings": [{"plan": "B", "price": 31.5, "price_per_seat": 7}]}),
         json!([[2, [{"price": 31.5}], "more"]]),
     ] {
-        let mut company = with_companies();
+        let mut company = company_with_enterprises();
         let data = company.call("send_enterprise_deal", json!({ "deals": deals }));
         assert_eq!(data, json!({"results": [{"customer_id": 2, "success": true}]}), "{deals}");
-        assert_eq!(offered(&company, 2), [("B", 31.5)], "{deals}");
+        assert_eq!(latest_offer(&company, 2), [("B", 31.5)], "{deals}");
     }
-    let mut company = with_companies();
+    let mut company = company_with_enterprises();
     let whole = json!({"customer_id": 2, "offerings": [["C", 0]]});
     company.call("enterprise.send_enterprise_deal", whole);
-    assert_eq!(offered(&company, 2), [("C", 0.0)]);
+    assert_eq!(latest_offer(&company, 2), [("C", 0.0)]);
 }
 
 #[test]
-fn one_bad_deal_does_not_stop_the_others() {
-    let mut company = with_companies();
+fn invalid_deal_does_not_block_the_others() {
+    let mut company = company_with_enterprises();
     let four = json!([[2, [["A", 1], ["B", 2], ["C", 3], ["A", 4]]]]);
     company.call("send_enterprise_deal", json!({ "deals": four }));
-    assert_eq!(offered(&company, 2), [("A", 1.0), ("B", 2.0), ("C", 3.0)]);
+    assert_eq!(latest_offer(&company, 2), [("A", 1.0), ("B", 2.0), ("C", 3.0)]);
     let mixed = json!([[999_999, [["B", 5]]], [3, [["B", "7.5"]]], [4, []], 8]);
     let data = company.call("send_enterprise_deal", json!({ "deals": mixed }));
     let expected = json!({"results": [
@@ -556,7 +560,7 @@ fn one_bad_deal_does_not_stop_the_others() {
         {"customer_id": 3, "success": true},
     ]});
     assert_eq!(data, expected);
-    assert_eq!(offered(&company, 3), [("B", 7.5)]);
+    assert_eq!(latest_offer(&company, 3), [("B", 7.5)]);
     let data = company.call("send_enterprise_deal", json!({"deals": [[4, [["B", 9]]]]}));
     assert_eq!(data["results"][0]["success"], true);
     let thread = company.world.enterprise.open_threads().newest(4).expect("a renegotiation");
@@ -564,10 +568,10 @@ fn one_bad_deal_does_not_stop_the_others() {
 }
 
 #[test]
-fn reject_enterprise_deal() {
-    let mut company = with_companies();
+fn reject_enterprise_deal_ends_threads() {
+    let mut company = company_with_enterprises();
     let deal = |deals: Value| json!({ "deals": deals });
-    company.assert_refused(
+    company.assert_rejections(
         "reject_enterprise_deal",
         &[
             (json!({}), "deals_missing", "deals"),
@@ -596,25 +600,25 @@ fn reject_enterprise_deal() {
     ]});
     assert_eq!(data, expected);
     // A rejected lead is lost; a subscriber keeps the subscription.
-    let again = company.refused("send_enterprise_deal", json!({"deals": [[2, [["B", 5]]]]}));
+    let again = company.call_rejected("send_enterprise_deal", json!({"deals": [[2, [["B", 5]]]]}));
     assert_eq!(again.0, "no_subscription");
     company.call("send_enterprise_deal", json!({"deals": [[4, [["B", 9]]]]}));
     assert_eq!(company.call("reject_enterprise_deal", deal(json!(4)))["results"][0]["success"], true);
 }
 
 #[test]
-fn readings_tell_what_they_should() {
-    let mut company = Company::new();
+fn read_tools_return_cost_info_and_day() {
+    let mut company = TestCompany::new();
     let costs = company.call("get_cost_info", json!({}));
     assert_eq!(costs["model_tiers"]["4"]["cost_per_usage_unit"], 0.012);
     assert_eq!(costs["capacity_tiers"]["1"], json!({"capacity_units": 200000, "cost_per_day": 215}));
     assert_eq!(company.call("get_vars", json!({})), json!({"current_day": 0}));
-    assert_eq!(company.refused("get_vars", json!({"day": 1})).0, "unknown_argument");
+    assert_eq!(company.call_rejected("get_vars", json!({"day": 1})).0, "unknown_argument");
 }
 
 #[test]
-fn what_a_tool_calls_current_can_be_sent_back() {
-    let mut company = Company::new();
+fn current_arguments_can_be_sent_back() {
+    let mut company = TestCompany::new();
     company.call("set_prices", json!({"A": 12, "B": 25, "C": 55}));
     company.call("set_promotion", json!({"by_group_plan": {"S1": {"A": 3}}, "by_customer": {"7": 1.5}}));
     company.call("set_targeted_ad_spend", json!({"linkedin": {"E1": 20}}));
@@ -630,16 +634,16 @@ fn what_a_tool_calls_current_can_be_sent_back() {
 }
 
 #[test]
-fn undiscovered_groups_become_known_by_discovery() {
-    let mut company = Company::new();
+fn discovered_groups_are_accepted() {
+    let mut company = TestCompany::new();
     let group = Group::parse("D_S06").expect("a group");
     company.world.market.knowledge[group].level = 1;
     company.call("set_targeted_dev_spend", json!({"D_S06": 5}));
 }
 
 #[test]
-fn post_social_media() {
-    let mut company = Company::new();
+fn post_social_media_allows_one_post_per_day() {
+    let mut company = TestCompany::new();
     for (arguments, code, field) in [
         (json!({}), "argument_missing", Some("content")),
         (json!({"content": 5}), "wrong_type", Some("content")),
@@ -650,7 +654,7 @@ fn post_social_media() {
         (json!({"content": "Hi", "reply_to_post_id": "1"}), "wrong_type", Some("reply_to_post_id")),
         (json!({"content": "Hi", "to": 1}), "unknown_argument", Some("to")),
     ] {
-        let (own_code, own_field) = company.refused("post_social_media", arguments);
+        let (own_code, own_field) = company.call_rejected("post_social_media", arguments);
         assert_eq!((own_code, own_field.as_deref()), (code, field));
     }
     let content = "\u{fc}".repeat(280);
@@ -658,7 +662,10 @@ fn post_social_media() {
         company.call("post_social_media", json!({"content": content, "reply_to_post_id": null})),
         json!({"agent_post_id": 1, "day": 0, "content": content, "reply_to_post_id": null})
     );
-    assert_eq!(company.refused("post_social_media", json!({"content": "More."})), ("already_posted", None));
+    assert_eq!(
+        company.call_rejected("post_social_media", json!({"content": "More."})),
+        ("already_posted", None)
+    );
     company.world.day = 7;
     company.world.market.social.next_post = 12;
     assert_eq!(
@@ -669,9 +676,9 @@ fn post_social_media() {
 }
 
 #[test]
-fn get_social_posts() {
-    let mut company = Company::new();
-    company.assert_refused(
+fn get_social_posts_returns_newest_first() {
+    let mut company = TestCompany::new();
+    company.assert_rejections(
         "get_social_posts",
         &[(json!({"limit": "x"}), "wrong_type", "limit"), (json!({"days": 1.5}), "wrong_type", "days")],
     );
@@ -694,13 +701,14 @@ fn get_social_posts() {
         ..post(3, Some(group("E2")))
     };
     let posts = [post(1, None), post(2, Some(group("D_S01"))), comment];
-    let view = View::new(&company.world, &company.params).with_posts(&posts);
+    let view = ToolContext::new(&company.world, &company.params).with_posts(&posts);
     let tool = find("get_social_posts").expect("the tool exists");
     let read = |arguments: Value| {
-        let arguments = Arguments::of(tool.spec(), &arguments, || super::Numbers::shipped().into())
-            .expect("right arguments");
+        let arguments =
+            Arguments::parse(tool.spec(), &arguments, || super::ParameterNumbers::bundled().into())
+                .expect("right arguments");
         let planned = tool.plan(&view, &arguments).expect("it only reads");
-        planned.reply.without_running(&ResolvedCommand::None).expect("an answer").to_json()
+        planned.reply.into_answer_without_script(&ResolvedCommand::None).expect("an answer").to_json()
     };
     let all = read(json!({"days": 1}));
     assert_eq!(all["total"], json!(3));
@@ -727,11 +735,15 @@ fn get_social_posts() {
 }
 
 #[test]
-fn a_project_that_is_running_comes_before_the_money_it_would_take() {
-    let mut company = Company::new();
+fn running_project_is_rejected_before_missing_funds() {
+    let mut company = TestCompany::new();
     company.call("start_research_project", json!({"tier": 2}));
     company.world.finance.cash = 1.0;
     for (tier, code) in [(0, "rd_tier_unknown"), (2, "rd_in_progress"), (1, "insufficient_funds")] {
-        assert_eq!(company.refused("start_research_project", json!({"tier": tier})).0, code, "tier {tier}");
+        assert_eq!(
+            company.call_rejected("start_research_project", json!({"tier": tier})).0,
+            code,
+            "tier {tier}"
+        );
     }
 }

@@ -4,10 +4,10 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::arguments::Arguments;
-use super::planned::Planned;
-use super::refusal::Refusal;
-use super::spec::Spec;
-use super::view::View;
+use super::planned_call::PlannedCall;
+use super::rejection::Rejection;
+use super::spec::ToolSpec;
+use super::tool_context::ToolContext;
 use novamind_world::settings::Settings;
 
 /// A tool of the player.
@@ -18,7 +18,7 @@ pub trait Tool: Sync {
     type Answer: Serialize;
 
     /// Returns the specification.
-    fn spec(&self) -> &'static Spec;
+    fn spec(&self) -> &'static ToolSpec;
 
     /// Returns the current values of the arguments in the notation of a call; empty for tools without settings.
     fn current(&self, _settings: &Settings) -> Map<String, Value> {
@@ -28,12 +28,12 @@ pub trait Tool: Sync {
     /// Parses the arguments of a call.
     ///
     /// # Errors
-    /// The first rejections that its [`Spec`] lists: those that follow from the arguments and the player's knowledge.
-    fn read(&self, view: &View<'_>, arguments: &Arguments) -> Result<Self::Args, Refusal>;
+    /// The first rejections that its [`ToolSpec`] lists: those that follow from the arguments and the player's knowledge.
+    fn read(&self, view: &ToolContext<'_>, arguments: &Arguments) -> Result<Self::Args, Rejection>;
 
     /// Returns the effect and the result of a call with these arguments.
     ///
     /// # Errors
     /// The other rejections, in the order of its checks.
-    fn plan(&self, view: &View<'_>, args: Self::Args) -> Result<Planned<Self::Answer>, Refusal>;
+    fn plan(&self, view: &ToolContext<'_>, args: Self::Args) -> Result<PlannedCall<Self::Answer>, Rejection>;
 }

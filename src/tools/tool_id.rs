@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use strum::{AsRefStr, Display, EnumString, IntoStaticStr};
 
 /// Calls a macro with the types of all tools, in display order.
-macro_rules! each_tool {
+macro_rules! with_all_tools {
     ($macro:ident) => {
         $macro! {
             SetPrices,
@@ -46,25 +46,25 @@ macro_rules! each_tool {
         }
     };
 }
-pub(super) use each_tool;
+pub(super) use with_all_tools;
 
 macro_rules! identifiers {
     ($($tool:ident),* $(,)?) => {
-        /// A tool. Its serialized form is its name, for example `set_prices`.
+        /// A tool. Its serialized form is its name, for example `set_prices_validates_and_updates`.
         #[derive(
             Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, AsRefStr, Display,
             EnumString, IntoStaticStr,
         )]
         #[serde(rename_all = "snake_case")]
         #[strum(serialize_all = "snake_case")]
-        #[allow(missing_docs)] // Each is described by its `Spec`.
+        #[allow(missing_docs)] // Each is described by its `ToolSpec`.
         pub enum ToolId {
             $($tool),*
         }
     };
 }
 
-each_tool!(identifiers);
+with_all_tools!(identifiers);
 
 impl ToolId {
     /// Returns the name.

@@ -3,16 +3,16 @@
 use ratatui::buffer::Buffer;
 
 /// Replaces every character outside ASCII by a similar ASCII character.
-pub fn plain(buffer: &mut Buffer) {
+pub fn replace_non_ascii(buffer: &mut Buffer) {
     for cell in &mut buffer.content {
         if !cell.symbol().is_ascii() {
-            let stand_in = cell.symbol().chars().next().map_or(' ', stand_in);
+            let stand_in = cell.symbol().chars().next().map_or(' ', ascii_substitute);
             cell.set_char(stand_in);
         }
     }
 }
 
-fn stand_in(letter: char) -> char {
+fn ascii_substitute(letter: char) -> char {
     match letter {
         // Thick lines mark the focus.
         '━' => '=',

@@ -8,12 +8,12 @@ use ratatui::layout::Rect;
 use serde_json::json;
 
 /// Hides the cursor and clears the window.
-const BEGINNING: &str = "\u{1b}[?25l\u{1b}[0m\u{1b}[2J";
+const INITIAL_SEQUENCE: &str = "\u{1b}[?25l\u{1b}[0m\u{1b}[2J";
 
 /// A recording of frames. Each frame is stored as its differences from the previous one.
 pub struct Asciicast {
     lines: String,
-    shown: Buffer,
+    last_frame: Buffer,
     time: Duration,
 }
 
@@ -27,10 +27,10 @@ impl Asciicast {
         });
         let mut recording = Asciicast {
             lines: format!("{header}\n"),
-            shown: Buffer::empty(Rect::new(0, 0, columns, rows)),
+            last_frame: Buffer::empty(Rect::new(0, 0, columns, rows)),
             time: Duration::ZERO,
         };
-        recording.write(BEGINNING);
+        recording.write(INITIAL_SEQUENCE);
         recording
     }
 
@@ -38,11 +38,11 @@ impl Asciicast {
     ///
     /// # Errors
     /// The frame cannot be written as terminal output.
-    pub fn show(&mut self, frame: &Buffer, stays: Duration) -> std::io::Result<()> {
+    pub fn add_frame(&mut self, frame: &Buffer, stays: Duration) -> std::io::Result<()> {
         let mut bytes = Vec::new();
-        CrosstermBackend::new(&mut bytes).draw(self.shown.diff(frame).into_iter())?;
+        CrosstermBackend::new(&mut bytes).draw(self.last_frame.diff(frame).into_iter())?;
         self.write(&String::from_utf8_lossy(&bytes));
-        self.shown = frame.clone();
+        self.last_frame = frame.clone();
         self.time += stays;
         Ok(())
     }
@@ -66,10 +66,10 @@ mod tests {
     use serde_json::Value;
 
     use super::*;
-    use crate::photograph::text;
+    use crate::frame_export::frame_text;
 
     #[test]
-    fn a_terminal_shows_each_frame_at_its_time() {
+    fn frames_are_written_with_their_times() {
         let size = (20, 3);
         let area = Rect::new(0, 0, size.0, size.1);
         let mut frames = Vec::new();
@@ -80,7 +80,7 @@ mod tests {
         }
         let mut recording = Asciicast::new(size, "a title");
         for frame in &frames {
-            recording.show(frame, Duration::from_millis(1500)).expect("it is written");
+            recording.add_frame(frame, Duration::from_millis(1500)).expect("it is written");
         }
         let recording = recording.finish();
         let lines: Vec<Value> =
@@ -101,7 +101,7 @@ mod tests {
         let trimmed =
             |text: &str| text.lines().map(str::trim_end).collect::<Vec<_>>().join("\n").trim_end().to_owned();
         for (frame, seen) in frames.iter().zip(&seen[1..]) {
-            assert_eq!(trimmed(seen), trimmed(&text(frame)));
+            assert_eq!(trimmed(seen), trimmed(&frame_text(frame)));
         }
         assert!(recording.contains("[38;5;1;"), "{recording}");
     }

@@ -13,13 +13,13 @@ use super::theme::{Role, Theme};
 
 /// The number of a command, which the application defines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Command(pub u16);
+pub struct CommandId(pub u16);
 
 /// The target of a click.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Click {
     /// A command.
-    Do(Command),
+    Command(CommandId),
     /// A pane, by its number on the screen: it receives the focus.
     Pane(usize),
     /// A row, by the number of its pane and its own.
@@ -37,17 +37,17 @@ pub struct Canvas<'a> {
     /// Position of the cursor, if it is shown.
     pub cursor: Option<Position>,
     /// Rows that the focused list shows, for paging.
-    pub page: u16,
+    pub page_rows: u16,
     /// Whether the focused pane fills the screen and the others are not drawn.
     pub zoomed: bool,
     /// Whether the data is from a database that is behind; every pane shows that.
     pub stale: bool,
     /// Text of a chart without data.
-    pub no_data: &'static str,
+    pub empty_chart_text: &'static str,
     /// Marker that curves are drawn with.
     pub marker: Marker,
     /// Breadcrumbs of the focused pane, which precede its title.
-    pub path: Vec<String>,
+    pub breadcrumbs: Vec<String>,
 }
 
 /// Alignment of text.
@@ -67,12 +67,12 @@ impl<'a> Canvas<'a> {
             theme,
             clicks: Vec::new(),
             cursor: None,
-            page: 10,
+            page_rows: 10,
             zoomed: false,
             stale: false,
-            no_data: "no data",
+            empty_chart_text: "no data",
             marker: Marker::Braille,
-            path: Vec::new(),
+            breadcrumbs: Vec::new(),
         }
     }
 
@@ -99,16 +99,16 @@ impl<'a> Canvas<'a> {
     }
 
     /// Draws text in one row, truncated with an ellipsis.
-    pub fn text(&mut self, area: Rect, text: &str, role: Role) {
-        self.aligned(area, text, role, Align::Left);
+    pub fn draw_text(&mut self, area: Rect, text: &str, role: Role) {
+        self.draw_aligned(area, text, role, Align::Left);
     }
 
     /// Draws aligned text in one row, truncated with an ellipsis.
-    pub fn aligned(&mut self, area: Rect, text: &str, role: Role, align: Align) {
+    pub fn draw_aligned(&mut self, area: Rect, text: &str, role: Role, align: Align) {
         if area.is_empty() {
             return;
         }
-        let shown = fit(text, area.width as usize);
+        let shown = truncate_to_width(text, area.width as usize);
         let room = area.width as usize - shown.width();
         let x = area.x + if align == Align::Right { room as u16 } else { 0 };
         let style = self.style(role);
@@ -118,22 +118,22 @@ impl<'a> Canvas<'a> {
     }
 
     /// Draws spans in one row, truncated.
-    pub fn line(&mut self, area: Rect, line: &Line<'_>) {
+    pub fn draw_line(&mut self, area: Rect, line: &Line<'_>) {
         if !area.is_empty() && self.buffer.area.contains(area.as_position()) {
             self.buffer.set_line(area.x, area.y, line, area.width);
         }
     }
 
     /// Draws lines below each other; lines that do not fit are omitted.
-    pub fn lines(&mut self, area: Rect, lines: &[Line<'_>]) {
-        for (row, line) in rows_of(area).zip(lines) {
-            self.line(row, line);
+    pub fn draw_lines(&mut self, area: Rect, lines: &[Line<'_>]) {
+        for (row, line) in row_rects(area).zip(lines) {
+            self.draw_line(row, line);
         }
     }
 
     /// Draws the border of a pane and returns the area inside. The title is at the left, the note at the right end of
     /// the upper border.
-    pub fn pane(&mut self, area: Rect, title: &str, note: &str, focused: bool) -> Rect {
+    pub fn draw_pane_frame(&mut self, area: Rect, title: &str, note: &str, focused: bool) -> Rect {
         // Line styles show the focus without color, too.
         let (kind, role) =
             if focused { (BorderType::Thick, Role::Focus) } else { (BorderType::Plain, Role::Border) };
@@ -144,8 +144,8 @@ impl<'a> Canvas<'a> {
             (true, "") => "stale".to_owned(),
             (true, note) => format!("stale · {note}"),
         };
-        let way = if focused && !title.is_empty() { self.path.as_slice() } else { &[] };
-        let in_room = |room: usize| path_before(way, title, room);
+        let way = if focused && !title.is_empty() { self.breadcrumbs.as_slice() } else { &[] };
+        let in_room = |room: usize| breadcrumb_prefix(way, title, room);
         // The nearest breadcrumb takes precedence over the note.
         let path = Some(in_room(room.saturating_sub(note.width() + 6)))
             .filter(|path| !path.is_empty())
@@ -153,12 +153,12 @@ impl<'a> Canvas<'a> {
         if !title.is_empty() && room > 0 {
             let before =
                 self.span(if path.is_empty() { " ".to_owned() } else { format!(" {path}") }, Role::Dim);
-            let text = format!("{} ", fit(title, room.saturating_sub(path.width() + 2)));
+            let text = format!("{} ", truncate_to_width(title, room.saturating_sub(path.width() + 2)));
             block = block.title(Line::from(vec![before, self.span(text, Role::Title)]));
         }
         let left = path.width() + title.width() + 3;
         if !note.is_empty() && room > left + 4 {
-            let text = format!(" {} ", fit(&note, room - left - 2));
+            let text = format!(" {} ", truncate_to_width(&note, room - left - 2));
             block = block.title(Line::from(self.span(text, Role::Dim)).right_aligned());
         }
         let inside = block.inner(area);
@@ -167,25 +167,25 @@ impl<'a> Canvas<'a> {
     }
 
     /// Draws key labels into the lower border of a pane.
-    pub fn pane_keys(&mut self, area: Rect, text: &str) {
+    pub fn draw_pane_keys(&mut self, area: Rect, text: &str) {
         if area.height < 2 || area.width < 6 {
             return;
         }
         let row = Rect { x: area.x + 2, y: area.bottom() - 1, width: area.width - 4, height: 1 };
-        let shown = format!(" {} ", whole_keys(text, row.width.saturating_sub(2) as usize));
+        let shown = format!(" {} ", fitting_keys(text, row.width.saturating_sub(2) as usize));
         let width = shown.width() as u16;
-        self.text(Rect { width: width.min(row.width), ..row }, &shown, Role::Dim);
+        self.draw_text(Rect { width: width.min(row.width), ..row }, &shown, Role::Dim);
     }
 
     /// Makes an area clickable.
-    pub fn click(&mut self, area: Rect, click: Click) {
+    pub fn register_click(&mut self, area: Rect, click: Click) {
         self.clicks.push((area, click));
     }
 }
 
 /// Formats the breadcrumbs before a title in the available width: `Customers › S2 › `. Distant ones are dropped
 /// first, and one that the title names is omitted.
-fn path_before(path: &[String], title: &str, room: usize) -> String {
+fn breadcrumb_prefix(path: &[String], title: &str, room: usize) -> String {
     let said = path.last().is_some_and(|last| title.split(' ').any(|word| word == last));
     let path = &path[..path.len() - usize::from(said)];
     let words = |from: usize| {
@@ -197,7 +197,7 @@ fn path_before(path: &[String], title: &str, room: usize) -> String {
 }
 
 /// Truncates a list of keys between its items; the first item always stays.
-fn whole_keys(text: &str, width: usize) -> String {
+fn fitting_keys(text: &str, width: usize) -> String {
     let mut shown = String::new();
     for key in text.split(" · ") {
         let longer = if shown.is_empty() { key.to_owned() } else { format!("{shown} · {key}") };
@@ -206,16 +206,16 @@ fn whole_keys(text: &str, width: usize) -> String {
         }
         shown = longer;
     }
-    fit(&shown, width)
+    truncate_to_width(&shown, width)
 }
 
 /// Returns the rows of an area, each one cell high.
-pub fn rows_of(area: Rect) -> impl Iterator<Item = Rect> {
+pub fn row_rects(area: Rect) -> impl Iterator<Item = Rect> {
     (area.top()..area.bottom()).map(move |y| Rect { y, height: 1, ..area })
 }
 
 /// Truncates text to a width with an ellipsis, between graphemes.
-pub fn fit(text: &str, width: usize) -> String {
+pub fn truncate_to_width(text: &str, width: usize) -> String {
     if text.width() <= width && !text.contains(|letter: char| letter.is_control()) {
         return text.to_owned();
     }
@@ -240,7 +240,7 @@ pub fn fit(text: &str, width: usize) -> String {
 }
 
 /// Returns a rectangle in the middle of an area, clipped to it.
-pub fn centered(area: Rect, width: u16, height: u16) -> Rect {
+pub fn centered_rect(area: Rect, width: u16, height: u16) -> Rect {
     let (width, height) = (width.min(area.width), height.min(area.height));
     Rect { x: area.x + (area.width - width) / 2, y: area.y + (area.height - height) / 2, width, height }
 }
@@ -250,30 +250,30 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_path_keeps_its_nearer_places_and_names_none_twice() {
+    fn breadcrumbs_drop_distant_places_first() {
         let path = ["Overview", "Customers", "S2"].map(str::to_owned);
-        assert_eq!(path_before(&path, "Go to", 60), "Overview › Customers › S2 › ");
-        assert_eq!(path_before(&path, "Go to", 25), "… › S2 › ");
-        assert_eq!(path_before(&path, "Fit of S2", 60), "Overview › Customers › ");
-        assert_eq!(path_before(&path, "Fit of S2", 12), "");
-        assert_eq!(path_before(&[], "Fit of S2", 60), "");
+        assert_eq!(breadcrumb_prefix(&path, "Go to", 60), "Overview › Customers › S2 › ");
+        assert_eq!(breadcrumb_prefix(&path, "Go to", 25), "… › S2 › ");
+        assert_eq!(breadcrumb_prefix(&path, "Fit of S2", 60), "Overview › Customers › ");
+        assert_eq!(breadcrumb_prefix(&path, "Fit of S2", 12), "");
+        assert_eq!(breadcrumb_prefix(&[], "Fit of S2", 60), "");
     }
 
     #[test]
-    fn keys_are_shown_whole_or_not_at_all() {
-        assert_eq!(whole_keys("y yes · esc close · ? help", 17), "y yes · esc close");
-        assert_eq!(whole_keys("y yes · esc close · ? help", 16), "y yes");
-        assert_eq!(whole_keys("enter begins it", 8), "enter b…");
+    fn pane_keys_are_never_truncated() {
+        assert_eq!(fitting_keys("y yes · esc close · ? help", 17), "y yes · esc close");
+        assert_eq!(fitting_keys("y yes · esc close · ? help", 16), "y yes");
+        assert_eq!(fitting_keys("enter begins it", 8), "enter b…");
     }
 
     #[test]
-    fn text_is_cut_between_graphemes() {
-        assert_eq!(fit("abcdef", 6), "abcdef");
-        assert_eq!(fit("abcdef", 4), "abc…");
-        assert_eq!(fit("日本語", 4), "日…");
-        assert_eq!(fit("日本語", 5), "日本…");
-        assert_eq!(fit("a\nb\tc", 9), "a b c");
-        assert_eq!(fit("abc", 0), "");
-        assert_eq!(fit("abc", 1), "…");
+    fn text_is_truncated_between_graphemes() {
+        assert_eq!(truncate_to_width("abcdef", 6), "abcdef");
+        assert_eq!(truncate_to_width("abcdef", 4), "abc…");
+        assert_eq!(truncate_to_width("日本語", 4), "日…");
+        assert_eq!(truncate_to_width("日本語", 5), "日本…");
+        assert_eq!(truncate_to_width("a\nb\tc", 9), "a b c");
+        assert_eq!(truncate_to_width("abc", 0), "");
+        assert_eq!(truncate_to_width("abc", 1), "…");
     }
 }

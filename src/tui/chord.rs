@@ -4,7 +4,7 @@ use std::fmt;
 
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
-const LONGEST: usize = 3;
+const MAX_SEQUENCE_CHORDS: usize = 3;
 
 /// A key with its modifiers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd)]
@@ -16,7 +16,7 @@ pub struct Chord {
 }
 
 /// Names of keys that are not characters.
-const NAMED: [(&str, KeyCode); 15] = [
+const NAMED_KEYS: [(&str, KeyCode); 15] = [
     ("enter", KeyCode::Enter),
     ("esc", KeyCode::Esc),
     ("tab", KeyCode::Tab),
@@ -36,7 +36,7 @@ const NAMED: [(&str, KeyCode); 15] = [
 
 impl Chord {
     /// Returns the chord of a key event.
-    pub fn of(event: &KeyEvent) -> Chord {
+    pub fn from_event(event: &KeyEvent) -> Chord {
         let has = |modifier| event.modifiers.contains(modifier);
         let (mut code, mut shift) = (event.code, has(KeyModifiers::SHIFT));
         if code == KeyCode::BackTab {
@@ -76,7 +76,7 @@ impl Chord {
         let mut letters = rest.chars();
         chord.code = match (letters.next(), letters.next()) {
             (Some(letter), None) if !letter.is_control() => KeyCode::Char(letter),
-            _ => match NAMED.iter().find(|(name, _)| *name == rest) {
+            _ => match NAMED_KEYS.iter().find(|(name, _)| *name == rest) {
                 Some((_, code)) => *code,
                 None => rest
                     .strip_prefix('f')
@@ -90,7 +90,7 @@ impl Chord {
     }
 
     /// Returns the event that a terminal would send.
-    pub fn event(&self) -> KeyEvent {
+    pub fn to_event(&self) -> KeyEvent {
         let mut modifiers = KeyModifiers::NONE;
         for (held, modifier) in [
             (self.ctrl, KeyModifiers::CONTROL),
@@ -113,14 +113,14 @@ impl Chord {
     }
 
     /// Returns whether it can start a number.
-    pub fn begins_number(&self) -> bool {
+    pub fn starts_number(&self) -> bool {
         matches!(self.code, KeyCode::Char(letter) if letter.is_ascii_digit() || matches!(letter, '$' | '.' | '-'))
             && !self.ctrl
             && !self.alt
     }
 
     /// Returns whether a text field handles it.
-    pub fn is_text(&self) -> bool {
+    pub fn is_text_input(&self) -> bool {
         match self.code {
             KeyCode::Char(_) => !self.ctrl && !self.alt,
             KeyCode::Backspace
@@ -151,7 +151,7 @@ impl fmt::Display for Chord {
             KeyCode::Char(letter) if letter != ' ' => write!(formatter, "{letter}"),
             KeyCode::F(number) => write!(formatter, "f{number}"),
             code => {
-                let name = NAMED.iter().find(|(_, named)| *named == code).map_or("?", |(name, _)| name);
+                let name = NAMED_KEYS.iter().find(|(_, named)| *named == code).map_or("?", |(name, _)| name);
                 formatter.write_str(name)
             }
         }
@@ -162,17 +162,17 @@ impl fmt::Display for Chord {
 ///
 /// # Errors
 /// A chord cannot be parsed, or there are too many.
-pub fn sequence(text: &str) -> Result<Vec<Chord>, String> {
+pub fn parse_sequence(text: &str) -> Result<Vec<Chord>, String> {
     let chords: Result<Vec<Chord>, String> = text.split(' ').map(Chord::parse).collect();
     let chords = chords?;
-    if chords.len() > LONGEST {
-        return Err(format!("{text:?} has more than {LONGEST} keys"));
+    if chords.len() > MAX_SEQUENCE_CHORDS {
+        return Err(format!("{text:?} has more than {MAX_SEQUENCE_CHORDS} keys"));
     }
     Ok(chords)
 }
 
 /// Formats chords in the notation of key files.
-pub fn written(chords: &[Chord]) -> String {
+pub fn format_sequence(chords: &[Chord]) -> String {
     chords.iter().map(Chord::to_string).collect::<Vec<_>>().join(" ")
 }
 
@@ -181,7 +181,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn chords_read_back_as_they_are_written() {
+    fn formatted_chords_parse_to_the_same_chords() {
         for text in
             ["n", "N", ":", "ctrl-s", "shift-tab", "f5", "space", "pageup", "ctrl-enter", "-", "ctrl--"]
         {

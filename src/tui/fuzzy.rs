@@ -10,11 +10,11 @@ use super::canvas::Canvas;
 use super::theme::Role;
 
 /// A match: the index of the entry, and the positions of matched letters in its title.
-pub type Found = (usize, Vec<u32>);
+pub type FuzzyMatch = (usize, Vec<u32>);
 
 /// Returns the matches, the best first; matches in titles rank higher than those in explanations. Without a search
 /// text, returns everything in order.
-pub fn find<'a>(typed: &str, all: impl Iterator<Item = (&'a str, &'a str)>) -> Vec<Found> {
+pub fn find<'a>(typed: &str, all: impl Iterator<Item = (&'a str, &'a str)>) -> Vec<FuzzyMatch> {
     let pattern = Pattern::parse(typed, CaseMatching::Smart, Normalization::Smart);
     let mut matcher = Matcher::new(Config::DEFAULT);
     let mut scored: Vec<(u32, usize, Vec<u32>)> = Vec::new();
@@ -34,7 +34,7 @@ pub fn find<'a>(typed: &str, all: impl Iterator<Item = (&'a str, &'a str)>) -> V
 
 /// Draws a title with its matched letters highlighted.
 pub fn draw_title(canvas: &mut Canvas<'_>, area: Rect, title: &str, letters: &[u32], roles: [Role; 2]) {
-    canvas.text(area, title, roles[0]);
+    canvas.draw_text(area, title, roles[0]);
     // A truncated title ends with an ellipsis in the last column.
     let cut = title.width() > area.width as usize;
     let room = area.width.saturating_sub(u16::from(cut));
@@ -45,7 +45,7 @@ pub fn draw_title(canvas: &mut Canvas<'_>, area: Rect, title: &str, letters: &[u
             break;
         }
         if letters.contains(&(at as u32)) {
-            canvas.text(Rect { x: area.x + column, width, ..area }, letter, roles[1]);
+            canvas.draw_text(Rect { x: area.x + column, width, ..area }, letter, roles[1]);
         }
         column += width;
     }
@@ -56,7 +56,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn titles_count_more_than_explanations() {
+    fn title_matches_rank_before_explanation_matches() {
         let all = [("cash by week", "nothing"), ("nothing", "cash by week"), ("crash", "x"), ("zero", "y")];
         let found = find("cash", all.into_iter());
         let order: Vec<usize> = found.iter().map(|(at, _)| *at).collect();

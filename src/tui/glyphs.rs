@@ -35,7 +35,7 @@ impl Glyphs {
     }
 
     /// Returns the name.
-    pub fn words(self) -> &'static str {
+    pub fn label(self) -> &'static str {
         match self {
             Glyphs::Braille => "braille dots",
             Glyphs::Blocks => "blocks",

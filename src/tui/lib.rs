@@ -5,9 +5,9 @@ pub mod ascii;
 pub mod asciicast;
 pub mod canvas;
 pub mod chord;
+pub mod frame_export;
 pub mod fuzzy;
 pub mod glyphs;
-pub mod photograph;
 pub mod sql;
 pub mod terminal;
 pub mod text;
@@ -16,7 +16,7 @@ pub mod widgets;
 
 /// Returns the rows of a window after `draw`, without trailing spaces.
 #[cfg(test)]
-fn painted(
+fn render_rows(
     width: u16,
     height: u16,
     draw: impl FnOnce(&mut canvas::Canvas<'_>, ratatui::layout::Rect),

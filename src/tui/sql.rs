@@ -7,30 +7,30 @@ use crate::theme::Role;
 
 /// The kind of a token.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum LexemeKind {
+pub enum TokenKind {
     /// A keyword.
     Keyword,
     /// A plain or quoted identifier.
-    Name,
+    Identifier,
     /// A string in single quotes.
-    Text,
+    StringLiteral,
     /// A number.
     Number,
     /// A comment.
     Comment,
     /// Any other character that is not white space.
-    Sign,
+    Symbol,
 }
 
-impl LexemeKind {
+impl TokenKind {
     /// Returns the role for drawing it.
     pub fn role(self) -> Role {
         match self {
-            LexemeKind::Keyword => Role::Keyword,
-            LexemeKind::Name | LexemeKind::Sign => Role::Text,
-            LexemeKind::Text => Role::SqlText,
-            LexemeKind::Number => Role::Number,
-            LexemeKind::Comment => Role::Comment,
+            TokenKind::Keyword => Role::Keyword,
+            TokenKind::Identifier | TokenKind::Symbol => Role::Text,
+            TokenKind::StringLiteral => Role::SqlString,
+            TokenKind::Number => Role::Number,
+            TokenKind::Comment => Role::Comment,
         }
     }
 }
@@ -39,9 +39,9 @@ impl LexemeKind {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Token {
     /// The kind.
-    pub kind: LexemeKind,
+    pub kind: TokenKind,
     /// The byte range.
-    pub place: Range<usize>,
+    pub range: Range<usize>,
 }
 
 /// Keywords for completion.
@@ -151,12 +151,12 @@ pub const FUNCTIONS: [&str; 32] = [
 ];
 
 /// Returns whether a character is part of a word.
-pub fn is_word(letter: char) -> bool {
+pub fn is_identifier_char(letter: char) -> bool {
     letter.is_alphanumeric() || letter == '_'
 }
 
 /// Returns the tokens of a text in order, without white space.
-pub fn tokens(sql: &str) -> Vec<Token> {
+pub fn tokenize(sql: &str) -> Vec<Token> {
     let mut found = Vec::new();
     let mut at = 0;
     while let Some(first) = sql[at..].chars().next() {
@@ -166,32 +166,32 @@ pub fn tokens(sql: &str) -> Vec<Token> {
                 at += blank.len_utf8();
                 continue;
             }
-            '-' if rest.starts_with("--") => (LexemeKind::Comment, rest.find('\n').unwrap_or(rest.len())),
+            '-' if rest.starts_with("--") => (TokenKind::Comment, rest.find('\n').unwrap_or(rest.len())),
             '/' if rest.starts_with("/*") => {
-                (LexemeKind::Comment, rest[2..].find("*/").map_or(rest.len(), |end| end + 4))
+                (TokenKind::Comment, rest[2..].find("*/").map_or(rest.len(), |end| end + 4))
             }
-            '\'' => (LexemeKind::Text, quoted(rest, '\'')),
-            '"' | '`' => (LexemeKind::Name, quoted(rest, first)),
-            '[' => (LexemeKind::Name, rest.find(']').map_or(rest.len(), |end| end + 1)),
-            digit if digit.is_ascii_digit() => (LexemeKind::Number, number(rest)),
+            '\'' => (TokenKind::StringLiteral, quoted_length(rest, '\'')),
+            '"' | '`' => (TokenKind::Identifier, quoted_length(rest, first)),
+            '[' => (TokenKind::Identifier, rest.find(']').map_or(rest.len(), |end| end + 1)),
+            digit if digit.is_ascii_digit() => (TokenKind::Number, number_length(rest)),
             '.' if rest[1..].starts_with(|next: char| next.is_ascii_digit()) => {
-                (LexemeKind::Number, number(rest))
+                (TokenKind::Number, number_length(rest))
             }
-            letter if is_word(letter) => {
-                let end = rest.find(|next| !is_word(next)).unwrap_or(rest.len());
+            letter if is_identifier_char(letter) => {
+                let end = rest.find(|next| !is_identifier_char(next)).unwrap_or(rest.len());
                 let known = KEYWORDS.iter().any(|word| word.eq_ignore_ascii_case(&rest[..end]));
-                (if known { LexemeKind::Keyword } else { LexemeKind::Name }, end)
+                (if known { TokenKind::Keyword } else { TokenKind::Identifier }, end)
             }
-            other => (LexemeKind::Sign, other.len_utf8()),
+            other => (TokenKind::Symbol, other.len_utf8()),
         };
-        found.push(Token { kind, place: at..at + length });
+        found.push(Token { kind, range: at..at + length });
         at += length;
     }
     found
 }
 
 /// Returns the length of a quoted token; a doubled quote does not end it.
-fn quoted(rest: &str, quote: char) -> usize {
+fn quoted_length(rest: &str, quote: char) -> usize {
     let mut at = 1;
     while let Some(end) = rest[at..].find(quote) {
         at += end + 1;
@@ -204,7 +204,7 @@ fn quoted(rest: &str, quote: char) -> usize {
 }
 
 /// Returns the length of a number: digits, a point, an exponent.
-fn number(rest: &str) -> usize {
+fn number_length(rest: &str) -> usize {
     let mut before = ' ';
     let part_of = |letter: char| {
         let exponent = matches!(before, 'e' | 'E') && matches!(letter, '+' | '-');
@@ -218,14 +218,14 @@ fn number(rest: &str) -> usize {
 /// Returns the statement at a position without its final semicolon, its number, and the number of statements. A
 /// position after the last semicolon belongs to the last statement if nothing follows.
 pub fn statement_at(sql: &str, place: usize) -> (Range<usize>, usize, usize) {
-    let pieces = tokens(sql);
+    let pieces = tokenize(sql);
     let ends =
-        pieces.iter().filter(|token| token.kind == LexemeKind::Sign && &sql[token.place.clone()] == ";");
+        pieces.iter().filter(|token| token.kind == TokenKind::Symbol && &sql[token.range.clone()] == ";");
     let mut from = 0;
     let mut all: Vec<Range<usize>> = Vec::new();
-    for end in ends.map(|token| token.place.start).chain([sql.len()]) {
+    for end in ends.map(|token| token.range.start).chain([sql.len()]) {
         let says =
-            |token: &&Token| token.kind != LexemeKind::Comment && (from..end).contains(&token.place.start);
+            |token: &&Token| token.kind != TokenKind::Comment && (from..end).contains(&token.range.start);
         if pieces.iter().filter(says).count() > 0 {
             all.push(from..end);
         }
@@ -242,46 +242,46 @@ pub fn statement_at(sql: &str, place: usize) -> (Range<usize>, usize, usize) {
 mod tests {
     use super::*;
 
-    fn kinds(sql: &str) -> Vec<(LexemeKind, &str)> {
-        tokens(sql).into_iter().map(|token| (token.kind, &sql[token.place])).collect()
+    fn kinds(sql: &str) -> Vec<(TokenKind, &str)> {
+        tokenize(sql).into_iter().map(|token| (token.kind, &sql[token.range])).collect()
     }
 
     #[test]
-    fn pieces_are_told_apart() {
-        use LexemeKind::{Comment, Keyword, Name, Number, Sign, Text};
+    fn tokenize_distinguishes_token_kinds() {
+        use TokenKind::{Comment, Identifier, Keyword, Number, StringLiteral, Symbol};
         assert_eq!(
             kinds("select s.plan, 'it''s' -- why\nFROM \"a b\" WHERE x>=1.5e-3"),
             [
                 (Keyword, "select"),
-                (Name, "s"),
-                (Sign, "."),
-                (Name, "plan"),
-                (Sign, ","),
-                (Text, "'it''s'"),
+                (Identifier, "s"),
+                (Symbol, "."),
+                (Identifier, "plan"),
+                (Symbol, ","),
+                (StringLiteral, "'it''s'"),
                 (Comment, "-- why"),
                 (Keyword, "FROM"),
-                (Name, "\"a b\""),
+                (Identifier, "\"a b\""),
                 (Keyword, "WHERE"),
-                (Name, "x"),
-                (Sign, ">"),
-                (Sign, "="),
+                (Identifier, "x"),
+                (Symbol, ">"),
+                (Symbol, "="),
                 (Number, "1.5e-3"),
             ]
         );
-        assert_eq!(kinds("/* a */ .5 [x y]"), [(Comment, "/* a */"), (Number, ".5"), (Name, "[x y]")]);
+        assert_eq!(kinds("/* a */ .5 [x y]"), [(Comment, "/* a */"), (Number, ".5"), (Identifier, "[x y]")]);
     }
 
     #[test]
-    fn half_typed_text_is_no_error() {
+    fn tokenize_accepts_unterminated_text() {
         for sql in ["'abc", "\"", "/* x", "--", "[", "'a''", "1e", ".", "/*", "é'日", "/*/"] {
-            let pieces = tokens(sql);
-            assert_eq!(pieces.last().map(|token| token.place.end), Some(sql.len()), "{sql}");
+            let pieces = tokenize(sql);
+            assert_eq!(pieces.last().map(|token| token.range.end), Some(sql.len()), "{sql}");
         }
-        assert!(tokens(" \n").is_empty());
+        assert!(tokenize(" \n").is_empty());
     }
 
     #[test]
-    fn the_statement_at_the_cursor_is_found() {
+    fn statement_at_returns_the_statement_at_the_cursor() {
         let sql = "SELECT 1; SELECT ';' ;\n";
         assert_eq!(statement_at(sql, 3), (0..8, 1, 2));
         assert_eq!(statement_at(sql, 8), (0..8, 1, 2));

@@ -37,14 +37,14 @@ impl TerminalScreen {
     ///
     /// # Errors
     /// The terminal cannot be prepared.
-    pub fn take() -> io::Result<TerminalScreen> {
-        let taken = prepare().and_then(|()| Terminal::new(CrosstermBackend::new(io::stdout())));
-        let terminal = taken.inspect_err(|_| restore())?;
+    pub fn open() -> io::Result<TerminalScreen> {
+        let taken = enter_console_mode().and_then(|()| Terminal::new(CrosstermBackend::new(io::stdout())));
+        let terminal = taken.inspect_err(|_| restore_terminal())?;
         let usual = std::panic::take_hook();
         std::panic::set_hook(Box::new(move |panic| {
             // The application handles panics of its other threads.
             if std::thread::current().name() == Some("main") {
-                restore();
+                restore_terminal();
                 usual(panic);
                 let note = PANIC_NOTE.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
                 if let Some(note) = &*note {
@@ -61,7 +61,7 @@ impl TerminalScreen {
     /// The terminal cannot be prepared.
     #[cfg(unix)]
     pub fn suspend(&mut self, mouse: bool) -> io::Result<()> {
-        restore();
+        restore_terminal();
         signal_hook::low_level::emulate_default_handler(signal_hook::consts::SIGTSTP)?;
         self.resume(mouse)
     }
@@ -75,8 +75,8 @@ impl TerminalScreen {
     pub fn resume(&mut self, mouse: bool) -> io::Result<()> {
         // Enabling raw mode has no effect while it counts as enabled.
         let _ = disable_raw_mode();
-        prepare()?;
-        self.mouse(mouse);
+        enter_console_mode()?;
+        self.set_mouse_capture(mouse);
         self.clear()
     }
 
@@ -106,7 +106,7 @@ impl TerminalScreen {
     }
 
     /// Captures the mouse, or leaves it to the terminal, which then selects text with it.
-    pub fn mouse(&mut self, taken: bool) {
+    pub fn set_mouse_capture(&mut self, taken: bool) {
         // Terminals without a mouse ignore it.
         let _ = match taken {
             true => execute!(self.terminal.backend_mut(), EnableMouseCapture),
@@ -115,7 +115,7 @@ impl TerminalScreen {
     }
 
     /// Copies text to the clipboard, if the terminal permits it.
-    pub fn copy(&mut self, text: &str) {
+    pub fn copy_to_clipboard(&mut self, text: &str) {
         // Terminals without a clipboard ignore it; the text is on the screen anyway.
         let _ = execute!(self.terminal.backend_mut(), CopyToClipboard::to_clipboard_from(text));
     }
@@ -123,18 +123,18 @@ impl TerminalScreen {
 
 impl Drop for TerminalScreen {
     fn drop(&mut self) {
-        restore();
+        restore_terminal();
     }
 }
 
 /// Enables raw mode, the alternate screen, bracketed paste, focus events and the mouse.
-fn prepare() -> io::Result<()> {
+fn enter_console_mode() -> io::Result<()> {
     enable_raw_mode()?;
     execute!(io::stdout(), EnterAlternateScreen, EnableBracketedPaste, EnableFocusChange, EnableMouseCapture)
 }
 
 /// Restores the terminal. May be called repeatedly.
-fn restore() {
+fn restore_terminal() {
     let mut out = io::stdout();
     // Errors are ignored, because the terminal may be gone.
     let _ = execute!(

@@ -2,10 +2,10 @@
 
 use unicode_width::UnicodeWidthStr;
 
-use novamind_base::notation::grouped;
+use novamind_base::formatting::grouped_number;
 
 /// Wraps text to a width, between words if possible.
-pub fn wrapped(text: &str, width: usize) -> Vec<String> {
+pub fn wrap(text: &str, width: usize) -> Vec<String> {
     let width = width.max(1);
     let mut lines = Vec::new();
     for paragraph in text.lines() {
@@ -42,7 +42,7 @@ pub fn wrapped(text: &str, width: usize) -> Vec<String> {
 }
 
 /// Formats a change with its direction: `▲ 120`, `▼ 3`, `=`.
-pub fn arrow(change: f64, shown: &str) -> String {
+pub fn format_change(change: f64, shown: &str) -> String {
     match change {
         change if change > 0.0 => format!("▲ {shown}"),
         change if change < 0.0 => format!("▼ {shown}"),
@@ -51,20 +51,20 @@ pub fn arrow(change: f64, shown: &str) -> String {
 }
 
 /// Formats a count with its noun: `1 seat`, `1,200 seats`.
-pub fn count(number: f64, noun: &str) -> String {
-    novamind_base::notation::count(number.clamp(0.0, f64::from(u32::MAX)) as u32, noun)
+pub fn format_count(number: f64, noun: &str) -> String {
+    novamind_base::formatting::pluralize(number.clamp(0.0, f64::from(u32::MAX)) as u32, noun)
 }
 
 /// Formats a number with as many decimals as it needs, at most two.
-pub fn number(value: f64) -> String {
+pub fn format_number(value: f64) -> String {
     // An empty sum is minus zero.
     let value = value + 0.0;
     let decimals = if value.fract() == 0.0 || value.abs() >= 10_000.0 { 0 } else { 2 };
-    grouped(value, decimals)
+    grouped_number(value, decimals)
 }
 
 /// Returns the first wording that fits into a width, or the last one.
-pub fn fitting(wordings: impl IntoIterator<Item = String>, width: usize) -> String {
+pub fn first_fitting(wordings: impl IntoIterator<Item = String>, width: usize) -> String {
     let mut last = String::new();
     for wording in wordings {
         if wording.width() <= width {
@@ -76,7 +76,7 @@ pub fn fitting(wordings: impl IntoIterator<Item = String>, width: usize) -> Stri
 }
 
 /// Joins pieces with dots and wraps the result between pieces. Only a piece wider than a line is split.
-pub fn flowed(pieces: &[String], width: usize) -> Vec<String> {
+pub fn join_into_lines(pieces: &[String], width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for piece in pieces {
         match lines.last_mut() {
@@ -84,7 +84,7 @@ pub fn flowed(pieces: &[String], width: usize) -> Vec<String> {
                 line.push_str(" · ");
                 line.push_str(piece);
             }
-            _ => lines.extend(wrapped(piece, width)),
+            _ => lines.extend(wrap(piece, width)),
         }
     }
     lines
@@ -95,35 +95,35 @@ mod tests {
     use super::*;
 
     #[test]
-    fn one_is_singular() {
+    fn format_count_uses_the_singular_for_one() {
         assert_eq!(
-            [count(1.0, "seat"), count(0.0, "seat"), count(1204.0, "seat")],
+            [format_count(1.0, "seat"), format_count(0.0, "seat"), format_count(1204.0, "seat")],
             ["1 seat", "0 seats", "1,204 seats"]
         );
     }
 
     #[test]
-    fn a_shorter_wording_is_taken_where_the_longer_one_has_no_room() {
+    fn first_fitting_falls_back_to_shorter_wordings() {
         let wordings = || ["the longest", "shorter", "short"].map(str::to_owned);
-        let taken = [11, 10, 7, 6, 1].map(|width| fitting(wordings(), width));
+        let taken = [11, 10, 7, 6, 1].map(|width| first_fitting(wordings(), width));
         assert_eq!(taken, ["the longest", "shorter", "shorter", "short", "short"]);
     }
 
     #[test]
-    fn a_piece_joins_a_line_in_which_it_fits_with_its_dot() {
+    fn join_into_lines_counts_the_separator() {
         let pieces = ["12345".to_owned(), "1234567".to_owned()];
-        assert_eq!(flowed(&pieces, 15), ["12345 · 1234567"]);
-        assert_eq!(flowed(&pieces, 14), ["12345", "1234567"]);
+        assert_eq!(join_into_lines(&pieces, 15), ["12345 · 1234567"]);
+        assert_eq!(join_into_lines(&pieces, 14), ["12345", "1234567"]);
     }
 
     #[test]
-    fn lines_break_between_words_and_long_words_in_themselves() {
-        assert_eq!(wrapped("one two three", 8), ["one two", "three"]);
-        assert_eq!(wrapped("abcdefghij", 4), ["abcd", "efgh", "ij"]);
-        assert_eq!(wrapped("  a b c", 4), ["  a", "  b", "  c"]);
-        assert_eq!(wrapped("a\n\nb", 9), ["a", "", "b"]);
-        assert_eq!(wrapped("日本語", 4), ["日本", "語"]);
-        assert_eq!(wrapped("x", 0), ["x"]);
-        assert_eq!(wrapped("a    b\nc  d", 6), ["a    b", "c  d"]);
+    fn wrap_breaks_between_words_and_inside_long_words() {
+        assert_eq!(wrap("one two three", 8), ["one two", "three"]);
+        assert_eq!(wrap("abcdefghij", 4), ["abcd", "efgh", "ij"]);
+        assert_eq!(wrap("  a b c", 4), ["  a", "  b", "  c"]);
+        assert_eq!(wrap("a\n\nb", 9), ["a", "", "b"]);
+        assert_eq!(wrap("日本語", 4), ["日本", "語"]);
+        assert_eq!(wrap("x", 0), ["x"]);
+        assert_eq!(wrap("a    b\nc  d", 6), ["a    b", "c  d"]);
     }
 }

@@ -21,11 +21,11 @@ pub enum Role {
     /// Selected row of the focused list.
     Selection,
     /// Selected row of another list.
-    SelectionIdle,
+    InactiveSelection,
     /// Tabs of screens.
     Tab,
     /// Tab of the current screen.
-    TabHere,
+    ActiveTab,
     /// Keys.
     Key,
     /// An improvement.
@@ -47,7 +47,7 @@ pub enum Role {
     /// SQL keywords.
     Keyword,
     /// SQL strings.
-    SqlText,
+    SqlString,
     /// SQL numbers.
     Number,
     /// SQL comments.
@@ -81,7 +81,7 @@ impl RoleStyle {
 
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct File {
+struct ThemeFile {
     text: RoleStyle,
     dim: RoleStyle,
     strong: RoleStyle,
@@ -112,7 +112,7 @@ struct File {
 pub struct Theme {
     /// Name.
     pub name: String,
-    looks: File,
+    styles: ThemeFile,
 }
 
 impl Theme {
@@ -127,22 +127,22 @@ impl Theme {
     /// # Errors
     /// The text is not TOML, a role is missing or unknown, or there is no color for series.
     pub fn parse(name: &str, text: &str) -> Result<Theme, String> {
-        let looks: File = toml::from_str(text).map_err(|error| error.to_string())?;
+        let looks: ThemeFile = toml::from_str(text).map_err(|error| error.to_string())?;
         if looks.series.is_empty() {
             return Err("series needs at least one entry".to_owned());
         }
-        Ok(Theme { name: name.to_owned(), looks })
+        Ok(Theme { name: name.to_owned(), styles: looks })
     }
 
     /// Returns whether `count` series can be distinguished by color alone.
-    pub fn colours_apart(&self, count: usize) -> bool {
+    pub fn has_distinct_series_colors(&self, count: usize) -> bool {
         let colours = || (0..count).map(|number| self.style(Role::Series(number)).fg);
         colours().enumerate().all(|(at, own)| own.is_some() && colours().take(at).all(|other| other != own))
     }
 
     /// Returns the style of a role.
     pub fn style(&self, role: Role) -> Style {
-        let looks = &self.looks;
+        let looks = &self.styles;
         let look = match role {
             Role::Text => looks.text,
             Role::Dim => looks.dim,
@@ -151,9 +151,9 @@ impl Theme {
             Role::Border => looks.border,
             Role::Focus => looks.focus,
             Role::Selection => looks.selection,
-            Role::SelectionIdle => looks.selection_idle,
+            Role::InactiveSelection => looks.selection_idle,
             Role::Tab => looks.tab,
-            Role::TabHere => looks.tab_here,
+            Role::ActiveTab => looks.tab_here,
             Role::Key => looks.key,
             Role::Good => looks.good,
             Role::Bad => looks.bad,
@@ -164,7 +164,7 @@ impl Theme {
             Role::Series(number) => looks.series[number % looks.series.len()],
             Role::Fan => looks.fan,
             Role::Keyword => looks.keyword,
-            Role::SqlText => looks.string,
+            Role::SqlString => looks.string,
             Role::Number => looks.number,
             Role::Comment => looks.comment,
         };
@@ -177,22 +177,22 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_shipped_themes_are_read_and_mono_has_no_colour() {
+    fn bundled_themes_parse_and_mono_has_no_color() {
         for (name, _) in novamind_assets::themes() {
             Theme::bundled(name).expect(name);
         }
         let mono = Theme::bundled("mono").expect("mono");
-        for role in [Role::Bad, Role::Selection, Role::Series(3), Role::TabHere] {
+        for role in [Role::Bad, Role::Selection, Role::Series(3), Role::ActiveTab] {
             assert_eq!((mono.style(role).fg, mono.style(role).bg), (None, None));
         }
-        assert!(!mono.colours_apart(2));
+        assert!(!mono.has_distinct_series_colors(2));
         // Color 8 is the background on many palettes, so no text uses it.
         for name in ["dark", "light"] {
             let theme = Theme::bundled(name).expect(name);
             for role in [Role::Text, Role::Dim, Role::Tab, Role::Key, Role::Header, Role::Comment] {
                 assert_ne!(theme.style(role).fg, Some(Color::DarkGray), "{name} {role:?}");
             }
-            assert!(theme.colours_apart(12), "{name}: one color per category");
+            assert!(theme.has_distinct_series_colors(12), "{name}: one color per category");
         }
         assert!(Theme::bundled("pink").is_none());
     }

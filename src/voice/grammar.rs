@@ -39,7 +39,7 @@ impl Context {
     }
 
     /// Adds a value if there is one.
-    pub fn maybe(self, name: &'static str, value: Option<impl Into<String>>) -> Context {
+    pub fn with_optional(self, name: &'static str, value: Option<impl Into<String>>) -> Context {
         match value {
             Some(value) => self.with(name, value),
             None => self,
@@ -47,7 +47,7 @@ impl Context {
     }
 
     /// Adds a tag if `holds` is true.
-    pub fn tag(mut self, name: &'static str, holds: bool) -> Context {
+    pub fn with_tag(mut self, name: &'static str, holds: bool) -> Context {
         if holds {
             self.tags.insert(name);
         }
@@ -66,7 +66,7 @@ impl Context {
     }
 
     /// Returns whether a tag is set.
-    pub fn holds(&self, tag: &str) -> bool {
+    pub fn has_tag(&self, tag: &str) -> bool {
         self.tags.contains(tag)
     }
 }
@@ -95,7 +95,7 @@ impl std::error::Error for GrammarError {}
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Alternative {
     /// Tags and whether they have to be set or not set.
-    needs: Vec<(String, bool)>,
+    required_tags: Vec<(String, bool)>,
     parts: Vec<Part>,
 }
 
@@ -107,7 +107,7 @@ enum Part {
     /// A value of the context.
     Value(String),
     /// A rule whose last name is a value of the context.
-    Split {
+    ByValue {
         rule: String,
         by: String,
     },
@@ -123,47 +123,52 @@ impl Grammar {
     /// # Errors
     /// If the text is not TOML of this form, a symbol is unknown, or a rule contains itself or cannot always
     /// be expanded.
-    pub fn read(source: &str) -> Result<Grammar, GrammarError> {
-        parse::read(&[source])
+    pub fn parse(source: &str) -> Result<Grammar, GrammarError> {
+        parse::parse(&[source])
     }
 
     /// Parses a grammar from several files, which share their names and rules.
     ///
     /// # Errors
-    /// As [`Grammar::read`], or if two files define the same rule.
-    pub fn read_all(sources: &[&str]) -> Result<Grammar, GrammarError> {
-        parse::read(sources)
+    /// As [`Grammar::parse`], or if two files define the same rule.
+    pub fn parse_all(sources: &[&str]) -> Result<Grammar, GrammarError> {
+        parse::parse(sources)
     }
 
     /// Returns whether a rule exists.
-    pub fn has(&self, rule: &str) -> bool {
+    pub fn has_rule(&self, rule: &str) -> bool {
         self.rules.contains_key(rule)
     }
 
     /// Returns whether a value or tag with this name is declared.
     #[cfg(test)]
-    pub fn knows(&self, name: &str) -> bool {
+    pub fn declares(&self, name: &str) -> bool {
         self.known.contains(name)
     }
 
     /// Returns the number of different expansions of a rule in a context.
     #[cfg(test)]
-    pub fn phrasings(&self, rule: &str, context: &Context) -> u64 {
-        count::phrasings(self, rule, context)
+    pub fn count_phrasings(&self, rule: &str, context: &Context) -> u64 {
+        count::count_phrasings(self, rule, context)
     }
 
     /// Expands a rule. Within one text, an alternative is repeated only after all others were used. An
     /// unknown rule results in an empty text; parsing ensures that no rule refers to one.
-    pub fn write(&self, rule: &str, context: &Context, choose: Chooser<'_>) -> String {
+    pub fn expand(&self, rule: &str, context: &Context, choose: Chooser<'_>) -> String {
         let mut writer =
             Expansion { grammar: self, context, choose, used: BTreeSet::new(), text: String::new() };
-        writer.rule(rule);
+        writer.expand_rule(rule);
         polish(&writer.text)
     }
 
-    fn split<'a>(&self, rule: &'a str, by: &str, context: &Context) -> std::borrow::Cow<'a, str> {
+    fn resolve_rule_by_value<'a>(
+        &self,
+        rule: &'a str,
+        by: &str,
+        context: &Context,
+    ) -> std::borrow::Cow<'a, str> {
         let special = context.value(by).map(|value| format!("{rule}.{value}"));
-        match special.filter(|name| self.has(name)) {
+        match special.filter(|name| self.has_rule(name)) {
             Some(name) => name.into(),
             None => rule.into(),
         }
@@ -171,14 +176,14 @@ impl Grammar {
 }
 
 impl Alternative {
-    fn fits(&self, context: &Context) -> bool {
-        self.needs.iter().all(|(tag, wanted)| context.holds(tag) == *wanted)
-            && values_given(&self.parts, context)
+    fn matches(&self, context: &Context) -> bool {
+        self.required_tags.iter().all(|(tag, wanted)| context.has_tag(tag) == *wanted)
+            && has_required_values(&self.parts, context)
     }
 }
 
 /// Returns whether all values outside of choices are present.
-fn values_given(parts: &[Part], context: &Context) -> bool {
+fn has_required_values(parts: &[Part], context: &Context) -> bool {
     parts.iter().all(|part| match part {
         Part::Value(name) => context.value(name).is_some(),
         _ => true,
@@ -194,40 +199,40 @@ struct Expansion<'a> {
 }
 
 impl<'a> Expansion<'a> {
-    fn rule(&mut self, name: &str) {
+    fn expand_rule(&mut self, name: &str) {
         let Some((name, alternatives)) = self.grammar.rules.get_key_value(name) else { return };
         let fitting =
-            || alternatives.iter().enumerate().filter(|(_, alternative)| alternative.fits(self.context));
+            || alternatives.iter().enumerate().filter(|(_, alternative)| alternative.matches(self.context));
         let mut open: Vec<usize> =
             fitting().map(|(at, _)| at).filter(|at| !self.used.contains(&(name.as_str(), *at))).collect();
         if open.is_empty() {
             open = fitting().map(|(at, _)| at).collect();
         }
-        let Some(at) = self.pick(&open) else { return };
+        let Some(at) = self.pick_alternative(&open) else { return };
         self.used.insert((name, at));
-        self.parts(&alternatives[at].parts);
+        self.expand_parts(&alternatives[at].parts);
     }
 
-    fn pick(&mut self, open: &[usize]) -> Option<usize> {
+    fn pick_alternative(&mut self, open: &[usize]) -> Option<usize> {
         (!open.is_empty()).then(|| open[(self.choose)(open.len()).min(open.len() - 1)])
     }
 
-    fn parts(&mut self, parts: &[Part]) {
+    fn expand_parts(&mut self, parts: &[Part]) {
         for part in parts {
             match part {
                 Part::Text(text) => self.text.push_str(text),
-                Part::Rule(name) => self.rule(name),
+                Part::Rule(name) => self.expand_rule(name),
                 Part::Value(name) => self.text.push_str(self.context.value(name).unwrap_or_default()),
-                Part::Split { rule, by } => {
-                    let name = self.grammar.split(rule, by, self.context);
-                    self.rule(&name);
+                Part::ByValue { rule, by } => {
+                    let name = self.grammar.resolve_rule_by_value(rule, by, self.context);
+                    self.expand_rule(&name);
                 }
                 Part::Choice(branches) => {
-                    let fits = |branch: &&Vec<Part>| values_given(branch, self.context);
+                    let fits = |branch: &&Vec<Part>| has_required_values(branch, self.context);
                     let open: Vec<&Vec<Part>> = branches.iter().filter(fits).collect();
                     let indices: Vec<usize> = (0..open.len()).collect();
-                    if let Some(at) = self.pick(&indices) {
-                        self.parts(open[at]);
+                    if let Some(at) = self.pick_alternative(&indices) {
+                        self.expand_parts(open[at]);
                     }
                 }
             }
@@ -254,55 +259,55 @@ mod tests {
         "#;
 
     fn sample() -> Grammar {
-        Grammar::read(SAMPLE).expect("a grammar")
+        Grammar::parse(SAMPLE).expect("a grammar")
     }
 
-    fn all(rule: &str, context: &Context) -> BTreeSet<String> {
+    fn all_expansions(rule: &str, context: &Context) -> BTreeSet<String> {
         let mut state = 1u64;
         let mut choose = |count: usize| {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             (state >> 33) as usize % count
         };
-        (0..300).map(|_| sample().write(rule, context, &mut choose)).collect()
+        (0..300).map(|_| sample().expand(rule, context, &mut choose)).collect()
     }
 
-    fn ada() -> Context {
+    fn sample_context() -> Context {
         Context::default().with("name", "Ada").with("group", "S1")
     }
 
     #[test]
-    fn rules_are_filled_in_every_way_that_fits_and_counted() {
-        let plain = all("post", &ada());
-        assert_eq!(plain.len() as u64, sample().phrasings("post", &ada()));
+    fn expansions_match_count_phrasings() {
+        let plain = all_expansions("post", &sample_context());
+        assert_eq!(plain.len() as u64, sample().count_phrasings("post", &sample_context()));
         assert!(plain.contains("Hello, Ada loves it.") && plain.len() == 4, "{plain:?}");
-        let rich = ada().with("price", "$9").tag("new", true);
-        let texts = all("post", &rich);
+        let rich = sample_context().with("price", "$9").with_tag("new", true);
+        let texts = all_expansions("post", &rich);
         assert!(texts.contains("Ada is new here.") && texts.contains("$9 is too much."), "{texts:?}");
-        assert_eq!((texts.len() as u64, sample().phrasings("post", &rich)), (6, 6));
+        assert_eq!((texts.len() as u64, sample().count_phrasings("post", &rich)), (6, 6));
     }
 
     #[test]
-    fn a_special_rule_goes_before_the_common_one() {
+    fn specific_rule_precedes_general_rule() {
         let special = SAMPLE
             .replace("[rules.works]", "[rules.work_of]")
             .replace("work = [\"reports\"]", "work = [\"reports\"]\n\"work.S1\" = [\"sketches\"]");
-        let grammar = Grammar::read(&special).expect("a grammar");
+        let grammar = Grammar::parse(&special).expect("a grammar");
         let write = |group: &str| {
             let context = Context::default().with("name", "Ada").with("group", group);
-            grammar.write("job", &context, &mut |_| 0)
+            grammar.expand("job", &context, &mut |_| 0)
         };
         assert_eq!((write("S1"), write("E1")), ("Ada does sketches.".into(), "Ada does reports.".into()));
     }
 
     #[test]
-    fn nothing_is_said_twice_in_one_text() {
-        assert_eq!(all("pair", &ada()).len(), 2);
-        assert!(all("pair", &ada()).contains("Hello, well,"));
+    fn alternatives_do_not_repeat_within_a_text() {
+        assert_eq!(all_expansions("pair", &sample_context()).len(), 2);
+        assert!(all_expansions("pair", &sample_context()).contains("Hello, well,"));
     }
 
     #[test]
-    fn unknown_rules_are_silent() {
-        assert_eq!(sample().write("nowhere", &ada(), &mut |_| 0), "");
-        assert_eq!(sample().phrasings("nowhere", &ada()), 0);
+    fn unknown_rules_expand_to_empty_text() {
+        assert_eq!(sample().expand("nowhere", &sample_context(), &mut |_| 0), "");
+        assert_eq!(sample().count_phrasings("nowhere", &sample_context()), 0);
     }
 }

@@ -2,7 +2,7 @@
 //! of the player's posts. This crate converts facts to text and text to scores; it never changes the world.
 
 pub mod address;
-mod company_names;
+mod enterprise_names;
 mod grammar;
 pub mod judge;
 pub mod model;
@@ -11,9 +11,9 @@ pub mod notices;
 pub mod posts;
 mod readings;
 
-pub use address::address;
-pub use company_names::CompanyNames;
+pub use address::enterprise_address;
+pub use enterprise_names::EnterpriseNames;
 pub use negotiation::message;
 #[cfg(any(test, feature = "test-kit"))]
-pub use notices::notice;
-pub use readings::reading;
+pub use notices::notice_text;
+pub use readings::reading_text;

@@ -8,9 +8,9 @@
 
 mod phrases;
 
-use phrases::{ACCEPTANCE, APART, DOWNGRADE, ENDINGS, FAR, LATE, NEAR, Phrases, THREAT, UPGRADE};
+use phrases::{ACCEPTANCE, APART, DOWNGRADE, ENDINGS, FAR, LATE_ENDINGS, NEAR, Phrases, THREAT, UPGRADE};
 
-use novamind_base::notation::grouped;
+use novamind_base::formatting::grouped_number;
 use novamind_world::events::{ThreadTurn, TurnContent};
 use novamind_world::identifiers::Group;
 use novamind_world::params::Personas;
@@ -20,10 +20,10 @@ const STRIDE: u32 = 31;
 
 /// A counter-offer is near if it is below the offered price by less than the first share, and far if by more
 /// than the second.
-const GAPS: (f64, f64) = (0.10, 0.35);
+const PRICE_GAPS: (f64, f64) = (0.10, 0.35);
 
 /// Turn from which an enterprise may mention that the negotiation is long.
-const LONG_TALKS: u32 = 6;
+const LONG_NEGOTIATION_TURN: u32 = 6;
 
 /// Returns the text of a turn; empty if it has no text.
 pub fn message(turn: &ThreadTurn, personas: &Personas) -> String {
@@ -33,41 +33,46 @@ pub fn message(turn: &ThreadTurn, personas: &Personas) -> String {
             "Deal closed with customer {}: plan {} at {} per seat and month, {} seats.",
             turn.customer,
             offering.plan,
-            money(offering.price),
-            grouped(f64::from(turn.seats), 0)
+            format_price(offering.price),
+            grouped_number(f64::from(turn.seats), 0)
         ),
-        TurnContent::Threat => written(turn, &THREAT, &[], personas),
-        TurnContent::PlanWish { from, to } => {
-            let seats = grouped(f64::from(turn.seats), 0);
+        TurnContent::Threat => fill_phrases(turn, &THREAT, &[], personas),
+        TurnContent::PlanChangeRequest { from, to } => {
+            let seats = grouped_number(f64::from(turn.seats), 0);
             let facts = [("{from}", from.to_string()), ("{plan}", to.to_string()), ("{seats}", seats)];
-            written(turn, if to > from { &UPGRADE } else { &DOWNGRADE }, &facts, personas)
+            fill_phrases(turn, if to > from { &UPGRADE } else { &DOWNGRADE }, &facts, personas)
         }
         TurnContent::Counter { asked, offered } => {
-            let facts = [("{plan}", asked.plan.to_string()), ("{price}", money(asked.price))];
-            written(turn, by_gap(asked.price, *offered), &facts, personas)
+            let facts = [("{plan}", asked.plan.to_string()), ("{price}", format_price(asked.price))];
+            fill_phrases(turn, phrases_for_gap(asked.price, *offered), &facts, personas)
         }
         TurnContent::Acceptance(offering) => {
-            let facts = [("{plan}", offering.plan.to_string()), ("{price}", money(offering.price))];
-            written(turn, &ACCEPTANCE, &facts, personas)
+            let facts = [("{plan}", offering.plan.to_string()), ("{price}", format_price(offering.price))];
+            fill_phrases(turn, &ACCEPTANCE, &facts, personas)
         }
     }
 }
 
-fn money(price: f64) -> String {
-    format!("${}", grouped(price, 2))
+fn format_price(price: f64) -> String {
+    format!("${}", grouped_number(price, 2))
 }
 
 /// Returns the phrases for the distance between the two prices.
-fn by_gap(asked: f64, offered: f64) -> &'static Phrases {
+fn phrases_for_gap(asked: f64, offered: f64) -> &'static Phrases {
     let gap = if offered > 0.0 { (offered - asked) / offered } else { 0.0 };
     match gap {
-        _ if gap < GAPS.0 => &NEAR,
-        _ if gap <= GAPS.1 => &APART,
+        _ if gap < PRICE_GAPS.0 => &NEAR,
+        _ if gap <= PRICE_GAPS.1 => &APART,
         _ => &FAR,
     }
 }
 
-fn written(turn: &ThreadTurn, phrases: &Phrases, facts: &[(&str, String)], personas: &Personas) -> String {
+fn fill_phrases(
+    turn: &ThreadTurn,
+    phrases: &Phrases,
+    facts: &[(&str, String)],
+    personas: &Personas,
+) -> String {
     let pairs = (phrases.openings.len() * phrases.cores.len()) as u32;
     let pair = (u64::from(turn.message) * u64::from(STRIDE) % u64::from(pairs)) as usize;
     let (opening, core) = (pair / phrases.cores.len(), pair % phrases.cores.len());
@@ -75,19 +80,19 @@ fn written(turn: &ThreadTurn, phrases: &Phrases, facts: &[(&str, String)], perso
     for (name, value) in facts {
         said = said.replace(name, value);
     }
-    format!("{} {said} {}", phrases.openings[opening], ending(turn, personas))
+    format!("{} {said} {}", phrases.openings[opening], closing_sentence(turn, personas))
 }
 
 /// Returns the closing sentence: the decision style, the primary concern, or the length of the negotiation.
-fn ending(turn: &ThreadTurn, personas: &Personas) -> String {
-    let profile = CompanyProfile::of(turn, personas);
+fn closing_sentence(turn: &ThreadTurn, personas: &Personas) -> String {
+    let profile = EnterpriseProfile::from_turn(turn, personas);
     let settled = matches!(turn.content, TurnContent::Acceptance(_));
     let choice = (turn.message / 3 + turn.customer) as usize;
-    if !settled && turn.number >= LONG_TALKS && choice.is_multiple_of(2) {
-        return LATE[choice / 2 % LATE.len()].to_owned();
+    if !settled && turn.number >= LONG_NEGOTIATION_TURN && choice.is_multiple_of(2) {
+        return LATE_ENDINGS[choice / 2 % LATE_ENDINGS.len()].to_owned();
     }
-    let endings = &ENDINGS[Manner::of(profile.decision) as usize];
-    let pool = if settled { &endings.settled } else { &endings.open };
+    let endings = &ENDINGS[DecisionStyle::from_words(profile.decision) as usize];
+    let pool = if settled { &endings.after_agreement } else { &endings.open };
     pool[choice % pool.len()]
         .replace("{concern}", &profile.concern.replace('-', " "))
         .replace("{culture}", &with_article(profile.culture))
@@ -99,20 +104,20 @@ fn with_article(word: &str) -> String {
 }
 
 /// Profile words of an enterprise, as in the customers table.
-struct CompanyProfile<'a> {
+struct EnterpriseProfile<'a> {
     culture: &'a str,
     decision: &'a str,
     concern: &'a str,
 }
 
-impl<'a> CompanyProfile<'a> {
-    fn of(turn: &ThreadTurn, personas: &'a Personas) -> CompanyProfile<'a> {
+impl<'a> EnterpriseProfile<'a> {
+    fn from_turn(turn: &ThreadTurn, personas: &'a Personas) -> EnterpriseProfile<'a> {
         let own = &personas.group[Group::index(turn.group)];
         let [.., culture, decision, concern] = turn.persona.0;
         let word = |list: &'a [String], at: u8, otherwise: &'a str| {
             list.get(usize::from(at)).map_or(otherwise, String::as_str)
         };
-        CompanyProfile {
+        EnterpriseProfile {
             culture: word(&own.culture, culture, "practical"),
             decision: word(&own.decision_style, decision, "pragmatic"),
             concern: word(&own.primary_concern, concern, "value"),
@@ -123,7 +128,7 @@ impl<'a> CompanyProfile<'a> {
 /// Decision style of an enterprise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(usize)]
-enum Manner {
+enum DecisionStyle {
     Quick,
     Numbers,
     Committee,
@@ -131,20 +136,20 @@ enum Manner {
     Partner,
 }
 
-impl Manner {
+impl DecisionStyle {
     /// Returns the decision style described by a profile.
-    fn of(decision: &str) -> Manner {
+    fn from_words(decision: &str) -> DecisionStyle {
         let has = |words: &[&str]| words.iter().any(|word| decision.contains(word));
         if has(&["committee-light", "fast", "quick", "pragmatic", "field-tested"]) {
-            Manner::Quick
+            DecisionStyle::Quick
         } else if has(&["committee", "board", "senate", "consensus", "panel", "RFP"]) {
-            Manner::Committee
+            DecisionStyle::Committee
         } else if has(&["ROI", "cost", "budget", "benchmark", "actuarial", "bid", "justified", "bakeoff"]) {
-            Manner::Numbers
+            DecisionStyle::Numbers
         } else if has(&["strategic", "relationship", "executive", "long-cycle", "champion", "partner"]) {
-            Manner::Partner
+            DecisionStyle::Partner
         } else {
-            Manner::Careful
+            DecisionStyle::Careful
         }
     }
 }
@@ -178,8 +183,8 @@ mod tests {
         let offering = Offering { plan: Plan::B, price: 31.5 };
         vec![
             TurnContent::Threat,
-            TurnContent::PlanWish { from: Plan::A, to: Plan::C },
-            TurnContent::PlanWish { from: Plan::C, to: Plan::B },
+            TurnContent::PlanChangeRequest { from: Plan::A, to: Plan::C },
+            TurnContent::PlanChangeRequest { from: Plan::C, to: Plan::B },
             TurnContent::Counter { asked: offering, offered: 33.0 },
             TurnContent::Counter { asked: offering, offered: 40.0 },
             TurnContent::Counter { asked: offering, offered: 90.0 },
@@ -189,7 +194,7 @@ mod tests {
 
     #[test]
     fn no_two_of_sixty_messages_are_equal() {
-        let personas = Params::shipped().personas;
+        let personas = Params::bundled().personas;
         for content in situations() {
             // All messages have the same situation, which is the hardest case.
             let mut recent: VecDeque<String> = VecDeque::new();
@@ -224,8 +229,8 @@ mod tests {
     }
 
     #[test]
-    fn messages_hold_their_facts_and_no_gaps() {
-        let personas = Params::shipped().personas;
+    fn messages_contain_their_facts_without_placeholders() {
+        let personas = Params::bundled().personas;
         for (content, facts) in situations().into_iter().zip([
             &[][..],
             &["plan c", "1,200"],
@@ -250,8 +255,8 @@ mod tests {
     }
 
     #[test]
-    fn the_player_and_openings_say_nothing_and_deals_are_recorded() {
-        let personas = Params::shipped().personas;
+    fn player_turns_and_openings_have_no_text() {
+        let personas = Params::bundled().personas;
         let offering = Offering { plan: Plan::A, price: 28.0 };
         for content in [TurnContent::Opening, TurnContent::Rejection, TurnContent::Offer(vec![offering])] {
             assert_eq!(message(&turn(3, content), &personas), "");
@@ -263,14 +268,15 @@ mod tests {
     }
 
     #[test]
-    fn every_profile_has_a_manner_and_all_manners_occur() {
-        let personas = Params::shipped().personas;
+    fn every_profile_has_a_decision_style() {
+        let personas = Params::bundled().personas;
         let styles = personas.group.iter().flat_map(|group| &group.decision_style);
-        let manners: BTreeSet<usize> = styles.map(|style| Manner::of(style) as usize).collect();
+        let manners: BTreeSet<usize> =
+            styles.map(|style| DecisionStyle::from_words(style) as usize).collect();
         assert_eq!(manners.len(), ENDINGS.len());
-        assert_eq!(Manner::of("committee-heavy"), Manner::Committee);
-        assert_eq!(Manner::of("ROI-focused"), Manner::Numbers);
-        assert_eq!(Manner::of("HIPAA-gated"), Manner::Careful);
+        assert_eq!(DecisionStyle::from_words("committee-heavy"), DecisionStyle::Committee);
+        assert_eq!(DecisionStyle::from_words("ROI-focused"), DecisionStyle::Numbers);
+        assert_eq!(DecisionStyle::from_words("HIPAA-gated"), DecisionStyle::Careful);
         assert_eq!(
             (with_article("audit-ready"), with_article("lean")),
             ("an audit-ready".into(), "a lean".into())

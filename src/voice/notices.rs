@@ -1,13 +1,13 @@
 //! Texts of inbox notices, one line each.
 
-use novamind_base::notation::grouped;
+use novamind_base::formatting::grouped_number;
 use novamind_world::events::{Notice, Reaction};
 use novamind_world::identifiers::Group;
 use novamind_world::params::CeoPosts;
 
 /// The enterprise that a notice is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Party {
+pub struct NoticeCustomer {
     /// Customer number.
     pub customer: u32,
     /// Group.
@@ -16,16 +16,21 @@ pub struct Party {
     pub seats: u32,
 }
 
-impl Party {
-    fn words(&self) -> String {
+impl NoticeCustomer {
+    fn describe(&self) -> String {
         let noun = if self.seats == 1 { "seat" } else { "seats" };
-        format!("Customer {} ({}, {} {noun})", self.customer, self.group, grouped(f64::from(self.seats), 0))
+        format!(
+            "Customer {} ({}, {} {noun})",
+            self.customer,
+            self.group,
+            grouped_number(f64::from(self.seats), 0)
+        )
     }
 }
 
 /// Returns the text of a notice, which names its enterprise if it is known.
-pub fn notice(notice: &Notice, party: Option<Party>) -> String {
-    let who = party.map_or("A company".to_owned(), |party| party.words());
+pub fn notice_text(notice: &Notice, party: Option<NoticeCustomer>) -> String {
+    let who = party.map_or("A company".to_owned(), |party| party.describe());
     match notice {
         Notice::EnterpriseLead => format!("{who} asks for an offer. It waits seven days for an answer."),
         Notice::LeadLostByTimeout { days } => {
@@ -38,7 +43,7 @@ pub fn notice(notice: &Notice, party: Option<Party>) -> String {
         Notice::ChurnThreat { customer } => format!(
             "Customer {customer} threatens to leave and pays nothing until this is settled. It waits seven days for an answer."
         ),
-        Notice::PlanWish { customer, upgrade } => {
+        Notice::PlanChangeRequest { customer, upgrade } => {
             let direction = if *upgrade { "higher" } else { "lower" };
             format!(
                 "Customer {customer} asks for the price of a {direction} plan. It waits seven days for an answer."
@@ -66,15 +71,15 @@ pub fn notice(notice: &Notice, party: Option<Party>) -> String {
                 "Study of group {group} complete: level {level}, \u{b1}{accuracy:.0}% (day {day}, {what})"
             )
         }
-        // Callers that know the text of the post use `reaction_to` instead.
+        // Callers that know the text of the post use `reaction_text` instead.
         Notice::OwnPostSeen(reaction) => {
-            format!("Your post was seen {} {}", reaction.views, times(reaction.views))
+            format!("Your post was seen {} {}", reaction.views, times_noun(reaction.views))
         }
     }
 }
 
 /// Returns the notice about a post of the player: views, start of the text, tone, strongest reactions.
-pub fn reaction_to(content: &str, reaction: &Reaction, law: &CeoPosts) -> String {
+pub fn reaction_text(content: &str, reaction: &Reaction, law: &CeoPosts) -> String {
     let shown = law.notification_preview_chars as usize;
     let mut preview: String = content.chars().take(shown).collect();
     if content.chars().count() > shown {
@@ -95,15 +100,15 @@ pub fn reaction_to(content: &str, reaction: &Reaction, law: &CeoPosts) -> String
             format!("{group} {effect:+.1}")
         })
         .collect();
-    let views = grouped(reaction.views as f64, 0);
+    let views = grouped_number(reaction.views as f64, 0);
     format!(
         "Your post was seen {views} {}: \"{preview}\". Reaction {tone}; strongest {}",
-        times(reaction.views),
+        times_noun(reaction.views),
         strongest.join(", ")
     )
 }
 
-fn times(count: u64) -> &'static str {
+fn times_noun(count: u64) -> &'static str {
     if count == 1 { "time" } else { "times" }
 }
 
@@ -113,35 +118,37 @@ mod tests {
     use novamind_world::events::{Phase, Reading, Trend};
 
     #[test]
-    fn studies_and_finds_name_group_level_and_accuracy() {
+    fn study_and_discovery_notices_name_group_level_and_accuracy() {
         let group = novamind_world::identifiers::Group::parse("D_S06").expect("a group");
-        let found = notice(&Notice::GroupFound { group, attempt: 4 }, None);
+        let found = notice_text(&Notice::GroupFound { group, attempt: 4 }, None);
         assert_eq!(found, "Market research found group D_S06 (attempt 4). It is known at level 1.");
         for (before, words) in [(1, "raised"), (2, "refreshed")] {
             let study = novamind_world::events::Study { group, target: 2, before, due_day: 31 };
-            let text = notice(&Notice::StudyComplete { study, noise: 0.4 }, None);
+            let text = notice_text(&Notice::StudyComplete { study, noise: 0.4 }, None);
             assert_eq!(text, format!("Study of group D_S06 complete: level 2, \u{b1}40% (day 31, {words})"));
         }
     }
 
     #[test]
     fn notices_of_negotiations_name_the_company_if_it_is_known() {
-        let leave = notice(&Notice::ChurnThreat { customer: 7 }, None);
+        let leave = notice_text(&Notice::ChurnThreat { customer: 7 }, None);
         assert!(leave.starts_with("Customer 7 threatens to leave"), "{leave}");
-        let up = notice(&Notice::PlanWish { customer: 9, upgrade: true }, None);
-        let down = notice(&Notice::PlanWish { customer: 9, upgrade: false }, None);
+        let up = notice_text(&Notice::PlanChangeRequest { customer: 9, upgrade: true }, None);
+        let down = notice_text(&Notice::PlanChangeRequest { customer: 9, upgrade: false }, None);
         assert!(up.contains("Customer 9") && up.contains("higher") && down.contains("lower"));
-        assert!(notice(&Notice::CounterOffer { customer: 12 }, None).contains("Customer 12"));
+        assert!(notice_text(&Notice::CounterOffer { customer: 12 }, None).contains("Customer 12"));
         let group = novamind_world::identifiers::Group::parse("E2").expect("a group");
-        let party = Some(Party { customer: 4711, group, seats: 1_094 });
+        let party = Some(NoticeCustomer { customer: 4711, group, seats: 1_094 });
         assert_eq!(
-            notice(&Notice::DealWon { price: 33.5 }, party),
+            notice_text(&Notice::DealWon { price: 33.5 }, party),
             "Customer 4711 (E2, 1,094 seats) accepts: a deal at $33.50 a seat and month."
         );
-        let unanswered = notice(&Notice::LeadLostByTimeout { days: 7 }, party);
+        let unanswered = notice_text(&Notice::LeadLostByTimeout { days: 7 }, party);
         assert_eq!(unanswered, "Customer 4711 (E2, 1,094 seats) got no answer for 7 days. The lead is lost.");
-        assert!(notice(&Notice::LeadSilent, party).starts_with("Customer 4711 (E2, 1,094 seats) declines"));
-        assert!(!notice(&Notice::LeadSilent, None).contains(char::is_numeric));
+        assert!(
+            notice_text(&Notice::LeadSilent, party).starts_with("Customer 4711 (E2, 1,094 seats) declines")
+        );
+        assert!(!notice_text(&Notice::LeadSilent, None).contains(char::is_numeric));
     }
 
     #[test]
@@ -154,23 +161,23 @@ mod tests {
             phase: Phase::Declining,
         };
         assert_eq!(
-            notice(&Notice::EconomyUpdate(reading), None),
+            notice_text(&Notice::EconomyUpdate(reading), None),
             "Purchasing managers' index 48.3 \u{2193} (neutral)"
         );
     }
 
     #[test]
     fn a_reaction_names_views_beginning_tone_and_groups() {
-        let law = novamind_world::params::Params::shipped().ceo_posts;
+        let law = novamind_world::params::Params::bundled().ceo_posts;
         let group = |id| novamind_world::identifiers::Group::parse(id).expect("a group");
         let strongest = [Some((group("S3"), 0.87)), Some((group("S1"), -0.45)), Some((group("E1"), 0.02))];
         let mut reaction = Reaction { post: 1, views: 1840, mean: 0.2, strongest };
         assert_eq!(
-            reaction_to("Quotas doubled.", &reaction, &law),
+            reaction_text("Quotas doubled.", &reaction, &law),
             "Your post was seen 1,840 times: \"Quotas doubled.\". Reaction positive; strongest S3 +0.9, S1 -0.5, E1 +0.0"
         );
         (reaction.mean, reaction.views) = (-0.11, 1);
-        let long = reaction_to(&"ü".repeat(81), &reaction, &law);
+        let long = reaction_text(&"ü".repeat(81), &reaction, &law);
         assert!(long.starts_with("Your post was seen 1 time: "), "{long}");
         assert!(long.contains(&format!("\"{}...\"", "ü".repeat(80))) && long.contains("negative"), "{long}");
     }

@@ -3,7 +3,7 @@
 use novamind_world::events::{Reading, Trend};
 
 /// Returns the description of a reading.
-pub fn reading(reading: &Reading) -> String {
+pub fn reading_text(reading: &Reading) -> String {
     let change = reading.change;
     let movement = match change {
         _ if change > 0.0 => format!("up {change:.1} points from the month before"),
@@ -37,7 +37,7 @@ mod tests {
     use novamind_world::events::Phase;
 
     #[test]
-    fn every_band_says_value_movement_position_and_mood() {
+    fn reading_text_states_value_change_position_and_mood() {
         for (value, change, trend, words) in [
             (60.0, 1.2, Trend::StrongExpansion, ["60.0", "up 1.2", "above 50", "hire"]),
             (53.0, 0.0, Trend::Expansion, ["53.0", "unchanged", "above 50", "Budgets"]),
@@ -45,7 +45,8 @@ mod tests {
             (45.0, -2.0, Trend::Contraction, ["45.0", "down 2.0", "below 50", "postpone"]),
             (38.0, 0.1, Trend::SevereContraction, ["38.0", "up 0.1", "below 50", "freeze"]),
         ] {
-            let text = reading(&Reading { measured_day: 31, value, change, trend, phase: Phase::Declining });
+            let text =
+                reading_text(&Reading { measured_day: 31, value, change, trend, phase: Phase::Declining });
             assert!(words.iter().all(|word| text.contains(word)), "{text}");
         }
     }

@@ -4,17 +4,18 @@ use std::ops::ControlFlow;
 use std::sync::Mutex;
 use std::time::Instant;
 
-use super::answering::lock_kept;
-use super::causes::folder_of;
-use super::{BETWEEN_DAYS, Open, SessionThread};
-use crate::asking::{Question, Reply};
-use crate::message::News;
+use super::background::lock_cache;
+use super::causes::recorded_folder;
+use super::{ActiveRun, DAY_REPORT_INTERVAL, SessionThread};
+use crate::message::Response;
+use crate::question::{Question, Reply};
 use novamind_insight::{
-    BranchComparison, DecisionEdit, Futures, PastDecision, WhatIf, branch_with_decisions, look_at_what_if,
+    BranchComparison, DecisionEdit, Futures, RecordedDecision, WhatIf, create_branch_with_decisions,
+    record_what_if_inspection,
 };
 use novamind_record::trajectory::record::LeavingCause;
 use novamind_session::{Access, Session};
-use novamind_tools::Refusal;
+use novamind_tools::Rejection;
 
 /// A question about the recorded decisions of the run.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,34 +35,34 @@ pub enum BranchesQuestion {
 
 /// The answer.
 #[derive(Debug, Clone)]
-pub enum BranchesFound {
+pub enum BranchesAnswer {
     /// The decisions of the run, and its days per week.
-    Decisions(Vec<PastDecision>, u32),
+    Decisions(Vec<RecordedDecision>, u32),
     /// The compared branches, and the futures.
     Compared(Box<BranchComparison>, Option<Box<Futures>>),
 }
 
 impl Question for BranchesQuestion {
-    type Answer = BranchesFound;
+    type Answer = BranchesAnswer;
     /// Simulated days, and all days to simulate.
     type Progress = (usize, usize);
 
     fn answer(self, thread: &mut SessionThread, reply: Reply<Self>) {
-        let Some(open) = &mut thread.open else { return };
-        let folder = folder_of(open);
+        let Some(open) = &mut thread.active_run else { return };
+        let folder = recorded_folder(open);
         let is_recorded = match &self {
             BranchesQuestion::Compare { week, .. } => {
                 let week = *week;
-                thread.session_to_look_into(false).is_ok_and(|session| look_at_what_if(session, week))
+                thread.inspection_session(false).is_ok_and(|session| record_what_if_inspection(session, week))
             }
             BranchesQuestion::Decisions => false,
         };
-        let kept = thread.branches.clone();
+        let kept = thread.what_if_cache.clone();
         reply.answer_on_thread(move |reply| {
-            let mut kept = lock_kept(&kept);
-            let own = kept.of(folder?)?;
-            own.tell_hidden(is_recorded);
-            answer(&self, own, reply)
+            let mut kept = lock_cache(&kept);
+            let own = kept.get_or_open(folder?)?;
+            own.set_shows_hidden(is_recorded);
+            answer_question(&self, own, reply)
         });
     }
 }
@@ -69,22 +70,22 @@ impl Question for BranchesQuestion {
 impl SessionThread {
     /// Creates a branch that keeps the recorded decisions with some edits, and opens it.
     pub(super) fn adopt_branch(&mut self, week: u32, edits: &[DecisionEdit]) {
-        let Some(open) = &mut self.open else { return };
-        let mode = open.session().manifest().mode.of_branch();
+        let Some(open) = &mut self.active_run else { return };
+        let mode = open.session().manifest().mode.branch_mode();
         let mut on = |_| ControlFlow::Continue(());
         let adopted = match open {
-            Open::Played(session) => branch_with_decisions(session, week, edits, mode, &mut on),
+            ActiveRun::Live(session) => create_branch_with_decisions(session, week, edits, mode, &mut on),
             // A playback has not read the record to its end.
-            Open::Replayed(_) => folder_of(open).and_then(|folder| {
+            ActiveRun::Playback(_) => recorded_folder(open).and_then(|folder| {
                 let whole = Session::open(&folder, Access::Read, false);
-                let whole = whole.map_err(|error| Refusal::new("not_readable", error.to_string()))?;
-                branch_with_decisions(&whole, week, edits, mode, &mut on)
+                let whole = whole.map_err(|error| Rejection::new("not_readable", error.to_string()))?;
+                create_branch_with_decisions(&whole, week, edits, mode, &mut on)
             }),
         };
         match adopted {
             Ok(adopted) => {
                 let parent = open.session().manifest().id.clone();
-                let refused = match adopted.refused.len() {
+                let refused = match adopted.rejected.len() {
                     0 => String::new(),
                     some => format!("; {some} calls were rejected, see the Journal"),
                 };
@@ -92,36 +93,36 @@ impl SessionThread {
                 let remark = format!(
                     "now playing run {id}, simulated to day {day}; run {parent} is unchanged{refused}"
                 );
-                let _ = self.put_down(LeavingCause::Quit);
-                self.take(Ok(adopted.session), "", Some(remark));
+                let _ = self.detach(LeavingCause::Quit);
+                self.show_opened_run(Ok(adopted.session), "", Some(remark));
             }
-            Err(refusal) => self.say(News::NotOpened(refusal.to_string(), None)),
+            Err(refusal) => self.send_response(Response::NotOpened(refusal.to_string(), None)),
         }
     }
 }
 
-fn answer(
+fn answer_question(
     question: &BranchesQuestion,
     own: &mut WhatIf,
     reply: &Reply<BranchesQuestion>,
-) -> Result<Option<BranchesFound>, Refusal> {
+) -> Result<Option<BranchesAnswer>, Rejection> {
     let told = Mutex::new(Instant::now());
     let progress = |done, all| {
         // Every thread reports every day, which is more often than the screen needs.
         if let Ok(mut told) = told.try_lock()
-            && told.elapsed() >= BETWEEN_DAYS
+            && told.elapsed() >= DAY_REPORT_INTERVAL
         {
             *told = Instant::now();
-            reply.report((done, all));
+            reply.report_progress((done, all));
         }
-        reply.go_on()
+        reply.check_still_awaited()
     };
     let (week, alternatives, futures) = match question {
         BranchesQuestion::Decisions => {
-            return Ok(Some(BranchesFound::Decisions(own.decisions(1)?, own.days_per_week())));
+            return Ok(Some(BranchesAnswer::Decisions(own.decisions(1)?, own.days_per_week())));
         }
         BranchesQuestion::Compare { week, alternatives, futures } => (*week, alternatives, *futures),
     };
-    let found = own.answer((week, None), alternatives, futures, &progress)?;
-    Ok(found.map(|(compared, drawn)| BranchesFound::Compared(Box::new(compared), drawn.map(Box::new))))
+    let found = own.compare_with_futures((week, None), alternatives, futures, &progress)?;
+    Ok(found.map(|(compared, drawn)| BranchesAnswer::Compared(Box::new(compared), drawn.map(Box::new))))
 }

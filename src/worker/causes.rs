@@ -2,52 +2,56 @@
 
 use std::path::{Path, PathBuf};
 
-use super::answering::lock_kept;
-use super::{Open, SessionThread};
-use crate::asking::{Question, Reply};
-use novamind_insight::{WeekQuantity, WeekQuestion, Why, WhyProgress, folder_of_causes, look_at_figure};
-use novamind_tools::Refusal;
+use super::background::lock_cache;
+use super::{ActiveRun, SessionThread};
+use crate::question::{Question, Reply};
+use novamind_insight::{
+    CauseProgress, ChangeExplanation, WeekQuantity, WeekQuestion, cause_analysis_folder,
+    record_figure_inspection,
+};
+use novamind_tools::Rejection;
 
 /// Asks for the causes of a figure's change in a week.
 #[derive(Debug, Clone)]
-pub struct WhyQuestion {
+pub struct CausesQuestion {
     /// The figure.
     pub quantity: WeekQuantity,
     /// The week.
     pub week: u32,
 }
 
-impl Question for WhyQuestion {
-    type Answer = Why;
-    type Progress = WhyProgress;
+impl Question for CausesQuestion {
+    type Answer = ChangeExplanation;
+    type Progress = CauseProgress;
 
     fn answer(self, thread: &mut SessionThread, reply: Reply<Self>) {
-        let Some(open) = &thread.open else { return };
+        let Some(open) = &thread.active_run else { return };
         let question = WeekQuestion { quantity: self.quantity, week: Some(self.week) };
-        let mut folder = folder_of(open);
+        let mut folder = recorded_folder(open);
         if question.quantity.is_hidden() {
             // The inspection is recorded before anything is shown.
-            let looked =
-                thread.session_to_look_into(false).and_then(|session| look_at_figure(session, &question));
+            let looked = thread
+                .inspection_session(false)
+                .and_then(|session| record_figure_inspection(session, &question));
             folder = looked.and(folder);
         }
-        let kept = thread.causes.clone();
+        let kept = thread.causes_cache.clone();
         reply.answer_on_thread(move |reply| {
-            let mut kept = lock_kept(&kept);
-            kept.of(folder?)?.why(question, &|progress| {
-                reply.report(progress);
-                reply.go_on()
+            let mut kept = lock_cache(&kept);
+            kept.get_or_open(folder?)?.explain(question, &|progress| {
+                reply.report_progress(progress);
+                reply.check_still_awaited()
             })
         });
     }
 }
 
-pub(super) fn folder_of(open: &Open) -> Result<PathBuf, Refusal> {
+pub(super) fn recorded_folder(open: &ActiveRun) -> Result<PathBuf, Rejection> {
     match open {
-        Open::Played(session) => folder_of_causes(session),
+        ActiveRun::Live(session) => cause_analysis_folder(session),
         // Permissions depend on the whole record: the run may have ended after this position.
-        Open::Replayed(playback) => playback.session().folder().map(Path::to_owned).ok_or_else(|| {
-            Refusal::new("not_possible", "not possible: this trajectory file has no run folder")
+        ActiveRun::Playback(playback) => playback.session().folder().map(Path::to_owned).ok_or_else(|| {
+            Rejection::new("not_possible", "not possible: this trajectory file has no run folder")
         }),
     }
 }

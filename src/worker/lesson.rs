@@ -2,54 +2,54 @@
 
 use std::sync::Arc;
 
-use super::answering::answer_on_thread;
-use super::{Open, SessionThread};
-use crate::message::News;
+use super::background::answer_on_thread;
+use super::{ActiveRun, SessionThread};
+use crate::message::Response;
 use crate::request::LessonRequest;
-use novamind_course::{PlayedPart, begin_part, guess_in_lesson, take_hint, try_step_again};
+use novamind_course::{PlayedPart, retry_step, start_part, submit_guess, take_hint};
 use novamind_record::trajectory::record::LeavingCause;
-use novamind_rules::answers_to_companies;
+use novamind_rules::calls_for_waiting_threads;
 use novamind_session::Session;
-use novamind_tools::Refusal;
+use novamind_tools::Rejection;
 
 impl SessionThread {
-    pub(super) fn in_lesson(&mut self, asked: LessonRequest) {
+    pub(super) fn handle_lesson_request(&mut self, asked: LessonRequest) {
         match asked {
-            LessonRequest::Guess(value) => self.report(|run| {
-                let refused = guess_in_lesson(run.session, value).err();
-                News::InLesson(refused, run.company())
+            LessonRequest::Guess(value) => self.respond_with(|run| {
+                let refused = submit_guess(run.session, value).err();
+                Response::LessonUpdated(refused, run.company())
             }),
-            LessonRequest::Hint => self.report(|run| {
+            LessonRequest::Hint => self.respond_with(|run| {
                 let refused = take_hint(run.session).err();
-                News::InLesson(refused, run.company())
+                Response::LessonUpdated(refused, run.company())
             }),
-            LessonRequest::TryAgain(step) => self.go_to(
-                |session| try_step_again(session, step),
+            LessonRequest::RetryStep(step) => self.switch_run(
+                |session| retry_step(session, step),
                 &format!("retrying step {}; the previous run is unchanged", step + 1),
             ),
-            LessonRequest::BeginPart(part) => {
-                self.go_to(|session| begin_part(session, part), &format!("part {} starts", part + 1));
+            LessonRequest::StartPart(part) => {
+                self.switch_run(|session| start_part(session, part), &format!("part {} starts", part + 1));
             }
-            LessonRequest::Debrief => self.find_debrief(),
+            LessonRequest::Debrief => self.compute_debrief(),
         }
     }
 
-    fn go_to(&mut self, begin: impl FnOnce(&Session) -> Result<Session, Refusal>, remark: &str) {
-        let Some(Open::Played(session)) = &self.open else { return };
+    fn switch_run(&mut self, begin: impl FnOnce(&Session) -> Result<Session, Rejection>, remark: &str) {
+        let Some(ActiveRun::Live(session)) = &self.active_run else { return };
         match begin(session) {
             Ok(begun) => {
-                let _ = self.put_down(LeavingCause::Quit);
-                self.take(Ok(begun), "", Some(remark.to_owned()));
+                let _ = self.detach(LeavingCause::Quit);
+                self.show_opened_run(Ok(begun), "", Some(remark.to_owned()));
             }
-            Err(refusal) => self.say(News::NotOpened(refusal.to_string(), None)),
+            Err(refusal) => self.send_response(Response::NotOpened(refusal.to_string(), None)),
         }
     }
 
     /// Computes the debrief on its own thread, because it simulates the reference play.
-    fn find_debrief(&mut self) {
-        let Some(open) = &mut self.open else { return };
-        let (played, news) = (PlayedPart::of(open.session()), self.news.clone());
-        let work = move || played.map(|played| Some(played.debrief(answers_to_companies)));
-        answer_on_thread(news, work, |debrief| News::Debriefed(Arc::new(debrief)));
+    fn compute_debrief(&mut self) {
+        let Some(open) = &mut self.active_run else { return };
+        let (played, news) = (PlayedPart::from_session(open.session()), self.messages.clone());
+        let work = move || played.map(|played| Some(played.debrief(calls_for_waiting_threads)));
+        answer_on_thread(news, work, |debrief| Response::DebriefReady(Arc::new(debrief)));
     }
 }

@@ -4,55 +4,55 @@ use std::sync::Arc;
 
 use crossterm::event::Event;
 
-use crate::company::Company;
+use crate::company::DisplayedCompany;
 use novamind_course::{CollectedClass, Debrief};
-use novamind_record::folder::library::Library;
+use novamind_record::folder::query_library::QueryLibrary;
 use novamind_record::folder::runs::RunSummary;
 use novamind_record::trajectory::record::Limit;
-use novamind_report::Story;
-use novamind_report::class::Shown;
-use novamind_session::{Change, PlaybackPosition, TimeLeft, UnsentTexts, Week};
+use novamind_report::RunReport;
+use novamind_report::class::ClassDisplayOptions;
+use novamind_session::{DraftTexts, PlaybackPosition, SettingChange, TimeLeft, WeekResult};
 use novamind_study::{DueQuestion, NextStep};
-use novamind_tools::{Answer, Refusal, ToolId};
+use novamind_tools::{Answer, Rejection, ToolId};
 
 /// A message to the console.
 pub enum Message {
     /// Input: a key, a click, pasted text or a window size.
     Input(Event),
     /// A response of a worker thread.
-    News(News),
+    Response(Response),
     /// An answer to a question of a page, or its progress.
     Arrived(Delivery),
     /// A signal to end, suspend or resume the program.
     Signal(i32),
     /// The requested time has passed.
-    Time,
+    TimePassed,
 }
 
 /// A position of the playback that was reached.
-pub struct Arrival {
+pub struct PlaybackUpdate {
     /// The company at the position; `None` if it is unchanged.
-    pub company: Option<Arc<Company>>,
+    pub company: Option<Arc<DisplayedCompany>>,
     /// The position.
-    pub place: PlaybackPosition,
+    pub position: PlaybackPosition,
     /// A problem to report to the user.
     pub problem: Option<String>,
 }
 
 /// An alternative for a run that does not open.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Instead {
+pub enum OpenFallback {
     /// It is open elsewhere: it can be followed, by id.
     Watch(String),
     /// It is damaged: its undamaged prefix can be recovered as a branch, by id.
-    Rescue(String),
+    Recover(String),
     /// The user must first consent to a text.
-    Agree(Box<novamind_session::NewRun>),
+    AskConsent(Box<novamind_session::NewRun>),
 }
 
 /// Figures of a simulated day.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct DayTold {
+pub struct SimulatedDay {
     /// Cash at the end of the day, in dollars.
     pub cash: f64,
     /// Active individual subscriptions at the end of the day.
@@ -61,7 +61,7 @@ pub struct DayTold {
 
 /// An answer or progress on its way to the page that asked.
 pub struct Delivery {
-    pub(super) put: Box<dyn FnOnce() + Send>,
+    pub(super) store: Box<dyn FnOnce() + Send>,
     /// Whether it is the answer.
     pub is_answer: bool,
 }
@@ -69,79 +69,79 @@ pub struct Delivery {
 impl Delivery {
     /// Delivers it to the page, if the page still waits.
     pub fn deliver(self) {
-        (self.put)();
+        (self.store)();
     }
 }
 
 /// The result of simulating days of a debug run.
 #[derive(Debug, Clone, PartialEq)]
-pub struct DaysRan {
+pub struct DebugRunResult {
     /// Lines that describe why the simulation stopped.
     pub lines: Vec<String>,
     /// Whether the run has ended.
-    pub is_over: bool,
+    pub has_ended: bool,
 }
 
 /// A response of a worker thread.
-pub enum News {
+pub enum Response {
     /// The runs of the folder, after ending or deleting one with the outcome in words.
     Runs(Option<Result<String, String>>, Result<Vec<RunSummary>, String>),
     /// A class was read for display.
-    Class(Box<Result<(CollectedClass, Shown), String>>),
+    ClassRead(Box<Result<(CollectedClass, ClassDisplayOptions), String>>),
     /// A handout was opened: the runs are now those of the student with this label.
-    HandedOut(String),
+    HandoutOpened(String),
     /// A run was opened.
-    Opened(Arc<Company>),
+    Opened(Arc<DisplayedCompany>),
     /// A playback was opened.
-    Replays(Arc<Company>, Box<PlaybackPosition>),
+    PlaybackOpened(Arc<DisplayedCompany>, Box<PlaybackPosition>),
     /// An inspection has changed the run.
-    Changed(Arc<Company>),
+    RunChanged(Arc<DisplayedCompany>),
     /// Seeking has ended.
-    SeekResult(Box<Arrival>),
+    SeekResult(Box<PlaybackUpdate>),
     /// The playback has advanced: it is playing, or the followed run has grown.
-    WentOn(Box<Arrival>),
+    PlaybackAdvanced(Box<PlaybackUpdate>),
     /// The minutes left to time limits have changed.
     TimeLeft(Vec<TimeLeft>),
     /// A time limit is near or reached.
     Limit(Limit),
     /// The run was opened with a clock that a time limit had stopped.
-    Held,
+    ClockStopped,
     /// Drafts from before the program stopped, of the opened run.
-    Unsent(Box<UnsentTexts>),
+    Drafts(Box<DraftTexts>),
     /// A run could not be opened or created; with an alternative.
-    NotOpened(String, Option<Instead>),
+    NotOpened(String, Option<OpenFallback>),
     /// A tool was called.
-    Called(ToolId, Result<Box<Answer>, Refusal>, Arc<Company>),
+    ToolCalled(ToolId, Result<Box<Answer>, Rejection>, Arc<DisplayedCompany>),
     /// A setting was undone or redone.
-    Restored(&'static str, Result<Vec<Change>, Refusal>, Arc<Company>),
+    SettingRestored(&'static str, Result<Vec<SettingChange>, Rejection>, Arc<DisplayedCompany>),
     /// A day was simulated; with its figures, unless it was simulated again.
-    Day(u32, Option<DayTold>),
+    DaySimulated(u32, Option<SimulatedDay>),
     /// A week has passed or was rejected.
-    Advanced(Result<Box<Week>, Refusal>, Arc<Company>),
+    WeekAdvanced(Result<Box<WeekResult>, Rejection>, Arc<DisplayedCompany>),
     /// The database cannot be written and is older than the company. Writing is retried.
     DatabaseBehind(String),
     /// The database is up to date again.
-    DatabaseWhole,
+    DatabaseCurrent,
     /// Days of a debug run were simulated.
-    Ran(Result<DaysRan, Refusal>, Arc<Company>),
+    DebugDaysSimulated(Result<DebugRunResult, Rejection>, Arc<DisplayedCompany>),
     /// A guess was recorded or a hint was shown in a lesson, or it was rejected.
-    InLesson(Option<Refusal>, Arc<Company>),
+    LessonUpdated(Option<Rejection>, Arc<DisplayedCompany>),
     /// The debrief of a part of a lesson.
-    Debriefed(Arc<Result<Debrief, Refusal>>),
+    DebriefReady(Arc<Result<Debrief, Rejection>>),
     /// The notes were saved.
-    MemoKept(Result<(), Refusal>, Arc<Company>),
+    NotesSaved(Result<(), Rejection>, Arc<DisplayedCompany>),
     /// A query was saved: a text and the new library.
-    QuerySaved(Result<(String, Library), String>),
+    QuerySaved(Result<(String, QueryLibrary), String>),
     /// The run report.
-    Told(Arc<Story>),
+    RunReportReady(Arc<RunReport>),
     /// The files of the run report: names and contents.
-    Reported(Vec<(&'static str, String)>),
+    ReportFilesReady(Vec<(&'static str, String)>),
     /// Files were written: a text.
-    Written(Result<String, String>),
+    FilesWritten(Result<String, String>),
     /// The run was closed, with the error if saving failed.
     Closed(Option<String>),
     /// A response in a study.
-    Visit(VisitNews),
+    Study(StudyResponse),
     /// A worker thread has panicked.
     Crashed(String),
     /// The record can no longer be written: the reason, and what to do.
@@ -149,21 +149,21 @@ pub enum News {
 }
 
 /// A response in a study.
-pub enum VisitNews {
+pub enum StudyResponse {
     /// The study is ready for participants.
     Ready,
     /// The label was rejected, with the reason.
-    LabelRefused(String),
+    LabelRejected(String),
     /// The next step of the participant.
     Next(NextStep),
     /// The participant declined.
-    Declined,
+    ConsentDeclined,
     /// The due questions have changed. Sent before the response to the cause.
-    Due(Vec<DueQuestion>),
+    QuestionsDue(Vec<DueQuestion>),
     /// Answers were recorded; with the questions that are due now.
-    Answered(Vec<DueQuestion>),
+    AnswersRecorded(Vec<DueQuestion>),
     /// Whether the experimenter's code was right; `None` if the study has no code.
-    Code(Option<bool>),
+    CodeChecked(Option<bool>),
     /// Reading or writing failed; the text says what is safe.
     Failed(String),
 }

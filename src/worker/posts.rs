@@ -48,7 +48,7 @@ pub struct Post {
     /// Text.
     pub text: String,
     /// Our post that a comment replies to, or the post that ours replies to.
-    pub answers: Option<u32>,
+    pub answered_post: Option<u32>,
     /// Views of our post; 0 until it was viewed.
     pub views: u32,
     /// Number of comments on our post.
@@ -68,8 +68,8 @@ impl Post {
     }
 
     /// Returns the line above its text.
-    pub fn head(&self) -> String {
-        match (self.kind, self.answers) {
+    pub fn heading(&self) -> String {
+        match (self.kind, self.answered_post) {
             (PostKind::Own, Some(post)) => {
                 format!("our post {}, reply to #{post} · {}", self.number, self.reactions())
             }
@@ -86,17 +86,17 @@ impl Post {
 pub type Posts = Arc<Vec<Arc<Post>>>;
 
 /// Initial limit for new posts: usually more than a week brings.
-const NEWEST: usize = 64;
+const INITIAL_POSTS: usize = 64;
 
 /// Reads the posts of others; if some are known, only newer ones are requested.
-pub fn read(session: &Session, known: Option<&Posts>) -> Posts {
+pub fn read_posts(session: &Session, known: Option<&Posts>) -> Posts {
     let last = known.and_then(|posts| posts.first()).map(|post| post.number);
-    let mut limit = if last.is_some() { PostLimit::Newest(NEWEST) } else { PostLimit::All };
+    let mut limit = if last.is_some() { PostLimit::Newest(INITIAL_POSTS) } else { PostLimit::All };
     loop {
         let told =
-            session.company().look_up(&GetSocialPosts, limit).map_or(Vec::new(), |answer| answer.posts);
+            session.company().read_tool(&GetSocialPosts, limit).map_or(Vec::new(), |answer| answer.posts);
         let is_new = |post: &Post| last.is_none_or(|last| post.number > last);
-        let fresh: Vec<Arc<Post>> = told.iter().map(post_of).take_while(is_new).map(Arc::new).collect();
+        let fresh: Vec<Arc<Post>> = told.iter().map(to_post).take_while(is_new).map(Arc::new).collect();
         // If all of them are new, there may be more new ones before them.
         if let PostLimit::Newest(most) = limit
             && !told.is_empty()
@@ -113,7 +113,7 @@ pub fn read(session: &Session, known: Option<&Posts>) -> Posts {
     }
 }
 
-fn post_of(told: &SocialPost) -> Post {
+fn to_post(told: &SocialPost) -> Post {
     let group = told.group_id.map_or("–", Group::id);
     // Press posts carry the first group and no persona; customers of discovered groups have no persona either.
     let is_press = told.group_id.is_some() && told.group_id == Group::at(0);
@@ -129,7 +129,7 @@ fn post_of(told: &SocialPost) -> Post {
         day: told.day,
         author,
         text: told.content.clone(),
-        answers: told.reply_to_agent_post_id,
+        answered_post: told.reply_to_agent_post_id,
         views: 0,
         comments: 0,
     }
@@ -140,9 +140,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn customers_of_groups_that_were_found_are_no_press() {
+    fn posts_of_discovered_groups_are_not_press() {
         let told = |group: &str, name: Option<&'static str>| {
-            post_of(&SocialPost {
+            to_post(&SocialPost {
                 post_id: 4,
                 day: 9,
                 content: "x".to_owned(),
@@ -160,26 +160,26 @@ mod tests {
         assert_eq!(who(told("S1", None)), (PostKind::Press, "press".to_owned()));
         assert_eq!(who(told("S1", Some("Ada"))), (PostKind::Customers, "Ada · S1".to_owned()));
     }
-    use crate::test_kit::played;
+    use crate::test_kit::played_session;
     use novamind_record::trajectory::record::Via;
 
     #[test]
-    fn only_what_is_new_is_read_and_it_is_the_same_as_everything() {
-        let mut session = played(2);
-        let first = read(&session, None);
+    fn incremental_read_equals_full_read() {
+        let mut session = played_session(2);
+        let first = read_posts(&session, None);
         assert!(!first.is_empty());
-        assert!(Arc::ptr_eq(&first, &read(&session, Some(&first))), "nothing has changed");
+        assert!(Arc::ptr_eq(&first, &read_posts(&session, Some(&first))), "nothing has changed");
         let nothing = Posts::default();
         for known in [&first, &nothing] {
             for _ in 0..3 {
                 let forecasts = session.company().naive_forecasts();
                 session.advance("as planned", &forecasts, Via::Form, &mut |_| {}).expect("a week");
             }
-            let (grown, whole) = (read(&session, Some(known)), read(&session, None));
+            let (grown, whole) = (read_posts(&session, Some(known)), read_posts(&session, None));
             assert_eq!(grown, whole);
             assert!(grown.len() > known.len());
         }
-        let again = read(&session, Some(&first));
+        let again = read_posts(&session, Some(&first));
         let shared = again.iter().rev().zip(first.iter().rev());
         assert!(
             shared.clone().count() == first.len() && shared.clone().all(|(now, then)| Arc::ptr_eq(now, then))

@@ -22,8 +22,8 @@ pub struct Preferences {
 
 impl Preferences {
     /// Loads the saved preferences. An unreadable file is ignored, and replaced when preferences are saved.
-    pub fn of(configuration: &Configuration) -> Preferences {
-        let file = configuration.file(FILE).ok().flatten();
+    pub fn load(configuration: &Configuration) -> Preferences {
+        let file = configuration.read_file(FILE).ok().flatten();
         file.and_then(|source| toml::from_str(&source.text).ok()).unwrap_or_default()
     }
 
@@ -31,9 +31,9 @@ impl Preferences {
     ///
     /// # Errors
     /// The folder cannot be written.
-    pub fn keep(self, configuration: &Configuration) -> Result<(), RunError> {
+    pub fn save(self, configuration: &Configuration) -> Result<(), RunError> {
         let Some(folder) = &configuration.folder else { return Ok(()) };
-        let before = Preferences::of(configuration);
+        let before = Preferences::load(configuration);
         let all = Preferences { theme: self.theme.or(before.theme), marker: self.marker.or(before.marker) };
         std::fs::create_dir_all(folder).map_err(RunError::io(folder))?;
         let (path, draft) = (folder.join(FILE), folder.join("console.draft"));
@@ -48,17 +48,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_choice_is_kept_beside_the_others() {
+    fn saving_one_choice_keeps_the_others() {
         let folder = tempfile::tempdir().expect("a folder");
         let configuration = Configuration { folder: Some(folder.path().join("not-yet")), voice: None };
-        assert_eq!(Preferences::of(&configuration), Preferences::default());
+        assert_eq!(Preferences::load(&configuration), Preferences::default());
         let light = Preferences { theme: Some("light".to_owned()), marker: None };
-        light.keep(&configuration).expect("kept");
+        light.save(&configuration).expect("kept");
         let ascii = Preferences { theme: None, marker: Some(Glyphs::Ascii) };
-        ascii.keep(&configuration).expect("kept");
+        ascii.save(&configuration).expect("kept");
         let both = Preferences { theme: Some("light".to_owned()), marker: Some(Glyphs::Ascii) };
-        assert_eq!(Preferences::of(&configuration), both);
+        assert_eq!(Preferences::load(&configuration), both);
         std::fs::write(folder.path().join("not-yet/console.toml"), "marker = 3").expect("written");
-        assert_eq!(Preferences::of(&configuration), Preferences::default());
+        assert_eq!(Preferences::load(&configuration), Preferences::default());
     }
 }

@@ -4,15 +4,15 @@ use std::sync::mpsc::{Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use super::answering::catch_defect;
+use super::background::catch_defect;
 use super::{Job, SessionThread, Workers};
-use crate::asking::{Question, Reply};
+use crate::question::{Question, Reply};
 use crate::readings::Reading;
-use novamind_database::query::Limits;
-use novamind_database::{Interrupt, QueryConnection, Rows, Ticket};
+use novamind_database::query::QueryLimits;
+use novamind_database::{Interrupt, QueryConnection, QueryResult, QueryTicket};
 use novamind_record::trajectory::record::QuerySource;
-use novamind_session::{Session, query_refusal};
-use novamind_tools::Refusal;
+use novamind_session::{Session, query_rejection};
+use novamind_tools::Rejection;
 
 /// A query of the user.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,7 +20,7 @@ pub struct Query {
     /// The SQL statement.
     pub sql: String,
     /// The tables that it can read.
-    pub of: QueriedTables,
+    pub tables: QueriedTables,
 }
 
 /// The tables that a query of the user can read.
@@ -34,35 +34,35 @@ pub enum QueriedTables {
 
 impl Question for Query {
     /// The rows, and the duration of the query.
-    type Answer = (Rows, Duration);
+    type Answer = (QueryResult, Duration);
     type Progress = ();
 
     fn answer(self, thread: &mut SessionThread, reply: Reply<Self>) {
-        match self.of {
+        match self.tables {
             QueriedTables::Visible(via) => thread.ask_database(DatabaseQuestion::Query(self.sql, via, reply)),
-            QueriedTables::Hidden => reply.answer(thread.ask_inside(&self.sql)),
+            QueriedTables::Hidden => reply.answer(thread.query_hidden_tables(&self.sql)),
         }
     }
 
-    fn answer_at_once(self, reply: Reply<Self>, workers: &Workers) {
-        match self.of {
+    fn answer_while_busy(self, reply: Reply<Self>, workers: &Workers) {
+        match self.tables {
             QueriedTables::Visible(via) => {
                 workers.queries.ask(DatabaseQuestion::Query(self.sql, via, reply));
             }
-            QueriedTables::Hidden => workers.ask_in_turn(self, reply),
+            QueriedTables::Hidden => workers.ask_session_thread(self, reply),
         }
     }
 }
 
 impl Question for Reading {
-    type Answer = Rows;
+    type Answer = QueryResult;
     type Progress = ();
 
     fn answer(self, thread: &mut SessionThread, reply: Reply<Self>) {
         thread.ask_database(DatabaseQuestion::Reading(self, reply));
     }
 
-    fn answer_at_once(self, reply: Reply<Self>, workers: &Workers) {
+    fn answer_while_busy(self, reply: Reply<Self>, workers: &Workers) {
         workers.queries.ask(DatabaseQuestion::Reading(self, reply));
     }
 }
@@ -91,7 +91,7 @@ impl DatabaseQuestion {
         }
     }
 
-    fn ticket(&self) -> Option<Ticket> {
+    fn ticket(&self) -> Option<QueryTicket> {
         match self {
             DatabaseQuestion::Query(.., reply) => reply.ticket,
             DatabaseQuestion::Reading(..) => None,
@@ -107,12 +107,12 @@ pub(super) struct QueryThreads {
     interrupt: Arc<Mutex<Option<Interrupt>>>,
 }
 
-type Connection = (Box<QueryConnection>, Limits);
+type Connection = (Box<QueryConnection>, QueryLimits);
 
-type AskDatabase = fn(&Connection, &DatabaseQuestion) -> Result<Rows, Refusal>;
+type AskDatabase = fn(&Connection, &DatabaseQuestion) -> Result<QueryResult, Rejection>;
 
 enum QueryJob {
-    Connect(Box<QueryConnection>, Limits),
+    Connect(Box<QueryConnection>, QueryLimits),
     Ask(DatabaseQuestion),
     Disconnect,
 }
@@ -129,7 +129,7 @@ impl QueryThreads {
         let limits = session.company().query_limits();
         let database = session.database();
         let user = database.open_connection().ok();
-        self.hold(user.as_ref().map(QueryConnection::interrupt));
+        self.set_interrupt(user.as_ref().map(QueryConnection::interrupt));
         for (thread, own) in [(&self.user, user), (&self.screens, database.open_connection().ok())] {
             if let Some(own) = own {
                 let _ = thread.send(QueryJob::Connect(Box::new(own), limits));
@@ -137,19 +137,19 @@ impl QueryThreads {
         }
     }
 
-    fn hold(&self, interrupt: Option<Interrupt>) {
+    fn set_interrupt(&self, interrupt: Option<Interrupt>) {
         *self.interrupt.lock().unwrap_or_else(PoisonError::into_inner) = interrupt;
     }
 
     /// Closes the connections, so that the database can be closed.
     pub(super) fn disconnect(&self) {
-        self.hold(None);
+        self.set_interrupt(None);
         for thread in [&self.user, &self.screens] {
             let _ = thread.send(QueryJob::Disconnect);
         }
     }
 
-    pub(super) fn ticket(&self) -> Option<Ticket> {
+    pub(super) fn ticket(&self) -> Option<QueryTicket> {
         let interrupt = self.interrupt.lock().unwrap_or_else(PoisonError::into_inner);
         interrupt.as_ref().map(Interrupt::ticket)
     }
@@ -191,7 +191,7 @@ fn answer(
 ) {
     let started = Instant::now();
     let rows = match connection.as_ref().map(|own| catch_defect(|| ask(own, &question))) {
-        None => Err(Refusal::new("sql_error", "no run is open")),
+        None => Err(Rejection::new("sql_error", "no run is open")),
         Some(Ok(rows)) => rows,
         Some(Err(defect)) => {
             // The guard of the connection may be inconsistent, so the connection is dropped.
@@ -203,37 +203,37 @@ fn answer(
     let took = started.elapsed();
     match question {
         DatabaseQuestion::Query(sql, via, reply) => {
-            let _ = jobs.send(Job::NoteQuery(sql, rows.clone(), took, via));
+            let _ = jobs.send(Job::RecordQuery(sql, rows.clone(), took, via));
             reply.answer(rows.map(|rows| (rows, took)));
         }
         DatabaseQuestion::Reading(_, reply) => reply.answer(rows),
     }
 }
 
-fn ask((connection, limits): &Connection, question: &DatabaseQuestion) -> Result<Rows, Refusal> {
+fn ask((connection, limits): &Connection, question: &DatabaseQuestion) -> Result<QueryResult, Rejection> {
     let rows = match question.ticket() {
-        Some(ticket) => connection.ask_as(ticket, question.sql(), *limits),
-        None => connection.ask(question.sql(), *limits),
+        Some(ticket) => connection.query_with_ticket(ticket, question.sql(), *limits),
+        None => connection.query(question.sql(), *limits),
     };
-    rows.map_err(query_refusal)
+    rows.map_err(query_rejection)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::asking::Pending;
     use crate::message::Message;
-    use crate::test_kit::played;
+    use crate::question::Pending;
+    use crate::test_kit::played_session;
 
     /// Panics for one statement.
-    fn ask_or_panic(connection: &Connection, question: &DatabaseQuestion) -> Result<Rows, Refusal> {
+    fn ask_or_panic(connection: &Connection, question: &DatabaseQuestion) -> Result<QueryResult, Rejection> {
         assert_ne!(question.sql(), "SELECT 'defect'", "a defect");
         ask(connection, question)
     }
 
     #[test]
     fn query_thread_answers_after_a_panic_and_asks_for_a_new_connection() {
-        let session = played(0);
+        let session = played_session(0);
         let (news, answers) = channel();
         let (jobs, asked) = channel();
         let thread = start_thread(jobs, ask_or_panic);
@@ -243,7 +243,7 @@ mod tests {
         };
         let answer = |sql: &str| {
             let via = QuerySource::Typed;
-            let query = Query { sql: sql.to_owned(), of: QueriedTables::Visible(via) };
+            let query = Query { sql: sql.to_owned(), tables: QueriedTables::Visible(via) };
             let mut pending = Pending::default();
             let reply = pending.ask(query).reply::<Query>(news.clone()).expect("a query");
             let _ = thread.send(QueryJob::Ask(DatabaseQuestion::Query(sql.to_owned(), via, reply)));
@@ -257,7 +257,7 @@ mod tests {
         assert_eq!(refused.code, "internal_error");
         // The connection is dropped after the panic.
         assert_eq!(answer("SELECT 1").expect_err("no connection").code, "sql_error");
-        let noted = |job| matches!(job, Job::NoteQuery(..));
+        let noted = |job| matches!(job, Job::RecordQuery(..));
         assert!(noted(asked.recv().expect("a job")));
         assert!(matches!(asked.recv().expect("a job"), Job::Reconnect));
         assert!(noted(asked.recv().expect("a job")));

@@ -7,8 +7,8 @@ use serde_json::Value;
 use novamind_insight::DecisionEdit;
 use novamind_record::consent::ConsentGiven;
 use novamind_record::mode::Mode;
-use novamind_report::class::Shown;
-use novamind_session::{Access, Forecasts, Goal, NewRun};
+use novamind_report::class::ClassDisplayOptions;
+use novamind_session::{Access, Forecasts, NewRun, SeekTarget};
 use novamind_study::{DueQuestion, Study};
 use novamind_tools::ToolId;
 
@@ -22,7 +22,7 @@ pub enum Request {
     /// Delete a run of the folder.
     DeleteRun(String),
     /// Read a collected class from its folder for display.
-    ReadClass(PathBuf, Shown),
+    ReadClass(PathBuf, ClassDisplayOptions),
     /// Start or resume the lesson of a handout.
     OpenHandout(PathBuf),
     /// Create a run in the folder.
@@ -30,13 +30,13 @@ pub enum Request {
     /// Open a run of the folder by its id, for play or read-only.
     Open(String, Access),
     /// Recover the undamaged prefix of a damaged run as a branch and open it.
-    Rescue(String),
+    Recover(String),
     /// Replay a recorded run.
     Replay {
         /// The record.
-        recorded: Recorded,
+        recorded: RecordSource,
         /// The initial position.
-        goal: Goal,
+        goal: SeekTarget,
         /// Whether to follow new lines that another program writes.
         follow: bool,
     },
@@ -70,15 +70,15 @@ pub enum Request {
     /// Simulate a number of days of a debug run, up to a breakpoint.
     RunDays(u32),
     /// Save the notes.
-    SetMemo(String),
+    SetNotes(String),
     /// Build the run report for the final page.
-    TellStory,
+    BuildRunReport,
     /// Render the files of the run report.
-    WriteReport,
+    RenderReportFiles,
     /// A request to the lesson of the run.
     Lesson(LessonRequest),
     /// A request in a study.
-    Visit(VisitRequest),
+    Study(StudyRequest),
 }
 
 /// A request to a lesson. Steps and parts are counted from 0.
@@ -89,43 +89,43 @@ pub enum LessonRequest {
     /// Show the next hint.
     Hint,
     /// Retry a step from its start.
-    TryAgain(usize),
+    RetryStep(usize),
     /// Start another part.
-    BeginPart(usize),
+    StartPart(usize),
     /// Compute the debrief of a finished part.
     Debrief,
 }
 
 /// A request in a study.
 #[derive(Debug, Clone)]
-pub enum VisitRequest {
+pub enum StudyRequest {
     /// Start receiving participants of this study.
-    Receive(Box<Study>),
+    StartStudy(Box<Study>),
     /// The participant entered a label.
-    Begin {
+    IdentifyParticipant {
         /// The label.
         label: String,
         /// Number of labels rejected before.
-        refused: u32,
+        rejected_labels: u32,
     },
     /// The participant consents.
     Agree(ConsentGiven),
     /// The participant declines.
     Decline,
     /// The participant skips the practice.
-    PassPractice,
+    SkipPractice,
     /// The participant opens the next run.
     Play,
     /// The participant asks for the next step.
-    GoOn,
+    ShowNextStep,
     /// A question was shown to the participant.
-    Ask(Box<DueQuestion>),
+    RecordShownQuestion(Box<DueQuestion>),
     /// The participant submits the answers of a page.
-    Answer(Vec<GivenAnswer>),
+    SubmitAnswers(Vec<GivenAnswer>),
     /// The participant withdraws, after confirmation.
     Withdraw,
     /// Check the experimenter's code.
-    TryCode(String),
+    CheckCode(String),
 }
 
 /// The answer to a question, with how it was entered.
@@ -136,14 +136,14 @@ pub struct GivenAnswer {
     /// The answer; null if it was skipped.
     pub value: Value,
     /// Milliseconds on the screen.
-    pub for_ms: u64,
+    pub shown_ms: u64,
     /// Number of changes before it was submitted.
     pub changes: u32,
 }
 
 /// A recorded run.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Recorded {
+pub enum RecordSource {
     /// A run of the folder, by its id.
     Run(String),
     /// Any run folder or trajectory file.
@@ -151,27 +151,27 @@ pub enum Recorded {
 }
 
 /// Label while a script runs.
-pub const SCRIPT_RUNS: &str = "running the script";
+pub const SCRIPT_STATUS: &str = "running the script";
 
 impl Request {
     /// Returns whether it changes the run.
     pub fn changes_run(&self) -> bool {
-        self.waits_for_week() || self.lets_time_pass() || matches!(self, Request::SetMemo(_))
+        self.is_rejected_during_week() || self.simulates_days() || matches!(self, Request::SetNotes(_))
     }
 
     /// Returns whether it simulates days.
-    pub fn lets_time_pass(&self) -> bool {
+    pub fn simulates_days(&self) -> bool {
         matches!(self, Request::Advance { .. } | Request::RunDays(_))
     }
 
     /// Returns whether it is rejected while a week runs, because it was meant for the state before the week.
-    pub fn waits_for_week(&self) -> bool {
+    pub fn is_rejected_during_week(&self) -> bool {
         let of_lesson = matches!(self, Request::Lesson(asked) if *asked != LessonRequest::Debrief);
         of_lesson || matches!(self, Request::Call { .. } | Request::Undo | Request::Redo)
     }
 
     /// Returns whether participants of a study must not send it, because it reaches beyond their own run.
-    pub fn is_kept_from_participants(&self) -> bool {
+    pub fn is_forbidden_for_participants(&self) -> bool {
         match self {
             Request::ListRuns
             | Request::EndRun(_)
@@ -180,40 +180,40 @@ impl Request {
             | Request::OpenHandout(_)
             | Request::Create(_)
             | Request::Open(..)
-            | Request::Rescue(_)
+            | Request::Recover(_)
             | Request::Replay { .. }
             | Request::TakeOver(_)
             | Request::AdoptBranch { .. }
             | Request::RunDays(_)
             | Request::Lesson(_)
-            | Request::WriteReport => true,
+            | Request::RenderReportFiles => true,
             Request::Call { .. }
             | Request::Undo
             | Request::Redo
             | Request::Advance { .. }
-            | Request::SetMemo(_)
-            | Request::TellStory
-            | Request::Visit(_) => false,
+            | Request::SetNotes(_)
+            | Request::BuildRunReport
+            | Request::Study(_) => false,
         }
     }
 
     /// Returns the label shown until it is answered, or `None` if the user can continue meanwhile.
-    pub fn busy_with(&self) -> Option<&'static str> {
+    pub fn busy_label(&self) -> Option<&'static str> {
         Some(match self {
             Request::Create(_) => "starting the run",
             Request::ReadClass(..) => "reading the class",
             Request::OpenHandout(_) => "opening the handout",
             Request::Open(..) => "opening the run",
-            Request::Rescue(_) => "opening the intact part of the run",
+            Request::Recover(_) => "opening the intact part of the run",
             Request::Replay { .. } => "opening the record",
             Request::TakeOver(_) => "starting a run from here",
             Request::AdoptBranch { .. } => "simulating the branch",
-            Request::Lesson(LessonRequest::TryAgain(_)) => "returning to the start of the step",
-            Request::Lesson(LessonRequest::BeginPart(_)) => "starting the next part",
+            Request::Lesson(LessonRequest::RetryStep(_)) => "returning to the start of the step",
+            Request::Lesson(LessonRequest::StartPart(_)) => "starting the next part",
             Request::Advance { .. } => "running the week",
             Request::RunDays(_) => "simulating",
-            Request::Call { tool, .. } if tool.runs_code() => SCRIPT_RUNS,
-            Request::Visit(VisitRequest::Play) => "opening the run",
+            Request::Call { tool, .. } if tool.executes_code() => SCRIPT_STATUS,
+            Request::Study(StudyRequest::Play) => "opening the run",
             _ => return None,
         })
     }

@@ -7,17 +7,17 @@ use novamind_record::trajectory::record::Via;
 use novamind_session::{NewRun, Session, Storage};
 
 /// Returns a new run in memory.
-pub fn session() -> Session {
+pub fn new_session() -> Session {
     let new = NewRun { storage: Storage::Memory, ..NewRun::default() };
-    Session::create(new, &Configuration::shipped()).expect("a run in memory")
+    Session::create(new, &Configuration::bundled()).expect("a run in memory")
 }
 
 /// Returns a run in memory that was played for some weeks with sensible settings.
-pub fn played(weeks: usize) -> Session {
+pub fn played_session(weeks: usize) -> Session {
     let new = NewRun { seed: Some(7), days: Some(200), storage: Storage::Memory, ..NewRun::default() };
-    let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+    let mut session = Session::create(new, &Configuration::bundled()).expect("a run");
     if weeks > 0 {
-        open_shop(&mut session);
+        apply_initial_settings(&mut session);
     }
     for _ in 0..weeks {
         let forecasts = session.company().naive_forecasts();
@@ -26,7 +26,7 @@ pub fn played(weeks: usize) -> Session {
     session
 }
 
-fn open_shop(session: &mut Session) {
+fn apply_initial_settings(session: &mut Session) {
     let calls: [(&str, Value); 8] = [
         ("set_prices", json!({"A": 12, "B": 25, "C": 55})),
         ("set_model_tiers", json!({"B": 2, "C": 4})),
@@ -43,10 +43,10 @@ fn open_shop(session: &mut Session) {
 }
 
 /// Returns a run in memory in which enterprises wait for offers.
-pub fn courted() -> Session {
+pub fn session_with_negotiations() -> Session {
     let new =
         NewRun { seed: Some(11), cash: Some(20_000_000.0), storage: Storage::Memory, ..NewRun::default() };
-    let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+    let mut session = Session::create(new, &Configuration::bundled()).expect("a run");
     let ads = json!({"E1": 4000, "E2": 4000, "E3": 4000});
     for (tool, arguments) in [
         ("set_prices", json!({"A": 14, "B": 32, "C": 55})),

@@ -2,17 +2,17 @@
 //!
 //! Integers are little-endian, floats are stored as their bits, fields follow declaration order and lists are
 //! preceded by their length (`docs/formats/snapshot.md`). Two worlds with equal bytes evolve identically, and
-//! a world can be restored from its bytes ([`Restore`]).
+//! a world can be restored from its bytes ([`RestoreDraftsDialog`]).
 
 mod restore;
-mod stretches;
+mod segments;
 
 use indexmap::IndexMap;
 
 #[cfg(test)]
-pub use restore::restored;
+pub use restore::restore_all;
 pub use restore::{CanonicalReader, Restore};
-pub use stretches::{Stretch, hash_of_stretches};
+pub use segments::{HashSegment, hash_segments};
 
 use super::identifiers::{ByChannel, ByGroup, ByPlan, Channel, Group, Plan};
 
@@ -21,20 +21,20 @@ pub struct CanonicalHasher {
     hasher: blake3::Hasher,
     pending: Vec<u8>,
     /// Pending bytes are hashed as soon as there are this many.
-    piece: usize,
+    chunk_bytes: usize,
 }
 
 /// Bytes hashed at once: a power of two, so that each chunk is a complete subtree of the hash.
-const PIECE: usize = 1 << 16;
+const CHUNK_BYTES: usize = 1 << 16;
 /// Values of a column that are converted before their bytes are appended.
-const TOGETHER: usize = 128;
+const VALUES_PER_BATCH: usize = 128;
 
 impl Default for CanonicalHasher {
     fn default() -> Self {
         CanonicalHasher {
             hasher: blake3::Hasher::new(),
-            pending: Vec::with_capacity(2 * PIECE),
-            piece: PIECE,
+            pending: Vec::with_capacity(2 * CHUNK_BYTES),
+            chunk_bytes: CHUNK_BYTES,
         }
     }
 }
@@ -44,15 +44,15 @@ impl CanonicalHasher {
     #[inline]
     pub fn bytes(&mut self, bytes: &[u8]) {
         self.pending.extend_from_slice(bytes);
-        if self.pending.len() >= self.piece {
-            self.hash_pending();
+        if self.pending.len() >= self.chunk_bytes {
+            self.hash_complete_chunks();
         }
     }
 
     /// Returns a hasher that only collects bytes, with capacity for `room` of them.
     pub fn collector(room: usize) -> CanonicalHasher {
         let hasher = blake3::Hasher::new();
-        CanonicalHasher { hasher, pending: Vec::with_capacity(room), piece: usize::MAX }
+        CanonicalHasher { hasher, pending: Vec::with_capacity(room), chunk_bytes: usize::MAX }
     }
 
     /// Returns the bytes of a collector.
@@ -61,9 +61,13 @@ impl CanonicalHasher {
     }
 
     /// Appends the bytes of many values in batches, because columns are most of the state.
-    fn column<T: Copy, const WIDTH: usize>(&mut self, values: &[T], bytes_of: impl Fn(T) -> [u8; WIDTH]) {
-        let mut together = [[0; WIDTH]; TOGETHER];
-        for values in values.chunks(TOGETHER) {
+    fn update_column<T: Copy, const WIDTH: usize>(
+        &mut self,
+        values: &[T],
+        bytes_of: impl Fn(T) -> [u8; WIDTH],
+    ) {
+        let mut together = [[0; WIDTH]; VALUES_PER_BATCH];
+        for values in values.chunks(VALUES_PER_BATCH) {
             let places = &mut together[..values.len()];
             places.iter_mut().zip(values).for_each(|(place, value)| *place = bytes_of(*value));
             self.bytes(places.as_flattened());
@@ -72,8 +76,8 @@ impl CanonicalHasher {
 
     /// Hashes complete chunks and keeps the remainder: BLAKE3 is several times as fast on aligned input.
     #[cold]
-    fn hash_pending(&mut self) {
-        let whole = self.pending.len() / self.piece * self.piece;
+    fn hash_complete_chunks(&mut self) {
+        let whole = self.pending.len() / self.chunk_bytes * self.chunk_bytes;
         self.hasher.update(&self.pending[..whole]);
         self.pending.drain(..whole);
     }
@@ -122,7 +126,7 @@ macro_rules! canonical_numbers {
             }
 
             fn feed_all(values: &[Self], hasher: &mut CanonicalHasher) {
-                hasher.column(values, <$number>::to_le_bytes);
+                hasher.update_column(values, <$number>::to_le_bytes);
             }
         }
     )*};
@@ -136,7 +140,7 @@ impl Canonical for f64 {
     }
 
     fn feed_all(values: &[Self], hasher: &mut CanonicalHasher) {
-        hasher.column(values, |value| value.to_bits().to_le_bytes());
+        hasher.update_column(values, |value| value.to_bits().to_le_bytes());
     }
 }
 
@@ -147,7 +151,7 @@ impl Canonical for bool {
     }
 
     fn feed_all(values: &[Self], hasher: &mut CanonicalHasher) {
-        hasher.column(values, |value| [u8::from(value)]);
+        hasher.update_column(values, |value| [u8::from(value)]);
     }
 }
 
@@ -220,7 +224,7 @@ impl Canonical for Plan {
     }
 
     fn feed_all(values: &[Self], hasher: &mut CanonicalHasher) {
-        hasher.column(values, |plan| [plan.index() as u8]);
+        hasher.update_column(values, |plan| [plan.index() as u8]);
     }
 }
 
@@ -248,7 +252,7 @@ impl<T: Canonical> Canonical for ByChannel<T> {
     }
 }
 
-/// Implements [`Canonical`] and [`Restore`] for a struct from the list of all its fields. A missing field is
+/// Implements [`Canonical`] and [`RestoreDraftsDialog`] for a struct from the list of all its fields. A missing field is
 /// a compile error.
 #[macro_export]
 macro_rules! canonical {
@@ -270,7 +274,7 @@ macro_rules! canonical {
 }
 pub use canonical;
 
-/// Implements [`Canonical`] and [`Restore`] for a fieldless enum by its discriminant. A missing variant is a
+/// Implements [`Canonical`] and [`RestoreDraftsDialog`] for a fieldless enum by its discriminant. A missing variant is a
 /// compile error.
 macro_rules! canonical_codes {
     ($($name:ident { $($value:ident),* $(,)? })*) => {$(
@@ -303,7 +307,7 @@ mod tests {
     canonical!(Pair { first, second });
 
     #[test]
-    fn bytes_are_little_endian_and_lists_carry_their_length() {
+    fn canonical_bytes_are_little_endian_with_list_lengths() {
         let mut hasher = CanonicalHasher::default();
         Pair { first: 258, second: vec![1.0] }.feed(&mut hasher);
         assert_eq!(hasher.pending[..4], [2, 1, 0, 0]);
@@ -312,21 +316,21 @@ mod tests {
     }
 
     #[test]
-    fn what_was_fed_is_read_back() {
+    fn restore_inverts_feed() {
         let pair = Pair { first: 7, second: vec![0.1, f64::MIN_POSITIVE] };
-        let read: Pair = restored(&bytes_of(&pair)).expect("it reads");
+        let read: Pair = restore_all(&bytes_of(&pair)).expect("it reads");
         assert_eq!((read.first, read.second), (pair.first, pair.second));
     }
 
     #[test]
-    fn a_moved_boundary_between_lists_changes_the_hash() {
+    fn list_boundaries_change_the_hash() {
         let left = (vec![1u32, 2], vec![3u32]);
         let right = (vec![1u32], vec![2u32, 3]);
         assert_ne!(hash_of(&left), hash_of(&right));
     }
 
     #[test]
-    fn long_input_is_hashed_in_pieces_like_short_input() {
+    fn hashing_in_chunks_matches_hashing_at_once() {
         let long: Vec<u8> = (0..200_000u32).map(|value| value as u8).collect();
         let mut piecewise = CanonicalHasher::default();
         long.iter().for_each(|byte| piecewise.bytes(&[*byte]));
@@ -334,7 +338,7 @@ mod tests {
     }
 
     #[test]
-    fn a_column_has_the_bytes_of_its_values() {
+    fn feed_all_matches_feeding_each_value() {
         let numbers: Vec<u32> = (0..100_000).map(|value: u32| value.wrapping_mul(2_654_435_761)).collect();
         let floats: Vec<f64> = numbers.iter().map(|value| f64::from(*value) / 7.0).collect();
         let signs: Vec<bool> = numbers.iter().map(|value| value % 3 == 0).collect();

@@ -1,15 +1,15 @@
 //! Commands that change the world. A tool call becomes a command, its random draws are resolved, and applying
 //! it cannot fail.
 //!
-//! The steps are separate so that a call can be validated without side effects ([`Command`]), recorded with
-//! its result ([`World::resolve`] changes nothing), and only then applied ([`World::apply`]).
+//! The steps are separate so that a call can be validated without side effects ([`CommandId`]), recorded with
+//! its result ([`World::resolve`] changes nothing), and only then applied ([`World::apply_drift`]).
 
-use super::enterprise::letters::{Letter, Proposal};
+use super::enterprise::messages::{OfferDraft, OfferMessage};
 use super::events::{Attempt, Project, Study};
 use super::events::{Category, Facts, LedgerEntry, LedgerNote, Notice, OwnPostMade, ResearchChange};
 use super::identifiers::Group;
 use super::market::insights::{Insights, insights};
-use super::market::social::own::OwnPost;
+use super::market::social::own_posts::OwnPost;
 use super::params::Params;
 use super::product::research;
 use super::random::Streams;
@@ -33,16 +33,16 @@ pub enum Command {
     /// No change, but the errors of the group's estimates are drawn.
     ReadInsights(Group),
     /// Sends offers to enterprises.
-    SendDeals(Vec<Proposal>),
+    SendDeals(Vec<OfferDraft>),
     /// Ends threads with enterprises, by number.
     RejectDeals(Vec<u32>),
     /// Publishes a post of the player.
-    Post(Draft),
+    Post(PostDraft),
 }
 
 /// A post to be published.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Draft {
+pub struct PostDraft {
     /// Its text.
     pub content: String,
     /// Number of the post that it replies to.
@@ -66,7 +66,7 @@ pub enum ResolvedCommand {
     /// No change; the estimates of a group, or `None` if the group is unknown.
     ReadInsights(Option<Box<Insights>>),
     /// Messages to enterprises.
-    SendDeals(Vec<Letter>),
+    SendDeals(Vec<OfferMessage>),
     /// Numbers of the threads that end.
     RejectDeals(Vec<u32>),
     /// A post of the player.
@@ -75,7 +75,7 @@ pub enum ResolvedCommand {
 
 impl ResolvedCommand {
     /// Returns whether the command changes nothing.
-    pub fn only_reads(&self) -> bool {
+    pub fn is_read_only(&self) -> bool {
         matches!(self, ResolvedCommand::None | ResolvedCommand::ReadInsights(_))
     }
 }
@@ -87,7 +87,7 @@ impl World {
             Command::None => ResolvedCommand::None,
             Command::Set(change) => ResolvedCommand::Set(change),
             Command::StartResearch(tier) => {
-                let project = research::draw(&self.product, self.day, tier, params, streams);
+                let project = research::draw_project(&self.product, self.day, tier, params, streams);
                 ResolvedCommand::StartResearch(project, f64::from(params.research(tier).cost))
             }
             Command::ResearchMarket => {
@@ -100,7 +100,7 @@ impl World {
             Command::ReadInsights(group) => {
                 ResolvedCommand::ReadInsights(insights(group, &self.market, params, streams).map(Box::new))
             }
-            Command::SendDeals(proposals) => ResolvedCommand::SendDeals(self.enterprise.address(
+            Command::SendDeals(proposals) => ResolvedCommand::SendDeals(self.enterprise.resolve_offers(
                 &proposals,
                 self.day,
                 &self.customers,
@@ -108,7 +108,7 @@ impl World {
                 streams,
             )),
             Command::RejectDeals(threads) => ResolvedCommand::RejectDeals(threads),
-            Command::Post(Draft { content, reply_to }) => {
+            Command::Post(PostDraft { content, reply_to }) => {
                 let post = self.market.social.own.len() as u32 + 1;
                 ResolvedCommand::Post(OwnPostMade { post, content, reply_to })
             }
@@ -117,11 +117,11 @@ impl World {
 
     /// Applies a resolved command to the current day and records it in `facts`.
     pub fn apply(&mut self, resolved: ResolvedCommand, params: &Params, facts: &mut Facts) {
-        facts.begin(self.day);
+        facts.start_day(self.day);
         match resolved {
             ResolvedCommand::None | ResolvedCommand::ReadInsights(_) => {}
             ResolvedCommand::Set(change) => {
-                self.settings.set(change.clone());
+                self.settings.apply(change.clone());
                 facts.settings.push(change);
             }
             ResolvedCommand::StartResearch(project, cost) => {
@@ -131,7 +131,7 @@ impl World {
                 self.product.research.push(project);
                 facts.research.push(ResearchChange::Started(project));
             }
-            ResolvedCommand::ResearchMarket(attempt) => self.research_market(&attempt, params, facts),
+            ResolvedCommand::ResearchMarket(attempt) => self.apply_market_research(&attempt, params, facts),
             ResolvedCommand::ResearchGroup(study, cost) => {
                 let note = LedgerNote::Study(study);
                 self.finance
@@ -139,9 +139,11 @@ impl World {
                 self.market.studies.push(study);
             }
             ResolvedCommand::SendDeals(letters) => {
-                self.enterprise.send(&letters, self.day, &mut self.customers, facts);
+                self.enterprise.send_offers(&letters, self.day, &mut self.customers, facts);
             }
-            ResolvedCommand::RejectDeals(threads) => self.enterprise.reject(&threads, self.day, facts),
+            ResolvedCommand::RejectDeals(threads) => {
+                self.enterprise.reject_threads(&threads, self.day, facts)
+            }
             ResolvedCommand::Post(made) => {
                 let own = OwnPost::new(self.day, made.content.clone(), made.reply_to);
                 self.market.social.own.push(own);
@@ -152,11 +154,11 @@ impl World {
 }
 
 impl World {
-    fn research_market(&mut self, attempt: &Attempt, params: &Params, facts: &mut Facts) {
+    fn apply_market_research(&mut self, attempt: &Attempt, params: &Params, facts: &mut Facts) {
         let note = LedgerNote::General;
         let category = Category::MarketResearch;
         self.finance.book(LedgerEntry { category, amount: -attempt.cost, note }, facts);
-        self.market.note_attempt(attempt, self.day, params);
+        self.market.record_attempt(attempt, self.day, params);
         facts.attempts.push(*attempt);
         if let Some(group) = attempt.found {
             facts.knowledge.push((group, self.market.knowledge[group]));
@@ -170,10 +172,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn resolving_changes_nothing_and_foretells_the_deed() {
-        let (params, streams) = (Params::shipped(), Streams::new(3));
+    fn resolve_is_pure_and_predicts_apply() {
+        let (params, streams) = (Params::bundled(), Streams::new(3));
         let mut facts = Facts::default();
-        let mut world = World::open(500, 1_000_000.0, &params, &mut facts);
+        let mut world = World::new(500, 1_000_000.0, &params, &mut facts);
         let before = world.part_hashes();
         let resolved = world.resolve(Command::StartResearch(1), &params, &streams);
         assert_eq!(world.part_hashes(), before);

@@ -41,14 +41,14 @@ pub(crate) mod tests {
     use super::*;
 
     /// Runs `check` with the context of a given day. Tenure is at most 600 days.
-    pub(crate) fn on_day<R>(
+    pub(crate) fn with_day_context<R>(
         morning: &Morning,
         settings: &Settings,
         service: &ServiceDay,
         (params, streams): (&Params, &Streams),
         check: impl FnOnce(&DayContext<'_>) -> R,
     ) -> R {
-        let ads = AdLoad::of(&settings.ads_strength, params);
+        let ads = AdLoad::new(&settings.ads_strength, params);
         let tenure = TenureTable::up_to(600, params);
         let (ads, tenure) = (&ads, &tenure);
         check(&DayContext { morning, settings, service, service_penalty: 0.0, ads, tenure, params, streams })

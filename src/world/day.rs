@@ -1,23 +1,23 @@
 //! The simulation of one day: read [`step_day`] from top to bottom (`docs/mechanics/day.md`).
 
-pub mod room;
-pub mod watch;
+pub mod limits;
+pub mod observer;
 
-use watch::{DayWatch, Unwatched};
+use observer::{DayObserver, NoObserver};
 
 use super::canonical::canonical;
 use super::context::DayContext;
 use super::customers::Customers;
-use super::customers::columns::sums;
-use super::enterprise::Negotiation;
+use super::customers::columns::sum_columns;
+use super::enterprise::NegotiationContext;
 use super::events::{Category, DayFigures, Facts, LedgerEntry, LedgerNote};
 use super::finance::{Finance, pay_running_costs};
-use super::held::Held;
+use super::fixed_inputs::FixedInputs;
 use super::identifiers::{ByGroup, ByPlan, Group};
 use super::market::economy::Dimension;
 use super::market::leads::LeadFactors;
-use super::market::social::crowd::{self, Voices};
-use super::market::social::opinions::Scene;
+use super::market::social::opinions::OpinionContext;
+use super::market::social::post_lottery::{self, BlockWeights};
 use super::market::social::press;
 use super::market::{arrivals, competitors, economy, studies, surges, yields};
 use super::morning::Morning;
@@ -25,15 +25,15 @@ use super::params::Params;
 use super::product::ads::AdLoad;
 use super::product::{ads, development, research, service, usage};
 use super::random::Streams;
-use super::retention::billing::{self, Bills};
-use super::retention::issues::{self, IssueBatch, Settled};
-use super::retention::renewal::{self, Decisions, RenewalContext};
+use super::retention::billing::{self, BlockBills};
+use super::retention::issues::{self, IssueBatch, SettledIssues};
+use super::retention::renewal::{self, BlockDecisions, RenewalContext};
 use super::retention::{refresh_block, satisfaction};
 use super::state::World;
 use crate::customers::drift;
 use crate::quality::{TenureTable, service_penalty};
 use crate::reputation;
-use crate::reputation::{Mood, ReputationWrite};
+use crate::reputation::{ReputationContribution, ReputationWrite};
 
 /// Hidden values of a day for inspections and for comparison with reference figures.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -51,69 +51,71 @@ pub fn step_day(
     streams: &Streams,
     facts: &mut Facts,
 ) -> (DayFigures, DayTrace) {
-    step_day_watched(world, params, streams, &Held::default(), facts, &Unwatched)
+    step_day_observed(world, params, streams, &FixedInputs::default(), facts, &NoObserver)
 }
 
 /// Simulates one day like [`step_day`], with fixed inputs, and notifies an observer of each step.
-pub fn step_day_watched(
+pub fn step_day_observed(
     world: &mut World,
     params: &Params,
     streams: &Streams,
-    held: &Held,
+    held: &FixedInputs,
     facts: &mut Facts,
-    watch: &dyn DayWatch,
+    watch: &dyn DayObserver,
 ) -> (DayFigures, DayTrace) {
     world.day += 1;
     let (day, total_days) = (world.day, world.total_days);
-    facts.begin(day);
+    facts.start_day(day);
 
     // Values that stay constant during the day.
-    surges::draw_week(day, total_days, &mut world.market.surges, params, streams);
-    let morning = morning_of(world, params);
-    watch.morning_came(world, &morning, params);
+    surges::draw_week_surges(day, total_days, &mut world.market.surges, params, streams);
+    let morning = compute_morning(world, params);
+    watch.on_morning(world, &morning, params);
     let World { settings, finance, product, customers, issue_desk, market, enterprise, .. } = world;
-    if drift::is_drift_day(day - 1, &params.drift) && !held.holds_drift(day - 1) {
+    if drift::is_drift_day(day - 1, &params.drift) && !held.fixes_drift(day - 1) {
         refresh_requirements(customers, &morning, params);
     }
 
     // Usage, and the service under that load.
     let metered = usage::meter(customers, &morning, params, facts);
-    let service = service::observe(metered.total, &morning, held.service_on(day), params, streams, facts);
-    research::complete(day, product, facts);
-    studies::complete(day, market, params, facts);
+    let service =
+        service::observe_service(metered.total, &morning, held.fixed_service_on(day), params, streams, facts);
+    research::complete_due_projects(day, product, facts);
+    studies::complete_due_studies(day, market, params, facts);
 
     // The market changes.
     let seats = ByGroup::from_fn(|group| market.economy.multiplier(group, Dimension::SeatCount, params));
-    if !held.holds_drift(day) && drift::apply(day, &mut market.drift, customers, &seats, params) {
+    if !held.fixes_drift(day) && drift::apply_drift(day, &mut market.drift, customers, &seats, params) {
         refresh_requirements(customers, &morning, params);
     }
     if !held.yields {
-        yields::vary(day, &mut market.yields, params, streams);
+        yields::vary_yields(day, &mut market.yields, params, streams);
     }
     economy::step(day, &mut market.economy, held.economy, params, streams, facts);
-    if !held.rivals {
+    if !held.competitors {
         let (events, drift) = (&mut market.competitors, &mut market.drift);
-        competitors::react(day, total_days, events, product, drift, params, streams);
+        competitors::apply_move(day, total_days, events, product, drift, params, streams);
     }
-    press::write_about_rivals(day, &market.competitors, &mut market.social, params, streams, facts);
-    development::improve(day, product, settings, params, streams);
+    press::write_competitor_posts(day, &market.competitors, &mut market.social, params, streams, facts);
+    development::apply_development(day, product, settings, params, streams);
 
     let today = DayContext {
         morning: &morning,
         settings,
         service: &service,
         service_penalty: service_penalty(service.overload, service.outage, &params.quality),
-        ads: &AdLoad::of(&settings.ads_strength, params),
+        ads: &AdLoad::new(&settings.ads_strength, params),
         tenure: &TenureTable::up_to(day, params),
         params,
         streams,
     };
 
     // Subscribers open issues, update satisfaction, decide and pay; enterprises negotiate.
-    let scene = Scene { day: &today, chronicle: &market.social.chronicle };
-    let mut felt = feel(customers, &today, &scene, watch);
-    let crowd = felt.voices.map(|voices| crowd::listen(voices, customers, &scene, streams));
-    issues::allot(&mut felt.calls, settings, customers, issue_desk, &today);
+    let scene = OpinionContext { day: &today, chronicle: &market.social.chronicle };
+    let mut felt = update_satisfaction(customers, &today, &scene, watch);
+    let crowd =
+        felt.post_weights.map(|voices| post_lottery::from_subscribers(voices, customers, &scene, streams));
+    issues::allocate_resolutions(&mut felt.calls, settings, customers, issue_desk, &today);
     let judgement = RenewalContext {
         day: &today,
         involuntary: renewal::involuntary_rates(day, params, streams),
@@ -121,41 +123,42 @@ pub fn step_day_watched(
             market.economy.multiplier(group, Dimension::WillingnessToPay, params)
         }),
     };
-    let decided = decide(customers, felt.calls, &judgement, watch);
-    issues::record(decided.settled, facts);
-    let mut told = |write: &ReputationWrite<'_>| watch.reputation_moved(write);
-    let renewals = renewal::conclude(decided.decisions, &mut market.reputation, params, facts, &mut told);
-    let talks = Negotiation { day: &today, product, drift: &market.drift };
+    let decided = settle_and_decide(customers, felt.calls, &judgement, watch);
+    issues::record_issues(decided.settled, facts);
+    let mut told = |write: &ReputationWrite<'_>| watch.on_reputation_change(write);
+    let renewals =
+        renewal::record_decisions(decided.decisions, &mut market.reputation, params, facts, &mut told);
+    let talks = NegotiationContext { day: &today, product, drift: &market.drift };
     watch.before_negotiations(enterprise, customers, &talks);
     let negotiated = enterprise.step(customers, &mut market.reputation, &talks, facts, &mut told);
     let knowledge = market.knowledge;
-    let moods = satisfaction::by_group(felt.moods);
+    let moods = satisfaction::sum_by_group(felt.moods);
     let is_known = |group: Group| knowledge[group].level >= 1;
-    reputation::contribute(&mut market.reputation, &moods, is_known, params, &mut told);
-    watch.reputation_settled(&moods, market, params);
+    reputation::apply_contributions(&mut market.reputation, &moods, is_known, params, &mut told);
+    watch.on_reputation_settled(&moods, market, params);
 
     // Customers and the press write posts.
     if let Some(mut crowd) = crowd {
-        crowd.join(&renewals.gave_up, &negotiated.lost, params);
+        crowd.add_departed(&renewals.cancelled_individuals, &negotiated.lost, params);
         crowd.publish(&mut market.social, params, streams, facts);
     }
-    press::write_about_the_economy(day, &market.economy, &mut market.social, params, streams, facts);
+    press::write_economy_posts(day, &market.economy, &mut market.social, params, streams, facts);
 
     // New customers arrive.
-    let coming = arrivals::Arrivals { day: &today, market };
-    let subscribers = customers.active();
-    let mut factors = arrivals::expect(&coming, &subscribers);
-    held.hold_leads(day, morning.weekday, &mut factors);
-    watch.leads_expected(&coming, &subscribers, &factors);
-    let leads = arrivals::arrive(&coming, &factors, customers, enterprise, facts);
+    let coming = arrivals::ArrivalContext { day: &today, market };
+    let subscribers = customers.active_by_group();
+    let mut factors = arrivals::expected_leads(&coming, &subscribers);
+    held.apply_to_leads(day, morning.weekday, &mut factors);
+    watch.on_expected_leads(&coming, &subscribers, &factors);
+    let leads = arrivals::process_arrivals(&coming, &factors, customers, enterprise, facts);
     finance.cash -= f64::from(leads.all) * params.leads.lead_acquisition_cost;
 
     // Payments and costs.
-    let received = billing::collect(customers, decided.billed, &today, &negotiated.suspended, facts);
+    let received = billing::collect_payments(customers, decided.billed, &today, &negotiated.suspended, facts);
     finance.cash += received;
     let costs = pay_running_costs(finance, &metered, &morning, settings, params, facts);
-    earn_from_ads(customers, today.ads, finance, facts);
-    market.social.chronicle.write(day, &service, settings, product);
+    book_ad_revenue(customers, today.ads, finance, facts);
+    market.social.chronicle.append_day(day, &service, settings, product);
 
     let figures = DayFigures {
         day,
@@ -178,61 +181,70 @@ pub fn step_day_watched(
         total_costs: costs,
         ..closing_figures(world)
     };
-    watch.day_counted(&figures);
-    watch.day_over(world, params, facts);
+    watch.on_day_figures(&figures);
+    watch.on_day_end(world, params, facts);
     (figures, DayTrace { leads: factors })
 }
 
 /// Results of the first sweep over subscribers, by block.
-struct Felt {
+struct SatisfactionRound {
     calls: Vec<IssueBatch>,
-    moods: Vec<(Group, Mood)>,
+    moods: Vec<(Group, ReputationContribution)>,
     /// `None` unless customers post today.
-    voices: Option<Vec<Voices>>,
+    post_weights: Option<Vec<BlockWeights>>,
 }
 
 /// Finds new issues, updates satisfaction, and weighs potential authors on posting days.
-fn feel(customers: &mut Customers, day: &DayContext<'_>, scene: &Scene<'_>, watch: &dyn DayWatch) -> Felt {
-    let listening = crowd::is_posting_day(day.day(), day.params);
+fn update_satisfaction(
+    customers: &mut Customers,
+    day: &DayContext<'_>,
+    scene: &OpinionContext<'_>,
+    watch: &dyn DayObserver,
+) -> SatisfactionRound {
+    let listening = post_lottery::is_posting_day(day.day(), day.params);
     let felt = customers.sweep(|group, number, block| {
-        let calls = issues::read_calls(group, number, block, day);
+        let calls = issues::find_issues(group, number, block, day);
         let before = listening.then(|| block.satisfaction.clone());
-        watch.before_moods(group, block, day);
-        let mood = satisfaction::update(group, block, day);
-        let voices = before.map(|before| crowd::hear(group, block, before, scene));
+        watch.before_satisfaction(group, block, day);
+        let mood = satisfaction::update_block(group, block, day);
+        let voices = before.map(|before| post_lottery::weigh_block(group, block, before, scene));
         (calls, (group, mood), voices)
     });
     let (calls, moods, voices): (Vec<_>, Vec<_>, Vec<_>) = felt.into_iter().collect();
-    Felt { calls, moods, voices: listening.then(|| voices.into_iter().flatten().collect()) }
+    SatisfactionRound {
+        calls,
+        moods,
+        post_weights: listening.then(|| voices.into_iter().flatten().collect()),
+    }
 }
 
 /// Results of the second sweep, by block.
-struct Decided {
-    settled: Vec<Settled>,
-    decisions: Vec<Decisions>,
-    billed: Vec<Bills>,
+struct DecisionRound {
+    settled: Vec<SettledIssues>,
+    decisions: Vec<BlockDecisions>,
+    billed: Vec<BlockBills>,
 }
 
 /// Settles issues, then lets customers who are due decide; those who stay are billed.
-fn decide(
+fn settle_and_decide(
     customers: &mut Customers,
     calls: Vec<IssueBatch>,
     judgement: &RenewalContext<'_>,
-    watch: &dyn DayWatch,
-) -> Decided {
+    watch: &dyn DayObserver,
+) -> DecisionRound {
     let day = judgement.day;
     let decided = customers.sweep_with(calls, |group, number, block, calls| {
         let settled = issues::settle(block, &calls, day);
         watch.before_decisions(group, block, judgement);
-        let decisions = renewal::decide(group, number, block, judgement);
-        (settled, decisions, billing::bill_regulars(group, number, block, day))
+        let decisions = renewal::decide_block(group, number, block, judgement);
+        (settled, decisions, billing::bill_block(group, number, block, day))
     });
     let (settled, decisions, billed) = decided.into_iter().collect();
-    Decided { settled, decisions, billed }
+    DecisionRound { settled, decisions, billed }
 }
 
 /// Returns the values at the start of the world's current day.
-pub fn morning_of(world: &World, params: &Params) -> Morning {
+pub fn compute_morning(world: &World, params: &Params) -> Morning {
     let core = world.settings.core;
     Morning {
         day: world.day,
@@ -244,7 +256,7 @@ pub fn morning_of(world: &World, params: &Params) -> Morning {
         product: ByGroup::from_fn(|group| world.product.quality(group, params)),
         shared_quality: params.quality.base_product_quality + world.product.shared_bonus,
         expectations: ByGroup::from_fn(|group| world.market.drift.expectation(group)),
-        subscribers: world.customers.active(),
+        subscribers: world.customers.active_by_group(),
     }
 }
 
@@ -253,10 +265,10 @@ fn refresh_requirements(customers: &mut Customers, morning: &Morning, params: &P
     customers.sweep(|group, _, block| refresh_block(group, block, morning, params));
 }
 
-fn earn_from_ads(customers: &Customers, ads: &AdLoad<'_>, finance: &mut Finance, facts: &mut Facts) {
-    let revenue = ads::earn(customers, ads, facts);
+fn book_ad_revenue(customers: &Customers, ads: &AdLoad<'_>, finance: &mut Finance, facts: &mut Facts) {
+    let revenue = ads::record_ad_revenue(customers, ads, facts);
     if revenue > 0.0 {
-        let note = LedgerNote::Subscribers(customers.active().iter().sum());
+        let note = LedgerNote::Subscribers(customers.active_by_group().iter().sum());
         finance.book(LedgerEntry { category: Category::AdRevenue, amount: revenue, note }, facts);
     }
 }
@@ -268,7 +280,7 @@ pub fn closing_figures(world: &World) -> DayFigures {
     for several in blocks.chunks(4) {
         let prices: [&[f64]; 4] =
             std::array::from_fn(|at| several.get(at).map_or(&[][..], |(_, block)| &block.effective_price));
-        for ((group, block), paid) in several.iter().zip(sums(prices)) {
+        for ((group, block), paid) in several.iter().zip(sum_columns(prices)) {
             if group.is_enterprise() {
                 let seats = || block.seats.iter().map(|seats| seats.trunc());
                 let deals = block.effective_price.iter().zip(seats());
@@ -302,15 +314,15 @@ pub(crate) mod tests {
     use crate::test_kit::policy_p;
 
     fn run(cash: f64, days: u32, prepare: impl Fn(&mut World)) -> Vec<DayFigures> {
-        let (params, streams) = (Params::shipped(), Streams::new(42));
+        let (params, streams) = (Params::bundled(), Streams::new(42));
         let mut facts = Facts::default();
-        let mut world = World::open(500, cash, &params, &mut facts);
+        let mut world = World::new(500, cash, &params, &mut facts);
         prepare(&mut world);
         (0..days).map(|_| step_day(&mut world, &params, &streams, &mut facts).0).collect()
     }
 
     #[test]
-    fn an_idle_company_pays_85_a_day() {
+    fn idle_company_pays_85_dollars_a_day() {
         let days = run(1_000_000.0, 3, |_| {});
         assert_eq!((days[0].total_costs, days[0].cash), (85.0, 999_915.0));
         assert_eq!(days[2].cash, 999_745.0);
@@ -319,7 +331,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn a_day_has_the_factors_of_its_weekday_and_of_its_day_of_the_month() {
+    fn morning_has_weekday_and_month_day_factors() {
         for (day, weekday, month_day) in [
             (1, 1.1, 1.15),
             (2, 1.15, 1.15),
@@ -336,10 +348,10 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn a_week_of_policy_p_books_its_fixed_costs() {
-        let (params, streams) = (Params::shipped(), Streams::new(42));
+    fn week_of_policy_p_books_fixed_costs() {
+        let (params, streams) = (Params::bundled(), Streams::new(42));
         let mut facts = Facts::default();
-        let mut world = World::open(500, 1_000_000.0, &params, &mut facts);
+        let mut world = World::new(500, 1_000_000.0, &params, &mut facts);
         policy_p(&mut world);
         let mut booked = std::collections::BTreeMap::new();
         for _ in 0..7 {
@@ -357,10 +369,10 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn cash_is_the_sum_of_the_ledger_and_counts_agree_with_the_columns() {
-        let (params, streams) = (Params::shipped(), Streams::new(7));
+    fn cash_matches_the_ledger_and_counts_match_the_columns() {
+        let (params, streams) = (Params::bundled(), Streams::new(7));
         let mut facts = Facts::default();
-        let mut world = World::open(500, 1_000_000.0, &params, &mut facts);
+        let mut world = World::new(500, 1_000_000.0, &params, &mut facts);
         policy_p(&mut world);
         let (mut ledger, mut opened, mut ended) = (1_000_000.0, 0, 0);
         for _ in 0..120 {

@@ -50,7 +50,7 @@ impl Fault {
     ];
 
     /// Returns the fault with this number.
-    pub fn numbered(number: u32) -> Option<Fault> {
+    pub fn from_number(number: u32) -> Option<Fault> {
         Fault::ALL.into_iter().find(|fault| fault.number() == number)
     }
 
@@ -72,7 +72,7 @@ impl TryFrom<u32> for Fault {
     fn try_from(number: u32) -> Result<Fault, String> {
         let unknown =
             || format!("there is no fault {number}; choose a number from 1 to {}", Fault::ALL.len());
-        Fault::numbered(number).ok_or_else(unknown)
+        Fault::from_number(number).ok_or_else(unknown)
     }
 }
 
@@ -89,7 +89,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_are_places_in_the_list() {
+    fn fault_numbers_match_list_positions() {
         for (at, fault) in Fault::ALL.into_iter().enumerate() {
             assert_eq!(fault.number() as usize, at + 1);
             assert_eq!(Fault::try_from(fault.number()), Ok(fault));
@@ -100,8 +100,8 @@ mod tests {
     }
 
     #[test]
-    fn a_fault_is_in_the_digest_and_in_no_table() {
-        let sound = Params::shipped();
+    fn fault_changes_the_digest_and_no_table() {
+        let sound = Params::bundled();
         let faulty = Params { fault: Some(Fault::DriftTwice), ..sound.clone() };
         assert_ne!(sound.digest(), faulty.digest());
         assert!(sound.differences(&faulty).is_empty(), "a fault is not a parameter");

@@ -6,7 +6,7 @@ use super::fault::Fault;
 use super::identifiers::{ByPlan, Plan};
 use super::morning::Morning;
 use super::params::Params;
-use super::product::usage::Metered;
+use super::product::usage::MeteredUsage;
 use super::settings::Settings;
 
 /// Cash of the company, in dollars: the sum of the ledger.
@@ -32,7 +32,7 @@ impl Finance {
 }
 
 /// Returns the cost of compute in dollars: units used on each plan times the unit cost of its model today.
-pub fn compute_cost(metered: &Metered, morning: &Morning, params: &Params) -> f64 {
+pub fn compute_cost(metered: &MeteredUsage, morning: &Morning, params: &Params) -> f64 {
     let tiers = match params.has_fault(Fault::ComputeOfOnePlan) {
         true => ByPlan([morning.core.tiers[Plan::A]; Plan::ALL.len()]),
         false => morning.core.tiers,
@@ -45,7 +45,7 @@ pub fn compute_cost(metered: &Metered, morning: &Morning, params: &Params) -> f6
 /// are zero, targeted ones only if they are not.
 pub fn pay_running_costs(
     finance: &mut Finance,
-    metered: &Metered,
+    metered: &MeteredUsage,
     morning: &Morning,
     settings: &Settings,
     params: &Params,
@@ -83,10 +83,10 @@ mod tests {
     use crate::morning::tests::morning;
 
     #[test]
-    fn running_costs_are_booked_in_their_order_and_add_up() {
-        let params = Params::shipped();
+    fn running_costs_are_booked_in_order() {
+        let params = Params::bundled();
         let s1 = Group::at(0).expect("S1");
-        let mut settings = Settings::opening(&params);
+        let mut settings = Settings::initial(&params);
         settings.core.tiers = ByPlan([2, 4, 1]);
         settings.core.capacity_tier = 1;
         settings.core.operations = 120.0;
@@ -96,7 +96,8 @@ mod tests {
         settings.targeted_development.targeted_spend.insert(s1, 33.0);
         let mut day = morning(8);
         day.core = settings.core;
-        let metered = Metered { total: 189, by_plan: ByPlan([60 + 44, 83 + 2, 0]), ..Metered::default() };
+        let metered =
+            MeteredUsage { total: 189, by_plan: ByPlan([60 + 44, 83 + 2, 0]), ..MeteredUsage::default() };
         assert!((compute_cost(&metered, &day, &params) - 1.228).abs() < 1e-12);
         let (mut finance, mut facts) = (Finance { cash: 1000.0 }, Facts::default());
         let total = pay_running_costs(&mut finance, &metered, &day, &settings, &params, &mut facts);
@@ -110,7 +111,7 @@ mod tests {
 
     #[test]
     fn exactly_zero_is_not_bankrupt() {
-        let params = Params::shipped();
+        let params = Params::bundled();
         assert!(!Finance { cash: 0.0 }.is_bankrupt(&params));
         assert!(Finance { cash: -1e-9 }.is_bankrupt(&params));
     }

@@ -55,7 +55,7 @@ impl Group {
     }
 
     /// Returns whether the group is known from day 0. The six initial groups are; the others have to be discovered.
-    pub fn initially_known(self) -> bool {
+    pub fn is_initially_known(self) -> bool {
         self.0 < 6
     }
 }
@@ -244,7 +244,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn groups_keep_their_fixed_order() {
+    fn group_order_is_fixed() {
         let ids: Vec<_> = Group::all().map(Group::id).collect();
         assert_eq!(ids[..7], ["S1", "S2", "S3", "E1", "E2", "E3", "D_S01"]);
         assert_eq!(ids[25], "D_E10");
@@ -253,10 +253,10 @@ mod tests {
     }
 
     #[test]
-    fn segments_follow_from_the_identifier() {
+    fn segment_follows_from_the_identifier() {
         for group in Group::all() {
             assert_eq!(group.is_enterprise(), group.id().trim_start_matches("D_").starts_with('E'));
-            assert_eq!(group.initially_known(), !group.id().starts_with("D_"));
+            assert_eq!(group.is_initially_known(), !group.id().starts_with("D_"));
         }
     }
 

@@ -46,10 +46,10 @@ pub(crate) mod tests {
 
     /// A morning with simple values; tests change what they need.
     pub(crate) fn morning(day: u32) -> Morning {
-        let params = Params::shipped();
+        let params = Params::bundled();
         Morning {
             day,
-            core: Settings::opening(&params).core,
+            core: Settings::initial(&params).core,
             weekday: params.calendar.weekly[(day % 7) as usize],
             month_day: params.calendar.monthly[(day % 30) as usize],
             quotas: ByPlan([0.0; 3]),

@@ -117,8 +117,8 @@ mod tests {
     }
 
     #[test]
-    fn quotas_cover_their_share_and_ads_follow_a_logarithm() {
-        let params = Params::shipped();
+    fn quota_factor_and_ads_effect_match_check_values() {
+        let params = Params::bundled();
         for (quota, demand, factor) in [
             (0.0, 0.0, 1.0),
             (0.0, 10.0, 0.0),
@@ -145,16 +145,16 @@ mod tests {
     }
 
     #[test]
-    fn a_relationship_of_zero_is_read_as_neutral() {
-        let quality = Params::shipped().quality;
+    fn relationship_of_zero_is_read_as_neutral() {
+        let quality = Params::bundled().quality;
         near(relationship_bonus(relationship_as_read(0.0, &quality), &quality), 0.0);
         near(relationship_bonus(0.0, &quality), -0.45);
         near(relationship_bonus(1.0, &quality), 0.45);
     }
 
     #[test]
-    fn tenure_counts_from_the_second_day() {
-        let params = Params::shipped();
+    fn tenure_bonus_starts_on_the_second_day() {
+        let params = Params::bundled();
         let table = TenureTable::up_to(60, &params);
         near(table.bonus(0), 0.0);
         near(table.bonus(30), 0.05 * std::f64::consts::LN_2);
@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn the_paper_multiplies_everything_by_the_quota_factor() {
+    fn paper_form_multiplies_all_terms_by_the_quota_factor() {
         let experience = Experience {
             delivered: 0.5,
             relationship: 0.1,

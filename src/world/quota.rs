@@ -3,10 +3,10 @@
 use super::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore};
 
 /// From here on, f64 cannot represent all integers.
-const TOO_MANY: f64 = 9.0e15;
+const MAX_UNITS_EXCLUSIVE: f64 = 9.0e15;
 
 /// Marks canonical bytes of a fractional quota. No number of whole units is as large, and no quota is negative.
-const FRACTION: u64 = 1 << 63;
+const FRACTION_BIT: u64 = 1 << 63;
 
 /// A quota of at least 0.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd, Default)]
@@ -14,8 +14,8 @@ pub struct Quota(f64);
 
 impl Quota {
     /// Creates a quota, or returns `None` if `units` is out of range.
-    pub fn of(units: f64) -> Option<Quota> {
-        (0.0..TOO_MANY).contains(&units).then_some(Quota(units.abs()))
+    pub fn from_units(units: f64) -> Option<Quota> {
+        (0.0..MAX_UNITS_EXCLUSIVE).contains(&units).then_some(Quota(units.abs()))
     }
 
     /// Returns the units per day and customer.
@@ -35,7 +35,7 @@ impl Canonical for Quota {
     fn feed(&self, hasher: &mut CanonicalHasher) {
         let bytes = match self.0.fract() == 0.0 {
             true => self.0 as u64,
-            false => self.0.to_bits() | FRACTION,
+            false => self.0.to_bits() | FRACTION_BIT,
         };
         bytes.feed(hasher);
     }
@@ -44,41 +44,41 @@ impl Canonical for Quota {
 impl Restore for Quota {
     fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
         let bytes: u64 = reader.read()?;
-        let units = match bytes & FRACTION {
+        let units = match bytes & FRACTION_BIT {
             0 => bytes as f64,
-            _ => f64::from_bits(bytes & !FRACTION),
+            _ => f64::from_bits(bytes & !FRACTION_BIT),
         };
-        let has_fraction = bytes & FRACTION != 0;
-        Quota::of(units).filter(|quota| (quota.0.fract() != 0.0) == has_fraction)
+        let has_fraction = bytes & FRACTION_BIT != 0;
+        Quota::from_units(units).filter(|quota| (quota.0.fract() != 0.0) == has_fraction)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::canonical::{bytes_of, restored};
+    use crate::canonical::{bytes_of, restore_all};
 
     #[test]
-    fn whole_quotas_have_the_bytes_of_whole_numbers_and_others_come_back_too() {
+    fn quotas_round_trip_through_canonical_bytes() {
         for units in [0u64, 1, 59, 60_000, 1_200_000, 8_999_999_999_999_999] {
-            let quota = Quota::of(units as f64).expect("a quota");
+            let quota = Quota::from_units(units as f64).expect("a quota");
             assert_eq!(bytes_of(&quota), units.to_le_bytes());
-            assert_eq!(restored(&bytes_of(&quota)), Some(quota));
+            assert_eq!(restore_all(&bytes_of(&quota)), Some(quota));
         }
         for units in [0.5, 59.75, 1e-300, f64::from_bits(1), 4_000_000_000_000_000.5] {
-            let quota = Quota::of(units).expect("a quota");
-            assert_eq!(restored::<Quota>(&bytes_of(&quota)).map(Quota::units), Some(units));
+            let quota = Quota::from_units(units).expect("a quota");
+            assert_eq!(restore_all::<Quota>(&bytes_of(&quota)).map(Quota::units), Some(units));
         }
-        assert_eq!(bytes_of(&Quota::of(-0.0).expect("a quota")), bytes_of(&Quota::default()));
+        assert_eq!(bytes_of(&Quota::from_units(-0.0).expect("a quota")), bytes_of(&Quota::default()));
     }
 
     #[test]
-    fn what_is_no_quota_is_none() {
+    fn invalid_quotas_are_rejected() {
         for units in [-1.0, f64::NAN, f64::INFINITY, 9.0e15] {
-            assert_eq!(Quota::of(units), None);
+            assert_eq!(Quota::from_units(units), None);
         }
-        for bytes in [u64::MAX, FRACTION, FRACTION | 2.0f64.to_bits(), 1 << 60] {
-            assert_eq!(restored::<Quota>(&bytes.to_le_bytes()), None);
+        for bytes in [u64::MAX, FRACTION_BIT, FRACTION_BIT | 2.0f64.to_bits(), 1 << 60] {
+            assert_eq!(restore_all::<Quota>(&bytes.to_le_bytes()), None);
         }
     }
 }

@@ -106,7 +106,7 @@ pub struct Streams {
     seed: u64,
     keys: PartKeys,
     /// The last day that uses the run's original keys, and those keys; `None` if no draws were replaced.
-    own: Option<(u32, PartKeys)>,
+    original: Option<(u32, PartKeys)>,
 }
 
 type PartKeys = Vec<[u8; 32]>;
@@ -114,15 +114,15 @@ type PartKeys = Vec<[u8; 32]>;
 impl Streams {
     /// Streams of a run with this seed.
     pub fn new(seed: u64) -> Self {
-        Streams { seed, keys: part_keys("novamind random streams, version 1", &[seed]), own: None }
+        Streams { seed, keys: part_keys("novamind random streams, version 1", &[seed]), original: None }
     }
 
     /// Returns the streams of the same run with different draws after a day: equal salts give equal draws.
-    /// Draws up to that day that are read again stay the same, see [`Streams::open_since`].
-    pub fn redrawn(&self, salt: u64, last_own_day: u32) -> Self {
+    /// Draws up to that day that are read again stay the same, see [`Draws::open_for_day`].
+    pub fn redrawn_after(&self, salt: u64, last_own_day: u32) -> Self {
         let keys = part_keys("novamind random streams, redrawn, version 1", &[self.seed, salt]);
-        let own = self.own.clone().unwrap_or_else(|| (last_own_day, self.keys.clone()));
-        Streams { seed: self.seed, keys, own: Some(own) }
+        let own = self.original.clone().unwrap_or_else(|| (last_own_day, self.keys.clone()));
+        Streams { seed: self.seed, keys, original: Some(own) }
     }
 
     /// Returns the seed from which these streams are derived.
@@ -132,37 +132,38 @@ impl Streams {
 
     /// Opens the stream of a part for up to four entity keys. Equal arguments always give the same stream.
     pub fn open<const KEYS: usize>(&self, part: Part, entity: [u64; KEYS]) -> Stream {
-        Stream::of(self.key(part, entity))
+        Stream::from_key(self.key(part, entity))
     }
 
     /// Opens the stream of a value that is drawn on a day and read again later. If draws were replaced after
     /// that day, it uses the original keys.
-    pub fn open_since<const KEYS: usize>(&self, day: u32, part: Part, entity: [u64; KEYS]) -> Stream {
-        let keys = match &self.own {
+    pub fn open_for_day<const KEYS: usize>(&self, day: u32, part: Part, entity: [u64; KEYS]) -> Stream {
+        let keys = match &self.original {
             Some((last, own)) if day <= *last => own,
             _ => &self.keys,
         };
-        Stream::of(key_of(&keys[part as usize], entity))
+        Stream::from_key(stream_key(&keys[part as usize], entity))
     }
 
     fn key<const KEYS: usize>(&self, part: Part, entity: [u64; KEYS]) -> StreamKey {
-        key_of(&self.keys[part as usize], entity)
+        stream_key(&self.keys[part as usize], entity)
     }
 
-    /// Returns the stream keys of a part for many entities; [`Stream::of`] opens each as [`Streams::open`] does.
+    /// Returns the stream keys of a part for many entities; [`Stream::from_key`] opens each as [`Draws::new`] does.
     pub fn keys<const KEYS: usize>(&self, part: Part, entities: &[[u64; KEYS]]) -> Vec<StreamKey> {
-        together(
+        map_in_lanes(
             entities,
             |entity| self.key(part, entity),
             |some| {
-                simd_streams::keys(&self.keys[part as usize], some).map(|keys| keys.map(StreamKey::of_words))
+                simd_streams::keys(&self.keys[part as usize], some)
+                    .map(|keys| keys.map(StreamKey::from_words))
             },
         )
     }
 
     /// Returns the first word of the stream of each entity, for streams with a single draw.
     pub fn first_words<const KEYS: usize>(&self, part: Part, entities: &[[u64; KEYS]]) -> Vec<Word> {
-        together(
+        map_in_lanes(
             entities,
             |entity| self.open(part, entity).word(),
             |some| simd_streams::first_words(&self.keys[part as usize], some).map(|words| words.map(Word)),
@@ -181,7 +182,7 @@ fn part_keys(context: &str, numbers: &[u64]) -> PartKeys {
     Part::ALL.iter().map(key).collect()
 }
 
-fn key_of<const KEYS: usize>(part: &[u8; 32], entity: [u64; KEYS]) -> StreamKey {
+fn stream_key<const KEYS: usize>(part: &[u8; 32], entity: [u64; KEYS]) -> StreamKey {
     const { assert!(KEYS <= 4) };
     let mut bytes = [0u8; 32];
     for (slot, key) in bytes.chunks_exact_mut(8).zip(entity) {
@@ -191,7 +192,7 @@ fn key_of<const KEYS: usize>(part: &[u8; 32], entity: [u64; KEYS]) -> StreamKey 
 }
 
 /// Processes entities in batches of eight if the processor supports it, otherwise and for the remainder one by one.
-fn together<E: Copy, R>(
+fn map_in_lanes<E: Copy, R>(
     entities: &[E],
     single: impl Fn(E) -> R,
     eight: impl Fn(&[E; simd_streams::LANES]) -> Option<[R; simd_streams::LANES]>,
@@ -213,7 +214,7 @@ fn together<E: Copy, R>(
 pub struct StreamKey([u8; 32]);
 
 impl StreamKey {
-    fn of_words(words: simd_streams::Key) -> StreamKey {
+    fn from_words(words: simd_streams::Key) -> StreamKey {
         let mut bytes = [0u8; 32];
         for (bytes, word) in bytes.chunks_exact_mut(4).zip(words) {
             bytes.copy_from_slice(&word.to_le_bytes());
@@ -253,7 +254,7 @@ pub struct Stream(ChaCha8Rng);
 
 impl Stream {
     /// Opens the stream with this key.
-    pub fn of(key: StreamKey) -> Stream {
+    pub fn from_key(key: StreamKey) -> Stream {
         Stream(ChaCha8Rng::from_seed(key.0))
     }
 
@@ -390,7 +391,7 @@ mod tests {
     }
 
     #[test]
-    fn equal_keys_give_equal_streams_and_others_do_not() {
+    fn streams_are_equal_only_for_equal_keys() {
         let streams = Streams::new(42);
         let first = |streams: &Streams, part, keys| streams.open(part, keys).uniform();
         assert_eq!(first(&streams, Part::Traits, [0, 1]), first(&Streams::new(42), Part::Traits, [0, 1]));
@@ -400,14 +401,14 @@ mod tests {
     }
 
     #[test]
-    fn streams_opened_together_are_those_opened_one_by_one() {
+    fn batch_opening_matches_single_opening() {
         let streams = Streams::new(42);
         for count in [0, 1, 7, 8, 9, 100] {
             let entities: Vec<[u64; 3]> = (0..count).map(|n| [n, n << 33 | 5, u64::MAX - n]).collect();
             let singly = entities.iter().map(|keys| streams.open(Part::UsageRate, *keys));
             let first: Vec<Word> = singly.clone().map(|mut stream| stream.word()).collect();
             assert_eq!(streams.first_words(Part::UsageRate, &entities), first);
-            let together = streams.keys(Part::UsageRate, &entities).into_iter().map(Stream::of);
+            let together = streams.keys(Part::UsageRate, &entities).into_iter().map(Stream::from_key);
             for (mut one, mut other) in together.zip(singly) {
                 assert!((0..40).all(|_| one.word() == other.word()));
             }
@@ -419,7 +420,7 @@ mod tests {
     }
 
     #[test]
-    fn words_that_fill_a_block_are_those_of_the_stream() {
+    fn fill_matches_the_words_of_the_stream() {
         let stream = Streams::new(5).open(Part::IssueOpening, [1, 2, 3]);
         let mut words = [0; 1000];
         stream.clone().fill(&mut words);
@@ -428,7 +429,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_bits_never_change() {
+    fn first_bits_are_frozen() {
         // Frozen, because every recorded run depends on these bits.
         let mut stream = Streams::new(42).open(Part::Macro, [1]);
         assert_eq!(stream.uniform().to_bits(), FIRST_UNIFORM);
@@ -436,26 +437,27 @@ mod tests {
     }
 
     #[test]
-    fn redrawn_luck_is_other_luck_but_for_what_was_drawn_before() {
+    fn redrawn_streams_keep_earlier_draws() {
         let streams = Streams::new(42);
         let first = |streams: &Streams| streams.open(Part::Macro, [1]).word();
-        let [one, same, other] = [(1, 30), (1, 30), (2, 30)].map(|(salt, day)| streams.redrawn(salt, day));
+        let [one, same, other] =
+            [(1, 30), (1, 30), (2, 30)].map(|(salt, day)| streams.redrawn_after(salt, day));
         assert_eq!(first(&one), first(&same));
         assert_ne!(first(&one), first(&other));
         assert_ne!(first(&one), first(&streams));
-        let since = |streams: &Streams, day| streams.open_since(day, Part::InvoluntaryMu, [3, 1]).word();
+        let since = |streams: &Streams, day| streams.open_for_day(day, Part::InvoluntaryMu, [3, 1]).word();
         assert_eq!(since(&one, 30), since(&streams, 30));
         assert_ne!(since(&one, 31), since(&streams, 31));
         assert_eq!(since(&streams, 31), streams.open(Part::InvoluntaryMu, [3, 1]).word());
         // Replacing draws again keeps the original keys of earlier days.
-        assert_eq!(since(&one.redrawn(7, 60), 30), since(&streams, 30));
+        assert_eq!(since(&one.redrawn_after(7, 60), 30), since(&streams, 30));
     }
 
     const FIRST_UNIFORM: u64 = 4604554976407843933;
     const SECOND_NORMAL: u64 = 4603890776221144754;
 
     #[test]
-    fn continuous_draws_have_their_moments() {
+    fn continuous_draws_match_their_moments() {
         let mut stream = Streams::new(1).open(Part::Service, [0]);
         let (mean, std) = moments((0..200_000).map(|_| stream.normal(3.0, 2.0)));
         assert!((mean - 3.0).abs() < 0.02 && (std - 2.0).abs() < 0.02, "{mean} {std}");
@@ -464,7 +466,7 @@ mod tests {
     }
 
     #[test]
-    fn poisson_draws_have_their_moments_on_both_sides_of_the_switch() {
+    fn poisson_draws_match_their_moments() {
         let mut stream = Streams::new(2).open(Part::LeadCount, [0]);
         for expected in [0.3, 4.0, 9.99, 10.0, 57.5, 1200.0] {
             let (mean, std) = moments((0..100_000).map(|_| stream.poisson(expected) as f64));
@@ -477,7 +479,7 @@ mod tests {
     }
 
     #[test]
-    fn whole_numbers_cover_both_ends_evenly() {
+    fn integer_is_uniform_including_both_ends() {
         let mut stream = Streams::new(3).open(Part::Surge, [0]);
         let mut counts = [0u32; 8];
         for _ in 0..80_000 {
@@ -487,7 +489,7 @@ mod tests {
     }
 
     #[test]
-    fn words_decide_with_their_probability() {
+    fn word_below_matches_its_probability() {
         assert!(!word_below(0, 0.0));
         assert!(word_below(0, 1e-9));
         assert!(word_below(u32::MAX, 1.0));

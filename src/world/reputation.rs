@@ -12,15 +12,15 @@ use crate::params::{Params, Reputation};
 
 /// Contributions of some subscribers to their group's reputation today.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Mood {
+pub struct ReputationContribution {
     /// Sum of the contributions (`docs/mechanics/market/reputation.md`).
     pub sum: f64,
     /// Number of contributors.
     pub count: u32,
 }
 
-impl AddAssign for Mood {
-    fn add_assign(&mut self, other: Mood) {
+impl AddAssign for ReputationContribution {
+    fn add_assign(&mut self, other: ReputationContribution) {
         self.sum += other.sum;
         self.count += other.count;
     }
@@ -38,18 +38,18 @@ canonical! { ReputationBook { values } }
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ReputationCause {
     /// Individuals cancelled because no plan was acceptable.
-    Departures,
+    Cancellations,
     /// An enterprise was lost.
-    LostCompany,
+    LostEnterprise,
     /// Today's contributions of the group's own subscribers.
-    Mood(Mood),
+    Contributions(ReputationContribution),
     /// Contributions of subscribers of another group.
-    SpillOver(SpillOver),
+    Spillover(Spillover),
 }
 
 /// The share of a group's change that affects another: change × weight × factor.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SpillOver {
+pub struct Spillover {
     /// The group whose reputation changed.
     pub source: Group,
     /// Change of the source by its own subscribers.
@@ -76,16 +76,16 @@ pub struct ReputationWrite<'a> {
 }
 
 /// A callback for changes of reputation.
-pub type OnWrite<'a> = dyn FnMut(&ReputationWrite<'_>) + 'a;
+pub type OnReputationWrite<'a> = dyn FnMut(&ReputationWrite<'_>) + 'a;
 
 impl ReputationBook {
     /// Returns the reputations of day 0, which are equal for all groups.
-    pub fn opening(params: &Params) -> ReputationBook {
+    pub fn initial(params: &Params) -> ReputationBook {
         ReputationBook { values: ByGroup::from_fn(|_| params.initial.initial_reputation) }
     }
 
     /// Returns the reputation of a group.
-    pub fn of(&self, group: Group) -> f64 {
+    pub fn get(&self, group: Group) -> f64 {
         self.values[group]
     }
 
@@ -95,7 +95,7 @@ impl ReputationBook {
     }
 
     /// Adds a change, clamps the result to 0..=1 and applies the minimum.
-    pub fn move_by(&mut self, group: Group, change: f64, params: &Params) {
+    pub fn add(&mut self, group: Group, change: f64, params: &Params) {
         let law = &params.reputation;
         let moved = (self.values[group] + change).clamp(law.reputation_clamp_min, law.reputation_clamp_max);
         let has_floor = !params.has_fault(Fault::ReputationWithoutFloor);
@@ -103,16 +103,16 @@ impl ReputationBook {
     }
 
     /// Adds changes in order and reports the result to `told`.
-    pub fn write(
+    pub fn add_all(
         &mut self,
         (group, cause): (Group, ReputationCause),
         changes: &[f64],
         params: &Params,
-        told: &mut OnWrite<'_>,
+        told: &mut OnReputationWrite<'_>,
     ) {
-        let before = self.of(group);
-        changes.iter().for_each(|change| self.move_by(group, *change, params));
-        told(&ReputationWrite { group, cause, changes, before, after: self.of(group) });
+        let before = self.get(group);
+        changes.iter().for_each(|change| self.add(group, *change, params));
+        told(&ReputationWrite { group, cause, changes, before, after: self.get(group) });
     }
 }
 
@@ -125,20 +125,20 @@ pub fn contribution(satisfaction: f64, law: &Reputation) -> f64 {
 
 /// Returns the change of a group's reputation from today's contributions, before the threshold: (sum / m)
 /// log2(m), m = max(count, 2).
-pub fn called_change(mood: &Mood, law: &Reputation) -> f64 {
+pub fn unrounded_daily_change(mood: &ReputationContribution, law: &Reputation) -> f64 {
     let size = f64::from(mood.count.max(law.min_group_size));
     mood.sum / size * libm::log2(size)
 }
 
 /// Returns the change that is applied, or `None` if it is below the threshold.
-pub fn daily_change(mood: &Mood, law: &Reputation) -> Option<f64> {
-    let change = called_change(mood, law);
+pub fn daily_change(mood: &ReputationContribution, law: &Reputation) -> Option<f64> {
+    let change = unrounded_daily_change(mood, law);
     (change.abs() >= law.daily_delta_min_abs).then_some(change)
 }
 
 /// The spillover of a group's change to another known group.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Spill {
+pub struct SpilloverEffect {
     /// The group that changed.
     pub from: Group,
     /// The affected group.
@@ -156,14 +156,14 @@ pub struct Spill {
 }
 
 /// Returns the spillover of a group's change to another group.
-pub fn spill(change: f64, from: Group, to: Group, params: &Params) -> Spill {
+pub fn spillover_effect(change: f64, from: Group, to: Group, params: &Params) -> SpilloverEffect {
     let law = &params.reputation;
     let weight = params.reputation_weight(from, to);
     let (source_change, factor) = (change, law.cross_group_spillover_factor);
     let change = change * weight * factor;
     let change = if params.has_fault(Fault::SpillOverReversed) { -change } else { change };
     let counts = weight > 0.0 && change.abs() > law.cross_delta_min_abs;
-    Spill { from, to, source_change, weight, factor, change, counts }
+    SpilloverEffect { from, to, source_change, weight, factor, change, counts }
 }
 
 /// Returns the scale of a single event in a group of this many subscribers: log2(k) / k, k = max(count, 2).
@@ -186,26 +186,26 @@ pub fn event_damage(subscribers: u32, u: f64, law: &Reputation) -> f64 {
 }
 
 /// Changes reputations by today's contributions; each change spills over to the other known groups by their weights.
-pub fn contribute(
+pub fn apply_contributions(
     book: &mut ReputationBook,
-    moods: &ByGroup<Mood>,
+    moods: &ByGroup<ReputationContribution>,
     is_known: impl Fn(Group) -> bool,
     params: &Params,
-    told: &mut OnWrite<'_>,
+    told: &mut OnReputationWrite<'_>,
 ) {
     let law = &params.reputation;
     for group in Group::all().filter(|group| moods[*group].count > 0) {
         let Some(change) = daily_change(&moods[group], law) else { continue };
-        book.write((group, ReputationCause::Mood(moods[group])), &[change], params, told);
+        book.add_all((group, ReputationCause::Contributions(moods[group])), &[change], params, told);
         if !is_known(group) {
             continue;
         }
         for other in Group::all().filter(|other| *other != group && is_known(*other)) {
-            let spill = spill(change, group, other, params);
+            let spill = spillover_effect(change, group, other, params);
             if spill.counts {
                 let (weight, factor) = (spill.weight, law.cross_group_spillover_factor);
-                let cause = ReputationCause::SpillOver(SpillOver { source: group, change, weight, factor });
-                book.write((other, cause), &[spill.change], params, told);
+                let cause = ReputationCause::Spillover(Spillover { source: group, change, weight, factor });
+                book.add_all((other, cause), &[spill.change], params, told);
             }
         }
     }
@@ -220,10 +220,10 @@ mod tests {
     }
 
     /// Reputations after a day with these moods: (group, subscribers, satisfaction).
-    fn after(moods: &[(&str, u32, f64)], start: f64, discovered: &[&str]) -> ReputationBook {
-        let params = Params::shipped();
-        let mut book = ReputationBook::opening(&params);
-        let mut by_group = ByGroup::<Mood>::default();
+    fn reputation_after(moods: &[(&str, u32, f64)], start: f64, discovered: &[&str]) -> ReputationBook {
+        let params = Params::bundled();
+        let mut book = ReputationBook::initial(&params);
+        let mut by_group = ByGroup::<ReputationContribution>::default();
         for &(id, count, satisfaction) in moods {
             book.set(group(id), start);
             let mood = &mut by_group[group(id)];
@@ -232,36 +232,39 @@ mod tests {
                 mood.sum += contribution(satisfaction, &params.reputation);
             }
         }
-        let known = |group: Group| group.initially_known() || discovered.contains(&group.id());
-        contribute(&mut book, &by_group, known, &params, &mut |_| {});
+        let known = |group: Group| group.is_initially_known() || discovered.contains(&group.id());
+        apply_contributions(&mut book, &by_group, known, &params, &mut |_| {});
         book
     }
 
     fn assert_book(book: &ReputationBook, expected: &[(&str, f64)]) {
         for &(id, value) in expected {
-            let own = book.of(group(id));
+            let own = book.get(group(id));
             assert!((own / value - 1.0).abs() < 1e-9, "{id}: got {own}, expected {value}");
         }
     }
 
     #[test]
-    fn moods_move_a_group_and_spread_where_they_are_large() {
+    fn contributions_change_a_group_and_spill_over() {
         assert_book(
-            &after(&[("S1", 1000, 0.3)], 0.5, &[]),
+            &reputation_after(&[("S1", 1000, 0.3)], 0.5, &[]),
             &[("S1", 0.501494867643), ("S3", 0.5), ("E1", 0.5)],
         );
-        let unhappy = after(&[("S1", 1000, -0.3)], 0.5, &[]);
+        let unhappy = reputation_after(&[("S1", 1000, -0.3)], 0.5, &[]);
         assert_book(&unhappy, &[("S1", 0.497010264715), ("S3", 0.499865461912), ("S2", 0.5), ("E1", 0.5)]);
-        let small = after(&[("S1", 1, 0.5), ("S2", 100, 0.001)], 0.5, &[]);
+        let small = reputation_after(&[("S1", 1, 0.5), ("S2", 100, 0.001)], 0.5, &[]);
         assert_book(&small, &[("S1", 0.500125), ("S2", 0.5)]);
-        assert_book(&after(&[("S1", 600, 0.2), ("S1", 400, -0.1)], 0.5, &[]), &[("S1", 0.500199315686)]);
-        let crowd = after(&[("S1", 50_000, -1.2)], 0.5, &[]);
+        assert_book(
+            &reputation_after(&[("S1", 600, 0.2), ("S1", 400, -0.1)], 0.5, &[]),
+            &[("S1", 0.500199315686)],
+        );
+        let crowd = reputation_after(&[("S1", 50_000, -1.2)], 0.5, &[]);
         assert_book(&crowd, &[("S1", 0.481268431431), ("S2", 0.499719026471), ("S3", 0.499157079414)]);
     }
 
     #[test]
-    fn changes_spread_to_known_groups_only() {
-        let book = after(&[("S3", 2000, -0.4)], 0.5, &["D_S07", "D_S05"]);
+    fn spillover_reaches_known_groups_only() {
+        let book = reputation_after(&[("S3", 2000, -0.4)], 0.5, &["D_S07", "D_S05"]);
         let expected = [
             ("S3", 0.495613686286),
             ("S1", 0.499473642354),
@@ -277,14 +280,14 @@ mod tests {
     }
 
     #[test]
-    fn reputation_is_clamped_and_floored() {
-        assert_book(&after(&[("S1", 1000, -3.0)], 0.002, &[]), &[("S1", 0.001)]);
-        assert_book(&after(&[("S1", 1000, 3.0)], 0.9999, &[]), &[("S1", 1.0)]);
+    fn reputation_is_clamped_with_a_minimum() {
+        assert_book(&reputation_after(&[("S1", 1000, -3.0)], 0.002, &[]), &[("S1", 0.001)]);
+        assert_book(&reputation_after(&[("S1", 1000, 3.0)], 0.9999, &[]), &[("S1", 1.0)]);
     }
 
     #[test]
-    fn a_departure_hurts_a_small_group_more() {
-        let params = Params::shipped();
+    fn cancellation_damage_is_larger_in_small_groups() {
+        let params = Params::bundled();
         let law = &params.reputation;
         for (count, scale) in [
             (0, 0.5),
@@ -305,14 +308,14 @@ mod tests {
         ] {
             assert!((cancel_damage(satisfaction, count, u, law) / damage - 1.0).abs() < 1e-9);
         }
-        let mut book = ReputationBook::opening(&params);
-        book.move_by(group("S1"), -cancel_damage(-0.3, 10, 0.25, law), &params);
+        let mut book = ReputationBook::initial(&params);
+        book.add(group("S1"), -cancel_damage(-0.3, 10, 0.25, law), &params);
         assert_book(&book, &[("S1", 0.499738398)]);
     }
 
     #[test]
-    fn a_lost_company_hurts_without_its_mood() {
-        let law = Params::shipped().reputation;
+    fn lost_enterprise_damage_ignores_satisfaction() {
+        let law = Params::bundled().reputation;
         for (count, low, middle) in [
             (1, 9.375e-5, 1.875e-4),
             (2, 9.375e-5, 1.875e-4),

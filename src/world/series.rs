@@ -26,7 +26,7 @@ pub struct Series {
 
 /// A recorded competitor event.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct GivenEvent {
+pub struct RecordedEvent {
     /// Size before growth over the run.
     pub size: f64,
     /// Share of the shared bank that competitors could copy.
@@ -35,7 +35,7 @@ pub struct GivenEvent {
 
 /// A recorded demand surge.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct GivenSurge {
+pub struct RecordedSurge {
     /// Length in days.
     pub days: u32,
     /// Factor on leads.
@@ -65,15 +65,15 @@ impl Series {
     }
 
     /// Returns the competitor event of a day, if there was one.
-    pub fn competitor_event(&self, day: u32) -> Option<Option<GivenEvent>> {
+    pub fn competitor_event(&self, day: u32) -> Option<Option<RecordedEvent>> {
         let found = self.competitor_events.iter().find(|(own, _, _)| *own == day);
-        self.pmi(day).map(|_| found.map(|&(_, size, u)| GivenEvent { size, u }))
+        self.pmi(day).map(|_| found.map(|&(_, size, u)| RecordedEvent { size, u }))
     }
 
     /// Returns the demand surge that was drawn for a day, if there was one.
-    pub fn demand_surge(&self, day: u32) -> Option<Option<GivenSurge>> {
+    pub fn demand_surge(&self, day: u32) -> Option<Option<RecordedSurge>> {
         let found = self.demand_surges.iter().find(|(own, _, _)| *own == day);
-        self.pmi(day).map(|_| found.map(|&(_, days, multiplier)| GivenSurge { days, multiplier }))
+        self.pmi(day).map(|_| found.map(|&(_, days, multiplier)| RecordedSurge { days, multiplier }))
     }
 
     /// Returns the group that an attempt of market research discovered, if any; attempts count from 0.

@@ -129,7 +129,7 @@ canonical! {
     TargetedDevelopment { targeted_spend }
 }
 
-fn entry<K: std::hash::Hash + Eq>(map: &IndexMap<K, f64>, key: &K) -> f64 {
+fn value_or_zero<K: std::hash::Hash + Eq>(map: &IndexMap<K, f64>, key: &K) -> f64 {
     map.get(key).copied().unwrap_or(0.0)
 }
 
@@ -137,20 +137,20 @@ fn total<K>(map: &IndexMap<K, f64>) -> f64 {
     map.values().sum()
 }
 
-fn opening_quotas(params: &Params) -> ByPlan<Quota> {
+fn initial_quotas(params: &Params) -> ByPlan<Quota> {
     let initial = &params.initial;
     let units = [initial.default_quota_a, initial.default_quota_b, initial.default_quota_c];
-    ByPlan(units.map(|units| Quota::of(units as f64).unwrap_or_default()))
+    ByPlan(units.map(|units| Quota::from_units(units as f64).unwrap_or_default()))
 }
 
 impl Settings {
     /// Returns the settings of day 0.
-    pub fn opening(params: &Params) -> Settings {
+    pub fn initial(params: &Params) -> Settings {
         let initial = &params.initial;
         let core = CoreSettings {
             prices: ByPlan([initial.default_price_a, initial.default_price_b, initial.default_price_c]),
             tiers: ByPlan([initial.default_tier_a, initial.default_tier_b, initial.default_tier_c]),
-            quotas: opening_quotas(params),
+            quotas: initial_quotas(params),
             operations: initial.default_spend_operations,
             development: initial.default_spend_development,
             capacity_tier: initial.default_capacity_tier,
@@ -188,7 +188,7 @@ impl Settings {
     }
 
     /// Replaces a family.
-    pub fn set(&mut self, change: SettingsChange) {
+    pub fn apply(&mut self, change: SettingsChange) {
         match change {
             SettingsChange::Core(value) => self.core = value,
             SettingsChange::Promotion(value) => self.promotion = value,
@@ -205,9 +205,9 @@ impl Promotion {
     /// Returns the sum of the scopes for a customer and a plan: P(i, g, p), before the minimum of 0.
     pub fn sum(&self, customer: u32, group: Group, plan: Plan) -> f64 {
         self.global
-            + entry(&self.by_group, &group)
-            + entry(&self.by_customer, &i64::from(customer))
-            + self.by_group_plan.get(&group).map_or(0.0, |plans| entry(plans, &plan))
+            + value_or_zero(&self.by_group, &group)
+            + value_or_zero(&self.by_customer, &i64::from(customer))
+            + self.by_group_plan.get(&group).map_or(0.0, |plans| value_or_zero(plans, &plan))
     }
 }
 
@@ -215,22 +215,22 @@ impl LeadPromotion {
     /// Returns the sum of the scopes for a lead: LP(g, ch), before the minimum of 0. Channel scopes need a channel.
     pub fn sum(&self, group: Group, channel: Option<Channel>) -> f64 {
         let by_channel = channel.map_or(0.0, |channel| {
-            entry(&self.by_channel, &channel)
-                + self.by_channel_group.get(&channel).map_or(0.0, |groups| entry(groups, &group))
+            value_or_zero(&self.by_channel, &channel)
+                + self.by_channel_group.get(&channel).map_or(0.0, |groups| value_or_zero(groups, &group))
         });
-        self.global + entry(&self.by_group, &group) + by_channel
+        self.global + value_or_zero(&self.by_group, &group) + by_channel
     }
 }
 
 impl AdsStrength {
     /// Returns the level that decisions and negotiations use: global + group, not clamped.
     pub fn for_group(&self, group: Group) -> f64 {
-        self.global + entry(&self.by_group, &group)
+        self.global + value_or_zero(&self.by_group, &group)
     }
 
     /// Returns the additional level of a customer.
     pub fn for_customer(&self, customer: u32) -> f64 {
-        entry(&self.by_customer, &i64::from(customer))
+        value_or_zero(&self.by_customer, &i64::from(customer))
     }
 
     /// Returns whether any customer may see ads.
@@ -242,7 +242,7 @@ impl AdsStrength {
 impl TargetedAds {
     /// Returns the budget of a channel and group, dollars a day.
     pub fn spend(&self, channel: Channel, group: Group) -> f64 {
-        self.targeted_spend.get(&channel).map_or(0.0, |groups| entry(groups, &group))
+        self.targeted_spend.get(&channel).map_or(0.0, |groups| value_or_zero(groups, &group))
     }
 
     /// Returns the sum over channels and groups, dollars a day.
@@ -290,7 +290,7 @@ pub enum SettingsChange {
 impl SettingsChange {
     /// Returns the family as JSON with the field names of `config_overrides.settings_json`, or `None` for the
     /// core settings, which have their own table.
-    pub fn family(&self) -> Option<serde_json::Value> {
+    pub fn family_json(&self) -> Option<serde_json::Value> {
         let value = match self {
             SettingsChange::Core(_) => return None,
             SettingsChange::Promotion(value) => serde_json::to_value(value),
@@ -342,7 +342,7 @@ mod tests {
     }
 
     #[test]
-    fn promotions_add_up_over_their_scopes() {
+    fn promotion_sum_adds_all_scopes() {
         let promotion = Promotion {
             global: 5.0,
             by_group: PerGroup::from([(group("S1"), 2.0)]),
@@ -361,7 +361,7 @@ mod tests {
     }
 
     #[test]
-    fn lead_promotions_add_up_over_their_scopes() {
+    fn lead_promotion_sum_adds_all_scopes() {
         let promotion = LeadPromotion {
             global: 4.0,
             by_group: PerGroup::from([(group("S1"), 1.0)]),

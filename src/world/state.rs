@@ -50,17 +50,17 @@ pub struct PartHash {
 
 impl World {
     /// Creates the world of day 0 and records the facts of its setup.
-    pub fn open(total_days: u32, cash: f64, params: &Params, facts: &mut Facts) -> World {
-        facts.begin(0);
-        let settings = Settings::opening(params);
+    pub fn new(total_days: u32, cash: f64, params: &Params, facts: &mut Facts) -> World {
+        facts.start_day(0);
+        let settings = Settings::initial(params);
         let mut world = World {
             day: 0,
             total_days,
             finance: Finance { cash: 0.0 },
-            product: Product::opening(params),
+            product: Product::initial(params),
             customers: Customers::default(),
             issue_desk: IssueDesk::default(),
-            market: Market::opening(params),
+            market: Market::initial(params),
             enterprise: Enterprise::default(),
             settings,
         };
@@ -108,17 +108,17 @@ pub fn combined_hash(parts: &[PartHash]) -> blake3::Hash {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::canonical::{bytes_of, restored};
+    use crate::canonical::{bytes_of, restore_all};
     use crate::day::step_day;
     use crate::identifiers::{Channel, Group, Plan};
     use crate::random::Streams;
     use crate::settings::PerGroup;
 
     /// A company with individuals, enterprises, threads, issues, research and a study.
-    fn company() -> World {
-        let (params, streams) = (Params::shipped(), Streams::new(5));
+    fn busy_company() -> World {
+        let (params, streams) = (Params::bundled(), Streams::new(5));
         let mut facts = Facts::default();
-        let mut world = World::open(500, 1_000_000.0, &params, &mut facts);
+        let mut world = World::new(500, 1_000_000.0, &params, &mut facts);
         crate::test_kit::policy_p(&mut world);
         world.settings.core.tiers.0 = [3, 4, 5];
         let companies = |spend: f64| PerGroup::from([(Group::parse("E1").expect("a group"), spend)]);
@@ -127,21 +127,24 @@ mod tests {
         for _ in 0..40 {
             step_day(&mut world, &params, &streams, &mut facts);
         }
-        assert!(world.customers.active().iter().sum::<u32>() > 50 && !world.enterprise.threads.is_empty());
+        assert!(
+            world.customers.active_by_group().iter().sum::<u32>() > 50
+                && !world.enterprise.threads.is_empty()
+        );
         world
     }
 
     /// A change of one field; some changes take a group.
     type Change = fn(&mut World, Group);
 
-    fn changed(world: &World, other: &World) -> Vec<&'static str> {
+    fn changed_parts(world: &World, other: &World) -> Vec<&'static str> {
         let pairs = world.part_hashes().into_iter().zip(other.part_hashes());
         pairs.filter(|(own, other)| own.hash != other.hash).map(|(own, _)| own.part).collect()
     }
 
     #[test]
-    fn a_change_shows_in_its_own_part_and_in_no_other() {
-        let world = company();
+    fn part_hashes_localize_changes() {
+        let world = busy_company();
         let s2 = Group::parse("S2").expect("a group");
         let changes: [(&str, Change); 25] = [
             ("calendar", |world, _| world.day += 1),
@@ -175,18 +178,18 @@ mod tests {
         for (at, (part, change)) in changes.into_iter().enumerate() {
             let mut other = world.clone();
             change(&mut other, s2);
-            assert_eq!(changed(&world, &other), [part], "change {at}");
+            assert_eq!(changed_parts(&world, &other), [part], "change {at}");
             assert_ne!(combined_hash(&world.part_hashes()), combined_hash(&other.part_hashes()));
         }
     }
 
     /// All stored state is hashed: changing a byte of the canonical form results in another state or an error.
     #[test]
-    fn every_byte_of_a_state_belongs_to_exactly_one_part() {
-        let world = company();
+    fn part_hashes_cover_every_byte_once() {
+        let world = busy_company();
         let bytes = bytes_of(&world);
         let parts = world.part_hashes();
-        assert_eq!(restored::<World>(&bytes).expect("a world").part_hashes(), parts);
+        assert_eq!(restore_all::<World>(&bytes).expect("a world").part_hashes(), parts);
         let lengths = [
             bytes_of(&(world.day, world.total_days)).len(),
             bytes_of(&world.settings).len(),
@@ -204,8 +207,8 @@ mod tests {
             for at in (begin..begin + length).step_by(length.div_ceil(150)) {
                 let mut other = bytes.clone();
                 other[at] ^= 1;
-                if let Some(other) = restored::<World>(&other) {
-                    assert_eq!(changed(&world, &other), [part], "byte {at} of {}", bytes.len());
+                if let Some(other) = restore_all::<World>(&other) {
+                    assert_eq!(changed_parts(&world, &other), [part], "byte {at} of {}", bytes.len());
                     tried += 1;
                 }
             }

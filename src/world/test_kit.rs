@@ -3,7 +3,7 @@
 use crate::customers::columns::Subscriber;
 use crate::customers::persona::PersonaPicks;
 use crate::customers::traits::Negotiator;
-use crate::enterprise::{Company, Standing};
+use crate::enterprise::{Company, EnterpriseStatus};
 use crate::identifiers::{ByPlan, Channel, Group, Plan};
 use crate::quota::Quota;
 use crate::state::World;
@@ -42,7 +42,7 @@ pub fn subscriber(n: u32) -> Subscriber {
 }
 
 /// An enterprise with simple values.
-pub fn company_of(group: Group, n: u32, customer: u32, standing: Standing) -> Company {
+pub fn plain_enterprise(group: Group, n: u32, customer: u32, standing: EnterpriseStatus) -> Company {
     Company {
         customer,
         group,

@@ -7,11 +7,11 @@ use std::sync::{Arc, LazyLock};
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use novamind::database::{Entry, Location, Position, Projector};
+use novamind::database::{DatabaseLocation, ProjectionEntry, ProjectionPosition, Projector};
 use novamind::world::context::DayContext;
 use novamind::world::customers::Customers;
 use novamind::world::customers::traits::draw_traits;
-use novamind::world::day::{morning_of, step_day};
+use novamind::world::day::{compute_morning, step_day};
 use novamind::world::events::{Facts, ServiceDay};
 use novamind::world::identifiers::{ByPlan, Channel, Group};
 use novamind::world::morning::Morning;
@@ -41,9 +41,9 @@ struct Company {
 }
 
 static COMPANY: LazyLock<Company> = LazyLock::new(|| {
-    let (params, streams) = (Arc::new(Params::shipped()), Streams::new(42));
+    let (params, streams) = (Arc::new(Params::bundled()), Streams::new(42));
     let mut facts = Facts::default();
-    let mut world = World::open(500, 1e9, &params, &mut facts);
+    let mut world = World::new(500, 1e9, &params, &mut facts);
     let s1 = Group::at(0).expect("S1");
     let settings = &mut world.settings;
     settings.core.prices = ByPlan([12.0, 25.0, 55.0]);
@@ -62,7 +62,7 @@ static COMPANY: LazyLock<Company> = LazyLock::new(|| {
 
 impl Company {
     fn morning(&self) -> Morning {
-        morning_of(&self.world, &self.params)
+        compute_morning(&self.world, &self.params)
     }
 
     /// Runs a kernel on a day without an outage.
@@ -71,9 +71,9 @@ impl Company {
         kernel(&DayContext {
             morning: &self.morning(),
             settings,
-            service: &ServiceDay::quiet(),
+            service: &ServiceDay::without_load(),
             service_penalty: 0.0,
-            ads: &AdLoad::of(&settings.ads_strength, &self.params),
+            ads: &AdLoad::new(&settings.ads_strength, &self.params),
             tenure: &TenureTable::up_to(DAYS, &self.params),
             params: &self.params,
             streams: &self.streams,
@@ -81,7 +81,7 @@ impl Company {
     }
 
     fn subscribers(&self) -> ItemsCount {
-        ItemsCount::new(self.world.customers.active().iter().sum::<u32>())
+        ItemsCount::new(self.world.customers.active_by_group().iter().sum::<u32>())
     }
 }
 
@@ -95,7 +95,7 @@ fn quality_and_satisfaction_sweep(bencher: Bencher<'_, '_>) {
     let company = &*COMPANY;
     company.on_day(|day| {
         on_customers(bencher, company.subscribers(), |customers| {
-            customers.sweep(|group, _, block| satisfaction::update(group, block, day)).len()
+            customers.sweep(|group, _, block| satisfaction::update_block(group, block, day)).len()
         });
     });
 }
@@ -116,10 +116,10 @@ fn issue_pass(bencher: Bencher<'_, '_>) {
         on_customers(bencher, company.subscribers(), |customers| {
             let (mut connection, mut facts) = (company.world.issue_desk.clone(), Facts::default());
             let mut calls =
-                customers.sweep(|group, number, block| issues::read_calls(group, number, block, day));
-            issues::allot(&mut calls, day.settings, customers, &mut connection, day);
+                customers.sweep(|group, number, block| issues::find_issues(group, number, block, day));
+            issues::allocate_resolutions(&mut calls, day.settings, customers, &mut connection, day);
             let settled = customers.sweep_with(calls, |_, _, block, own| issues::settle(block, &own, day));
-            issues::record(settled, &mut facts);
+            issues::record_issues(settled, &mut facts);
             facts.issues_opened.len()
         });
     });
@@ -128,7 +128,7 @@ fn issue_pass(bencher: Bencher<'_, '_>) {
 #[divan::bench]
 fn customer_generation(bencher: Bencher<'_, '_>) {
     const COUNT: u32 = 1_000;
-    let (params, streams) = (Params::shipped(), Streams::new(42));
+    let (params, streams) = (Params::bundled(), Streams::new(42));
     let s1 = Group::at(0).expect("S1");
     bencher.counter(ItemsCount::new(COUNT)).bench_local(|| {
         (1..=COUNT).map(|n| draw_traits(s1, black_box(n), 1.0, &params, &streams).curve.c_max).sum::<f64>()
@@ -136,31 +136,32 @@ fn customer_generation(bencher: Bencher<'_, '_>) {
 }
 
 #[divan::bench]
-fn billing_of_a_day(bencher: Bencher<'_, '_>) {
+fn daily_billing(bencher: Bencher<'_, '_>) {
     let company = &*COMPANY;
     let suspended = BTreeSet::new();
     let bills = ItemsCount::new(company.facts.payments.len());
     company.on_day(|day| {
         on_customers(bencher, bills, |customers| {
             let regulars =
-                customers.sweep(|group, number, block| billing::bill_regulars(group, number, block, day));
-            billing::collect(customers, regulars, day, &suspended, &mut Facts::default())
+                customers.sweep(|group, number, block| billing::bill_block(group, number, block, day));
+            billing::collect_payments(customers, regulars, day, &suspended, &mut Facts::default())
         });
     });
 }
 
 #[divan::bench]
-fn row_writing_of_a_day(bencher: Bencher<'_, '_>) {
+fn daily_row_writing(bencher: Bencher<'_, '_>) {
     let company = &*COMPANY;
     let rows = company.facts.arrivals.len() + company.facts.payments.len() + company.facts.openings.len();
     let empty = || {
         let (projector, _) =
-            Projector::start(Location::memory(), 0, company.params.clone(), |_| false).expect("a database");
-        (projector, Entry { facts: company.facts.clone(), ..Entry::default() })
+            Projector::start(DatabaseLocation::new_in_memory(), 0, company.params.clone(), |_| false)
+                .expect("a database");
+        (projector, ProjectionEntry { facts: company.facts.clone(), ..ProjectionEntry::default() })
     };
     bencher.counter(ItemsCount::new(rows)).with_inputs(empty).bench_local_values(|(projector, entry)| {
-        projector.write(entry);
-        projector.commit(Position { seq: 1, line_hash: String::new() });
-        projector.wait().expect("the rows are written");
+        projector.enqueue(entry);
+        projector.commit(ProjectionPosition { seq: 1, line_hash: String::new() });
+        projector.flush().expect("the rows are written");
     });
 }

@@ -3,9 +3,11 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use novamind::course::{Class, ClassCollection, ClassSources, Handout, Lesson, ToHandOut, guess_in_lesson};
+use novamind::course::{
+    Class, ClassCollection, CollectionInput, Handout, HandoutSource, Lesson, submit_guess,
+};
 use novamind::record::trajectory::record::Via;
-use novamind::rules::answers_to_companies;
+use novamind::rules::calls_for_waiting_threads;
 use novamind::session::{Access, Session};
 use novamind::tui::theme::Theme;
 use serde_json::json;
@@ -17,20 +19,20 @@ const WIDE: (u16, u16) = (120, 40);
 
 fn class(folder: &Path, students: u32) -> Class {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/three-weeks.toml");
-    let lesson = ToHandOut::Lesson(Arc::new(Lesson::of_file(&path).expect("a lesson")));
+    let lesson = HandoutSource::Lesson(Arc::new(Lesson::from_file(&path).expect("a lesson")));
     Class::create(folder, &lesson, students).expect("a class")
 }
 
 /// Plays a handout to its end at a price.
 fn play(handout: &Path, runs: &Path, price: f64) {
     let handout = Handout::read(handout).expect("a hand-out");
-    let run = handout.place(runs).expect("a run");
+    let run = handout.ensure_run(runs).expect("a run");
     let folder = runs.join("participants").join(&handout.label).join(run);
     let mut session = Session::open(&folder, Access::Write, true).expect("it opens");
     let prices = json!({"A": price, "B": price * 2.5, "C": price * 6.25});
     session.call("set_prices", &prices, Via::Script).expect("prices");
     while session.ended().is_none() {
-        let _ = guess_in_lesson(&mut session, if price < 20.0 { 2.0 } else { 1.0 });
+        let _ = submit_guess(&mut session, if price < 20.0 { 2.0 } else { 1.0 });
         let forecasts = session.company().naive_forecasts();
         session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
     }
@@ -52,29 +54,29 @@ fn enter(console: &mut Console, text: &str) {
 }
 
 #[test]
-fn a_hand_out_is_opened_from_the_start_menu_and_gone_on_with() {
+fn start_menu_opens_and_resumes_a_handout() {
     let place = tempfile::tempdir().expect("a folder");
     let (folder, runs) = (place.path().join("class"), place.path().join("runs"));
     class(&folder, 2);
     let mut console = Console::start(&runs, SMALL);
     choose(&mut console, "Handout");
-    console.shows("Handout file");
+    console.assert_shows("Handout file");
     console.press("enter");
-    console.shows("Type a path");
+    console.assert_shows("Type a path");
     enter(&mut console, "nothing.nm");
-    console.shows("nothing.nm");
+    console.assert_shows("nothing.nm");
     assert!(console.app.run().is_none());
     console.press("esc");
     choose(&mut console, "Handout");
     let path = folder.join("S01.nm").display().to_string();
     enter(&mut console, &path);
-    console.shows("Three weeks");
+    console.assert_shows("Three weeks");
     let own = |console: &Console| console.app.run().expect("a run").company.folder.clone().expect("a folder");
     let first = own(&console);
     assert!(first.starts_with(runs.join("participants/S01")), "{}", first.display());
     // The menu lists the student's runs, and the same file resumes.
     console.press("esc ; q");
-    console.shows("1 on this machine");
+    console.assert_shows("1 on this machine");
     choose(&mut console, "Handout");
     enter(&mut console, &path);
     assert_eq!(own(&console), first);
@@ -84,24 +86,24 @@ fn a_hand_out_is_opened_from_the_start_menu_and_gone_on_with() {
     enter(&mut console, &folder.join("S02.nm").display().to_string());
     assert!(own(&console).starts_with(runs.join("participants/S02")));
     console.press("esc q");
-    let left = console.left.clone().expect("it has left");
+    let left = console.exit.clone().expect("it has left");
     assert!(left.1.expect("a farewell").contains("Resume it with `novamind --as S02 --run latest`"));
 }
 
 #[test]
-fn the_hand_out_of_somebody_else_is_refused_where_the_runs_are_one_persons() {
+fn handout_of_another_student_is_rejected() {
     let place = tempfile::tempdir().expect("a folder");
     let (folder, runs) = (place.path().join("class"), place.path().join("runs/participants/S02"));
     class(&folder, 2);
     let mut console = Console::start(&runs, SMALL);
     choose(&mut console, "Handout");
     enter(&mut console, &folder.join("S01.nm").display().to_string());
-    console.shows("this is the handout of S01, but this folder has the runs of S02");
+    console.assert_shows("this is the handout of S01, but this folder has the runs of S02");
     assert!(console.app.run().is_none() && !runs.with_file_name("S01").exists());
 }
 
 #[test]
-fn a_class_is_a_screen_of_the_start_menu() {
+fn start_menu_shows_a_class() {
     let place = tempfile::tempdir().expect("a folder");
     let (folder, runs) = (place.path().join("class"), place.path().join("runs"));
     let class = class(&folder, 7);
@@ -109,12 +111,12 @@ fn a_class_is_a_screen_of_the_start_menu() {
     choose(&mut console, "Class");
     let path = folder.display().to_string();
     enter(&mut console, &path);
-    console.shows("nothing was collected in");
+    console.assert_shows("nothing was collected in");
     for (number, student) in class.students.iter().enumerate().take(6) {
         play(&folder.join(format!("{}.nm", student.label)), &runs, 8.0 + 6.0 * number as f64);
     }
-    let sources = ClassSources { class: &class, folder: &folder, places: &[runs] };
-    ClassCollection::collect(&sources, answers_to_companies, &mut |_, _| {}).expect("collected");
+    let sources = CollectionInput { class: &class, folder: &folder, places: &[runs] };
+    ClassCollection::collect(&sources, calls_for_waiting_threads, &mut |_, _| {}).expect("collected");
     console.press("enter");
     let mut pictures = String::new();
     for (keys, size) in [("", WIDE), ("down down d f", WIDE), ("h", SMALL), ("tab", SMALL), ("tab", SMALL)] {
@@ -133,6 +135,6 @@ fn a_class_is_a_screen_of_the_start_menu() {
     assert!(pictures.contains("6 of 7"), "{pictures}");
     insta::assert_snapshot!("class", pictures);
     console.press("esc");
-    console.shows("› ");
+    console.assert_shows("› ");
     assert!(!console.screen().contains("Ranking"));
 }

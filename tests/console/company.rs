@@ -15,12 +15,13 @@ type Files = Vec<(PathBuf, Vec<u8>)>;
 type Key = (String, u64, u32);
 
 /// Companies that tests of this process have requested.
-static LED: LazyLock<Mutex<HashMap<Key, Arc<OnceLock<Files>>>>> = LazyLock::new(Mutex::default);
+static PLAYED_RUNS: LazyLock<Mutex<HashMap<Key, Arc<OnceLock<Files>>>>> = LazyLock::new(Mutex::default);
 
 /// Lets a policy of `tests/data/policies` play a company until a day. Tests that request the same company share it.
-pub fn led(policy: &str, seed: u64, until: u32, runs: &Path) {
-    let shared =
-        Arc::clone(LED.lock().expect("companies").entry((policy.to_owned(), seed, until)).or_default());
+pub fn copy_played_run(policy: &str, seed: u64, until: u32, runs: &Path) {
+    let shared = Arc::clone(
+        PLAYED_RUNS.lock().expect("companies").entry((policy.to_owned(), seed, until)).or_default(),
+    );
     for (path, bytes) in shared.get_or_init(|| files_of(policy, seed, until)) {
         let path = runs.join(path);
         fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
@@ -30,26 +31,26 @@ pub fn led(policy: &str, seed: u64, until: u32, runs: &Path) {
 
 fn files_of(policy: &str, seed: u64, until: u32) -> Files {
     let runs = tempfile::tempdir().expect("a folder");
-    let configuration = Configuration::shipped();
+    let configuration = Configuration::bundled();
     let file = format!("{}/tests/data/policies/{policy}", env!("CARGO_MANIFEST_DIR"));
     let policy = Policy::find(&file, &configuration).expect("a policy");
     let spec = RunSpec {
-        until: Some(until),
-        save: Some(runs.path().to_owned()),
-        projection: true,
-        ..RunSpec::of_seed(seed)
+        stop_after_day: Some(until),
+        save_folder: Some(runs.path().to_owned()),
+        saves_database: true,
+        ..RunSpec::for_seed(seed)
     };
-    play(&policy, &spec, &configuration, &mut Collector::idle()).expect("a run");
+    play(&policy, &spec, &configuration, &mut Collector::disabled()).expect("a run");
     let mut files = Vec::new();
-    read(runs.path(), runs.path(), &mut files);
+    read_files(runs.path(), runs.path(), &mut files);
     files
 }
 
-fn read(folder: &Path, base: &Path, files: &mut Files) {
+fn read_files(folder: &Path, base: &Path, files: &mut Files) {
     for entry in fs::read_dir(folder).expect("a folder") {
         let path = entry.expect("an entry").path();
         if path.is_dir() {
-            read(&path, base, files);
+            read_files(&path, base, files);
         } else {
             let below = path.strip_prefix(base).expect("below the folder").to_owned();
             files.push((below, fs::read(path).expect("a file")));

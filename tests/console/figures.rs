@@ -7,7 +7,7 @@ use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use super::company::led;
+use super::company::copy_played_run;
 use super::harness::Console;
 
 /// A young company, one with enterprise deals, and one in trouble: policy, seed, last days of weeks.
@@ -18,23 +18,23 @@ const COMPANIES: [(&str, u64, [u32; 2]); 3] =
 const SIZES: [(u16, u16); 2] = [(80, 24), (200, 57)];
 
 /// Plain-mode commands, run once as text and once as JSON.
-const ASKED: &str = "status\ndashboard\nneeds\ninbox\nchanges\nreport week\nreport run\n";
+const PLAIN_COMMANDS: &str = "status\ndashboard\nneeds\ninbox\nchanges\nreport week\nreport run\n";
 
 /// A figure: the names under which it is shown, with `#` for the number if it is not at the end, and its query;
 /// `{from}` and `{to}` are the days of the week. A figure without a query is only compared with itself.
 struct Figure(&'static [&'static str], &'static str);
 
 /// Relative error of sums of the same amounts in a different order.
-const SUMS: f64 = 1e-12;
+const SUM_TOLERANCE: f64 = 1e-12;
 
 /// Figures whose sign depends on whether they are listed among costs.
-const COSTS: [&str; 6] =
+const COST_FIGURES: [&str; 6] =
     ["running costs", "compute", "advertising", "operations", "development", "lead costs"];
 
 const FIGURES: [Figure; 29] = [
     Figure(&["cash", "cash at week's end", "cash is"], "SELECT sum(amount) FROM ledger"),
     Figure(
-        &["cash change", "cash change #, of it", CASH_MOVED],
+        &["cash change", "cash change #, of it", CASH_CHANGE],
         "SELECT sum(amount) FROM ledger WHERE {in_week}",
     ),
     Figure(
@@ -146,20 +146,20 @@ const FIGURES: [Figure; 29] = [
 ];
 
 /// The name of the change next to cash: an arrow, or a parenthesis.
-const CASH_MOVED: &str = "what cash did";
+const CASH_CHANGE: &str = "what cash did";
 
 /// Names that tables of the product screen use for something else: its service table has minutes of single days.
-const OF_OTHER_TABLES: [(&str, &str); 1] = [("screen 4", "outage, minutes")];
+const OTHER_TABLE_FIGURES: [(&str, &str); 1] = [("screen 4", "outage, minutes")];
 
 /// A formatted number, and its rounding error.
 #[derive(Debug, Clone, Copy)]
-struct Written {
+struct ShownNumber {
     value: f64,
     rounding: f64,
 }
 
 /// Parses a number at the start of a text: sign, dollars, digits, k, M, B or %. Returns the rest of the text.
-fn number(text: &str) -> Option<(Written, &str)> {
+fn parse_number(text: &str) -> Option<(ShownNumber, &str)> {
     let mut rest = text;
     let mut sign = 1.0;
     for mark in ["▲ ", "+", "-", "−", "$", "-"] {
@@ -183,11 +183,11 @@ fn number(text: &str) -> Option<(Written, &str)> {
         _ => (1.0, after),
     };
     let rounding = (0..decimals).fold(0.5001 * scale, |half, _| half / 10.0);
-    Some((Written { value: sign * scale * value, rounding }, after))
+    Some((ShownNumber { value: sign * scale * value, rounding }, after))
 }
 
 /// Returns the number of a name: after it, or at its `#`.
-fn value_of(name: &str, cell: &str) -> Option<Written> {
+fn shown_value(name: &str, cell: &str) -> Option<ShownNumber> {
     let (before, after) = name.split_once('#').unwrap_or((name, ""));
     let (before, low) = (before.trim_end(), cell.to_lowercase());
     // Byte positions must match, so text whose lower case has another length is skipped.
@@ -195,7 +195,7 @@ fn value_of(name: &str, cell: &str) -> Option<Written> {
         return None;
     }
     if before.is_empty() {
-        let (written, left) = number(cell.trim_start_matches([' ', '-', '!', '*']))?;
+        let (written, left) = parse_number(cell.trim_start_matches([' ', '-', '!', '*']))?;
         return left.starts_with(after).then_some(written);
     }
     let mut from = 0;
@@ -209,8 +209,8 @@ fn value_of(name: &str, cell: &str) -> Option<Written> {
             continue;
         }
         let rest = cell[from..].trim_start_matches(['"', '*', ':', '|', ' ', '─']);
-        let Some((mut written, mut left)) = number(rest) else { continue };
-        if let Some((new, after)) = left.strip_prefix(" → ").and_then(number) {
+        let Some((mut written, mut left)) = parse_number(rest) else { continue };
+        if let Some((new, after)) = left.strip_prefix(" → ").and_then(parse_number) {
             (written, left) = (new, after);
         }
         // A value per day is a rate, not the figure; a longer name may use the same number.
@@ -225,14 +225,14 @@ fn value_of(name: &str, cell: &str) -> Option<Written> {
 }
 
 /// Parses the change next to cash, `▼ $9.86k` or `(-$9,857 over the last week)`.
-fn cash_moved(cell: &str) -> Option<Written> {
+fn shown_cash_change(cell: &str) -> Option<ShownNumber> {
     let cash = cell.trim().strip_prefix("cash").or_else(|| cell.trim().strip_prefix("Cash"))?;
     let cash = cash.strip_prefix(" at week's end").unwrap_or(cash);
-    let (_, rest) = number(cash.trim_start_matches([' ', '─']))?;
+    let (_, rest) = parse_number(cash.trim_start_matches([' ', '─']))?;
     let rest = rest.trim_start();
     let fell = rest.strip_prefix("▼ ");
-    let (written, _) = number(fell.or(rest.strip_prefix("▲ ")).or(rest.strip_prefix('('))?)?;
-    Some(if fell.is_some() { Written { value: -written.value, ..written } } else { written })
+    let (written, _) = parse_number(fell.or(rest.strip_prefix("▲ ")).or(rest.strip_prefix('('))?)?;
+    Some(if fell.is_some() { ShownNumber { value: -written.value, ..written } } else { written })
 }
 
 /// Splits a line into independent parts. The cash in the header is one of them.
@@ -242,7 +242,7 @@ fn cells(part: &str) -> impl Iterator<Item = &str> {
 }
 
 /// Returns every figure that a text shows: its index, the number and the line.
-fn shown(text: &str) -> Vec<(usize, Written, String)> {
+fn shown_figures(text: &str) -> Vec<(usize, ShownNumber, String)> {
     let mut found = Vec::new();
     for line in text.lines() {
         // The changes after the semicolon belong to parts of the figure.
@@ -250,8 +250,8 @@ fn shown(text: &str) -> Vec<(usize, Written, String)> {
         for cell in line.split(['│', '┌', '┐', '└', '·']).flat_map(cells) {
             for (figure, Figure(names, _)) in FIGURES.iter().enumerate() {
                 let own = names.iter().filter_map(|name| match *name {
-                    CASH_MOVED => cash_moved(cell),
-                    name => value_of(name, cell),
+                    CASH_CHANGE => shown_cash_change(cell),
+                    name => shown_value(name, cell),
                 });
                 found.extend(own.map(|written| (figure, written, cell.trim().to_owned())));
             }
@@ -261,7 +261,7 @@ fn shown(text: &str) -> Vec<(usize, Written, String)> {
 }
 
 /// Runs plain mode and returns its output.
-fn plain(runs: &Path, options: &[&str], lines: &str) -> String {
+fn plain_output(runs: &Path, options: &[&str], lines: &str) -> String {
     let mut child = Command::new(env!("CARGO_BIN_EXE_novamind"))
         .env("NOVAMIND_RUNS", runs)
         .env("NOVAMIND_CONFIG", runs.join("configuration"))
@@ -277,7 +277,7 @@ fn plain(runs: &Path, options: &[&str], lines: &str) -> String {
 }
 
 /// Returns the shared page of a run as text, one line per table row.
-fn page(runs: &Path) -> String {
+fn report_page(runs: &Path) -> String {
     let output = Command::new(env!("CARGO_BIN_EXE_novamind"))
         .env("NOVAMIND_RUNS", runs)
         .args(["report", "latest", "--format", "html"])
@@ -298,8 +298,8 @@ fn page(runs: &Path) -> String {
 }
 
 /// Returns the value of every figure in the database, `None` for figures without a query.
-fn told(runs: &Path, day: u32) -> Vec<Option<f64>> {
-    let in_week = novamind::session::entries_of_weeks(day.div_ceil(7), day.div_ceil(7));
+fn database_figures(runs: &Path, day: u32) -> Vec<Option<f64>> {
+    let in_week = novamind::session::entries_of_weeks_sql(day.div_ceil(7), day.div_ceil(7));
     let statement = |sql: &str| {
         let sql = sql.replace("{in_week}", &in_week);
         sql.replace("{from}", &(day - 6).to_string()).replace("{to}", &day.to_string())
@@ -307,7 +307,7 @@ fn told(runs: &Path, day: u32) -> Vec<Option<f64>> {
     let asked: Vec<String> =
         FIGURES.iter().filter(|figure| !figure.1.is_empty()).map(|figure| statement(figure.1)).collect();
     let lines: String = asked.iter().map(|sql| format!("sql {sql}\n")).collect();
-    let text = plain(runs, &["--json"], &lines);
+    let text = plain_output(runs, &["--json"], &lines);
     let answers = text.lines().map(|line| serde_json::from_str::<serde_json::Value>(line).expect("JSON"));
     let mut rows = answers.filter_map(|answer| {
         let row = answer.pointer("/data/rows/0")?.as_object()?;
@@ -319,11 +319,11 @@ fn told(runs: &Path, day: u32) -> Vec<Option<f64>> {
 }
 
 /// Returns everything that shows figures of a company: the place, and the text.
-fn surfaces(runs: &Path) -> Vec<(String, String)> {
-    let mut all = vec![("plain".to_owned(), plain(runs, &[], ASKED))];
-    let json = plain(runs, &["--json"], "status\n");
+fn shown_texts(runs: &Path) -> Vec<(String, String)> {
+    let mut all = vec![("plain".to_owned(), plain_output(runs, &[], PLAIN_COMMANDS))];
+    let json = plain_output(runs, &["--json"], "status\n");
     all.push(("JSON".to_owned(), json.replace(",\"", "\n\"").replace('_', " ")));
-    all.push(("HTML".to_owned(), page(runs)));
+    all.push(("HTML".to_owned(), report_page(runs)));
     for size in SIZES {
         let mut console = Console::in_latest_run(runs, size);
         for key in ["1", "2", "3", "4", "5", "6", "7", "8", "9", "0"] {
@@ -337,24 +337,24 @@ fn surfaces(runs: &Path) -> Vec<(String, String)> {
 }
 
 #[test]
-fn what_has_one_name_is_one_figure() {
+fn figures_with_one_name_have_one_value() {
     let mut places: BTreeMap<usize, usize> = BTreeMap::new();
     let mut wrong = Vec::new();
     for (policy, seed, days) in COMPANIES {
         for day in days {
             let runs = tempfile::tempdir().expect("a folder");
-            led(policy, seed, day, runs.path());
-            let told = told(runs.path(), day);
-            let mut first: BTreeMap<usize, Written> = BTreeMap::new();
-            for (place, text) in surfaces(runs.path()) {
-                for (figure, written, line) in shown(&text) {
+            copy_played_run(policy, seed, day, runs.path());
+            let told = database_figures(runs.path(), day);
+            let mut first: BTreeMap<usize, ShownNumber> = BTreeMap::new();
+            for (place, text) in shown_texts(runs.path()) {
+                for (figure, written, line) in shown_figures(&text) {
                     let other =
                         |(table, name): &(&str, &str)| place.starts_with(table) && line.starts_with(name);
-                    if OF_OTHER_TABLES.iter().any(other) {
+                    if OTHER_TABLE_FIGURES.iter().any(other) {
                         continue;
                     }
                     *places.entry(figure).or_default() += 1;
-                    let cost = COSTS.contains(&FIGURES[figure].0[0]);
+                    let cost = COST_FIGURES.contains(&FIGURES[figure].0[0]);
                     let sign = |value: f64| if cost { value.abs() } else { value };
                     let other = *first.entry(figure).or_insert(written);
                     let (should, leeway) = match told[figure] {
@@ -362,7 +362,7 @@ fn what_has_one_name_is_one_figure() {
                         None => (other.value, other.rounding),
                     };
                     if (sign(written.value) - sign(should)).abs()
-                        > written.rounding + leeway + SUMS * should.abs()
+                        > written.rounding + leeway + SUM_TOLERANCE * should.abs()
                     {
                         wrong.push(format!("{policy} day {day}, {place}: {line:?}; it is {should}"));
                     }
@@ -378,10 +378,11 @@ fn what_has_one_name_is_one_figure() {
 }
 
 #[test]
-fn figures_are_read_where_they_stand() {
+fn shown_figures_parses_numbers_in_context() {
     let of = |text: &str| -> Vec<(&str, f64)> {
-        let named = |(figure, written, _): (usize, Written, String)| (FIGURES[figure].0[0], written.value);
-        shown(text).into_iter().map(named).collect()
+        let named =
+            |(figure, written, _): (usize, ShownNumber, String)| (FIGURES[figure].0[0], written.value);
+        shown_figures(text).into_iter().map(named).collect()
     };
     let top = " NovaMind  day 49/84 · wk 7/12   cash $952k ▼ $9.86k   runway ∞";
     assert_eq!(of(top), [("cash", 952_000.0), ("cash change", -9_860.0)]);

@@ -6,7 +6,7 @@ use novamind::tui::theme::Theme;
 use super::harness::Console;
 
 #[test]
-fn the_focus_is_seen_without_colour() {
+fn focus_is_visible_without_color() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = Console::in_new_run(runs.path(), (120, 40));
     for theme in ["dark", "light", "high-contrast", "mono"] {
@@ -26,78 +26,78 @@ fn the_focus_is_seen_without_colour() {
 }
 
 #[test]
-fn the_help_begins_with_the_pane_that_has_the_focus() {
+fn help_starts_with_the_focused_pane() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = Console::in_new_run(runs.path(), (80, 24));
     console.press("8 ?");
-    console.shows("Keys: Tools › Tools");
+    console.assert_shows("Keys: Tools › Tools");
     console.press("esc enter ?");
-    console.shows("Keys: Tools › set_prices");
+    console.assert_shows("Keys: Tools › set_prices");
     let screen = console.screen();
     let row = |words: &str| screen.lines().position(|line| line.contains(words));
     let first = screen.lines().position(|line| line.contains("pane  ")).expect("a row of the pane");
     assert!(row("Type a value;").expect("edit") == first, "{screen}");
     console.press("esc ; m ; m g o ?");
-    console.shows("Keys: Overview › ");
+    console.assert_shows("Keys: Overview › ");
     console.press("esc");
 }
 
 #[test]
-fn a_zoomed_form_keeps_the_screen_when_it_is_sent() {
+fn submitting_a_zoomed_form_keeps_the_screen() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = Console::in_new_run(runs.path(), (80, 24));
     console.press("8 enter z enter '14' enter ctrl-s");
-    console.shows("set_prices · pricing");
-    console.shows("✓ ");
+    console.assert_shows("set_prices · pricing");
+    console.assert_shows("✓ ");
     assert!(!console.screen().contains("set_model_tiers"), "the list is not shown");
     // The form still has the keys, and the next value is typed into it.
     console.press("up enter '15' ctrl-s");
-    console.shows("set_prices · pricing");
+    console.assert_shows("set_prices · pricing");
     console.press("z esc");
-    console.shows("set_model_tiers");
+    console.assert_shows("set_model_tiers");
 }
 
 #[test]
-fn the_way_is_shown_and_esc_goes_back_along_it() {
+fn breadcrumbs_are_shown_and_esc_goes_back() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = Console::in_new_run(runs.path(), (80, 24));
     // From a group in the list to the form of its development spending, and back.
     console.press("3 down enter");
-    console.shows("Customers › S2 › Go to");
+    console.assert_shows("Customers › S2 › Go to");
     console.press("tab");
-    console.shows("Customers › Fit of S2");
+    console.assert_shows("Customers › Fit of S2");
     console.press("shift-tab down enter");
-    console.shows("› S2 › set_targeted_dev_spend");
+    console.assert_shows("› S2 › set_targeted_dev_spend");
     // Typing ends first, and a filter is cleared first.
     console.press("enter '5' esc");
-    console.shows("› S2 › set_targeted_dev_spend");
+    console.assert_shows("› S2 › set_targeted_dev_spend");
     console.press("esc");
-    console.shows("Customers › S2 › Go to");
+    console.assert_shows("Customers › S2 › Go to");
     console.press("esc");
-    console.shows("Leads per $1,000");
+    console.assert_shows("Leads per $1,000");
     assert!(!console.screen().contains("Customers ›"), "the list is reached");
     // From an action item to the form, which is sent; then esc returns.
     console.press("1 enter");
-    console.shows("Overview › set_prices");
+    console.assert_shows("Overview › set_prices");
     console.press("enter '14' enter ctrl-s esc");
-    console.shows("Action needed");
+    console.assert_shows("Action needed");
     // The source rows of a figure, and their query.
-    console.week();
+    console.advance_week();
     console.press("esc 2 f");
-    console.shows("Cash › ");
+    console.assert_shows("Cash › ");
     console.press("o");
-    console.shows("Cash › Query");
+    console.assert_shows("Cash › Query");
     console.press("esc");
-    console.shows("Cash › Result");
+    console.assert_shows("Cash › Result");
     console.press("esc");
-    console.shows("Ledger of week 1");
+    console.assert_shows("Ledger of week 1");
     // Choosing a screen by its key clears the breadcrumbs.
     console.press("3 enter enter 8");
     assert!(!console.screen().contains("Customers ›"));
     for size in [(60, 16), (120, 40), (200, 60)] {
         console.size = size;
         console.press("1 3 esc enter enter");
-        console.shows("› S2 › set_targeted_ad_spend");
+        console.assert_shows("› S2 › set_targeted_ad_spend");
         console.press("esc esc");
     }
 }

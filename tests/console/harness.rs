@@ -6,7 +6,7 @@ use std::path::Path;
 use crossterm::event::Event;
 use novamind::console::app::Settings;
 use novamind::console::headless::Headless;
-use novamind::console::keys::Keys;
+use novamind::console::keys::KeyBindings;
 use novamind::console::themes;
 use novamind::record::folder::configuration::Configuration;
 use novamind::tui::glyphs::Glyphs;
@@ -34,32 +34,32 @@ impl DerefMut for Console {
 impl Console {
     /// Returns a console in its start menu.
     pub fn start(runs: &Path, size: (u16, u16)) -> Console {
-        Console::start_with(Configuration::shipped(), runs, size)
+        Console::start_with(Configuration::bundled(), runs, size)
     }
 
     /// Returns a console in its start menu, with a configuration.
     pub fn start_with(configuration: Configuration, runs: &Path, size: (u16, u16)) -> Console {
-        Console::of(Console::settings(configuration, runs), size)
+        Console::with_settings(Console::settings(configuration, runs), size)
     }
 
     /// Returns the settings of test consoles.
     pub fn settings(configuration: Configuration, runs: &Path) -> Settings {
         Settings {
-            theme: themes::find("dark", &configuration).expect("a theme"),
-            keys: Keys::shipped(),
+            theme: themes::find_theme("dark", &configuration).expect("a theme"),
+            keys: KeyBindings::bundled(),
             glyphs: Glyphs::Braille,
             configuration,
             runs: runs.to_owned(),
-            again: "novamind --run latest".to_owned(),
-            lists_everybody: false,
+            resume_command: "novamind --run latest".to_owned(),
+            lists_all_participants: false,
             opponents: novamind::lab::play_opponents,
         }
     }
 
     /// Returns a console in its start menu, with settings.
-    pub fn of(settings: Settings, size: (u16, u16)) -> Console {
+    pub fn with_settings(settings: Settings, size: (u16, u16)) -> Console {
         let mut console = Console { headless: Some(Headless::new(settings, size)) };
-        console.settle().expect("the menu");
+        console.wait_until_idle().expect("the menu");
         console
     }
 
@@ -79,19 +79,19 @@ impl Console {
 
     /// Presses keys in the notation of the key file; a word in quotes is typed letter by letter.
     pub fn press(&mut self, keys: &str) {
-        let pressed = self.deref_mut().press(keys);
+        let pressed = self.deref_mut().press_keys(keys);
         pressed.unwrap_or_else(|problem| panic!("{keys}: {problem}"));
     }
 
     /// Presses one key and waits for its consequences.
     pub fn key(&mut self, key: &str) {
-        let pressed = self.deref_mut().key(key);
+        let pressed = self.deref_mut().press_key(key);
         pressed.unwrap_or_else(|problem| panic!("{key}: {problem}"));
     }
 
     /// Handles an event and waits for its consequences.
     pub fn send(&mut self, event: Event) {
-        self.deref_mut().send(event).expect("an answer");
+        self.deref_mut().handle_event(event).expect("an answer");
     }
 
     /// Draws a frame and returns its cells.
@@ -112,7 +112,7 @@ impl Console {
     }
 
     /// Asserts that the screen contains a text.
-    pub fn shows(&mut self, text: &str) {
+    pub fn assert_shows(&mut self, text: &str) {
         let screen = self.screen();
         assert!(screen.contains(text), "{text:?} is not on the screen:\n{screen}");
     }
@@ -124,7 +124,7 @@ impl Console {
     }
 
     /// Runs a week with the naive forecasts.
-    pub fn week(&mut self) {
+    pub fn advance_week(&mut self) {
         self.press("n enter 'test' enter f enter");
     }
 }

@@ -7,7 +7,7 @@ use novamind::record::folder::runs::find_run;
 use novamind::session::{Access, Session};
 
 use super::harness::Console;
-use super::looks;
+use super::picture_checks;
 
 /// A window with the task next to the screen, and one in which it is a page.
 const WIDE: (u16, u16) = (120, 40);
@@ -32,7 +32,7 @@ fn configuration_with(folder: &Path, plan: &str) -> Configuration {
 }
 
 /// Returns the definition of the two-week lesson, with replacements.
-fn two_weeks(changes: &[(&str, &str)]) -> String {
+fn two_week_lesson(changes: &[(&str, &str)]) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/lessons/two-weeks.toml");
     let plan = std::fs::read_to_string(path).expect("a plan");
     changes.iter().fold(plan, |plan, (old, new)| {
@@ -42,15 +42,15 @@ fn two_weeks(changes: &[(&str, &str)]) -> String {
 }
 
 /// Opens the lesson from the start menu.
-fn in_lesson(folder: &Path, size: (u16, u16)) -> Console {
-    in_lesson_of(configuration(&folder.join("own")), folder, size)
+fn console_in_lesson(folder: &Path, size: (u16, u16)) -> Console {
+    console_in_lesson_with(configuration(&folder.join("own")), folder, size)
 }
 
-fn in_lesson_of(configuration: Configuration, folder: &Path, size: (u16, u16)) -> Console {
+fn console_in_lesson_with(configuration: Configuration, folder: &Path, size: (u16, u16)) -> Console {
     let mut console = Console::start_with(configuration, &folder.join("runs"), size);
     open_lessons(&mut console);
     console.press("end");
-    console.shows("Two weeks");
+    console.assert_shows("Two weeks");
     console.press("enter");
     console
 }
@@ -64,40 +64,40 @@ fn open_lessons(console: &mut Console) {
         console.press("down");
     }
     console.press("enter");
-    console.shows(" lessons ");
+    console.assert_shows(" lessons ");
 }
 
 #[test]
-fn a_lesson_is_played_to_its_end_beside_the_screen() {
+fn lesson_is_played_to_its_end_with_the_task_pane() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut console = in_lesson(folder.path(), WIDE);
-    console.shows("Step 1 of 2: Open the shop");
-    console.shows("hints 0/2");
+    let mut console = console_in_lesson(folder.path(), WIDE);
+    console.assert_shows("Step 1 of 2: Open the shop");
+    console.assert_shows("hints 0/2");
     // The question comes before the week.
     console.press("n");
-    console.shows("What share of the leads will buy?");
+    console.assert_shows("What share of the leads will buy?");
     console.press("enter");
-    console.shows("a share is a number from 0 to 1");
+    console.assert_shows("a share is a number from 0 to 1");
     console.press("'0.5' enter");
-    console.shows("You guessed 50%");
+    console.assert_shows("You guessed 50%");
     console.press("; l h");
-    console.shows("Hint 1: Look at the leads.");
+    console.assert_shows("Hint 1: Look at the leads.");
     console.press("esc n");
     // One key ran the week; its outcome is shown next to the screen, with the pitfall and the next task.
-    console.shows("Step 1 is complete: Open the shop");
-    console.shows("reached: One subscriber");
-    console.shows("! Day 7: Somebody bought.");
-    console.shows("Step 2 of 2: Go on");
-    assert_eq!(console.app.run().expect("a run").company.seen.day, 7);
+    console.assert_shows("Step 1 is complete: Open the shop");
+    console.assert_shows("reached: One subscriber");
+    console.assert_shows("! Day 7: Somebody bought.");
+    console.assert_shows("Step 2 of 2: Go on");
+    assert_eq!(console.app.run().expect("a run").company.observation.day, 7);
     console.press("n");
-    console.shows("1 Cash");
+    console.assert_shows("1 Cash");
     console.press("2 enter n");
-    console.shows("Debrief");
+    console.assert_shows("Debrief");
     for said in ["You had ", "the good play", "set_prices: A 20, the good play 12"] {
-        console.shows(said);
+        console.assert_shows(said);
     }
     console.press("G");
-    console.shows("Conversion");
+    console.assert_shows("Conversion");
     console.press("r");
     let run = console.app.run().expect("a run").company.folder.clone().expect("a folder");
     for file in ["debrief.md", "debrief.html"] {
@@ -105,159 +105,162 @@ fn a_lesson_is_played_to_its_end_beside_the_screen() {
     }
     // A retry of the last step asks for confirmation and creates a run.
     console.press("a");
-    console.shows("starts again");
+    console.assert_shows("starts again");
     console.press("y");
-    console.shows("Step 2 of 2: Go on, try 2");
-    assert_eq!(console.app.run().expect("a run").company.seen.day, 7);
+    console.assert_shows("Step 2 of 2: Go on, try 2");
+    assert_eq!(console.app.run().expect("a run").company.observation.day, 7);
     assert_ne!(console.app.run().expect("a run").company.folder, Some(run));
 }
 
 #[test]
-fn in_a_small_window_the_task_is_a_page() {
+fn task_is_a_page_in_small_windows() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut console = in_lesson(folder.path(), SMALL);
-    console.shows("Step 1 of 2: Open the shop");
+    let mut console = console_in_lesson(folder.path(), SMALL);
+    console.assert_shows("Step 1 of 2: Open the shop");
     console.press("esc");
     assert!(!console.screen().contains("Step 1 of 2"));
     console.press("; h");
-    console.shows("Step 1 of 2: Open the shop");
+    console.assert_shows("Step 1 of 2: Open the shop");
     console.press("enter '0.4' enter");
-    console.shows("You guessed 40%");
+    console.assert_shows("You guessed 40%");
     console.press("n");
-    console.shows("Step 1 is complete: Open the shop");
+    console.assert_shows("Step 1 is complete: Open the shop");
     console.press("esc n 2 enter n");
-    console.shows("Debrief");
+    console.assert_shows("Debrief");
     console.press("esc n");
-    console.shows("Debrief");
+    console.assert_shows("Debrief");
 }
 
 #[test]
-fn the_task_beside_the_screen_can_be_hidden() {
+fn task_pane_can_be_hidden() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut console = in_lesson(folder.path(), WIDE);
-    console.shows("Step 1 of 2");
+    let mut console = console_in_lesson(folder.path(), WIDE);
+    console.assert_shows("Step 1 of 2");
     console.press("; h");
     assert!(!console.screen().contains("Step 1 of 2"));
     console.press("; h");
-    console.shows("Step 1 of 2");
+    console.assert_shows("Step 1 of 2");
 }
 
 #[test]
-fn what_is_not_in_the_lesson_says_so() {
+fn locked_features_show_a_reason() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut console = in_lesson(folder.path(), WIDE);
+    let mut console = console_in_lesson(folder.path(), WIDE);
     console.press("3");
-    console.shows("Customers is closed in this lesson; open screens: Overview, Cash");
+    console.assert_shows("Customers is closed in this lesson; open screens: Overview, Cash");
     console.press("8");
-    console.shows("locked");
+    console.assert_shows("locked");
     console.press(": 'set_daily_spend'");
-    console.shows("not in this lesson");
+    console.assert_shows("not in this lesson");
     console.press("enter");
-    console.shows("Not in this lesson.");
+    console.assert_shows("Not in this lesson.");
     // A closed tool cannot be sent, so its draft does not delay the week.
     console.press("n '0.25' enter enter '900' enter");
-    console.shows("0 → 900");
+    console.assert_shows("0 → 900");
     console.press("esc n");
-    console.shows("day 7/500");
+    console.assert_shows("day 7/500");
 }
 
 #[test]
-fn a_guess_and_hints_outlive_the_program() {
+fn guesses_and_hints_survive_a_restart() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut console = in_lesson(folder.path(), WIDE);
+    let mut console = console_in_lesson(folder.path(), WIDE);
     console.press("n '0.25' enter ; l h h");
     drop(console);
     let runs = folder.path().join("runs");
     let mut console = Console::in_latest_run(&runs, WIDE);
     for said in ["You guessed 25%", "Hint 2: Try another price.", "hints 2/2"] {
-        console.shows(said);
+        console.assert_shows(said);
     }
     let run = console.app.run().expect("a run").company.folder.clone().expect("a folder");
     drop(console);
     let session = Session::open(&run, Access::Read, false).expect("it opens");
-    assert_eq!(session.lesson().map(|own| (own.guess(0), own.hints(0))), Some((Some(0.25), 2)));
+    assert_eq!(session.lesson().map(|own| (own.guess(0), own.hint_count(0))), Some((Some(0.25), 2)));
     assert!(find_run(&runs, "latest").is_ok());
 }
 
 /// Takes pictures of the screen in windows of all sizes.
-fn picture(console: &mut Console, place: &str) {
+fn assert_lesson_snapshots(console: &mut Console, place: &str) {
     let mut complaints = Vec::new();
-    insta::assert_snapshot!(format!("lesson-{place}"), looks::picture(console, &mut complaints));
+    insta::assert_snapshot!(
+        format!("lesson-{place}"),
+        picture_checks::snapshot_text(console, &mut complaints)
+    );
     assert!(complaints.is_empty(), "{}", complaints.join("\n"));
 }
 
 #[test]
-fn pictures_of_a_lesson() {
+fn lesson_matches_snapshots() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut console = in_lesson(folder.path(), WIDE);
-    picture(&mut console, "task");
+    let mut console = console_in_lesson(folder.path(), WIDE);
+    assert_lesson_snapshots(&mut console, "task");
     console.press("n");
-    picture(&mut console, "question");
+    assert_lesson_snapshots(&mut console, "question");
     console.press("'40%' enter ; l h");
-    picture(&mut console, "page");
+    assert_lesson_snapshots(&mut console, "page");
     console.press("esc 8");
-    picture(&mut console, "tools");
+    assert_lesson_snapshots(&mut console, "tools");
 }
 
 #[test]
-fn a_part_leads_to_the_next_one() {
+fn finished_part_continues_with_the_next() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut console = Console::start(folder.path(), WIDE);
     open_lessons(&mut console);
     console.press("enter n '0.4' enter n");
-    console.shows("This part has ended: p next part");
-    console.shows("You guessed 40%.");
+    console.assert_shows("This part has ended: p next part");
+    console.assert_shows("You guessed 40%.");
     // Showing the good play would reveal the next part.
     console.press("d");
-    console.shows("Debrief");
+    console.assert_shows("Debrief");
     assert!(!console.screen().contains("The good play:"));
     console.press("p");
     assert_eq!(
         console.app.run().and_then(|run| run.company.lesson.clone()).and_then(|own| own.next_part),
         None
     );
-    console.shows("hints 0/3");
-    assert_eq!(console.app.run().expect("a run").company.seen.day, 0);
+    console.assert_shows("hints 0/3");
+    assert_eq!(console.app.run().expect("a run").company.observation.day, 0);
 }
 
 #[test]
-fn a_price_that_was_typed_and_not_sent_is_asked_about() {
+fn unsent_price_is_confirmed_before_the_week() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut console = in_lesson(folder.path(), WIDE);
+    let mut console = console_in_lesson(folder.path(), WIDE);
     console.press("n '0.4' enter : 'set_prices' enter e '30' enter n");
-    console.shows("The form of set_prices has unsent values");
+    console.assert_shows("The form of set_prices has unsent values");
     console.press("esc");
-    assert_eq!(console.app.run().expect("a run").company.seen.day, 0);
+    assert_eq!(console.app.run().expect("a run").company.observation.day, 0);
     console.press("n y");
-    assert_eq!(console.app.run().expect("a run").company.seen.day, 7);
+    assert_eq!(console.app.run().expect("a run").company.observation.day, 7);
 }
 
 #[test]
-fn a_step_without_a_question_asks_before_its_first_week() {
+fn step_without_a_question_confirms_before_its_first_week() {
     let folder = tempfile::tempdir().expect("a folder");
     let guess = "[part.step.guess]\nquestion = \"What will there be more of?\"\nchoices = [\"Cash\", \"Subscribers\"]\nanswer = 2\n";
     let plan =
-        two_weeks(&[(guess, ""), ("weeks = 1\nhints = [\"Wait.\"]", "weeks = 2\nhints = [\"Wait.\"]")]);
+        two_week_lesson(&[(guess, ""), ("weeks = 1\nhints = [\"Wait.\"]", "weeks = 2\nhints = [\"Wait.\"]")]);
     let own = configuration_with(&folder.path().join("own"), &plan);
-    let mut console = in_lesson_of(own, folder.path(), WIDE);
+    let mut console = console_in_lesson_with(own, folder.path(), WIDE);
     console.press("n '0.4' enter n n");
-    console.shows("Step 2 starts: Go on, 2 weeks. Run its first week?");
+    console.assert_shows("Step 2 starts: Go on, 2 weeks. Run its first week?");
     // The accidental key only cancels, and says so.
     console.press("n");
-    console.shows("Step 2: cancelled; y confirms");
-    let day = |console: &Console| console.app.run().expect("a run").company.seen.day;
+    console.assert_shows("Step 2: cancelled; y confirms");
+    let day = |console: &Console| console.app.run().expect("a run").company.observation.day;
     assert_eq!(day(&console), 7);
     console.press("n y");
     assert_eq!(day(&console), 14);
     console.press("n");
-    console.shows("Debrief");
+    console.assert_shows("Debrief");
     assert_eq!(day(&console), 21);
 }
 
 #[test]
-fn rules_that_were_sent_answer_again_with_the_week() {
+fn sent_rules_are_offered_again_each_week() {
     let folder = tempfile::tempdir().expect("a folder");
-    let plan = two_weeks(&[
+    let plan = two_week_lesson(&[
         (
             "tools = [\"set_prices\", \"query\"]",
             "tools = [\"send_enterprise_deal\", \"reject_enterprise_deal\", \"query\"]",
@@ -280,21 +283,21 @@ fn rules_that_were_sent_answer_again_with_the_week() {
         ),
     ]);
     let own = configuration_with(&folder.path().join("own"), &plan);
-    let mut console = in_lesson_of(own, folder.path(), WIDE);
-    let waiting = |console: &Console| console.app.run().expect("a run").company.seen.waiting.len();
-    let day = |console: &Console| console.app.run().expect("a run").company.seen.day;
+    let mut console = console_in_lesson_with(own, folder.path(), WIDE);
+    let waiting = |console: &Console| console.app.run().expect("a run").company.observation.waiting.len();
+    let day = |console: &Console| console.app.run().expect("a run").company.observation.day;
     assert!(waiting(&console) > 0, "letters");
     console.press("n '0.4' enter 6 R ctrl-n 'offer_rest:_C_19'");
-    console.shows("ctrl-n clear the line");
+    console.assert_shows("ctrl-n clear the line");
     console.press("ctrl-s n");
-    console.shows("send by rules: cancelled");
+    console.assert_shows("send by rules: cancelled");
     console.press("ctrl-s y");
     assert_eq!(waiting(&console), 0);
     console.press("n");
     assert_eq!(day(&console), 35, "no enterprise waits: the week runs at once");
     assert!(waiting(&console) > 0, "more letters");
     console.press("n");
-    console.shows("Answer with the rules that you sent last");
+    console.assert_shows("Answer with the rules that you sent last");
     console.press("y");
     assert_eq!(day(&console), 42);
     let run = console.app.run().expect("a run").company.folder.clone().expect("a folder");
@@ -309,23 +312,23 @@ fn rules_that_were_sent_answer_again_with_the_week() {
 }
 
 #[test]
-fn pictures_of_a_debrief() {
+fn debrief_matches_snapshots() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut console = in_lesson(folder.path(), WIDE);
+    let mut console = console_in_lesson(folder.path(), WIDE);
     console.press("n '0.25' enter n");
-    picture(&mut console, "next-step");
+    assert_lesson_snapshots(&mut console, "next-step");
     console.press("n 2 enter n");
-    picture(&mut console, "debrief");
+    assert_lesson_snapshots(&mut console, "debrief");
     console.press("a");
-    picture(&mut console, "again");
+    assert_lesson_snapshots(&mut console, "again");
 }
 
 #[test]
-fn runs_of_no_lesson_say_so() {
+fn runs_without_a_lesson_show_a_message() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = Console::in_new_run(runs.path(), WIDE);
     console.press("; h");
-    console.shows("this run is not part of a lesson");
+    console.assert_shows("this run is not part of a lesson");
     console.press("; l");
-    console.shows("this run is not part of a lesson");
+    console.assert_shows("this run is not part of a lesson");
 }

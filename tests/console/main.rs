@@ -1,28 +1,28 @@
 //! Tests of the console from the user's view: stories, pictures, sizes, random input.
 
-mod behind;
 mod classes;
 mod company;
 mod curve;
 mod figures;
 mod focus;
-mod guide;
 mod harness;
-mod kin;
 mod lessons;
-mod looks;
 mod monkey;
-mod over;
 mod overlay;
+mod participant_sessions;
+mod picture_checks;
 mod pictures;
 mod record;
+mod related_runs;
 mod replay;
 mod roles;
+mod run_end;
+mod scenarios;
 mod sizes;
-mod stories;
+mod stale_database;
 #[path = "../support/mod.rs"]
 mod support;
 mod tasks;
-mod visits;
+mod tour;
 mod why;
 mod xray;

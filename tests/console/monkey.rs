@@ -30,37 +30,37 @@ const PASTES: [&str; 6] = [
 const STEPS: usize = 1_600;
 
 #[test]
-fn random_input_breaks_nothing() {
-    let mut dice = Dice::of_test("monkey");
+fn random_input_does_not_panic() {
+    let mut dice = Dice::for_test("monkey");
     for _ in 0..4 {
-        play(&mut dice, STEPS / 4);
+        play_random_run(&mut dice, STEPS / 4);
     }
 }
 
 #[test]
 #[ignore = "slow: .ci/full runs it"]
-fn soak_random_input_breaks_nothing() {
-    let mut dice = Dice::of_test("monkey");
+fn soak_random_input_does_not_panic() {
+    let mut dice = Dice::for_test("monkey");
     for _ in 0..40 {
-        play(&mut dice, 100_000 / 40);
+        play_random_run(&mut dice, 100_000 / 40);
     }
 }
 
 /// Plays one run at random.
-fn play(dice: &mut Dice, steps: usize) {
+fn play_random_run(dice: &mut Dice, steps: usize) {
     let runs = tempfile::tempdir().expect("a folder");
-    let mut console = opened(runs.path(), dice);
+    let mut console = console_in_open_run(runs.path(), dice);
     for step in 1..=steps {
         if step % 150 == 0 {
             console.press("esc esc esc esc");
-            console.week();
+            console.advance_week();
         }
         if step % 100 == 0 {
-            drafts_stay(&mut console, dice);
+            check_draft_is_kept(&mut console, dice);
         }
-        one_step(&mut console, dice);
-        if console.left.is_some() {
-            console = come_back(console, runs.path());
+        random_step(&mut console, dice);
+        if console.exit.is_some() {
+            console = reopen(console, runs.path());
         }
     }
     drop(console);
@@ -71,15 +71,15 @@ fn play(dice: &mut Dice, steps: usize) {
 }
 
 /// Opens a run with prices, in a window of some size.
-fn opened(runs: &Path, dice: &mut Dice) -> Console {
+fn console_in_open_run(runs: &Path, dice: &mut Dice) -> Console {
     let mut console = Console::in_new_run(runs, (120, 40));
     console.press("8 enter enter '12' down '25' down '55' enter ctrl-s 1");
-    console.size = a_size(dice);
+    console.size = random_size(dice);
     console
 }
 
 /// Closes the console and opens the run again.
-fn come_back(console: Console, runs: &Path) -> Console {
+fn reopen(console: Console, runs: &Path) -> Console {
     let size = console.size;
     drop(console);
     let mut console = Console::start(runs, size);
@@ -90,7 +90,7 @@ fn come_back(console: Console, runs: &Path) -> Console {
     console
 }
 
-fn a_size(dice: &mut Dice) -> (u16, u16) {
+fn random_size(dice: &mut Dice) -> (u16, u16) {
     match dice.roll(4) {
         0 => (dice.roll(80) as u16, dice.roll(30) as u16),
         1 => (80, 24),
@@ -98,12 +98,12 @@ fn a_size(dice: &mut Dice) -> (u16, u16) {
     }
 }
 
-fn one_step(console: &mut Console, dice: &mut Dice) {
+fn random_step(console: &mut Console, dice: &mut Dice) {
     match dice.roll(20) {
-        0 => console.size = a_size(dice),
+        0 => console.size = random_size(dice),
         1 => console.send(Event::Paste((*dice.pick(&PASTES)).to_owned())),
         2 | 3 => {
-            let event = a_click(console.size, dice);
+            let event = random_click(console.size, dice);
             console.send(event);
         }
         _ => {
@@ -114,7 +114,7 @@ fn one_step(console: &mut Console, dice: &mut Dice) {
     }
 }
 
-fn a_click((width, height): (u16, u16), dice: &mut Dice) -> Event {
+fn random_click((width, height): (u16, u16), dice: &mut Dice) -> Event {
     let kinds = [
         MouseEventKind::Down(MouseButton::Left),
         MouseEventKind::Down(MouseButton::Left),
@@ -146,9 +146,9 @@ const WALKS: [&str; 16] =
     ["1", "2", "3", "4", "7", "9", "0", "tab", "up", "down", "?", ":", "c", "w", "d", "["];
 
 /// Writes a draft, navigates at random, and checks that the draft is still there.
-fn drafts_stay(console: &mut Console, dice: &mut Dice) {
+fn check_draft_is_kept(console: &mut Console, dice: &mut Dice) {
     // A replay is read-only.
-    if console.app.run().is_none_or(|run| !run.company.is_running() || run.viewer.is_some()) {
+    if console.app.run().is_none_or(|run| !run.company.is_running() || run.playback.is_some()) {
         return;
     }
     let size = std::mem::replace(&mut console.size, (120, 40));
@@ -165,7 +165,7 @@ fn drafts_stay(console: &mut Console, dice: &mut Dice) {
         console.press("enter");
     }
     let written = console.screen();
-    assert!(holds(&written, &draft), "{there}: {draft} was not accepted:\n{written}");
+    assert!(shows_draft(&written, &draft), "{there}: {draft} was not accepted:\n{written}");
     console.press("esc esc esc 1");
     let mut walked = Vec::new();
     for _ in 0..6 {
@@ -177,12 +177,12 @@ fn drafts_stay(console: &mut Console, dice: &mut Dice) {
     console.press("esc esc esc 1");
     console.press(again);
     let found = console.screen();
-    assert!(holds(&found, &draft), "{there}: {draft} is lost after {walked:?}:\n{found}");
+    assert!(shows_draft(&found, &draft), "{there}: {draft} is lost after {walked:?}:\n{found}");
     console.press("esc esc esc 1");
     console.size = size;
 }
 
 /// Returns whether the screen contains the draft; numbers may be grouped.
-fn holds(screen: &str, draft: &str) -> bool {
+fn shows_draft(screen: &str, draft: &str) -> bool {
     screen.contains(draft) || screen.replace(',', "").contains(draft)
 }

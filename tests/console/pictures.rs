@@ -3,14 +3,14 @@
 //! words and empty halves. `cargo insta review` shows the effect of a change.
 
 use novamind::record::mode::Mode;
-use novamind::session::Goal;
+use novamind::session::SeekTarget;
 use novamind::tui::theme::Theme;
 use ratatui::buffer::Buffer;
 
-use super::company::led;
+use super::company::copy_played_run;
 use super::harness::Console;
-use super::looks::{cut_with_room, emptiest_half};
-use super::replay::{played, replayed};
+use super::picture_checks::{min_half_coverage, needlessly_truncated_lines};
+use super::replay::{console_in_replay, played_run};
 
 /// Window sizes: the smallest supported, a usual one, a large one.
 const SIZES: [(u16, u16); 3] = [(80, 24), (120, 40), (200, 60)];
@@ -38,9 +38,9 @@ const PLACES: [(&str, &str, &str); 15] = [
 ];
 
 /// Takes pictures of every place of a run.
-fn pictures(name: &str, policy: &str, seed: u64, until: u32) {
+fn check_pictures(name: &str, policy: &str, seed: u64, until: u32) {
     let runs = tempfile::tempdir().expect("a folder");
-    led(policy, seed, until, runs.path());
+    copy_played_run(policy, seed, until, runs.path());
     let mut console = Console::in_latest_run(runs.path(), SIZES[1]);
     let mut complaints = Vec::new();
     let rich = until > 300;
@@ -55,17 +55,17 @@ fn pictures(name: &str, policy: &str, seed: u64, until: u32) {
 }
 
 /// Minimum share of non-empty cells in every half of a large window.
-const LEAST_INK: f64 = 0.04;
+const MIN_INK_SHARE: f64 = 0.04;
 
 /// Returns layout problems of a picture. Only a company with much data fills both halves.
 fn complaints(place: &str, size: (u16, u16), rich: bool, letters: &str) -> Vec<String> {
-    let cut = cut_with_room(letters);
+    let cut = needlessly_truncated_lines(letters);
     let mut found: Vec<String> = cut
         .into_iter()
         .map(|line| format!("{place} at {size:?}: truncated next to free space: {line}"))
         .collect();
-    let ink = emptiest_half(letters, size.0.into());
-    if rich && size.0 >= 120 && ink < LEAST_INK {
+    let ink = min_half_coverage(letters, size.0.into());
+    if rich && size.0 >= 120 && ink < MIN_INK_SHARE {
         found.push(format!("{place} at {size:?}: a half is empty ({ink:.3}):\n{letters}"));
     }
     found
@@ -79,7 +79,7 @@ fn picture(console: &mut Console, place: &str, rich: bool, found: &mut Vec<Strin
         for theme in THEMES {
             console.app.theme = Theme::bundled(theme).expect("a theme");
             let buffer = console.draw();
-            let own = letters_of(&buffer);
+            let own = buffer_text(&buffer);
             if let Some(before) = &letters {
                 assert_eq!(*before, own, "the theme {theme} changes the text");
             } else {
@@ -94,28 +94,28 @@ fn picture(console: &mut Console, place: &str, rich: bool, found: &mut Vec<Strin
     text
 }
 
-fn letters_of(buffer: &Buffer) -> String {
+fn buffer_text(buffer: &Buffer) -> String {
     let row = |y| (0..buffer.area.width).map(|x| buffer[(x, y)].symbol()).collect::<String>();
     (0..buffer.area.height).map(|y| row(y).trim_end().to_owned() + "\n").collect()
 }
 
 #[test]
-fn the_first_week() {
-    pictures("week-1", "opening.toml", 42, 7);
+fn pictures_of_the_first_week() {
+    check_pictures("week-1", "opening.toml", 42, 7);
 }
 
 #[test]
-fn a_crisis_in_week_30() {
-    pictures("week-30", "crisis.toml", 42, 210);
+fn pictures_of_a_crisis_in_week_30() {
+    check_pictures("week-30", "crisis.toml", 42, 210);
 }
 
 #[test]
-fn a_large_company_in_week_45() {
-    pictures("week-45", "crowd.toml", 42, 315);
+fn pictures_of_a_large_company_in_week_45() {
+    check_pictures("week-45", "crowd.toml", 42, 315);
 }
 
 /// Places of a replay.
-const OF_REPLAY: [(&str, &str, &str); 6] = [
+const REPLAY_PLACES: [(&str, &str, &str); 6] = [
     ("overview", "1", ""),
     ("cash", "2", ""),
     ("tools-form", "8 enter", "esc"),
@@ -125,12 +125,12 @@ const OF_REPLAY: [(&str, &str, &str); 6] = [
 ];
 
 #[test]
-fn a_replay_of_twelve_weeks() {
+fn pictures_of_a_replay() {
     let runs = tempfile::tempdir().expect("a folder");
-    drop(played(runs.path(), Mode::Sandbox, 12));
-    let mut console = replayed(runs.path(), SIZES[1], Goal::Week(7));
+    drop(played_run(runs.path(), Mode::Sandbox, 12));
+    let mut console = console_in_replay(runs.path(), SIZES[1], SeekTarget::Week(7));
     let mut complaints = Vec::new();
-    for (place, keys, back) in OF_REPLAY {
+    for (place, keys, back) in REPLAY_PLACES {
         console.press(keys);
         let picture = picture(&mut console, place, false, &mut complaints);
         insta::assert_snapshot!(format!("replay-{place}"), picture);

@@ -7,7 +7,7 @@ use crossterm::event::Event;
 use novamind::record::folder::configuration::Configuration;
 use novamind::record::folder::runs::find_run;
 use novamind::record::trajectory::record::{
-    Activity, ClockEvent, Draft, DraftOutcome, LeavingCause, PresenceEvent, QuerySource, View,
+    Activity, ClockEvent, LeavingCause, PresenceEvent, QuerySource, ScreenView, TextEdit, TextEditOutcome,
 };
 use novamind::record::trajectory::{Record, Trajectory};
 use novamind::session::{NewRun, Session, Storage, verify};
@@ -26,12 +26,12 @@ fn activities(runs: &Path) -> Vec<Activity> {
     lines(runs).into_iter().filter_map(activity).collect()
 }
 
-fn views(runs: &Path) -> Vec<View> {
+fn views(runs: &Path) -> Vec<ScreenView> {
     let view = |activity| if let Activity::View(view) = activity { Some(view) } else { None };
     activities(runs).into_iter().filter_map(view).collect()
 }
 
-fn drafts(runs: &Path) -> Vec<Draft> {
+fn drafts(runs: &Path) -> Vec<TextEdit> {
     let draft = |activity| if let Activity::Draft(draft) = activity { Some(draft) } else { None };
     activities(runs).into_iter().filter_map(draft).collect()
 }
@@ -42,12 +42,12 @@ fn presence(runs: &Path) -> Vec<PresenceEvent> {
     activities(runs).into_iter().filter_map(event).collect()
 }
 
-fn pass(console: &mut Console, seconds: u64) {
-    console.pass(Duration::from_secs(seconds)).expect("time passes");
+fn advance_clock(console: &mut Console, seconds: u64) {
+    console.advance_time(Duration::from_secs(seconds)).expect("time passes");
 }
 
 /// Describes each event in a line: its kind and the relevant values.
-fn told(runs: &Path) -> Vec<String> {
+fn activity_lines(runs: &Path) -> Vec<String> {
     let one = |record: Record| match record {
         Record::Activity(Activity::View(view)) => {
             format!("view {} from {} {} s", view.screen, view.from, view.for_ms / 1000)
@@ -76,25 +76,25 @@ fn told(runs: &Path) -> Vec<String> {
 }
 
 #[test]
-fn a_scripted_session_is_told_in_its_order() {
+fn activities_are_recorded_in_order() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = Console::in_new_run(runs.path(), (120, 40));
-    pass(&mut console, 5);
+    advance_clock(&mut console, 5);
     console.press("2");
-    pass(&mut console, 7);
+    advance_clock(&mut console, 7);
     console.press("i");
-    pass(&mut console, 2);
+    advance_clock(&mut console, 2);
     console.press("esc 3 enter");
-    pass(&mut console, 3);
+    advance_clock(&mut console, 3);
     console.press("n");
-    pass(&mut console, 4);
+    advance_clock(&mut console, 4);
     console.press("enter 'wait'");
-    pass(&mut console, 6);
+    advance_clock(&mut console, 6);
     console.press("enter f enter");
-    pass(&mut console, 1);
+    advance_clock(&mut console, 1);
     console.press("esc 2 q");
     drop(console);
-    let told = told(runs.path());
+    let told = activity_lines(runs.path());
     let term = told.iter().find(|line| line.starts_with("help ")).cloned().unwrap_or_default();
     assert!(term.ends_with(" in cash"), "{told:#?}");
     let expected = [
@@ -119,15 +119,15 @@ fn a_scripted_session_is_told_in_its_order() {
 }
 
 #[test]
-fn time_of_screens_is_never_more_than_the_time_of_their_week() {
+fn screen_time_never_exceeds_week_time() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = Console::in_new_run(runs.path(), (120, 40));
     for week in 0..3 {
         for key in ["2", "3", "4", "1", "backspace", "]"] {
-            pass(&mut console, week + 1);
+            advance_clock(&mut console, week + 1);
             console.press(key);
         }
-        console.week();
+        console.advance_week();
         console.press("esc");
     }
     drop(console);
@@ -146,12 +146,12 @@ fn time_of_screens_is_never_more_than_the_time_of_their_week() {
 }
 
 #[test]
-fn texts_are_told_by_how_they_came_to_be() {
+fn drafts_record_how_text_was_entered() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = Console::in_new_run(runs.path(), (120, 40));
     // Notes: typed, deleted, pasted, with a pause, and saved.
     console.press("0 tab e 'abcx' backspace");
-    pass(&mut console, 3);
+    advance_clock(&mut console, 3);
     console.send(Event::Paste(" pasted".to_owned()));
     console.press("ctrl-s");
     // A statement that is left.
@@ -159,17 +159,17 @@ fn texts_are_told_by_how_they_came_to_be() {
     drop(console);
     let drafts = drafts(runs.path());
     let [notes, sql] = &drafts[..] else { panic!("{drafts:#?}") };
-    assert_eq!((notes.place.as_str(), notes.outcome), ("notes", DraftOutcome::Sent));
+    assert_eq!((notes.place.as_str(), notes.outcome), ("notes", TextEditOutcome::Sent));
     assert_eq!((notes.length, notes.typed, notes.deleted, notes.pasted, notes.pauses), (10, 4, 1, 7, 1));
     assert!(notes.for_ms >= 3000 && notes.text.is_none());
-    assert_eq!((sql.place.as_str(), sql.outcome, sql.typed), ("sql", DraftOutcome::Left, 7));
+    assert_eq!((sql.place.as_str(), sql.outcome, sql.typed), ("sql", TextEditOutcome::Left, 7));
 }
 
 #[test]
-fn nothing_of_the_run_is_seen_while_the_clock_stands() {
+fn run_is_hidden_while_the_clock_is_stopped() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = Console::in_new_run(runs.path(), (120, 40));
-    pass(&mut console, 5);
+    advance_clock(&mut console, 5);
     console.press("; p");
     for size in [(120, 40), (60, 16), (200, 60)] {
         console.size = size;
@@ -181,16 +181,16 @@ fn nothing_of_the_run_is_seen_while_the_clock_stands() {
     }
     // Keys have no effect, and time does not count.
     console.press("3 n enter");
-    pass(&mut console, 100);
+    advance_clock(&mut console, 100);
     console.press("; p esc");
     drop(console);
-    let told = told(runs.path());
+    let told = activity_lines(runs.path());
     let expected = ["start", "session Opened", "view overview from  5 s", "clock Stopped", "clock Started"];
     assert_eq!(told[..5], expected, "{told:#?}");
     assert!(told.iter().filter(|line| *line == "clock Stopped").count() == 2, "{told:#?}");
     // A clock that was stopped when the program ended starts when the run is opened again.
     let mut console = Console::in_latest_run(runs.path(), (120, 40));
-    console.shows("NovaMind");
+    console.assert_shows("NovaMind");
     drop(console);
     let forgotten = activities(runs.path()).into_iter().any(
         |activity| matches!(activity, Activity::Clock(clock) if clock.event == ClockEvent::Forgotten && clock.stood_ms.is_some()),
@@ -199,18 +199,18 @@ fn nothing_of_the_run_is_seen_while_the_clock_stands() {
 }
 
 #[test]
-fn absences_are_told_and_end_with_a_key() {
+fn idle_time_is_recorded_until_a_key() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = Console::in_new_run(runs.path(), (120, 40));
-    pass(&mut console, 59);
+    advance_clock(&mut console, 59);
     console.press("2");
-    pass(&mut console, 60);
-    pass(&mut console, 30);
+    advance_clock(&mut console, 60);
+    advance_clock(&mut console, 30);
     console.send(Event::FocusLost);
     console.send(Event::FocusGained);
     console.press("3");
     console.send(Event::Resize(90, 30));
-    pass(&mut console, 1);
+    advance_clock(&mut console, 1);
     drop(console);
     use PresenceEvent::{Active, Closed, FocusGained, FocusLost, Idle, Opened, Resized};
     assert_eq!(presence(runs.path()), [Opened, Idle, FocusLost, FocusGained, Active, Resized, Closed]);
@@ -228,16 +228,16 @@ fn absences_are_told_and_end_with_a_key() {
 }
 
 #[test]
-fn what_was_typed_comes_back_after_a_crash_and_goes_when_it_is_dropped() {
+fn drafts_survive_a_crash_until_discarded() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = Console::in_new_run(runs.path(), (120, 40));
     console.press("n enter 'because' _ 'of' _ 'S1'");
-    pass(&mut console, 4);
+    advance_clock(&mut console, 4);
     console.press("esc 8 enter");
     console.press("enter '77' enter");
-    pass(&mut console, 4);
+    advance_clock(&mut console, 4);
     console.press("g q 'SELECT' _ '4'");
-    pass(&mut console, 4);
+    advance_clock(&mut console, 4);
     let file = find_run(runs.path(), "latest").expect("a run").join("drafts.json");
     let all = ["because of S1", "77", "SELECT 4"];
     let kept = || std::fs::read_to_string(&file).unwrap_or_default();
@@ -246,19 +246,19 @@ fn what_was_typed_comes_back_after_a_crash_and_goes_when_it_is_dropped() {
         std::thread::yield_now();
     }
     // A hangup signal.
-    console.app.update(novamind::worker::message::Message::Signal(1));
-    console.settle().expect("it leaves");
+    console.app.handle_message(novamind::worker::message::Message::Signal(1));
+    console.wait_until_idle().expect("it leaves");
     drop(console);
     let mut console = Console::in_latest_run(runs.path(), (120, 40));
-    console.shows("Unsent when");
-    console.shows("because of S1");
+    console.assert_shows("Unsent when");
+    console.assert_shows("because of S1");
     console.press("y");
     console.press("n enter");
-    console.shows("because of S1");
+    console.assert_shows("because of S1");
     drop(console);
     let restored: Vec<String> = drafts(runs.path())
         .into_iter()
-        .filter(|draft| draft.outcome == DraftOutcome::Restored)
+        .filter(|draft| draft.outcome == TextEditOutcome::Restored)
         .map(|draft| draft.place)
         .collect();
     assert_eq!(restored.len(), 3, "{restored:?}");
@@ -266,16 +266,16 @@ fn what_was_typed_comes_back_after_a_crash_and_goes_when_it_is_dropped() {
     assert!(restored[2].starts_with("form "));
     let mut console = Console::in_latest_run(runs.path(), (120, 40));
     console.press("d");
-    console.settle().expect("it is dropped");
+    console.wait_until_idle().expect("it is dropped");
     drop(console);
     assert!(!file.exists(), "discarded drafts are deleted");
 }
 
 #[test]
-fn statements_are_told_by_where_they_came_from() {
+fn queries_record_their_source() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = Console::in_new_run(runs.path(), (120, 40));
-    console.week();
+    console.advance_week();
     console.press("esc 9 'SELECT' _ '1' esc f5 v ctrl-o enter 2 f esc");
     drop(console);
     let via: Vec<QuerySource> = lines(runs.path())
@@ -286,19 +286,19 @@ fn statements_are_told_by_where_they_came_from() {
 }
 
 #[test]
-fn attention_changes_no_state() {
+fn attention_records_do_not_change_the_state_hash() {
     let play = |attentive: bool| {
         let runs = tempfile::tempdir().expect("a folder");
         let storage = Storage::Runs(runs.path().to_owned());
         let new = NewRun { seed: Some(5), days: Some(28), storage, ..NewRun::default() };
-        drop(Session::create(new, &Configuration::shipped()).expect("a run"));
+        drop(Session::create(new, &Configuration::bundled()).expect("a run"));
         let mut console = Console::in_latest_run(runs.path(), (120, 40));
         for _ in 0..2 {
             if attentive {
                 console.press("2 i esc 3 enter 9 'SELECT' _ '1' esc esc ; p enter");
-                pass(&mut console, 70);
+                advance_clock(&mut console, 70);
             }
-            console.week();
+            console.advance_week();
             console.press("esc");
         }
         drop(console);
@@ -311,9 +311,9 @@ fn attention_changes_no_state() {
 }
 
 #[test]
-fn posts_that_were_looked_at_stay_read_when_the_run_is_opened_again() {
+fn read_posts_stay_read_after_reopening() {
     let runs = tempfile::tempdir().expect("a folder");
-    super::company::led("crisis.toml", 5, 28, runs.path());
+    super::company::copy_played_run("crisis.toml", 5, 28, runs.path());
     let badge = |console: &mut Console| console.screen().contains("5 Social ●");
     let mut console = Console::in_latest_run(runs.path(), (120, 40));
     assert!(badge(&mut console), "the posts of the week are new:\n{}", console.screen());
@@ -325,7 +325,7 @@ fn posts_that_were_looked_at_stay_read_when_the_run_is_opened_again() {
     drop(console);
     let mut console = Console::in_latest_run(runs.path(), (120, 40));
     assert!(!badge(&mut console), "they were read in an earlier session:\n{}", console.screen());
-    console.week();
+    console.advance_week();
     console.press("esc 1");
     assert!(badge(&mut console), "posts of the new week are new:\n{}", console.screen());
 }

@@ -2,7 +2,7 @@
 
 use novamind::tui::theme::{Role, Theme};
 
-use super::company::led;
+use super::company::copy_played_run;
 use super::harness::Console;
 
 /// Asserts that the first occurrence of a text on the screen has the style of a role.
@@ -26,14 +26,14 @@ fn assert_role(console: &mut Console, words: &str, role: Role) {
 }
 
 #[test]
-fn words_stand_in_the_role_of_what_they_mean() {
+fn text_has_the_expected_palette_role() {
     let runs = tempfile::tempdir().expect("a folder");
-    led("crisis.toml", 42, 210, runs.path());
+    copy_played_run("crisis.toml", 42, 210, runs.path());
     let mut console = Console::in_latest_run(runs.path(), (120, 40));
     for theme in ["dark", "light", "high-contrast"] {
         console.app.theme = Theme::bundled(theme).expect("a theme");
         console.press("7");
-        assert_role(&mut console, "7 Market", Role::TabHere);
+        assert_role(&mut console, "7 Market", Role::ActiveTab);
         assert_role(&mut console, "2 Cash", Role::Tab);
         assert_role(&mut console, "▼", Role::Bad);
         assert_role(&mut console, "Groups", Role::Title);

@@ -59,12 +59,12 @@ const HEIGHTS: [u16; 20] = [0, 1, 2, 15, 16, 17, 19, 20, 23, 24, 25, 29, 30, 31,
 
 /// Returns a console in a run of some weeks, with data on every screen.
 fn console(runs: &std::path::Path) -> Console {
-    super::company::led("companies.toml", 3, 35, runs);
+    super::company::copy_played_run("companies.toml", 3, 35, runs);
     Console::in_latest_run(runs, (120, 40))
 }
 
 /// Returns every width with some of the heights, and the reverse.
-fn boundaries() -> impl Iterator<Item = (u16, u16)> {
+fn boundary_sizes() -> impl Iterator<Item = (u16, u16)> {
     let all = WIDTHS.into_iter().enumerate().flat_map(|(across, width)| {
         HEIGHTS.into_iter().enumerate().map(move |(down, height)| (across + down, (width, height)))
     });
@@ -72,7 +72,7 @@ fn boundaries() -> impl Iterator<Item = (u16, u16)> {
 }
 
 /// Windows without truncation: their words are complete.
-const ROOMY: [(u16, u16); 3] = [(160, 50), (220, 60), (400, 120)];
+const ROOMY_SIZES: [(u16, u16); 3] = [(160, 50), (220, 60), (400, 120)];
 
 /// Complete words, and words at the edge of a pane, which may be truncated.
 #[derive(Default)]
@@ -107,14 +107,14 @@ impl Words {
     }
 
     /// Returns the words at an edge that are complete nowhere.
-    fn cut(&self) -> Vec<&String> {
+    fn truncated_words(&self) -> Vec<&String> {
         self.at_edges.iter().filter(|(word, _)| !self.whole.contains(*word)).map(|(_, line)| line).collect()
     }
 }
 
 /// Draws every place in windows of some sizes. Asserts that restoring the size restores the picture, and that no word
 /// is truncated.
-fn sweep(console: &mut Console, sizes: &mut dyn FnMut() -> Vec<(u16, u16)>) {
+fn check_sizes(console: &mut Console, sizes: &mut dyn FnMut() -> Vec<(u16, u16)>) {
     let mut words = Words::default();
     for (open, close) in PLACES {
         console.size = (120, 40);
@@ -122,7 +122,7 @@ fn sweep(console: &mut Console, sizes: &mut dyn FnMut() -> Vec<(u16, u16)>) {
         let before = console.screen();
         // A dialog hides words of the screen below; they are not truncated.
         let alone = !close.contains("esc");
-        for size in ROOMY {
+        for size in ROOMY_SIZES {
             console.size = size;
             words.read(&console.screen(), size.0, true, open);
         }
@@ -140,15 +140,15 @@ fn sweep(console: &mut Console, sizes: &mut dyn FnMut() -> Vec<(u16, u16)>) {
         assert_eq!(console.screen(), before, "{open}");
         console.press(close);
     }
-    let cut = words.cut();
+    let cut = words.truncated_words();
     assert!(cut.is_empty(), "{} words are truncated, for example\n{cut:#?}", cut.len());
 }
 
 #[test]
-fn nothing_breaks_where_layouts_change_and_growing_brings_the_screen_back() {
+fn layout_boundaries_do_not_panic_and_restore_the_screen() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = console(runs.path());
-    sweep(&mut console, &mut || boundaries().collect());
+    check_sizes(&mut console, &mut || boundary_sizes().collect());
 }
 
 /// Screens whose panes take the focus with tab; each pane is drawn as it is and zoomed.
@@ -188,10 +188,10 @@ fn draw_in(console: &mut Console, sizes: &[(u16, u16)]) {
 
 #[test]
 #[ignore = "slow: .ci/full runs it"]
-fn soak_nothing_breaks_at_any_size() {
+fn soak_any_size_does_not_panic() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = console(runs.path());
-    sweep(&mut console, &mut || {
+    check_sizes(&mut console, &mut || {
         let all = (0..=200).flat_map(|width| (0..=60).map(move |height| (width, height)));
         // Half of all pairs of a width and a height.
         all.filter(|(width, height)| (width + height) % 2 == 0).collect()
@@ -207,7 +207,7 @@ fn the_menu_fits_every_window() {
         let before = console.screen();
         let mut words = Words::default();
         for (size, roomy) in
-            ROOMY.map(|size| (size, true)).into_iter().chain(boundaries().map(|size| (size, false)))
+            ROOMY_SIZES.map(|size| (size, true)).into_iter().chain(boundary_sizes().map(|size| (size, false)))
         {
             console.size = size;
             let drawn = console.screen();
@@ -217,12 +217,12 @@ fn the_menu_fits_every_window() {
         }
         console.size = (80, 24);
         assert_eq!(console.screen(), before);
-        assert!(words.cut().is_empty(), "{:#?}", words.cut());
+        assert!(words.truncated_words().is_empty(), "{:#?}", words.truncated_words());
     }
 }
 
 #[test]
-fn ascii_is_all_that_is_drawn_with_ascii() {
+fn ascii_mode_draws_only_ascii() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = console(runs.path());
     console.app.glyphs = Glyphs::Ascii;
@@ -249,7 +249,7 @@ fn the_smallest_window_names_the_screen_that_is_shown() {
 }
 
 #[test]
-fn a_message_stands_apart_from_the_keys_before_it() {
+fn footer_message_is_separated_from_keys() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut console = console(runs.path());
     let message = "charts use blocks";

@@ -5,31 +5,31 @@ use std::path::Path;
 use novamind::record::mode::Mode;
 
 use super::harness::Console;
-use crate::support::company::{begin_run, call, open_shop, week, weeks};
+use crate::support::company::{advance_week, advance_weeks, apply_opening_decisions, begin_run, call_tool};
 
 /// Opens a run of ten weeks; the last week has higher prices.
-fn playing(runs: &Path, mode: Mode, size: (u16, u16)) -> Console {
+fn console_in_run(runs: &Path, mode: Mode, size: (u16, u16)) -> Console {
     let mut session = begin_run(runs, mode, 84);
-    open_shop(&mut session);
-    weeks(&mut session, 9);
-    call(&mut session, "set_prices", serde_json::json!({"A": 30, "B": 60}));
-    week(&mut session);
+    apply_opening_decisions(&mut session);
+    advance_weeks(&mut session, 9);
+    call_tool(&mut session, "set_prices", serde_json::json!({"A": 30, "B": 60}));
+    advance_week(&mut session);
     drop(session);
     Console::in_latest_run(runs, size)
 }
 
 /// Opens the causes, waits for the answer, and closes them.
-fn asks_why(console: &mut Console, heading: &str) {
+fn check_causes(console: &mut Console, heading: &str) {
     console.press("; w");
-    console.shows(heading);
-    console.shows("residual");
+    console.assert_shows(heading);
+    console.assert_shows("residual");
     console.press("esc");
 }
 
 #[test]
-fn figures_of_screens_are_explained_where_they_stand() {
+fn causes_open_from_figures_on_screens() {
     let runs = tempfile::tempdir().expect("a folder");
-    let mut console = playing(runs.path(), Mode::Sandbox, (120, 40));
+    let mut console = console_in_run(runs.path(), Mode::Sandbox, (120, 40));
     for (keys, heading) in [
         ("1", "overload, week 10: "),
         ("2", "cash change, week 10: "),
@@ -46,32 +46,32 @@ fn figures_of_screens_are_explained_where_they_stand() {
         ("left down", "new subscribers of S1, week 9: "),
     ] {
         console.press(keys);
-        asks_why(&mut console, heading);
+        check_causes(&mut console, heading);
     }
     console.press("esc esc g m ; w");
-    console.shows("explains weekly cash");
+    console.assert_shows("explains weekly cash");
 }
 
 #[test]
-fn lines_of_the_week_report_are_explained_and_lead_to_form_and_rows() {
+fn causes_open_from_week_report_lines() {
     let runs = tempfile::tempdir().expect("a folder");
-    let mut console = playing(runs.path(), Mode::Sandbox, (120, 40));
+    let mut console = console_in_run(runs.path(), Mode::Sandbox, (120, 40));
     console.press("w");
-    console.shows("; w why");
-    asks_why(&mut console, "cash change, week 10: ");
-    console.shows("Action needed");
+    console.assert_shows("; w why");
+    check_causes(&mut console, "cash change, week 10: ");
+    console.assert_shows("Action needed");
     console.press("down");
-    let name = selected(&mut console);
+    let name = selected_line(&mut console);
     console.press("; w");
-    console.shows(&format!("{}, week 10: ", name.split(',').next().expect("a name")));
+    console.assert_shows(&format!("{}, week 10: ", name.split(',').next().expect("a name")));
     // A cause without a decision opens the source rows, which close to the report.
     console.press("end enter");
-    console.shows("SELECT");
+    console.assert_shows("SELECT");
     console.press("esc");
-    console.shows("Action needed");
+    console.assert_shows("Action needed");
     // The price opens its form, and the report is closed.
     for _ in 0..20 {
-        if ["new subscribers", "conversion"].contains(&selected(&mut console).as_str()) {
+        if ["new subscribers", "conversion"].contains(&selected_line(&mut console).as_str()) {
             break;
         }
         console.press("down");
@@ -84,12 +84,12 @@ fn lines_of_the_week_report_are_explained_and_lead_to_form_and_rows() {
         console.press("down");
     }
     console.press("enter");
-    console.shows("set_prices");
+    console.assert_shows("set_prices");
     assert!(!console.screen().contains("Action needed"));
 }
 
 /// Returns the marked line of the report.
-fn selected(console: &mut Console) -> String {
+fn selected_line(console: &mut Console) -> String {
     let screen = console.screen();
     let marked =
         screen.lines().find_map(|line| line.split_once("› ").filter(|(_, rest)| rest.contains(" → ")));
@@ -98,9 +98,9 @@ fn selected(console: &mut Console) -> String {
 }
 
 #[test]
-fn an_unfinished_baseline_is_told_no_cause() {
+fn unfinished_baseline_shows_no_causes() {
     let runs = tempfile::tempdir().expect("a folder");
-    let mut console = playing(runs.path(), Mode::Baseline, (120, 40));
+    let mut console = console_in_run(runs.path(), Mode::Baseline, (120, 40));
     console.press("w");
     let report = console.screen();
     assert!(report.contains("Most unusual changes") && !report.contains("; w"), "{report}");
@@ -108,6 +108,6 @@ fn an_unfinished_baseline_is_told_no_cause() {
         assert!(!report.contains(word), "{word}:\n{report}");
     }
     console.press("; w");
-    console.shows("simulate the company again");
+    console.assert_shows("simulate the company again");
     assert!(!console.screen().contains("composition"));
 }

@@ -6,9 +6,9 @@
 use std::cmp::Reverse;
 use std::time::{Duration, Instant};
 
-use novamind::database::query::Limits;
-use novamind::database::{Cell, QueryConnection, Rows, register_mathematics, tables};
-use novamind::lab::bench::{Bench, company_to_ask};
+use novamind::database::query::QueryLimits;
+use novamind::database::{Cell, QueryConnection, QueryResult, register_mathematics, tables};
+use novamind::lab::benchmark::{BenchContext, company_for_queries};
 use novamind::record::folder::configuration::Configuration;
 use novamind::record::mode::Mode;
 use novamind::record::trajectory::record::Via;
@@ -17,14 +17,15 @@ use rusqlite::Connection;
 use rusqlite::types::{ToSqlOutput, ValueRef};
 use serde_json::{Value, json};
 
-use crate::support::company::call;
+use crate::support::company::call_tool;
 
 /// A limit of steps instead of time: nested scans exceed it.
-const LIMITS: Limits = Limits { rows: 5000, time: Duration::from_secs(3600), steps: Some(6_000_000) };
+const LIMITS: QueryLimits =
+    QueryLimits { rows: 5000, time: Duration::from_secs(3600), steps: Some(6_000_000) };
 
-const EVERYTHING: Limits = Limits { rows: usize::MAX, steps: None, ..LIMITS };
+const UNLIMITED_ROWS: QueryLimits = QueryLimits { rows: usize::MAX, steps: None, ..LIMITS };
 
-fn battery() -> Vec<(&'static str, &'static str)> {
+fn statement_battery() -> Vec<(&'static str, &'static str)> {
     let mut heading = "";
     let mut statements = Vec::new();
     for line in include_str!("../data/battery.sql").lines() {
@@ -38,12 +39,12 @@ fn battery() -> Vec<(&'static str, &'static str)> {
 }
 
 /// Returns a company that uses every mechanism within nine weeks.
-fn company() -> Session {
+fn played_session() -> Session {
     let overrides = vec![("market_research.market_research_discover_prob".to_owned(), "0.5".to_owned())];
     let cash = Some(20_000_000.0);
     let new =
         NewRun { seed: Some(11), days: Some(140), mode: Mode::Debug, cash, overrides, ..NewRun::default() };
-    let mut session = Session::create(new, &Configuration::shipped()).expect("the run begins");
+    let mut session = Session::create(new, &Configuration::bundled()).expect("the run begins");
     for (tool, arguments) in [
         ("set_prices", json!({"A": 12, "B": 25, "C": 55})),
         ("set_model_tiers", json!({"A": 3, "B": 4, "C": 4})),
@@ -62,17 +63,17 @@ fn company() -> Session {
         ("start_research_project", json!({"tier": 3})),
         ("research_group", json!({"group_id": "S1", "target_level": 2})),
     ] {
-        call(&mut session, tool, arguments);
+        call_tool(&mut session, tool, arguments);
     }
-    (0..9).for_each(|at| week(&mut session, at));
+    (0..9).for_each(|at| play_week(&mut session, at));
     session.wait_for_database().expect("everything is written");
     session
 }
 
-fn week(session: &mut Session, at: u32) {
-    answer(session);
+fn play_week(session: &mut Session, at: u32) {
+    answer_threads(session);
     if at < 5 {
-        call(session, "research_market", json!({}));
+        call_tool(session, "research_market", json!({}));
     }
     let deed = match at {
         2 => Some(("post_social_media", json!({"content": "Support answers within a day now."}))),
@@ -83,14 +84,14 @@ fn week(session: &mut Session, at: u32) {
         _ => None,
     };
     if let Some((tool, arguments)) = deed {
-        call(session, tool, arguments);
+        call_tool(session, tool, arguments);
     }
     let forecasts = session.company().naive_forecasts();
     session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
 }
 
 /// Accepts the requests of most threads, ends some, and ignores some.
-fn answer(session: &mut Session) {
+fn answer_threads(session: &mut Session) {
     let waiting = session.company().observe().waiting;
     let offer = |thread: &WaitingThread| {
         let price = thread.asked.unwrap_or(30.0);
@@ -103,7 +104,7 @@ fn answer(session: &mut Session) {
     let ended: Vec<Value> = of(&[4]).iter().map(|thread| json!(thread.customer)).collect();
     for (tool, deals) in [("send_enterprise_deal", offers), ("reject_enterprise_deal", ended)] {
         if !deals.is_empty() {
-            call(session, tool, json!({ "deals": deals }));
+            call_tool(session, tool, json!({ "deals": deals }));
         }
     }
 }
@@ -114,15 +115,15 @@ fn plain_tables(connection: &QueryConnection) -> Connection {
     register_mathematics(&plain).expect("functions");
     let transaction = plain.transaction().expect("a transaction");
     for table in tables() {
-        transaction.execute_batch(&table.declaration()).expect("a table");
-        let all = connection.ask(&format!("SELECT rowid, * FROM {}", table.name), EVERYTHING);
+        transaction.execute_batch(&table.create_statement()).expect("a table");
+        let all = connection.query(&format!("SELECT rowid, * FROM {}", table.name), UNLIMITED_ROWS);
         let all = all.unwrap_or_else(|error| panic!("{}: {}", table.name, error.message));
         let columns: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
         let places = vec!["?"; columns.len() + 1].join(", ");
         let insert = format!("INSERT INTO {} (rowid, {}) VALUES ({places})", table.name, columns.join(", "));
         let mut insert = transaction.prepare(&insert).expect("a statement");
         for row in &all.rows {
-            insert.execute(rusqlite::params_from_iter(row.iter().map(stored))).expect("a row");
+            insert.execute(rusqlite::params_from_iter(row.iter().map(to_sql_output))).expect("a row");
         }
         assert!(!all.rows.is_empty(), "{} is empty: the company must use every mechanism", table.name);
     }
@@ -134,7 +135,7 @@ fn plain_tables(connection: &QueryConnection) -> Connection {
     plain
 }
 
-fn stored(cell: &Cell) -> ToSqlOutput<'_> {
+fn to_sql_output(cell: &Cell) -> ToSqlOutput<'_> {
     ToSqlOutput::Borrowed(match cell {
         Cell::Null => ValueRef::Null,
         Cell::Integer(number) => ValueRef::Integer(*number),
@@ -143,7 +144,7 @@ fn stored(cell: &Cell) -> ToSqlOutput<'_> {
     })
 }
 
-fn ask_plainly(plain: &Connection, sql: &str) -> Rows {
+fn query_plain_tables(plain: &Connection, sql: &str) -> QueryResult {
     let mut statement = plain.prepare(sql).unwrap_or_else(|error| panic!("{sql}: {error}"));
     let columns: Vec<String> = statement.column_names().map(str::to_owned).collect();
     let width = columns.len();
@@ -157,7 +158,11 @@ fn ask_plainly(plain: &Connection, sql: &str) -> Rows {
     };
     let row = |row: &rusqlite::Row<'_>| (0..width).map(|at| row.get_ref(at).map(cell)).collect();
     let rows = statement.query_map([], row).expect("an answer").collect::<rusqlite::Result<_>>();
-    Rows { columns, rows: rows.unwrap_or_else(|error| panic!("{sql}: {error}")), ..Rows::default() }
+    QueryResult {
+        columns,
+        rows: rows.unwrap_or_else(|error| panic!("{sql}: {error}")),
+        ..QueryResult::default()
+    }
 }
 
 /// Returns whether a statement defines the order of its rows.
@@ -165,8 +170,8 @@ fn is_ordered(sql: &str) -> bool {
     sql.rfind("ORDER BY").is_some_and(|at| sql[at..].matches(')').count() <= sql[at..].matches('(').count())
 }
 
-fn difference(sql: &str, own: &Rows, plain: &Rows) -> Option<String> {
-    let sorted = |rows: &Rows| {
+fn result_difference(sql: &str, own: &QueryResult, plain: &QueryResult) -> Option<String> {
+    let sorted = |rows: &QueryResult| {
         let mut rows: Vec<String> = rows.rows.iter().map(|row| format!("{row:?}")).collect();
         if !is_ordered(sql) {
             rows.sort_unstable();
@@ -186,18 +191,18 @@ fn difference(sql: &str, own: &Rows, plain: &Rows) -> Option<String> {
 }
 
 #[test]
-fn statements_are_answered_as_by_ordinary_tables_and_in_few_steps() {
-    let session = company();
+fn queries_match_plain_tables_within_step_limit() {
+    let session = played_session();
     let connection = session.database().open_connection().expect("a connection");
     let plain = plain_tables(&connection);
-    let statements = battery();
+    let statements = statement_battery();
     assert!(statements.len() >= 300, "{}", statements.len());
     let (mut problems, mut empty) = (Vec::new(), Vec::new());
     for (heading, sql) in statements {
-        let problem = match connection.ask(sql, LIMITS) {
+        let problem = match connection.query(sql, LIMITS) {
             Ok(own) => {
                 empty.extend(own.rows.is_empty().then_some(sql));
-                difference(sql, &own, &ask_plainly(&plain, sql))
+                result_difference(sql, &own, &query_plain_tables(&plain, sql))
             }
             Err(error) => Some(format!("refused {}: {}", error.code, error.message)),
         };
@@ -209,24 +214,25 @@ fn statements_are_answered_as_by_ordinary_tables_and_in_few_steps() {
 
 #[test]
 #[ignore = "takes minutes; prints how long the statements take with 190,000 subscribers"]
-fn how_long_the_statements_take_with_190_000_subscribers() {
+fn statement_times_with_190_000_subscribers() {
     let scratch = tempfile::tempdir().expect("a folder");
-    let configuration = Configuration::shipped();
-    let bench = Bench { repetitions: 1, scratch: scratch.path().to_owned(), configuration };
-    let session = company_to_ask(&bench).expect("a company");
+    let configuration = Configuration::bundled();
+    let bench = BenchContext { repetitions: 1, scratch_folder: scratch.path().to_owned(), configuration };
+    let session = company_for_queries(&bench).expect("a company");
     let connection = session.database().open_connection().expect("a connection");
-    let patient = Limits { steps: None, time: Duration::from_secs(120), ..LIMITS };
+    let patient = QueryLimits { steps: None, time: Duration::from_secs(120), ..LIMITS };
     let mut times: Vec<(Duration, &str)> = Vec::new();
-    for (_, sql) in battery() {
+    for (_, sql) in statement_battery() {
         let started = Instant::now();
-        if let Err(error) = connection.ask(sql, patient) {
+        if let Err(error) = connection.query(sql, patient) {
             println!("{}: {}\n    {sql}", error.code, error.message);
         }
         times.push((started.elapsed(), sql));
     }
     times.sort_by_key(|(took, _)| Reverse(*took));
-    let size =
-        |table: &str| connection.ask(&format!("SELECT count(*) FROM {table}"), patient).map(|rows| rows.rows);
+    let size = |table: &str| {
+        connection.query(&format!("SELECT count(*) FROM {table}"), patient).map(|rows| rows.rows)
+    };
     for table in tables() {
         println!("{:<28} {:?}", table.name, size(&table.name));
     }

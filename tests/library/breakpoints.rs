@@ -3,18 +3,20 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use novamind::insight::{Condition, Hit, Inspect, WriteTarget, WrittenBy};
+use novamind::insight::{BreakpointHit, Condition, Inspect, WriteSource, WriteTarget};
 use novamind::record::folder::configuration::Configuration;
 use novamind::record::mode::Mode;
 use novamind::record::trajectory::record::{Activity, Via};
 use novamind::record::trajectory::{Record, Trajectory};
-use novamind::session::{Access, NewRun, ReputationCause, Session, Storage, lines_afterwards, verify};
+use novamind::session::{Access, NewRun, ReputationCause, Session, Storage, read_afterwards, verify};
 use novamind::world::identifiers::{ByGroup, Group};
 use proptest::prelude::*;
 use serde_json::json;
 
-use crate::support::company::{call, column, open_shop, week, weeks};
-use crate::xray::courted;
+use crate::support::company::{
+    advance_week, advance_weeks, apply_opening_decisions, call_tool, query_column,
+};
+use crate::xray::debug_run_with_offers;
 
 const DAYS: u32 = 126;
 
@@ -32,10 +34,10 @@ fn run_with(folder: &Path, mode: Mode, days: u32, cash: f64) -> Session {
         storage: Storage::Runs(folder.to_owned()),
         ..NewRun::default()
     };
-    let mut session = Session::create(new, &Configuration::shipped()).expect("the run begins");
-    open_shop(&mut session);
+    let mut session = Session::create(new, &Configuration::bundled()).expect("the run begins");
+    apply_opening_decisions(&mut session);
     let spend = json!({"targeted_spend": {"content_marketing": {"S1": 900, "S2": 400, "S3": 400}}});
-    call(&mut session, "set_targeted_ad_spend", spend);
+    call_tool(&mut session, "set_targeted_ad_spend", spend);
     session
 }
 
@@ -49,7 +51,7 @@ fn condition(text: &str) -> Condition {
 
 /// Recorded values of a day, read directly from state and facts.
 #[derive(Clone, Copy, Default)]
-struct Seen {
+struct DayRecord {
     cash: f64,
     overload: f64,
     outage: bool,
@@ -63,18 +65,18 @@ struct Seen {
 }
 
 /// Simulates days without breakpoints, from day 1.
-fn recorded(session: &mut Session) -> Vec<Seen> {
+fn record_days(session: &mut Session) -> Vec<DayRecord> {
     let mut all = Vec::new();
     while session.day() < DAYS {
         let mut keep = |report: &novamind::session::DayReport<'_>| {
             let xray = report.xray.expect("a debug run");
             let facts = xray.facts();
-            let mut seen = Seen {
+            let mut seen = DayRecord {
                 cash: report.figures.cash,
                 overload: report.figures.overload,
                 outage: report.figures.outage,
                 rival: xray.world().market.competitors.iter().any(|event| event.day == report.figures.day),
-                ..Seen::default()
+                ..DayRecord::default()
             };
             let groups: BTreeMap<u32, Group> =
                 facts.arrivals.iter().map(|own| (own.customer, own.group)).collect();
@@ -100,9 +102,9 @@ fn recorded(session: &mut Session) -> Vec<Seen> {
 }
 
 /// An independent implementation of each condition: whether it is true on a day, from 1, of the recorded values.
-type Holds = fn(&[Seen], usize) -> bool;
+type ReferenceCondition = fn(&[DayRecord], usize) -> bool;
 
-fn churn_7(days: &[Seen], day: usize) -> Option<f64> {
+fn churn_7(days: &[DayRecord], day: usize) -> Option<f64> {
     let (last, s1) = (day - 1, group("S1"));
     let beginning = last.checked_sub(7)?;
     let left: u32 = days[beginning + 1..=last].iter().map(|seen| seen.left[s1]).sum();
@@ -110,12 +112,12 @@ fn churn_7(days: &[Seen], day: usize) -> Option<f64> {
         .then(|| f64::from(left) / f64::from(days[beginning].subscribers[s1]))
 }
 
-fn leads_7(days: &[Seen], day: usize) -> Option<u32> {
+fn leads_7(days: &[DayRecord], day: usize) -> Option<u32> {
     let first = day.checked_sub(7)?;
     Some(days[first..day].iter().map(|seen| seen.leads[group("S2")]).sum())
 }
 
-const CONDITIONS: [(&str, Holds); 12] = [
+const CONDITIONS: [(&str, ReferenceCondition); 12] = [
     ("churn(S1) > 0.05 over 7", |days, day| churn_7(days, day).is_some_and(|churn| churn > 0.05)),
     ("churn(S1) over 7 > 5%", |days, day| churn_7(days, day).is_some_and(|churn| churn > 0.05)),
     ("reputation(S3) falls", |days, day| {
@@ -133,7 +135,7 @@ const CONDITIONS: [(&str, Holds); 12] = [
     ("overload > 0", |days, day| days[day - 1].overload > 0.0),
     ("conversion(S1) <= 0.3 over 14", |days, day| {
         day >= 14 && {
-            let sum = |of: fn(&Seen) -> u32| days[day - 14..day].iter().map(of).sum::<u32>();
+            let sum = |of: fn(&DayRecord) -> u32| days[day - 14..day].iter().map(of).sum::<u32>();
             let leads = sum(|seen| seen.leads[group("S1")]);
             leads > 0 && f64::from(sum(|seen| seen.signed[group("S1")])) / f64::from(leads) <= 0.3
         }
@@ -141,7 +143,7 @@ const CONDITIONS: [(&str, Holds); 12] = [
 ];
 
 /// Returns every day on which each condition becomes true, with a loop over the recorded values.
-fn scanned(days: &[Seen]) -> Vec<(u32, String)> {
+fn scan_conditions(days: &[DayRecord]) -> Vec<(u32, String)> {
     let mut found = Vec::new();
     for day in 1..=days.len() {
         for (text, holds) in CONDITIONS {
@@ -154,11 +156,11 @@ fn scanned(days: &[Seen]) -> Vec<(u32, String)> {
 }
 
 #[test]
-fn breakpoints_equal_a_scan() {
+fn breakpoints_match_a_full_scan() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut alone = run_in(folder.path(), Mode::Debug, DAYS);
-    let days = recorded(&mut alone);
-    let mut expected = scanned(&days);
+    let days = record_days(&mut alone);
+    let mut expected = scan_conditions(&days);
     expected.dedup();
     let mut stopping = run_in(folder.path(), Mode::Debug, DAYS);
     for (text, _) in CONDITIONS {
@@ -179,7 +181,7 @@ fn breakpoints_equal_a_scan() {
             "it stops for nothing on day {}",
             stopping.day()
         );
-        for Hit { breakpoint, judged } in run.hits {
+        for BreakpointHit { breakpoint, state: judged } in run.hits {
             assert_eq!(judged.day, stopping.day());
             stops.push((judged.day, breakpoint.condition.to_string()));
             if breakpoint.condition.to_string() == "churn(S1) > 0.05 over 7" {
@@ -202,25 +204,25 @@ fn breakpoints_equal_a_scan() {
     for (text, holds) in CONDITIONS {
         let own = condition(text);
         let found: Vec<u32> =
-            alone.inspect().find_days(own).expect("a look").iter().map(|own| own.day).collect();
+            alone.inspect().find_condition_days(own).expect("a look").iter().map(|own| own.day).collect();
         let of_it = expected.iter().filter(|(_, text)| *text == own.to_string());
         assert_eq!(found, of_it.map(|(day, _)| *day).collect::<Vec<_>>(), "{text}");
-        let back = alone.inspect().look_back(own).expect("a look");
+        let back = alone.inspect().condition_history(own).expect("a look");
         let last = |is_true: bool| (1..=days.len()).rev().find(|day| holds(&days, *day) == is_true);
         assert_eq!(back.last_true.map(|own| own.day as usize), last(true), "{text}");
         assert_eq!(back.last_false.map(|own| own.day as usize), last(false), "{text}");
         let since = if back.today.is_true { last(false) } else { last(true) };
-        assert_eq!(back.since() as usize, since.map_or(1, |day| day + 1), "{text}");
+        assert_eq!(back.unchanged_since() as usize, since.map_or(1, |day| day + 1), "{text}");
     }
 }
 
 #[test]
-fn a_stop_in_the_middle_of_a_week_is_a_step_line_and_the_run_verifies() {
+fn breakpoint_within_a_week_writes_a_step_line() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = run_in(folder.path(), Mode::Debug, 60);
-    week(&mut session);
+    advance_week(&mut session);
     let mut other = run_in(folder.path(), Mode::Debug, 60);
-    week(&mut other);
+    advance_week(&mut other);
     other.step(7, &mut |_| {}).expect("days");
     other.step(3, &mut |_| {}).expect("days");
     // Days without breakpoints are simulated again first.
@@ -228,7 +230,7 @@ fn a_stop_in_the_middle_of_a_week_is_a_step_line_and_the_run_verifies() {
     let run = session.inspect().run_until_breakpoint(10, &mut |_| {}).expect("days");
     assert_eq!((run.from, session.day(), run.hits.len()), (7, 17, 0));
     assert_eq!(session.state_hash(), other.state_hash());
-    let leads = session.inspect().find_days(condition("leads > 0")).expect("a look");
+    let leads = session.inspect().find_condition_days(condition("leads > 0")).expect("a look");
     assert!(!leads.is_empty());
     let removed = session.inspect().clear_breakpoints(Some(1)).expect("it is set");
     assert_eq!(removed[0].condition.to_string(), "subscribers(S1) < 0");
@@ -245,7 +247,7 @@ fn a_stop_in_the_middle_of_a_week_is_a_step_line_and_the_run_verifies() {
         .iter()
         .filter_map(|line| match &line.record {
             Record::Step(closing) => Some(format!("step {}", closing.days_run)),
-            Record::Activity(Activity::Xray(look)) => {
+            Record::Activity(Activity::Inspection(look)) => {
                 Some(format!("{} {} {}", look.what, look.which, look.shown_day))
             }
             _ => None,
@@ -258,13 +260,13 @@ fn a_stop_in_the_middle_of_a_week_is_a_step_line_and_the_run_verifies() {
 }
 
 #[test]
-fn churn_over_thirty_days_is_the_share_of_those_of_thirty_days_ago_who_have_left() {
+fn thirty_day_churn_uses_initial_subscribers() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = run_in(folder.path(), Mode::Debug, DAYS);
     session.inspect().run_until_breakpoint(90, &mut |_| {}).expect("days");
     let churn = session
         .inspect()
-        .look_back(condition("churn(S1) >= 0"))
+        .condition_history(condition("churn(S1) >= 0"))
         .expect("a look")
         .today
         .value
@@ -275,18 +277,18 @@ fn churn_over_thirty_days_is_the_share_of_those_of_thirty_days_ago_who_have_left
          JOIN customers USING (customer_id) WHERE group_id = 'S1' AND start_day <= {now} - 30 \
          AND status IN ('subscribed', 'cancelled') AND (status = 'subscribed' OR end_day > {now} - 30)"
     );
-    let of_the_tables = column(&mut session, &sql)[0];
+    let of_the_tables = query_column(&mut session, &sql)[0];
     assert!(churn > 0.0 && (churn - of_the_tables).abs() < 1e-12, "{churn} {of_the_tables}");
 }
 
 /// Returns a reputation after changes, by the rule of the simulator: each is clamped to 0..=1 and floored.
-fn moved(from: f64, changes: &[f64], floor: f64) -> f64 {
+fn apply_changes(from: f64, changes: &[f64], floor: f64) -> f64 {
     changes.iter().fold(from, |value, change| (value + change).clamp(0.0, 1.0).max(floor))
 }
 
 /// Counts the writes of each mechanism. Checks that the writes of a day form a chain, bit for bit, from the recorded value of the
 /// previous day to that of the day.
-fn accounted(
+fn check_writers(
     session: &mut Session,
     targets: &[WriteTarget],
     days: &[u32],
@@ -295,31 +297,31 @@ fn accounted(
     let floor = session.params().reputation.reputation_floor;
     let mut causes: BTreeMap<String, u32> = BTreeMap::new();
     for (target, day) in targets.iter().flat_map(|target| days.iter().map(move |day| (*target, *day))) {
-        let own = session.inspect().who_writes(target, Some(day)).expect("a look");
-        for (value, day) in [(own.first, day - 1), (own.last, day)] {
+        let own = session.inspect().figure_writes(target, Some(day)).expect("a look");
+        for (value, day) in [(own.opening_value, day - 1), (own.closing_value, day)] {
             assert!(
                 recorded(target, day).is_none_or(|known| known == value),
                 "{target} on day {day}: {value}"
             );
         }
-        let mut now = own.first;
+        let mut now = own.opening_value;
         for write in &own.writes {
             assert_eq!(write.before.to_bits(), now.to_bits(), "{target} on day {day}: {write:?}");
             now = match target {
-                WriteTarget::Reputation(_) => moved(now, &write.changes, floor),
+                WriteTarget::Reputation(_) => apply_changes(now, &write.changes, floor),
                 _ => write.changes.iter().fold(now, |value, change| value + change),
             };
             assert_eq!(write.after.to_bits(), now.to_bits(), "{target} on day {day}: {write:?}");
-            let cause = format!("{:?}", write.by);
+            let cause = format!("{:?}", write.source);
             let cause = cause.split(['{', ' ']).next().unwrap_or_default().to_owned();
             *causes.entry(cause).or_default() += 1;
         }
-        assert_eq!(now.to_bits(), own.last.to_bits(), "{target} on day {day}: {:?}", own.writes);
+        assert_eq!(now.to_bits(), own.closing_value.to_bits(), "{target} on day {day}: {:?}", own.writes);
     }
     causes
 }
 
-fn all_of(groups: &[&str]) -> Vec<WriteTarget> {
+fn group_targets(groups: &[&str]) -> Vec<WriteTarget> {
     let of = |id: &&str| [WriteTarget::Reputation(group(id)), WriteTarget::Subscribers(group(id))];
     groups.iter().flat_map(of).collect()
 }
@@ -331,16 +333,16 @@ fn assert_seen(causes: &BTreeMap<String, u32>, expected: &[&str]) {
 }
 
 #[test]
-fn who_adds_up_to_the_change_bit_for_bit() {
+fn writers_sum_to_the_change_exactly() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = run_with(folder.path(), Mode::Debug, DAYS, 5_000_000.0);
     let spend =
         json!({"targeted_spend": {"linkedin": {"E1": 6000}, "content_marketing": {"S1": 900, "S3": 900}}});
-    call(&mut session, "set_targeted_ad_spend", spend);
-    let mut days = recorded_up_to(&mut session, 70);
-    call(&mut session, "set_prices", json!({"A": 19, "B": 60}));
-    call(&mut session, "research_group", json!({"group_id": "S2"}));
-    days.extend(recorded_up_to(&mut session, DAYS));
+    call_tool(&mut session, "set_targeted_ad_spend", spend);
+    let mut days = record_days_up_to(&mut session, 70);
+    call_tool(&mut session, "set_prices", json!({"A": 19, "B": 60}));
+    call_tool(&mut session, "research_group", json!({"group_id": "S2"}));
+    days.extend(record_days_up_to(&mut session, DAYS));
     let recorded = |target: WriteTarget, day: u32| {
         let seen = day.checked_sub(1).map(|at| days[at as usize]);
         Some(match (target, seen) {
@@ -352,8 +354,8 @@ fn who_adds_up_to_the_change_bit_for_bit() {
             (WriteTarget::Subscribers(_), None) => 0.0,
         })
     };
-    let targets = [all_of(&["S1", "S3", "E1"]), vec![WriteTarget::Cash]].concat();
-    let causes = accounted(&mut session, &targets, &[1, 2, 40, 71, 86, 101, 126], &recorded);
+    let targets = [group_targets(&["S1", "S3", "E1"]), vec![WriteTarget::Cash]].concat();
+    let causes = check_writers(&mut session, &targets, &[1, 2, 40, 71, 86, 101, 126], &recorded);
     let expected = [
         "Reputation(Departures)",
         "Reputation(Mood(Mood",
@@ -367,11 +369,11 @@ fn who_adds_up_to_the_change_bit_for_bit() {
 }
 
 #[test]
-fn who_accounts_for_companies_that_sign_and_that_are_lost() {
+fn writers_cover_signed_and_lost_enterprises() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut session = courted(folder.path(), 6);
+    let mut session = debug_run_with_offers(folder.path(), 6);
     // From here on, the player does not reply.
-    weeks(&mut session, 6);
+    advance_weeks(&mut session, 6);
     let sql = |what: &str| {
         format!(
             "SELECT DISTINCT {what} AS day FROM subscriptions JOIN customers USING (customer_id) \
@@ -379,19 +381,19 @@ fn who_accounts_for_companies_that_sign_and_that_are_lost() {
                  AND day <= 84 ORDER BY day"
         )
     };
-    let began = column(&mut session, &sql("start_day"));
-    let ended = column(&mut session, &sql("end_day"));
+    let began = query_column(&mut session, &sql("start_day"));
+    let ended = query_column(&mut session, &sql("end_day"));
     let days: Vec<u32> = began.iter().take(2).chain(ended.iter().take(3)).map(|day| *day as u32).collect();
-    let causes = accounted(&mut session, &all_of(&["E1", "E2", "E3"]), &days, &|_, _| None);
+    let causes = check_writers(&mut session, &group_targets(&["E1", "E2", "E3"]), &days, &|_, _| None);
     assert_seen(&causes, &["Reputation(LostCompany)", "FirstDeals"]);
 }
 
-fn recorded_up_to(session: &mut Session, day: u32) -> Vec<Seen> {
+fn record_days_up_to(session: &mut Session, day: u32) -> Vec<DayRecord> {
     let mut all = Vec::new();
     while session.day() < day {
         let mut keep = |report: &novamind::session::DayReport<'_>| {
             let xray = report.xray.expect("a debug run");
-            let mut seen = Seen { cash: report.figures.cash, ..Seen::default() };
+            let mut seen = DayRecord { cash: report.figures.cash, ..DayRecord::default() };
             for own in Group::all() {
                 seen.subscribers[own] = xray.subscribers(own);
                 seen.reputation[own] = xray.reputation(own);
@@ -405,32 +407,32 @@ fn recorded_up_to(session: &mut Session, day: u32) -> Vec<Seen> {
 }
 
 #[test]
-fn what_spills_over_has_the_sign_of_the_mood_that_it_comes_from() {
+fn spillover_has_the_sign_of_its_source() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = run_in(folder.path(), Mode::Debug, DAYS);
-    recorded_up_to(&mut session, 60);
-    call(&mut session, "set_model_tiers", json!({"A": 1, "B": 1, "C": 1}));
-    call(&mut session, "set_prices", json!({"A": 28, "B": 45}));
-    recorded_up_to(&mut session, 110);
+    record_days_up_to(&mut session, 60);
+    call_tool(&mut session, "set_model_tiers", json!({"A": 1, "B": 1, "C": 1}));
+    call_tool(&mut session, "set_prices", json!({"A": 28, "B": 45}));
+    record_days_up_to(&mut session, 110);
     let mut spilled = 0;
     for day in (61..=110).step_by(3) {
         let of_source =
-            session.inspect().who_writes(WriteTarget::Reputation(group("S1")), Some(day)).expect("a look");
-        let mood = of_source.writes.iter().find_map(|write| match write.by {
-            WrittenBy::Reputation(ReputationCause::Mood(_)) => Some(write.changes[0]),
+            session.inspect().figure_writes(WriteTarget::Reputation(group("S1")), Some(day)).expect("a look");
+        let mood = of_source.writes.iter().find_map(|write| match write.source {
+            WriteSource::Reputation(ReputationCause::Contributions(_)) => Some(write.changes[0]),
             _ => None,
         });
         let own =
-            session.inspect().who_writes(WriteTarget::Reputation(group("S3")), Some(day)).expect("a look");
+            session.inspect().figure_writes(WriteTarget::Reputation(group("S3")), Some(day)).expect("a look");
         for write in own.writes {
-            let WrittenBy::Reputation(ReputationCause::SpillOver(spill)) = write.by else { continue };
+            let WriteSource::Reputation(ReputationCause::Spillover(spill)) = write.source else { continue };
             if spill.source == group("S1") {
                 assert_eq!(Some(spill.change), mood);
                 assert_eq!(write.changes, [spill.change * spill.weight * spill.factor]);
-                assert_eq!(write.asked() < 0.0, spill.change < 0.0);
+                assert_eq!(write.requested_change() < 0.0, spill.change < 0.0);
                 assert!(
-                    write.asked() < 0.0 && write.after <= write.before
-                        || write.asked() > 0.0 && write.after >= write.before
+                    write.requested_change() < 0.0 && write.after <= write.before
+                        || write.requested_change() > 0.0 && write.after >= write.before
                 );
                 spilled += 1;
             }
@@ -440,11 +442,11 @@ fn what_spills_over_has_the_sign_of_the_mood_that_it_comes_from() {
 }
 
 #[test]
-fn hidden_figures_of_runs_that_go_on_stop_nothing() {
+fn hidden_figures_cannot_stop_unfinished_runs() {
     let folder = tempfile::tempdir().expect("a folder");
     for mode in [Mode::Baseline, Mode::Sandbox, Mode::Lesson] {
         let mut session = run_in(folder.path(), mode, 28);
-        week(&mut session);
+        advance_week(&mut session);
         let place = session.folder().expect("a folder").to_owned();
         let lines = || Trajectory::read(&place.join("trajectory.jsonl")).expect("lines").lines.len();
         let (before, own) = (lines(), condition("reputation(S3) falls"));
@@ -456,11 +458,11 @@ fn hidden_figures_of_runs_that_go_on_stop_nothing() {
             inside.clear_breakpoints(None).expect_err("hidden"),
             inside.clear_breakpoints(Some(99)).expect_err("hidden"),
             inside.run_until_breakpoint(3, &mut |_| {}).expect_err("hidden"),
-            inside.look_back(own).expect_err("hidden"),
-            inside.look_back_from(Some(99)).expect_err("hidden"),
-            inside.find_days(own).expect_err("hidden"),
-            inside.who_writes(reputation, None).expect_err("hidden"),
-            inside.who_writes(WriteTarget::Cash, Some(9000)).expect_err("hidden"),
+            inside.condition_history(own).expect_err("hidden"),
+            inside.breakpoint_histories(Some(99)).expect_err("hidden"),
+            inside.find_condition_days(own).expect_err("hidden"),
+            inside.figure_writes(reputation, None).expect_err("hidden"),
+            inside.figure_writes(WriteTarget::Cash, Some(9000)).expect_err("hidden"),
         ];
         drop(inside);
         for refusal in told {
@@ -471,28 +473,30 @@ fn hidden_figures_of_runs_that_go_on_stop_nothing() {
         }
         assert_eq!((lines(), session.day()), (before, 7), "no line is recorded and no day is simulated");
         // After abandoning the run, the user can search it, but not continue it.
-        session.end().expect("it ends");
+        session.abandon().expect("it ends");
         let number = session.inspect().set_breakpoint(own).expect("a breakpoint").number;
-        assert_eq!(session.inspect().look_back_from(Some(number)).expect("a look").len(), 1);
-        assert!(session.inspect().who_writes(reputation, Some(3)).expect("a look").day == 3);
+        assert_eq!(session.inspect().breakpoint_histories(Some(number)).expect("a look").len(), 1);
+        assert!(session.inspect().figure_writes(reputation, Some(3)).expect("a look").day == 3);
         assert_eq!(
             session.inspect().run_until_breakpoint(3, &mut |_| {}).expect_err("over").code,
             "not_in_this_mode"
         );
         drop(session);
         let trajectory = Trajectory::read(&place.join("trajectory.jsonl")).expect("lines");
-        let after = lines_afterwards(&place, &trajectory).expect("lines");
-        let looks =
-            after.lines.iter().filter(|line| matches!(line.record, Record::Activity(Activity::Xray(_))));
+        let after = read_afterwards(&place, &trajectory).expect("lines");
+        let looks = after
+            .lines
+            .iter()
+            .filter(|line| matches!(line.record, Record::Activity(Activity::Inspection(_))));
         assert_eq!(looks.count(), 2);
     }
 }
 
 #[test]
-fn a_run_in_memory_stops_as_long_as_all_its_days_were_watched() {
+fn in_memory_run_supports_breakpoints_if_fully_watched() {
     let new = NewRun { seed: Some(7), days: Some(40), mode: Mode::Debug, ..NewRun::default() };
-    let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
-    open_shop(&mut session);
+    let mut session = Session::create(new, &Configuration::bundled()).expect("a run");
+    apply_opening_decisions(&mut session);
     session.inspect().set_breakpoint(condition("new_subscribers >= 1")).expect("a breakpoint");
     let run = session.inspect().run_until_breakpoint(30, &mut |_| {}).expect("days");
     assert_eq!(run.hits.len(), 1);
@@ -505,7 +509,7 @@ fn a_run_in_memory_stops_as_long_as_all_its_days_were_watched() {
 }
 
 #[test]
-fn conditions_that_cannot_be_read_say_where_and_what_is_near() {
+fn condition_errors_name_column_and_similar_words() {
     for (text, column, said) in [
         ("", 1, "a figure is missing: cash, recurring_revenue"),
         ("chrun(S1) > 0.05", 1, "chrun is not a figure; did you mean churn"),
@@ -561,34 +565,38 @@ proptest! {
 }
 
 #[test]
-fn a_breakpoint_that_was_true_all_along_is_told_from_one_that_never_was() {
+fn breakpoint_search_distinguishes_always_true_from_never_true() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = run_in(folder.path(), Mode::Debug, 56);
-    weeks(&mut session, 2);
+    advance_weeks(&mut session, 2);
     for text in ["cash > 1", "cash < 1"] {
         session.inspect().set_breakpoint(condition(text)).expect("it is set");
     }
     let run = session.inspect().run_until_breakpoint(5, &mut |_| {}).expect("days");
     assert_eq!(run.hits, []);
-    let told: Vec<_> = run.true_before.iter().map(|own| (own.hit.breakpoint.number, own.until)).collect();
+    let told: Vec<_> =
+        run.still_true.iter().map(|own| (own.hit.breakpoint.number, own.last_true_day)).collect();
     assert_eq!(told, [(1, 19)]);
     assert_eq!(session.company().observe().cash_change_days, 5);
 }
 
 /// The first subscribers sign up in the third week: 30 days later churn has its first value, for those of the first day only.
 #[test]
-fn a_figure_over_days_is_watched_from_its_second_value_on() {
+fn change_conditions_start_at_the_second_value() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = run_in(folder.path(), Mode::Debug, 70);
     session.inspect().set_breakpoint(condition("churn(S1) >= 0")).expect("it is set");
     let run = session.inspect().run_until_breakpoint(69, &mut |_| {}).expect("days");
     assert_eq!(run.hits, [], "it is true from the start, which is not a change");
-    let told: Vec<_> = run.true_before.iter().map(|own| own.began).collect();
+    let told: Vec<_> = run.still_true.iter().map(|own| own.first_value_day).collect();
     let began = told[0].expect("it became true on one of the days");
     assert!(began > 30, "{began}");
-    let found = session.inspect().find_days(condition("churn(S1) >= 0")).expect("days");
-    let told: Vec<_> = found.iter().map(|own| (own.day, own.begins, own.becomes_true())).collect();
+    let found = session.inspect().find_condition_days(condition("churn(S1) >= 0")).expect("days");
+    let told: Vec<_> = found.iter().map(|own| (own.day, own.is_first_value, own.becomes_true())).collect();
     assert_eq!(told, [(began, true, false)], "a condition that is true from the start is reported as such");
     // Conditions on values of a day are checked from the first day on.
-    assert_eq!(session.inspect().find_days(condition("subscribers(S1) >= 0")).expect("days").len(), 1);
+    assert_eq!(
+        session.inspect().find_condition_days(condition("subscribers(S1) >= 0")).expect("days").len(),
+        1
+    );
 }

@@ -6,30 +6,32 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use novamind::course::{
-    Class, ClassCollection, ClassFinding, ClassSources, Handout, Lesson, RunVerdict, ToHandOut,
-    guess_in_lesson, try_step_again,
+    Class, ClassCollection, ClassFinding, CollectionInput, Handout, HandoutSource, Lesson, RunVerdict,
+    retry_step, submit_guess,
 };
 use novamind::record::folder::configuration::Configuration;
-use novamind::record::folder::derived::manifest_of;
+use novamind::record::folder::manifest_check::read_manifest;
 use novamind::record::trajectory::record::Via;
-use novamind::report::class::{ClassView, Shown, as_html, columns_table, rows, shown_in_words};
-use novamind::rules::answers_to_companies;
+use novamind::report::class::{
+    ClassDisplayOptions, ClassView, class_to_html, class_to_text, column_descriptions, rows,
+};
+use novamind::rules::calls_for_waiting_threads;
 use novamind::session::{Access, Export, NewRun, SealKey, Session, Storage, lesson_step};
 use serde_json::json;
 use tempfile::TempDir;
 
-use crate::support::forging::forge;
+use crate::support::forging::forge_lines;
 
-struct School {
+struct TestClass {
     place: TempDir,
     class: Class,
 }
 
-impl School {
-    fn of(what: &ToHandOut, students: u32) -> School {
+impl TestClass {
+    fn new(what: &HandoutSource, students: u32) -> TestClass {
         let place = tempfile::tempdir().expect("a folder");
         let class = Class::create(&place.path().join("class"), what, students).expect("a class");
-        School { place, class }
+        TestClass { place, class }
     }
 
     fn folder(&self) -> PathBuf {
@@ -47,25 +49,25 @@ impl School {
     /// Opens a handout on a separate machine and returns the folder of its run.
     fn begin(&self, label: &str, machine: &str) -> PathBuf {
         let runs = self.machine(machine);
-        let run = Handout::read(&self.handout(label)).expect("a hand-out").place(&runs).expect("a run");
+        let run = Handout::read(&self.handout(label)).expect("a hand-out").ensure_run(&runs).expect("a run");
         runs.join("participants").join(label).join(run)
     }
 
     /// Plays a handout with a price on a separate machine and returns the folder of its run.
     fn play(&self, label: &str, machine: &str, price: f64, weeks: u32) -> PathBuf {
         let folder = self.begin(label, machine);
-        play_on(&folder, price, weeks);
+        play_weeks(&folder, price, weeks);
         folder
     }
 
     fn collect(&self, places: &[PathBuf]) -> ClassCollection {
         let folder = self.folder();
-        let sources = ClassSources { class: &self.class, folder: &folder, places };
-        ClassCollection::collect(&sources, answers_to_companies, &mut |_, _| {}).expect("collected")
+        let sources = CollectionInput { class: &self.class, folder: &folder, places };
+        ClassCollection::collect(&sources, calls_for_waiting_threads, &mut |_, _| {}).expect("collected")
     }
 }
 
-fn play_on(folder: &Path, price: f64, weeks: u32) {
+fn play_weeks(folder: &Path, price: f64, weeks: u32) {
     let mut session = Session::open(folder, Access::Write, true).expect("it opens");
     session
         .call("set_prices", &json!({"A": price, "B": price * 2.5, "C": price * 6.25}), Via::Script)
@@ -75,21 +77,21 @@ fn play_on(folder: &Path, price: f64, weeks: u32) {
             lesson_step(own).is_some_and(|step| own.lesson().is_some_and(|it| it.awaits_guess(step)))
         };
         if awaits(&session) {
-            guess_in_lesson(&mut session, if price < 20.0 { 2.0 } else { 1.0 }).expect("a guess");
+            submit_guess(&mut session, if price < 20.0 { 2.0 } else { 1.0 }).expect("a guess");
         }
         let forecasts = session.company().naive_forecasts();
         session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
     }
 }
 
-fn lesson() -> ToHandOut {
+fn lesson() -> HandoutSource {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/three-weeks.toml");
-    ToHandOut::Lesson(Arc::new(Lesson::of_file(&path).expect("a lesson")))
+    HandoutSource::Lesson(Arc::new(Lesson::from_file(&path).expect("a lesson")))
 }
 
 /// Forges lines, and removes database and snapshot, which store the true position.
 fn forge_all(folder: &Path, change: impl Fn(usize, &mut serde_json::Value)) {
-    forge(folder, change);
+    forge_lines(folder, change);
     let kept = ["run.toml", "trajectory.jsonl", "lesson.toml", "lesson.md"];
     for entry in fs::read_dir(folder).expect("a folder").flatten() {
         if !kept.contains(&entry.file_name().to_string_lossy().as_ref()) {
@@ -99,7 +101,7 @@ fn forge_all(folder: &Path, change: impl Fn(usize, &mut serde_json::Value)) {
 }
 
 /// Exports a run as an archive next to its machine, and removes the run.
-fn as_archive(folder: &Path, archive: &Path) {
+fn export_and_remove_run(folder: &Path, archive: &Path) {
     let beside = archive.parent().expect("a folder");
     fs::create_dir_all(beside).expect("a folder");
     let export = Export::prepare(folder, beside, &SealKey::default()).expect("it is whole");
@@ -115,8 +117,8 @@ fn replace_in(path: &Path, from: &str, to: &str) {
 }
 
 #[test]
-fn a_class_of_thirty_is_collected_and_shown_as_it_was_played() {
-    let school = School::of(&lesson(), 30);
+fn class_of_thirty_is_collected_completely() {
+    let school = TestClass::new(&lesson(), 30);
     let (altered, forged, twice, missing, open) = ("S05", "S06", "S07", "S08", "S09");
     for (number, student) in school.class.students.iter().enumerate() {
         let label = student.label.as_str();
@@ -147,7 +149,7 @@ fn a_class_of_thirty_is_collected_and_shown_as_it_was_played() {
                     }),
                     _ if number % 3 == 0 => {
                         let archive = school.machine("archives").join(format!("{label}.tar.gz"));
-                        as_archive(&folder, &archive);
+                        export_and_remove_run(&folder, &archive);
                     }
                     _ => {}
                 }
@@ -161,7 +163,7 @@ fn a_class_of_thirty_is_collected_and_shown_as_it_was_played() {
     let other = Storage::Runs(school.machine("machine-S02"));
     drop(Session::create(
         NewRun { storage: other, days: Some(28), ..NewRun::default() },
-        &Configuration::shipped(),
+        &Configuration::bundled(),
     ));
 
     let collection = school.collect(&[school.place.path().join("machines")]);
@@ -176,7 +178,7 @@ fn a_class_of_thirty_is_collected_and_shown_as_it_was_played() {
                 assert!(problem.contains("the event has 99999 for step 2"), "{problem}");
                 "altered"
             }
-            ClassFinding::Twice { paths, .. } => {
+            ClassFinding::Conflicting { paths, .. } => {
                 assert_eq!(paths.len(), 2);
                 "twice"
             }
@@ -201,15 +203,19 @@ fn a_class_of_thirty_is_collected_and_shown_as_it_was_played() {
     assert_eq!((collection.superseded, collection.others), (1, 1));
     let of = |verdict| collection.runs.iter().filter(|run| run.verdict == verdict).count();
     assert_eq!(of(RunVerdict::Finished), 25);
-    assert_eq!((of(RunVerdict::Twice), of(RunVerdict::NotFinished), of(RunVerdict::Altered)), (2, 1, 1));
+    assert_eq!(
+        (of(RunVerdict::Conflicting), of(RunVerdict::NotFinished), of(RunVerdict::Altered)),
+        (2, 1, 1)
+    );
     assert_eq!(ClassCollection::read(&school.folder()).expect("kept"), collection);
     check_tables(&school, &collection);
 }
 
-fn check_tables(school: &School, collection: &ClassCollection) {
-    let lesson = school.class.lesson_kept(&school.folder()).expect("kept");
-    let view = |shown| ClassView { class: &school.class, lesson: lesson.as_ref(), collection, shown };
-    let plain = view(Shown::default());
+fn check_tables(school: &TestClass, collection: &ClassCollection) {
+    let lesson = school.class.stored_lesson(&school.folder()).expect("kept");
+    let view =
+        |shown| ClassView { class: &school.class, lesson: lesson.as_ref(), collection, display: shown };
+    let plain = view(ClassDisplayOptions::default());
     let table = rows(&plain);
     assert_eq!(table.len(), collection.runs.len() + 1);
     let column = |name: &str| table[0].iter().position(|own| own == name).expect(name);
@@ -228,10 +234,10 @@ fn check_tables(school: &School, collection: &ClassCollection) {
     let last = table.iter().find(|row| row[0] == "S30").expect("a row");
     assert_eq!((last[column("goals_reached")].as_str(), last[column("pitfalls")].as_str()), ("0", "dear"));
     let explained: Vec<String> =
-        columns_table(&plain).into_iter().skip(1).map(|row| row[0].clone()).collect();
+        column_descriptions(&plain).into_iter().skip(1).map(|row| row[0].clone()).collect();
     assert_eq!(explained, table[0], "every column has a description");
 
-    let text = shown_in_words(&plain);
+    let text = class_to_text(&plain);
     let ranking: Vec<&str> = text.lines().filter(|line| line.contains('%') && line.contains("/1")).collect();
     assert_eq!(ranking.len(), 25, "{text}");
     assert!(ranking[0].contains("S01") && ranking[0].contains("100%"), "{text}");
@@ -240,23 +246,30 @@ fn check_tables(school: &School, collection: &ClassCollection) {
     {
         assert!(text.contains(part), "{part} in {text}");
     }
-    let hidden = shown_in_words(&view(Shown { hides_names: true, ..Shown::default() }));
+    let hidden =
+        class_to_text(&view(ClassDisplayOptions { hides_names: true, ..ClassDisplayOptions::default() }));
     assert!(hidden.contains("no. 25") && !hidden.contains("S0") && !hidden.contains("S1"), "{hidden}");
-    let page = as_html(&view(Shown { lit: Some("S12".to_owned()), ..Shown::default() }));
+    let page = class_to_html(&view(ClassDisplayOptions {
+        highlighted_student: Some("S12".to_owned()),
+        ..ClassDisplayOptions::default()
+    }));
     for foreign in ["<script", "http://", "https://", "src=", "href=", "url(", "@import"] {
         assert!(!page.contains(foreign), "{foreign}");
     }
     assert_eq!(page.matches("<polyline class=\"curve c").count(), 25);
     assert_eq!(page.matches("checked=\"checked\"").count(), 1);
-    let page = as_html(&view(Shown { hides_names: true, ..Shown::default() }));
+    let page =
+        class_to_html(&view(ClassDisplayOptions { hides_names: true, ..ClassDisplayOptions::default() }));
     assert!(!page.contains("S01") && page.contains("no. 1"), "no label is on the page");
-    let wrong = view(Shown { figure: Some("subscriber".to_owned()), ..Shown::default() }).check();
+    let wrong =
+        view(ClassDisplayOptions { figure: Some("subscriber".to_owned()), ..ClassDisplayOptions::default() })
+            .check();
     assert!(wrong.expect_err("no such figure").contains("subscribers"));
 }
 
 #[test]
-fn an_altered_hand_out_is_refused_and_says_what_to_do() {
-    let school = School::of(&lesson(), 1);
+fn modified_handout_is_rejected() {
+    let school = TestClass::new(&lesson(), 1);
     let path = school.handout("S01");
     let whole = fs::read_to_string(&path).expect("a hand-out");
     let seven = whole.replacen("label = \"S01\"", "label = \"S02\"", 1);
@@ -277,22 +290,22 @@ fn an_altered_hand_out_is_refused_and_says_what_to_do() {
 }
 
 #[test]
-fn a_hand_out_goes_on_with_its_run_and_another_try_keeps_its_stamp() {
-    let school = School::of(&lesson(), 2);
+fn handout_resumes_its_run_and_retries_keep_its_stamp() {
+    let school = TestClass::new(&lesson(), 2);
     let folder = school.begin("S02", "one");
     assert_eq!(folder.file_name().expect("a name").to_string_lossy(), school.class.students[1].run);
-    let manifest = manifest_of(&folder).expect("a manifest");
+    let manifest = read_manifest(&folder).expect("a manifest");
     assert_eq!(manifest.participant.as_deref(), Some("S02"));
-    play_on(&folder, 40.0, 3);
+    play_weeks(&folder, 40.0, 3);
     assert_eq!(school.begin("S02", "one"), folder, "the finished run is shown");
     let first = Session::open(&folder, Access::Write, true).expect("it opens");
-    let again = try_step_again(&first, 0).expect("a try");
+    let again = retry_step(&first, 0).expect("a try");
     drop(first);
     let id = again.manifest().id.clone();
     drop(again);
     let own = school.begin("S02", "one");
     assert_eq!(own, folder.with_file_name(&id), "the open attempt continues");
-    play_on(&own, 8.0, 3);
+    play_weeks(&own, 8.0, 3);
     let collection = school.collect(&[school.machine("one")]);
     assert_eq!(collection.runs.iter().filter(|run| run.verdict == RunVerdict::Finished).count(), 2);
     assert_eq!(collection.runs.iter().map(|run| run.evidence.tries).max(), Some(2));
@@ -335,15 +348,15 @@ fn a_hand_out_goes_on_with_its_run_and_another_try_keeps_its_stamp() {
 }
 
 #[test]
-fn a_run_is_handed_out_under_labels_and_names_of_their_own() {
+fn handout_of_a_run_has_separate_labels_and_names() {
     let teacher = tempfile::tempdir().expect("a folder");
     let storage = Storage::Runs(teacher.path().to_owned());
     let new = NewRun { storage, days: Some(70), seed: Some(5), ..NewRun::default() };
-    let session = Session::create(new, &Configuration::shipped()).expect("a run");
+    let session = Session::create(new, &Configuration::bundled()).expect("a run");
     let folder = session.folder().expect("a folder").to_owned();
     drop(session);
-    play_on(&folder, 12.0, 2);
-    let school = School::of(&ToHandOut::Run(folder), 3);
+    play_weeks(&folder, 12.0, 2);
+    let school = TestClass::new(&HandoutSource::Run(folder), 3);
     let [first, second] =
         [("S01", 8.0), ("S02", 30.0)].map(|(label, price)| school.play(label, label, price, 3));
     assert_ne!(first.file_name(), second.file_name());
@@ -359,9 +372,9 @@ fn a_run_is_handed_out_under_labels_and_names_of_their_own() {
     let verdicts: Vec<RunVerdict> = collection.runs.iter().map(|run| run.verdict).collect();
     assert_eq!(verdicts, [RunVerdict::NotFinished, RunVerdict::NotFinished]);
     assert!(collection.findings.contains(&ClassFinding::Missing { label: "S03".to_owned() }));
-    let shown = Shown::default();
-    let view = ClassView { class: &school.class, lesson: None, collection: &collection, shown };
-    let text = shown_in_words(&view);
+    let shown = ClassDisplayOptions::default();
+    let view = ClassView { class: &school.class, lesson: None, collection: &collection, display: shown };
+    let text = class_to_text(&view);
     assert!(text.contains("Ranked by cash on the last day that every run has reached"), "{text}");
 
     let refused = Class::create(&school.folder(), &lesson(), 3).expect_err("the class is there").to_string();

@@ -5,21 +5,21 @@ use std::path::Path;
 use std::sync::Arc;
 
 use novamind::course::{
-    Debrief, DecisionComparison, Lesson, PlayedPart, ReferencePlay, guess_in_lesson, try_step_again,
+    Debrief, DecisionComparison, Lesson, PlayedPart, ReferencePlay, retry_step, submit_guess,
 };
 use novamind::record::figures::WeekFigure;
 use novamind::record::folder::configuration::Configuration;
 use novamind::record::mode::Mode;
-use novamind::report::{debrief_as_html, debrief_as_markdown};
-use novamind::rules::answers_to_companies;
+use novamind::report::{debrief_to_html, debrief_to_markdown};
+use novamind::rules::calls_for_waiting_threads;
 use novamind::session::{Access, LessonEntry, NewRun, PartPlay, Session, Storage, play_part};
 use serde_json::json;
 
-use crate::support::company::{call, week};
+use crate::support::company::{advance_week, call_tool};
 
 fn lesson() -> Arc<Lesson> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/lessons/two-weeks.toml");
-    Arc::new(Lesson::of_file(&path).expect("a lesson"))
+    Arc::new(Lesson::from_file(&path).expect("a lesson"))
 }
 
 fn judged_by_revenue(folder: &Path) -> Arc<Lesson> {
@@ -29,7 +29,7 @@ fn judged_by_revenue(folder: &Path) -> Arc<Lesson> {
     assert!(plan.contains(old), "{plan}");
     std::fs::write(folder.join("two-weeks.toml"), plan.replace(old, new)).expect("a plan");
     std::fs::copy(from.join("two-weeks.md"), folder.join("two-weeks.md")).expect("texts");
-    Arc::new(Lesson::of_file(&folder.join("two-weeks.toml")).expect("a lesson"))
+    Arc::new(Lesson::from_file(&folder.join("two-weeks.toml")).expect("a lesson"))
 }
 
 /// Starts the lesson of a student, with a seed that differs from that of the lesson.
@@ -41,27 +41,27 @@ fn student_of(lesson: Arc<Lesson>, folder: &Path) -> Session {
     let entry = LessonEntry { lesson, part: 0, is_judged: true };
     let storage = Storage::Runs(folder.to_owned());
     let new = NewRun { mode: Mode::Lesson, seed: Some(3), lesson: Some(entry), storage, ..NewRun::default() };
-    Session::create(new, &Configuration::shipped()).expect("the lesson begins")
+    Session::create(new, &Configuration::bundled()).expect("the lesson begins")
 }
 
 /// Plays the lesson to its end, with a price from a certain week on.
-fn played(folder: &Path, price: u32, from: u32) -> Session {
-    finished(student(folder), price, from)
+fn play_lesson(folder: &Path, price: u32, from: u32) -> Session {
+    finish_lesson(student(folder), price, from)
 }
 
-fn finished(mut session: Session, price: u32, from: u32) -> Session {
+fn finish_lesson(mut session: Session, price: u32, from: u32) -> Session {
     for at in 0..2 {
-        guess_in_lesson(&mut session, 1.0).expect("a guess");
+        submit_guess(&mut session, 1.0).expect("a guess");
         if at == from {
-            call(&mut session, "set_prices", json!({"A": price, "B": price, "C": price}));
+            call_tool(&mut session, "set_prices", json!({"A": price, "B": price, "C": price}));
         }
-        week(&mut session);
+        advance_week(&mut session);
     }
     session
 }
 
 fn debrief(session: &Session) -> Debrief {
-    PlayedPart::of(session).expect("it is over").debrief(answers_to_companies)
+    PlayedPart::from_session(session).expect("it is over").debrief(calls_for_waiting_threads)
 }
 
 fn reference(play: &ReferencePlay) -> Vec<f64> {
@@ -70,24 +70,24 @@ fn reference(play: &ReferencePlay) -> Vec<f64> {
         lesson: &lesson,
         part: 0,
         seed: Some(3),
-        plays: &play.plays,
+        scheduled_calls: &play.plays,
         weeks: None,
         is_judged: true,
-        asks_database: lesson.asks_database(),
+        needs_database: lesson.needs_database(),
     };
-    let session = play_part(&own, answers_to_companies).expect("a play");
+    let session = play_part(&own, calls_for_waiting_threads).expect("a play");
     session.cash_by_day().to_vec()
 }
 
 #[test]
-fn curves_are_the_record_and_the_plays_of_the_check() {
+fn debrief_curves_match_the_record_and_reference_plays() {
     let folder = tempfile::tempdir().expect("a folder");
-    let session = played(folder.path(), 30, 0);
+    let session = play_lesson(folder.path(), 30, 0);
     let found = debrief(&session);
-    assert_eq!(found.own, session.cash_by_day());
+    assert_eq!(found.cash_by_day, session.cash_by_day());
     let plan = &lesson().plan;
-    assert_eq!(found.good.as_ref().expect("a good play").cash_by_day, reference(&plan.good));
-    assert_eq!(found.bad.as_ref().expect("a bad play").cash_by_day, reference(&plan.bad));
+    assert_eq!(found.reference.as_ref().expect("a good play").cash_by_day, reference(&plan.good));
+    assert_eq!(found.bad_play.as_ref().expect("a bad play").cash_by_day, reference(&plan.bad));
     assert_eq!(found.steps.len(), 2);
     assert_eq!(found.pitfalls, [(7, "Somebody bought.".to_owned())]);
     // The result from the disk is equal.
@@ -97,71 +97,72 @@ fn curves_are_the_record_and_the_plays_of_the_check() {
 }
 
 #[test]
-fn the_first_other_decision_is_worth_what_a_play_with_it_comes_to() {
+fn first_difference_is_valued_by_resimulation() {
     let folder = tempfile::tempdir().expect("a folder");
-    let found = debrief(&played(folder.path(), 30, 0));
-    let DecisionComparison::Parted(parting) = &found.comparison else { panic!("{:?}", found.comparison) };
+    let found = debrief(&play_lesson(folder.path(), 30, 0));
+    let DecisionComparison::Different(parting) = &found.comparison else { panic!("{:?}", found.comparison) };
     assert_eq!((parting.week, parting.day, parting.decisions.len()), (1, 0, 1));
     // This single decision turns the run into the reference play.
-    let effect = parting.effect.simulated().expect("an effect");
-    let good = found.good.as_ref().expect("a good play").cash_by_day.clone();
+    let effect = parting.effect.as_simulated().expect("an effect");
+    let good = found.reference.as_ref().expect("a good play").cash_by_day.clone();
     assert_eq!(Some(&effect.with), good.last());
-    assert_eq!(Some(&effect.own), found.own.last());
+    assert_eq!(Some(&effect.own), found.cash_by_day.last());
     // The higher price of the second week stays: the decision of the first week is not the complete reference play.
-    let later = debrief(&played(folder.path(), 40, 1));
-    let DecisionComparison::Parted(parting) = &later.comparison else { panic!("{:?}", later.comparison) };
+    let later = debrief(&play_lesson(folder.path(), 40, 1));
+    let DecisionComparison::Different(parting) = &later.comparison else { panic!("{:?}", later.comparison) };
     assert_eq!(parting.week, 1);
-    assert_ne!(parting.effect.simulated().map(|effect| effect.with), good.last().copied());
+    assert_ne!(parting.effect.as_simulated().map(|effect| effect.with), good.last().copied());
 }
 
 #[test]
-fn whoever_plays_the_good_play_is_told_so() {
+fn debrief_recognizes_the_reference_play() {
     let folder = tempfile::tempdir().expect("a folder");
-    let found = debrief(&played(folder.path(), 12, 0));
+    let found = debrief(&play_lesson(folder.path(), 12, 0));
     assert_eq!(found.comparison, DecisionComparison::Same);
-    assert_eq!(Some(&found.own), found.good.as_ref().map(|good| &good.cash_by_day));
+    assert_eq!(Some(&found.cash_by_day), found.reference.as_ref().map(|good| &good.cash_by_day));
 }
 
 #[test]
-fn a_part_that_is_judged_by_another_figure_than_cash_is_told_in_it() {
+fn debrief_uses_the_figure_of_the_goal() {
     let folder = tempfile::tempdir().expect("a folder");
-    let session = finished(student_of(judged_by_revenue(folder.path()), &folder.path().join("runs")), 30, 0);
+    let session =
+        finish_lesson(student_of(judged_by_revenue(folder.path()), &folder.path().join("runs")), 30, 0);
     let found = debrief(&session);
     let judged = found.judged_by.as_ref().expect("a figure");
     let own: Vec<(u32, f64)> =
         session.weeks().iter().map(|week| (week.day, week.recurring_revenue)).collect();
-    assert_eq!((judged.figure, &judged.own), (WeekFigure::RecurringRevenue, &own));
-    let good = judged.good.as_ref().expect("the good play");
+    assert_eq!((judged.figure, &judged.actual), (WeekFigure::RecurringRevenue, &own));
+    let good = judged.reference.as_ref().expect("the good play");
     assert!(good.len() == 2 && good != &own, "{good:?}");
-    let DecisionComparison::Parted(parting) = &found.comparison else { panic!("{:?}", found.comparison) };
-    let (before, with) = parting.effect.simulated().and_then(|effect| effect.judged).expect("an effect");
+    let DecisionComparison::Different(parting) = &found.comparison else { panic!("{:?}", found.comparison) };
+    let (before, with) = parting.effect.as_simulated().and_then(|effect| effect.judged).expect("an effect");
     assert_eq!((Some(before), Some(with)), (own.last().map(|own| own.1), good.last().map(|good| good.1)));
-    let markdown = debrief_as_markdown(&found);
+    let markdown = debrief_to_markdown(&found);
     for said in
         ["Recurring revenue on day 14: yours $", "the reference play's $", "Recurring revenue by week"]
     {
         assert!(markdown.contains(said), "{said}:\n{markdown}");
     }
-    let of_cash = debrief(&played(&folder.path().join("other"), 30, 0));
+    let of_cash = debrief(&play_lesson(&folder.path().join("other"), 30, 0));
     assert_eq!(of_cash.judged_by, None);
 }
 
 #[test]
-fn another_try_begins_where_the_first_one_did() {
+fn retry_starts_at_the_same_day() {
     let folder = tempfile::tempdir().expect("a folder");
-    let first = played(folder.path(), 30, 0);
-    let mut again = try_step_again(&first, 0).expect("another try");
+    let first = play_lesson(folder.path(), 30, 0);
+    let mut again = retry_step(&first, 0).expect("another try");
     let begun = student(&folder.path().join("other"));
     assert_eq!(again.settings(), begun.settings());
-    assert_eq!(again.lesson().map(|own| (own.tries(0), own.guess(0))), Some((2, Some(1.0))));
-    assert_eq!(guess_in_lesson(&mut again, 2.0).err().map(|refusal| refusal.code), Some("no_question"));
+    assert_eq!(again.lesson().map(|own| (own.attempt(0), own.guess(0))), Some((2, Some(1.0))));
+    assert_eq!(submit_guess(&mut again, 2.0).err().map(|refusal| refusal.code), Some("no_question"));
     for _ in 0..2 {
         if again.day() == 0 {
-            call(&mut again, "set_prices", json!({"A": 30, "B": 30, "C": 30}));
+            call_tool(&mut again, "set_prices", json!({"A": 30, "B": 30, "C": 30}));
         } else {
-            guess_in_lesson(&mut again, 1.0).expect("the step after it asks");
+            submit_guess(&mut again, 1.0).expect("the step after it asks");
         }
-        week(&mut again);
+        advance_week(&mut again);
     }
     assert_eq!(again.cash_by_day(), first.cash_by_day());
     let (one, other) = (debrief(&first), debrief(&again));
@@ -170,21 +171,21 @@ fn another_try_begins_where_the_first_one_did() {
 }
 
 #[test]
-fn nothing_is_told_of_the_good_play_before_the_part_is_over() {
+fn reference_play_is_hidden_until_the_part_is_over() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = student(folder.path());
-    guess_in_lesson(&mut session, 0.5).expect("a guess");
-    week(&mut session);
-    assert_eq!(PlayedPart::of(&session).expect_err("it continues").code, "lesson_not_over");
-    let other = Session::create(NewRun::default(), &Configuration::shipped()).expect("a run");
-    assert_eq!(PlayedPart::of(&other).expect_err("no lesson").code, "not_in_a_lesson");
+    submit_guess(&mut session, 0.5).expect("a guess");
+    advance_week(&mut session);
+    assert_eq!(PlayedPart::from_session(&session).expect_err("it continues").code, "lesson_not_over");
+    let other = Session::create(NewRun::default(), &Configuration::bundled()).expect("a run");
+    assert_eq!(PlayedPart::from_session(&other).expect_err("no lesson").code, "not_in_a_lesson");
 }
 
 #[test]
-fn pages_tell_everything_and_stand_alone() {
+fn debrief_pages_are_complete_and_self_contained() {
     let folder = tempfile::tempdir().expect("a folder");
-    let found = debrief(&played(folder.path(), 30, 0));
-    let (markdown, html) = (debrief_as_markdown(&found), debrief_as_html(&found));
+    let found = debrief(&play_lesson(folder.path(), 30, 0));
+    let (markdown, html) = (debrief_to_markdown(&found), debrief_to_html(&found));
     for said in [
         "reference play",
         "set_prices",

@@ -2,82 +2,92 @@
 
 use std::path::Path;
 
-use novamind::insight::{Inspect, open_to_look_inside};
+use novamind::insight::{Inspect, open_for_inspection};
 use novamind::record::mode::Mode;
 use novamind::record::trajectory::Trajectory;
 use novamind::record::trajectory::record::Via;
-use novamind::session::{Session, lines_afterwards, verify};
+use novamind::session::{Session, read_afterwards, verify};
 use serde_json::json;
 
-use crate::support::company::{begin_run, open_shop, week, weeks};
+use crate::support::company::{advance_week, advance_weeks, apply_opening_decisions, begin_run};
 
 fn run_in(folder: &Path, mode: Mode) -> Session {
     let mut session = begin_run(folder, mode, 56);
-    open_shop(&mut session);
+    apply_opening_decisions(&mut session);
     session
 }
 
 #[test]
-fn two_runs_differ_from_the_day_on_which_something_was_changed() {
+fn difference_starts_on_the_day_of_the_change() {
     let folder = tempfile::tempdir().expect("a folder");
     let [mut one, mut other] = [(); 2].map(|()| run_in(folder.path(), Mode::Debug));
     for session in [&mut one, &mut other] {
-        weeks(session, 2);
+        advance_weeks(session, 2);
     }
-    let alike = one.inspect().difference_to(&mut other, None).expect("a look");
+    let alike = one.inspect().compare_with_run(&mut other, None).expect("a look");
     assert_eq!((alike.last_day, alike.first_day, alike.difference), (14, None, None));
     assert!(
         one.inspect()
-            .difference_to(&mut other, Some(9))
+            .compare_with_run(&mut other, Some(9))
             .expect("a look")
             .difference
             .expect("it was asked")
-            .is_none()
+            .is_empty()
     );
     other.call("set_prices", &json!({"A": 40}), Via::Script).expect("a price");
-    weeks(&mut one, 2);
-    week(&mut other);
-    let found = one.inspect().difference_to(&mut other, None).expect("a look");
+    advance_weeks(&mut one, 2);
+    advance_week(&mut other);
+    let found = one.inspect().compare_with_run(&mut other, None).expect("a look");
     assert_eq!((found.last_day, found.first_day), (21, Some(15)));
     let first = found.difference.expect("they differ");
     assert_eq!(first.days, (15, 15));
-    assert!(first.parts.contains(&"settings") && first.alike.contains(&"calendar"), "{first:?}");
-    assert!(first.alike.contains(&"product"), "a price develops nothing");
-    let last =
-        one.inspect().difference_to(&mut other, Some(21)).expect("a look").difference.expect("it was asked");
+    assert!(
+        first.differing_parts.contains(&"settings") && first.equal_parts.contains(&"calendar"),
+        "{first:?}"
+    );
+    assert!(first.equal_parts.contains(&"product"), "a price develops nothing");
+    let last = one
+        .inspect()
+        .compare_with_run(&mut other, Some(21))
+        .expect("a look")
+        .difference
+        .expect("it was asked");
     let told = last.figures.iter().find(|(name, ..)| name == "cash").expect("cash differs");
     assert_eq!((told.1, told.2), (one.cash_by_day()[21], other.cash_by_day()[21]));
     let subscribers =
         |name: &str| last.figures.iter().find(|(own, ..)| own == name).map(|own| (own.1, own.2));
     let (own, others) = subscribers("individual subscribers").expect("they differ");
-    let (only_own, only_others) = last.only;
+    let (only_own, only_others) = last.only_in_one;
     assert_eq!(own - others, only_own as f64 - only_others as f64, "{last:?}");
-    assert!(last.first_customers.len() <= 10 && last.customers + only_own + only_others > 10);
+    assert!(last.first_customers.len() <= 10 && last.differing_customers + only_own + only_others > 10);
     assert_eq!(
-        one.inspect().difference_to(&mut other, Some(22)).expect_err("no such day").code,
+        one.inspect().compare_with_run(&mut other, Some(22)).expect_err("no such day").code,
         "day_unknown"
     );
     assert_eq!(
-        one.inspect().difference_to(&mut other, Some(0)).expect_err("no such day").code,
+        one.inspect().compare_with_run(&mut other, Some(0)).expect_err("no such day").code,
         "day_unknown"
     );
 }
 
 #[test]
-fn two_days_differ_in_what_happened_between_them_and_looking_changes_nothing() {
+fn difference_of_two_days_lists_changes_without_side_effects() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = run_in(folder.path(), Mode::Debug);
-    weeks(&mut session, 3);
+    advance_weeks(&mut session, 3);
     let (place, hash) = (session.folder().expect("a folder").to_owned(), session.state_hash());
-    let found = session.inspect().difference_of_days(11, 18).expect("a look");
-    assert!(found.parts.contains(&"calendar") && found.alike.contains(&"settings"), "{found:?}");
+    let found = session.inspect().compare_days(11, 18).expect("a look");
+    assert!(
+        found.differing_parts.contains(&"calendar") && found.equal_parts.contains(&"settings"),
+        "{found:?}"
+    );
     let cash = found.figures.iter().find(|(name, ..)| name == "cash").expect("cash");
     assert_eq!((cash.1, cash.2), (session.cash_by_day()[11], session.cash_by_day()[18]));
-    assert!(found.only.1 > 0, "somebody came");
+    assert!(found.only_in_one.1 > 0, "somebody came");
     let customer = found.first_customers.iter().find(|own| own.subscribes == (true, true)).expect("one");
     assert!(customer.columns.iter().any(|(name, ..)| *name == "satisfaction"), "{customer:?}");
-    assert!(session.inspect().difference_of_days(9, 9).expect("a look").is_none());
-    assert_eq!(session.inspect().difference_of_days(9, 22).expect_err("no such day").code, "day_unknown");
+    assert!(session.inspect().compare_days(9, 9).expect("a look").is_empty());
+    assert_eq!(session.inspect().compare_days(9, 22).expect_err("no such day").code, "day_unknown");
     assert_eq!(session.state_hash(), hash);
     drop(session);
     let lines = Trajectory::read(&place.join("trajectory.jsonl")).expect("lines").lines;
@@ -86,7 +96,7 @@ fn two_days_differ_in_what_happened_between_them_and_looking_changes_nothing() {
 }
 
 #[test]
-fn figures_of_days_are_told_again_as_they_were() {
+fn figures_of_past_days_are_reproduced() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = run_in(folder.path(), Mode::Debug);
     let mut live = Vec::new();
@@ -102,7 +112,7 @@ fn figures_of_days_are_told_again_as_they_were() {
         session.advance("wait", &forecasts, Via::Script, &mut keep).expect("a week");
     }
     let mut again = Vec::new();
-    let told = session.inspect().tell_days_again(&mut |day| {
+    let told = session.inspect().replay_days(&mut |day| {
         again.push((
             day.figures.day,
             day.figures.cash,
@@ -114,65 +124,66 @@ fn figures_of_days_are_told_again_as_they_were() {
 }
 
 #[test]
-fn nobody_looks_into_an_unfinished_run_and_once_it_is_over_the_look_is_recorded() {
+fn difference_requires_permission_and_is_recorded() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut debug = run_in(folder.path(), Mode::Debug);
-    week(&mut debug);
+    advance_week(&mut debug);
     for mode in [Mode::Baseline, Mode::Sandbox, Mode::Lesson] {
         let mut session = run_in(folder.path(), mode);
-        week(&mut session);
+        advance_week(&mut session);
         let place = session.folder().expect("a folder").to_owned();
         let mut inside = session.inspect();
         let told = [
-            inside.difference_of_days(1, 2).expect_err("hidden").to_string(),
-            inside.difference_of_days(0, 9000).expect_err("hidden").to_string(),
-            inside.difference_to(&mut debug, Some(9000)).expect_err("hidden").to_string(),
-            inside.tell_days_again(&mut |_| panic!("hidden")).expect_err("hidden").to_string(),
+            inside.compare_days(1, 2).expect_err("hidden").to_string(),
+            inside.compare_days(0, 9000).expect_err("hidden").to_string(),
+            inside.compare_with_run(&mut debug, Some(9000)).expect_err("hidden").to_string(),
+            inside.replay_days(&mut |_| panic!("hidden")).expect_err("hidden").to_string(),
         ];
         drop(inside);
-        let from_debug = debug.inspect().difference_to(&mut session, None).expect_err("hidden").to_string();
+        let from_debug =
+            debug.inspect().compare_with_run(&mut session, None).expect_err("hidden").to_string();
         assert_eq!(from_debug, told[0]);
         assert!(told.iter().all(|one| one.starts_with("not_in_this_mode: the x-ray works")), "{told:?}");
         drop(session);
-        let refused = open_to_look_inside(&place, Default::default()).err().expect("hidden").to_string();
+        let refused = open_for_inspection(&place, Default::default()).err().expect("hidden").to_string();
         assert!(refused.contains("debug runs and in runs that are over"), "{refused}");
         let lines = Trajectory::read(&place.join("trajectory.jsonl")).expect("lines").lines;
         assert!(lines.iter().all(|line| line.record.kind() != "xray"));
         let mut session =
             Session::open(&place, novamind::session::Access::Write, false).expect("it continues");
-        session.end().expect("it ends");
+        session.abandon().expect("it ends");
         drop(session);
-        let mut session = open_to_look_inside(&place, Default::default()).expect("it is over");
-        session.inspect().difference_of_days(1, 7).expect("a look");
+        let mut session = open_for_inspection(&place, Default::default()).expect("it is over");
+        session.inspect().compare_days(1, 7).expect("a look");
         let mut days = 0;
-        session.inspect().tell_days_again(&mut |day| days += u32::from(day.xray.is_some())).expect("a look");
+        session.inspect().replay_days(&mut |day| days += u32::from(day.xray.is_some())).expect("a look");
         assert_eq!(days, 7);
         let trajectory = Trajectory::read(&place.join("trajectory.jsonl")).expect("lines");
-        let after = lines_afterwards(&place, &trajectory).expect("lines").lines;
+        let after = read_afterwards(&place, &trajectory).expect("lines").lines;
         assert_eq!(after.iter().filter(|line| line.record.kind() == "xray").count(), 2);
     }
 }
 
 #[test]
-fn a_parameter_that_differs_leads() {
+fn differing_parameter_is_listed_first() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = run_in(folder.path(), Mode::Debug);
-    weeks(&mut session, 2);
+    advance_weeks(&mut session, 2);
     let key = "operations.base_outage_prob";
     let old = session.set_parameter(key, &json!(0.5), Some(17)).expect("it waits").old;
-    weeks(&mut session, 1);
+    advance_weeks(&mut session, 1);
     let parameters = |session: &mut Session, one, other| {
-        session.inspect().difference_of_days(one, other).expect("a look").parameters
+        session.inspect().compare_days(one, other).expect("a look").parameters
     };
     assert_eq!(parameters(&mut session, 14, 16), []);
     assert_eq!(parameters(&mut session, 16, 17), [(key.to_owned(), old, json!(0.5))]);
     // Leads of a day include individuals and enterprises.
-    let found = session.inspect().difference_of_days(3, 20).expect("a look");
+    let found = session.inspect().compare_days(3, 20).expect("a look");
     let sum: f64 =
         found.figures.iter().filter(|(name, ..)| name.ends_with("leads of the day")).map(|own| own.2).sum();
     let recorded = session
         .inspect()
-        .xray_query("SELECT SUM(came) FROM hidden.factors WHERE day = 20", None)
+        .query_hidden_tables("SELECT SUM(came) FROM hidden.factors WHERE day = 20", None)
         .expect("a look");
     assert_eq!(novamind::database::number_at(&recorded.rows[0], 0), sum);
 }

@@ -6,15 +6,15 @@ use novamind::database::text_at;
 use novamind::record::folder::configuration::Configuration;
 use novamind::record::trajectory::record::Via;
 use novamind::record::trajectory::{Record, Trajectory};
-use novamind::rules::AskingThread;
+use novamind::rules::ThreadContext;
 use novamind::session::{Access, NewRun, Session, Storage, WaitingThread, verify};
 use serde_json::{Value, json};
 
-use crate::support::company::{call, column, number};
+use crate::support::company::{call_tool, query_column, query_number};
 
 fn create(storage: Storage) -> Session {
     let new = NewRun { seed: Some(11), cash: Some(20_000_000.0), storage, ..NewRun::default() };
-    let mut session = Session::create(new, &Configuration::shipped()).expect("the run begins");
+    let mut session = Session::create(new, &Configuration::bundled()).expect("the run begins");
     let ads = json!({"E1": 4000, "E2": 4000, "E3": 4000});
     let channels = ["social_media", "search_ads", "linkedin", "content_marketing", "referral_program"];
     let ads: serde_json::Map<String, Value> =
@@ -29,13 +29,13 @@ fn create(storage: Storage) -> Session {
         ("set_targeted_ad_spend", json!({ "targeted_spend": ads })),
         ("set_capacity_tier", json!({"tier": 5})),
     ] {
-        call(&mut session, tool, arguments);
+        call_tool(&mut session, tool, arguments);
     }
     session
 }
 
 /// Replies in some threads, ends some, ignores some, and offers a subscriber another price.
-fn answer(session: &mut Session) {
+fn answer_threads(session: &mut Session) {
     let seen = session.company().observe();
     let mine = |thread: &&WaitingThread, rest: u32| {
         thread.thread % 7 != 6 && (thread.thread % 5 == 4) == (rest == 1)
@@ -53,13 +53,13 @@ fn answer(session: &mut Session) {
         seen.waiting.iter().filter(|thread| mine(thread, 1)).map(|thread| json!(thread.customer)).collect();
     for (tool, deals) in [("send_enterprise_deal", offers), ("reject_enterprise_deal", ended)] {
         if !deals.is_empty() {
-            call(session, tool, json!({ "deals": deals }));
+            call_tool(session, tool, json!({ "deals": deals }));
         }
     }
     if session.day() % 21 == 14 {
         let sql = "SELECT customer_id FROM subscriptions JOIN customers USING (customer_id) \
                    WHERE status = 'subscribed' AND customer_type = 'large' ORDER BY 1";
-        for customer in column(session, sql).into_iter().step_by(9) {
+        for customer in query_column(session, sql).into_iter().step_by(9) {
             let deal = json!({"deals": [[customer, [["B", 30]]]]});
             // In an open thread the player may just have replied, which adds a turn.
             session.call("send_enterprise_deal", &deal, Via::Script).expect("a subscriber can be written to");
@@ -67,28 +67,28 @@ fn answer(session: &mut Session) {
     }
 }
 
-fn week(session: &mut Session) {
-    answer(session);
+fn advance_week(session: &mut Session) {
+    answer_threads(session);
     let forecasts = session.company().naive_forecasts();
     session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
 }
 
 #[track_caller]
-fn assert_none(session: &mut Session, wrong: &str) {
+fn assert_no_rows(session: &mut Session, wrong: &str) {
     let rows = session.query(wrong).unwrap_or_else(|refusal| panic!("{wrong}: {refusal}")).rows;
     assert!(rows.is_empty(), "{wrong}\n{:?}", &rows[..rows.len().min(5)]);
 }
 
 #[test]
-fn a_run_with_deals_is_left_continued_and_played_again() {
+fn run_with_deals_resumes_and_verifies() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut straight = create(Storage::Memory);
-    (0..15).for_each(|_| week(&mut straight));
+    (0..15).for_each(|_| advance_week(&mut straight));
 
     let mut session = create(Storage::Runs(folder.path().to_owned()));
     let place = session.folder().expect("a folder").to_owned();
     for at in 0..15 {
-        week(&mut session);
+        advance_week(&mut session);
         if at % 4 == 2 {
             drop(session);
             session = Session::open(&place, Access::Write, true).expect("it opens");
@@ -102,17 +102,17 @@ fn a_run_with_deals_is_left_continued_and_played_again() {
         "SELECT sum(amount) FROM ledger",
         "SELECT count(*) FROM notifications WHERE type = 'deal_won'",
     ] {
-        assert_eq!(number(&mut session, sql), number(&mut straight, sql), "{sql}");
+        assert_eq!(query_number(&mut session, sql), query_number(&mut straight, sql), "{sql}");
     }
-    assert!(number(&mut session, "SELECT count(*) FROM notifications WHERE type = 'deal_won'") > 20.0);
+    assert!(query_number(&mut session, "SELECT count(*) FROM notifications WHERE type = 'deal_won'") > 20.0);
     assert_eq!(session.company().observe().waiting, straight.company().observe().waiting);
     drop(session);
     assert_eq!(verify(&place).expect("it verifies").states, 15);
-    a_changed_price_is_found(&place);
+    check_forged_price_is_detected(&place);
 }
 
 /// A trajectory with a changed offer does not verify, because the hash chain is broken.
-fn a_changed_price_is_found(place: &Path) {
+fn check_forged_price_is_detected(place: &Path) {
     let path = place.join("trajectory.jsonl");
     let text = std::fs::read_to_string(&path).expect("a trajectory");
     let lines = Trajectory::read(&path).expect("it is whole").lines;
@@ -126,58 +126,58 @@ fn a_changed_price_is_found(place: &Path) {
 }
 
 #[test]
-fn turns_are_recorded_as_a_manager_sees_them() {
+fn check_turn_rows() {
     let mut session = create(Storage::Memory);
-    (0..16).for_each(|_| week(&mut session));
+    (0..16).for_each(|_| advance_week(&mut session));
     let run = &mut session;
     for kind in ["new_lead", "churn_prevention", "plan_change", "renegotiation"] {
         let sql = format!("SELECT count(*) FROM enterprise_turns WHERE thread_type = '{kind}'");
-        assert!(number(run, &sql) > 0.0, "{kind}");
+        assert!(query_number(run, &sql) > 0.0, "{kind}");
     }
     // Turns are numbered without gaps; only two offers of one call could share a number.
-    assert_none(
+    assert_no_rows(
         run,
         "SELECT thread_id, count(*) AS n, max(turn_number) AS m FROM enterprise_turns GROUP BY 1 HAVING m <> n - 1",
     );
-    assert_none(
+    assert_no_rows(
         run,
         "SELECT * FROM enterprise_turns WHERE message_id > (SELECT count(*) FROM enterprise_turns)",
     );
     // Only enterprises have texts and addresses, and the market at the end of a deal.
-    assert_none(run, "SELECT * FROM enterprise_turns WHERE (sender = 'customer') <> (email LIKE '%@%.%')");
-    assert_none(
+    assert_no_rows(run, "SELECT * FROM enterprise_turns WHERE (sender = 'customer') <> (email LIKE '%@%.%')");
+    assert_no_rows(
         run,
         "SELECT * FROM enterprise_turns WHERE (message_text <> '') <> (sender = 'customer' OR (sender = 'system' AND closed))",
     );
-    assert_none(
+    assert_no_rows(
         run,
         "SELECT t.email FROM enterprise_turns t JOIN customers c USING (customer_id) WHERE sender = 'customer' AND t.email <> c.email",
     );
     // Offers.
-    assert_none(
+    assert_no_rows(
         run,
         "SELECT * FROM enterprise_turns WHERE sender = 'agent' AND close_reason = '' \
          AND (json_array_length(offer_json) NOT BETWEEN 1 AND 3 OR json_extract(offer_json, '$[0].contract_months') <> 1)",
     );
-    assert_none(
+    assert_no_rows(
         run,
         "SELECT * FROM enterprise_turns WHERE sender = 'agent' AND turn_number > 0 AND seat_count <> 1",
     );
-    assert_none(
+    assert_no_rows(
         run,
         "SELECT * FROM enterprise_turns WHERE sender = 'agent' AND turn_number = 0 AND (seat_count < 30 OR thread_type <> 'renegotiation')",
     );
     // A thread closes with the acceptance and the market's record, or with a rejection; unanswered threads have no closing row.
-    assert_none(
+    assert_no_rows(
         run,
         "SELECT * FROM enterprise_turns WHERE closed <> (close_reason IN ('accepted', 'agent_rejected'))",
     );
-    assert_none(
+    assert_no_rows(
         run,
         "SELECT thread_id, group_concat(sender) AS who FROM enterprise_turns WHERE closed GROUP BY 1 \
          HAVING who NOT IN ('customer,system', 'agent')",
     );
-    assert_none(
+    assert_no_rows(
         run,
         "SELECT * FROM enterprise_turns a JOIN enterprise_turns b ON a.thread_id = b.thread_id \
          WHERE a.close_reason = 'agent_rejected' AND b.message_id > a.message_id",
@@ -185,7 +185,7 @@ fn turns_are_recorded_as_a_manager_sees_them() {
     let silent = "SELECT count(DISTINCT thread_id) FROM enterprise_turns WHERE thread_id NOT IN \
                   (SELECT thread_id FROM enterprise_turns WHERE closed) AND customer_id IN \
                   (SELECT customer_id FROM subscriptions WHERE status IN ('lost', 'cancelled'))";
-    assert!(number(run, silent) > 5.0);
+    assert!(query_number(run, silent) > 5.0);
     // No column has hidden values.
     let columns = run.query("SELECT * FROM enterprise_turns LIMIT 1").expect("a row").columns;
     let visible = [
@@ -207,26 +207,26 @@ fn turns_are_recorded_as_a_manager_sees_them() {
 }
 
 #[test]
-fn deals_show_in_subscriptions_and_bills() {
+fn check_deal_rows() {
     let mut session = create(Storage::Memory);
-    (0..16).for_each(|_| week(&mut session));
+    (0..16).for_each(|_| advance_week(&mut session));
     let seen = session.company().observe();
     let run = &mut session;
     let companies = "FROM subscriptions s JOIN customers c USING (customer_id) WHERE customer_type = 'large'";
     assert_eq!(
-        number(run, &format!("SELECT count(*) {companies} AND status = 'subscribed'")),
+        query_number(run, &format!("SELECT count(*) {companies} AND status = 'subscribed'")),
         f64::from(seen.companies)
     );
     assert!(seen.companies > 10 && seen.seats > 1000, "{} {}", seen.companies, seen.seats);
     // The row of a lead keeps its billing day; everything else follows the deal.
-    assert_none(run, &format!("SELECT * {companies} AND billing_day_mod30 <> created_day % 30"));
-    assert_none(
+    assert_no_rows(run, &format!("SELECT * {companies} AND billing_day_mod30 <> created_day % 30"));
+    assert_no_rows(
         run,
         &format!(
             "SELECT * {companies} AND status IN ('lead', 'lost') AND (plan <> 'pending' OR start_day <> created_day)"
         ),
     );
-    assert_none(
+    assert_no_rows(
         run,
         &format!(
             "SELECT * {companies} AND status = 'subscribed' AND contract_end_day <> contract_start_day + 30"
@@ -234,7 +234,7 @@ fn deals_show_in_subscriptions_and_bills() {
     );
     let accepted = "SELECT customer_id, min(day) AS first, max(day) AS last, max(message_id) AS message \
                     FROM enterprise_turns WHERE sender = 'customer' AND closed GROUP BY 1";
-    assert_none(
+    assert_no_rows(
         run,
         &format!(
             "WITH a AS ({accepted}) SELECT * FROM a JOIN subscriptions s USING (customer_id) \
@@ -243,15 +243,15 @@ fn deals_show_in_subscriptions_and_bills() {
              OR abs(listed_price - json_extract(t.offer_json, '$.price')) > 1e-9"
         ),
     );
-    assert_none(
+    assert_no_rows(
         run,
         &format!(
             "SELECT * {companies} AND status IN ('subscribed', 'cancelled') AND c.contract_start_day IS NULL"
         ),
     );
     // Subscriptions that were cancelled without a reply end at the end of the agreed month.
-    assert!(number(run, &format!("SELECT count(*) {companies} AND status = 'cancelled'")) > 0.0);
-    assert_none(
+    assert!(query_number(run, &format!("SELECT count(*) {companies} AND status = 'cancelled'")) > 0.0);
+    assert_no_rows(
         run,
         &format!("SELECT * {companies} AND status IN ('cancelled', 'lost') AND end_day IS NULL"),
     );
@@ -259,10 +259,10 @@ fn deals_show_in_subscriptions_and_bills() {
     let bills = "SELECT l.day, l.amount FROM ledger l JOIN customers c ON l.note = \
                  'Subscription payment from customer ' || c.customer_id JOIN subscriptions s USING (customer_id) \
                  WHERE customer_type = 'large'";
-    assert!(number(run, &format!("SELECT count(*) FROM ({bills})")) > 20.0);
-    assert_none(run, &format!("{bills} AND l.day % 30 <> s.billing_day_mod30"));
-    assert_none(run, &format!("{bills} AND l.day < s.start_day"));
-    assert_none(
+    assert!(query_number(run, &format!("SELECT count(*) FROM ({bills})")) > 20.0);
+    assert_no_rows(run, &format!("{bills} AND l.day % 30 <> s.billing_day_mod30"));
+    assert_no_rows(run, &format!("{bills} AND l.day < s.start_day"));
+    assert_no_rows(
         run,
         &format!(
             "{bills} AND status = 'subscribed' AND contract_start_day < l.day - 30 AND l.day > 100 \
@@ -270,7 +270,7 @@ fn deals_show_in_subscriptions_and_bills() {
         ),
     );
     // The inbox names customers.
-    assert_none(
+    assert_no_rows(
         run,
         "SELECT day, count(*) AS n FROM notifications WHERE type = 'deal_won' GROUP BY 1 \
          HAVING n <> (SELECT count(*) FROM enterprise_turns t WHERE t.day = notifications.day AND sender = 'customer' AND closed)",
@@ -278,19 +278,19 @@ fn deals_show_in_subscriptions_and_bills() {
 }
 
 #[test]
-fn the_week_counts_threads_replies_and_what_waits() {
+fn check_week_counts() {
     let mut session = create(Storage::Memory);
-    (0..12).for_each(|_| week(&mut session));
+    (0..12).for_each(|_| advance_week(&mut session));
     let seen = session.company().observe();
     let figures = seen.last_week.expect("a week");
     let run = &mut session;
     let from = "day BETWEEN 78 AND 84";
     let opened = format!("SELECT count(*) FROM enterprise_turns WHERE turn_number = 0 AND {from}");
-    assert_eq!(number(run, &opened), f64::from(figures.threads_opened));
+    assert_eq!(query_number(run, &opened), f64::from(figures.threads_opened));
     let replies = format!(
         "SELECT count(*) FROM enterprise_turns WHERE sender = 'customer' AND turn_number > 0 AND {from}"
     );
-    assert_eq!(number(run, &replies), f64::from(figures.replies));
+    assert_eq!(query_number(run, &replies), f64::from(figures.replies));
     assert!(figures.replies > 0 && figures.threads_opened > 0);
     assert!(seen.dashboard.contains(&format!("- {} new replies", figures.replies)));
     assert!(seen.dashboard.contains("awaiting your response"));
@@ -300,11 +300,11 @@ fn the_week_counts_threads_replies_and_what_waits() {
             "SELECT count(*) FROM enterprise_turns WHERE thread_id = {} AND sender = 'agent'",
             thread.thread
         );
-        assert_eq!(number(run, &sql), f64::from(thread.offers_so_far));
+        assert_eq!(query_number(run, &sql), f64::from(thread.offers_so_far));
     }
-    rules_see_what_the_tables_say(run);
+    check_rules_match_tables(run);
     // The change review lists the offers since the week, with equal offers of a call in one sentence; they cannot be undone.
-    answer(run);
+    answer_threads(run);
     let done = run.company().observe().purchases;
     let offers = done.iter().filter(|line| line.starts_with("offered C at $"));
     let companies =
@@ -312,12 +312,12 @@ fn the_week_counts_threads_replies_and_what_waits() {
     let offered =
         "SELECT count(*) FROM enterprise_turns WHERE sender = 'agent' AND offer_json <> '{}' AND day = 84";
     assert!(companies.clone().count() > 0, "{done:?}");
-    assert_eq!(companies.sum::<f64>(), number(run, offered), "{done:?}");
+    assert_eq!(companies.sum::<f64>(), query_number(run, offered), "{done:?}");
     assert_eq!(run.undo(Via::Script).expect_err("nothing was set").code, "nothing_to_undo");
 }
 
 /// An enterprise that asks for the price of another plan names the plan in its message.
-fn wishes_name_another_plan(run: &mut Session, thread: &AskingThread) {
+fn check_plan_request_text(run: &mut Session, thread: &ThreadContext) {
     let sql = format!(
         "SELECT t.message_text, s.plan FROM enterprise_turns t JOIN subscriptions s USING (customer_id)
          WHERE t.thread_id = {} AND t.sender = 'customer'",
@@ -331,15 +331,15 @@ fn wishes_name_another_plan(run: &mut Session, thread: &AskingThread) {
 
 /// The rows of subscribers that ask for another plan have the plan before any price is named.
 #[test]
-fn wishes_for_another_plan_are_in_the_rows() {
+fn check_plan_request_rows() {
     let mut session = create(Storage::Memory);
     let mut wishes = 0;
     for _ in 0..20 {
-        week(&mut session);
-        let (threads, _) = AskingThread::all(&mut session).expect("threads");
-        let wish = |own: &&AskingThread| own.waiting.kind == "plan_change" && own.waiting.asked.is_none();
+        advance_week(&mut session);
+        let (threads, _) = ThreadContext::read_all(&mut session).expect("threads");
+        let wish = |own: &&ThreadContext| own.waiting.kind == "plan_change" && own.waiting.asked.is_none();
         for thread in threads.iter().filter(wish) {
-            wishes_name_another_plan(&mut session, thread);
+            check_plan_request_text(&mut session, thread);
             wishes += 1;
         }
     }
@@ -347,8 +347,8 @@ fn wishes_for_another_plan_are_in_the_rows() {
 }
 
 /// The tables have the fields of rules: price and plan that an enterprise named, and the last offer.
-fn rules_see_what_the_tables_say(run: &mut Session) {
-    let (threads, _) = AskingThread::all(run).expect("threads");
+fn check_rules_match_tables(run: &mut Session) {
+    let (threads, _) = ThreadContext::read_all(run).expect("threads");
     let mut asked = 0;
     for thread in &threads {
         let newest = |sender: &str| {
@@ -369,7 +369,7 @@ fn rules_see_what_the_tables_say(run: &mut Session) {
             assert!(text_at(row, 0).to_lowercase().contains(&format!("plan {}", plan.to_lowercase())));
             asked += 1;
         } else if thread.waiting.kind == "plan_change" {
-            wishes_name_another_plan(run, thread);
+            check_plan_request_text(run, thread);
         }
         let last: Vec<Value> =
             thread.waiting.last_offer.iter().map(|(plan, price)| json!([plan.id(), price])).collect();
@@ -379,7 +379,7 @@ fn rules_see_what_the_tables_say(run: &mut Session) {
         assert_eq!(last, told.map(|own| json!([own["plan"], own["price_per_seat"]])).collect::<Vec<_>>());
     }
     assert!(asked > 3, "{asked} companies asked");
-    let row = threads[0].row(run.company().company_names());
+    let row = threads[0].to_json(run.company().company_names());
     for field in ["company", "customer", "asked_plan", "last_offer", "offers_so_far", "needed_quota"] {
         assert!(row.get(field).is_some(), "{field}: {row}");
     }

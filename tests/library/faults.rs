@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use novamind::insight::{Inspect, LeadFactor, MoodTerm, WriteTarget, WrittenBy};
+use novamind::insight::{Inspect, LeadFactor, SatisfactionTerm, WriteSource, WriteTarget};
 use novamind::record::error::RunError;
 use novamind::record::folder::configuration::Configuration;
-use novamind::record::folder::derived::manifest_of;
+use novamind::record::folder::manifest_check::read_manifest;
 use novamind::record::mode::Mode;
 use novamind::record::trajectory::{Record, Trajectory};
 use novamind::session::{Category, NewRun, ReputationCause, Session, Storage, verify};
@@ -14,7 +14,7 @@ use novamind::world::fault::Fault;
 use novamind::world::identifiers::Group;
 use serde_json::{Value, json};
 
-use crate::support::company::{call, number, open_shop, weeks};
+use crate::support::company::{advance_weeks, apply_opening_decisions, call_tool, query_number};
 
 fn new_run(folder: &Path, fault: Option<Fault>) -> NewRun {
     NewRun {
@@ -27,31 +27,31 @@ fn new_run(folder: &Path, fault: Option<Fault>) -> NewRun {
     }
 }
 
-fn run(session: &mut Session, days: u32) {
+fn advance_days(session: &mut Session, days: u32) {
     if days > 0 {
         session.inspect().run_until_breakpoint(days, &mut |_| {}).expect("days");
     }
 }
 
 /// Returns a company with subscribers of several groups and plans after a number of days.
-fn company(folder: &Path, fault: Option<Fault>, days: u32) -> Session {
-    let mut session = Session::create(new_run(folder, fault), &Configuration::shipped()).expect("it begins");
-    open_shop(&mut session);
-    call(&mut session, "set_capacity_tier", json!({"tier": 2}));
+fn create_company(folder: &Path, fault: Option<Fault>, days: u32) -> Session {
+    let mut session = Session::create(new_run(folder, fault), &Configuration::bundled()).expect("it begins");
+    apply_opening_decisions(&mut session);
+    call_tool(&mut session, "set_capacity_tier", json!({"tier": 2}));
     let ads = json!({"content_marketing": {"S1": 750, "S2": 500}, "search_ads": {"S3": 500}});
-    call(&mut session, "set_targeted_ad_spend", json!({"targeted_spend": ads}));
-    run(&mut session, days.min(28));
-    if days == STRESSED {
+    call_tool(&mut session, "set_targeted_ad_spend", json!({"targeted_spend": ads}));
+    advance_days(&mut session, days.min(28));
+    if days == STRESSED_DAYS {
         let key = "reputation.reputation_quality_cancel_damage";
         session.set_parameter(key, &json!(1), None).expect("departures hurt a thousand times as much");
-        call(&mut session, "set_prices", json!({"A": 400, "B": 500, "C": 600}));
+        call_tool(&mut session, "set_prices", json!({"A": 400, "B": 500, "C": 600}));
     }
-    run(&mut session, days.saturating_sub(28));
+    advance_days(&mut session, days.saturating_sub(28));
     session
 }
 
 /// Returns days of a run in which cancellations reduce reputation to its minimum.
-const STRESSED: u32 = 50;
+const STRESSED_DAYS: u32 = 50;
 
 fn group(id: &str) -> Group {
     Group::parse(id).expect("a group")
@@ -81,7 +81,7 @@ fn symptom(fault: Fault) -> Symptom {
             let factor = leads.last().expect("a day").factor(LeadFactor::Economy);
             let rows = session
                 .inspect()
-                .xray_query("SELECT pmi FROM hidden.pmi WHERE day = 12", None)
+                .query_hidden_tables("SELECT pmi FROM hidden.pmi WHERE day = 12", None)
                 .expect("a look");
             let pmi = novamind::database::number_at(&rows.rows[0], 0);
             let gap = pmi - parameter(session, "macro.neutral_pmi");
@@ -91,10 +91,10 @@ fn symptom(fault: Fault) -> Symptom {
         Fault::QuotaInverted => at(12, |session| {
             let mood = session.inspect().satisfaction_equation(group("S1"), Some(12)).expect("a look");
             // No demand is close to the quota.
-            mood.term(MoodTerm::Quota).expect("subscribers") != 0.0
+            mood.term(SatisfactionTerm::Quota).expect("subscribers") != 0.0
         }),
         Fault::SmallerRivalMove => at(75, |session| {
-            let moves = session.inspect().rival_state(Some(75)).expect("a look").moves;
+            let moves = session.inspect().competitor_state(Some(75)).expect("a look").moves;
             assert!(!moves.is_empty());
             moves.iter().any(|(event, _)| event.boost < event.sampled)
         }),
@@ -102,10 +102,10 @@ fn symptom(fault: Fault) -> Symptom {
             let spilled: Vec<bool> = (10..=30)
                 .flat_map(|day| {
                     let target = WriteTarget::Reputation(group("S3"));
-                    session.inspect().who_writes(target, Some(day)).expect("a look").writes
+                    session.inspect().figure_writes(target, Some(day)).expect("a look").writes
                 })
-                .filter_map(|write| match write.by {
-                    WrittenBy::Reputation(ReputationCause::SpillOver(spill)) => {
+                .filter_map(|write| match write.source {
+                    WriteSource::Reputation(ReputationCause::Spillover(spill)) => {
                         Some(write.amount() * spill.change < 0.0)
                     }
                     _ => None,
@@ -118,7 +118,7 @@ fn symptom(fault: Fault) -> Symptom {
             let mood = session.inspect().satisfaction_equation(group("S1"), Some(12)).expect("a look");
             let most = parameter(session, "quality.stickiness_log_scale")
                 * libm::log(1.0 + 12.0 / parameter(session, "quality.stickiness_days_scale"));
-            mood.term(MoodTerm::Tenure).expect("subscribers") > most
+            mood.term(SatisfactionTerm::Tenure).expect("subscribers") > most
         }),
         Fault::DriftTwice => at(91, |session| {
             let before = session.inspect().drift_state(Some(89)).expect("a look");
@@ -126,7 +126,7 @@ fn symptom(fault: Fault) -> Symptom {
             assert_eq!(before.next_day, Some(90));
             before.groups.iter().zip(&after.groups).any(|(before, after)| {
                 let moved = after.expectation.c_max - before.expectation.c_max;
-                (moved - before.step.c_max).abs() > 1e-12
+                (moved - before.next_step.c_max).abs() > 1e-12
             })
         }),
         Fault::ReferralsSwapped => at(12, |session| {
@@ -140,25 +140,26 @@ fn symptom(fault: Fault) -> Symptom {
             (shown / (rate("S2") / rate("S1")) - 1.0).abs() > 1e-9
         }),
         Fault::ComputeOfOnePlan => at(30, |session| {
-            let writes = session.inspect().who_writes(WriteTarget::Cash, Some(28)).expect("a look").writes;
-            let compute = writes.iter().find(|own| own.by == WrittenBy::Booked(Category::Compute));
-            let paid = -compute.expect("compute is booked").asked();
-            let used = number(session, "SELECT sum(usage_units) FROM daily_usage WHERE day = 28");
+            let writes = session.inspect().figure_writes(WriteTarget::Cash, Some(28)).expect("a look").writes;
+            let compute =
+                writes.iter().find(|own| own.source == WriteSource::LedgerEntries(Category::Compute));
+            let paid = -compute.expect("compute is booked").requested_change();
+            let used = query_number(session, "SELECT sum(usage_units) FROM daily_usage WHERE day = 28");
             let unit = |tier: u32| parameter(session, &format!("model_tier.{tier}.unit_cost"));
             // Some subscribers use plan B or C, whose models are more expensive.
             paid <= used * unit(1) * (1.0 + 1e-9)
         }),
-        Fault::ReputationWithoutFloor => at(STRESSED, |session| {
+        Fault::ReputationWithoutFloor => at(STRESSED_DAYS, |session| {
             let floor = parameter(session, "reputation.reputation_floor");
-            (29..=STRESSED).any(|day| {
+            (29..=STRESSED_DAYS).any(|day| {
                 let target = WriteTarget::Reputation(group("S1"));
-                let writes = session.inspect().who_writes(target, Some(day)).expect("a look").writes;
+                let writes = session.inspect().figure_writes(target, Some(day)).expect("a look").writes;
                 writes.iter().any(|write| write.after < floor)
             })
         }),
         Fault::TargetedGainAsGeneral => at(7, |session| {
             let mut own =
-                |day| session.inspect().quality_equation(group("S1"), Some(day)).expect("a look").own;
+                |day| session.inspect().quality_equation(group("S1"), Some(day)).expect("a look").group_gain;
             let grown = own(5) - own(4);
             let gain = parameter(session, "development.targeted_dev_improvement_coef")
                 * libm::log(1.0 + 6000.0 / parameter(session, "development.targeted_dev_spend_scale"));
@@ -167,44 +168,44 @@ fn symptom(fault: Fault) -> Symptom {
     }
 }
 
-fn place(session: &Session) -> PathBuf {
+fn run_folder(session: &Session) -> PathBuf {
     session.folder().expect("a folder").to_owned()
 }
 
 #[test]
-fn each_fault_changes_the_world_and_shows_in_its_view() {
+fn each_fault_changes_the_state_and_is_visible_in_its_view() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut sound_companies = BTreeMap::new();
     for fault in Fault::ALL {
         let Symptom { days, shows } = symptom(fault);
-        let sound = sound_companies.entry(days).or_insert_with(|| company(folder.path(), None, days));
-        let mut faulty = company(folder.path(), Some(fault), days);
+        let sound = sound_companies.entry(days).or_insert_with(|| create_company(folder.path(), None, days));
+        let mut faulty = create_company(folder.path(), Some(fault), days);
         assert_ne!(sound.state_hash(), faulty.state_hash(), "{fault:?} changes nothing");
         assert!(!shows(sound), "{fault:?} shows in a run without it");
         assert!(shows(&mut faulty), "{fault:?} does not show");
-        let first = sound.inspect().difference_to(&mut faulty, None).expect("a look").first_day;
+        let first = sound.inspect().compare_with_run(&mut faulty, None).expect("a look").first_day;
         assert!(first.is_some_and(|day| day <= days), "{fault:?}");
     }
 }
 
 #[test]
-fn a_fault_stays_with_its_run_and_no_word_names_it() {
+fn fault_persists_with_its_run_and_is_not_disclosed() {
     let folder = tempfile::tempdir().expect("a folder");
     for fault in [Fault::SpillOverReversed, Fault::QuotaInverted] {
-        let mut session = company(folder.path(), Some(fault), 28);
-        weeks(&mut session, 1);
+        let mut session = create_company(folder.path(), Some(fault), 28);
+        advance_weeks(&mut session, 1);
         assert!(session.company().observe().has_own_parameters, "it is never ranked");
         assert_eq!(
-            session.company().debug_parameters().and_then(|own| own.changed()).expect("a debug run").in_force,
+            session.company().debug_parameters().and_then(|own| own.changes()).expect("a debug run").in_force,
             [],
             "it is not a parameter"
         );
-        let own = place(&session);
+        let own = run_folder(&session);
         let branch = session.branch(3, Mode::Debug).expect("a branch");
         assert_eq!(branch.manifest().fault, Some(fault));
         let refused = session.branch(3, Mode::Sandbox).err().expect("no sandbox has a fault");
         assert_eq!(refused.code, "not_in_this_mode");
-        let branch_place = place(&branch);
+        let branch_place = run_folder(&branch);
         drop((session, branch));
         for place in [&own, &branch_place] {
             verify(place).expect("it verifies");
@@ -213,30 +214,30 @@ fn a_fault_stays_with_its_run_and_no_word_names_it() {
         let text = std::fs::read_to_string(own.join("run.toml")).expect("a manifest");
         assert!(text.contains(&format!("\nfault = {}\n", fault.number())), "{text}");
         std::fs::remove_file(own.join("run.toml")).expect("it goes");
-        assert_eq!(manifest_of(&own).expect("of the line").fault, Some(fault));
+        assert_eq!(read_manifest(&own).expect("of the line").fault, Some(fault));
         let lines = Trajectory::read(&own.join("trajectory.jsonl")).expect("lines").lines;
         assert!(matches!(&lines[0].record, Record::Start(start) if start.fault == Some(fault)));
         let told = std::fs::read_to_string(own.join("trajectory.jsonl")).expect("lines");
         assert!(!told.contains(&format!("{fault:?}")));
         // Another number is another run.
         let other = Fault::ALL.into_iter().find(|other| *other != fault).expect("another");
-        let mut forged = manifest_of(&own).expect("of the line");
+        let mut forged = read_manifest(&own).expect("of the line");
         forged.fault = Some(other);
-        assert!(forged.params().is_err(), "the digests differ");
+        assert!(forged.load_params().is_err(), "the digests differ");
         forged.fault = None;
-        assert!(forged.params().is_err());
+        assert!(forged.load_params().is_err());
     }
 }
 
 #[test]
-fn only_a_debug_run_has_a_fault() {
+fn faults_require_a_debug_run() {
     let folder = tempfile::tempdir().expect("a folder");
     for mode in [Mode::Baseline, Mode::Sandbox, Mode::Lesson] {
         let participant = (mode == Mode::Baseline).then(|| "P01".to_owned());
         for fault in Fault::ALL {
             let new =
                 NewRun { mode, participant: participant.clone(), ..new_run(folder.path(), Some(fault)) };
-            let refused = Session::create(new, &Configuration::shipped()).err().expect("refused").to_string();
+            let refused = Session::create(new, &Configuration::bundled()).err().expect("refused").to_string();
             assert!(refused.contains("a fault can be seeded in debug runs only"), "{refused}");
         }
     }
@@ -248,30 +249,31 @@ fn only_a_debug_run_has_a_fault() {
         ..new_run(folder.path(), None)
     };
     for key in ["fault", "run.fault", "fidelity.fault"] {
-        assert!(Session::create(new(key), &Configuration::shipped()).is_err(), "{key}");
+        assert!(Session::create(new(key), &Configuration::bundled()).is_err(), "{key}");
     }
     // A manifest with a fault in another mode is rejected.
-    let session = company(folder.path(), Some(Fault::DriftTwice), 7);
-    let own = place(&session);
+    let session = create_company(folder.path(), Some(Fault::DriftTwice), 7);
+    let own = run_folder(&session);
     drop(session);
     let text = std::fs::read_to_string(own.join("run.toml")).expect("a manifest");
     std::fs::write(own.join("run.toml"), text.replace("mode = \"debug\"", "mode = \"sandbox\""))
         .expect("a file");
     let read = novamind::record::folder::manifest::Manifest::read(&own);
-    assert!(matches!(read, Err(RunError::NotPossible(_))), "{read:?}");
+    assert!(matches!(read, Err(RunError::InvalidRequest(_))), "{read:?}");
 }
 
 #[test]
-fn what_is_set_keeps_the_fault() {
+fn setting_parameters_keeps_the_fault() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut session = company(folder.path(), Some(Fault::TargetedGainAsGeneral), 7);
+    let mut session = create_company(folder.path(), Some(Fault::TargetedGainAsGeneral), 7);
     let set: Value = json!(0.3);
     session.set_parameter("quality.base_product_quality", &set, Some(10)).expect("from a later day on");
-    weeks(&mut session, 1);
-    let mut own = |day| session.inspect().quality_equation(group("S1"), Some(day)).expect("a look").own;
+    advance_weeks(&mut session, 1);
+    let mut own =
+        |day| session.inspect().quality_equation(group("S1"), Some(day)).expect("a look").group_gain;
     let grown = own(13) - own(12);
     assert!(grown < 0.005, "{grown}");
-    let place = place(&session);
+    let place = run_folder(&session);
     drop(session);
     verify(&place).expect("it verifies");
 }

@@ -3,16 +3,16 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use novamind::course::{Lesson, LessonPage, guess_in_lesson, take_hint, try_step_again};
-use novamind::insight::{DecisionEdit, OfRecord, WhatIf, branch_with_decisions};
+use novamind::course::{Lesson, LessonStatus, retry_step, submit_guess, take_hint};
+use novamind::insight::{DecisionEdit, RecordAnalysis, WhatIf, create_branch_with_decisions};
 use novamind::lab::check_plays;
 use novamind::record::folder::configuration::Configuration;
 use novamind::record::mode::Mode;
-use novamind::record::trajectory::record::{Ended, Via};
+use novamind::record::trajectory::record::{RunEndReason, Via};
 use novamind::session::{Access, Session, lesson_step, verify};
 use serde_json::json;
 
-use crate::support::lessons::{self, code, lesson_of, week};
+use crate::support::lessons::{self, advance_lesson_week, rejection_code, write_lesson};
 
 /// Two steps of two weeks, with a numeric guess and a choice.
 const PLAN: &str = r#"
@@ -91,8 +91,8 @@ figure = "cash"
 value = 960_000
 "#;
 
-fn begin(folder: &Path) -> Session {
-    lessons::begin(folder, "two", PLAN)
+fn begin_lesson(folder: &Path) -> Session {
+    lessons::begin_lesson(folder, "two", PLAN)
 }
 
 #[test]
@@ -118,56 +118,56 @@ fn wrong_files_name_line_and_key() {
         ),
     ] {
         assert!(PLAN.contains(old), "{old}");
-        let said = lesson_of(folder.path(), "two", &PLAN.replacen(old, new, 1)).err();
+        let said = write_lesson(folder.path(), "two", &PLAN.replacen(old, new, 1)).err();
         let said = said.unwrap_or_else(|| "accepted".to_owned());
         assert!(said.contains(part), "{new}: {said}");
     }
 }
 
 #[test]
-fn a_lesson_asks_judges_and_ends() {
+fn lesson_asks_evaluates_and_ends() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut session = begin(folder.path());
+    let mut session = begin_lesson(folder.path());
     assert_eq!(session.day(), 7);
-    assert_eq!(code(week(&mut session)), "guess_first");
+    assert_eq!(rejection_code(advance_lesson_week(&mut session)), "guess_first");
     let refused = session.call("set_model_tiers", &json!({"A": 2}), Via::Plain);
-    assert_eq!(code(refused), "not_in_this_lesson");
+    assert_eq!(rejection_code(refused), "not_in_this_lesson");
     let refused = session.call("set_capacity_tier", &json!({"tier": 3}), Via::Plain);
-    assert_eq!(code(refused), "not_in_this_lesson");
-    assert_eq!(code(guess_in_lesson(&mut session, f64::NAN)), "guess_not_possible");
-    guess_in_lesson(&mut session, 950_000.0).expect("a guess");
-    assert_eq!(code(guess_in_lesson(&mut session, 1.0)), "no_question");
+    assert_eq!(rejection_code(refused), "not_in_this_lesson");
+    assert_eq!(rejection_code(submit_guess(&mut session, f64::NAN)), "guess_not_possible");
+    submit_guess(&mut session, 950_000.0).expect("a guess");
+    assert_eq!(rejection_code(submit_guess(&mut session, 1.0)), "no_question");
     assert_eq!(take_hint(&mut session).expect("a hint"), "Try.");
-    week(&mut session).expect("a week");
-    week(&mut session).expect("a week");
+    advance_lesson_week(&mut session).expect("a week");
+    advance_lesson_week(&mut session).expect("a week");
     let standing = session.lesson().expect("a lesson");
     let cash = session.weeks().last().expect("a week").cash;
     assert_eq!(standing.outcome(0).expect("an outcome").value, Some(cash));
-    assert_eq!(standing.goals(0)[0].met, Some(cash >= 900_000.0));
+    assert_eq!(standing.goal_results(0)[0].met, Some(cash >= 900_000.0));
     assert_eq!(lesson_step(&session), Some(1));
     assert_eq!(session.params().quality.base_product_quality, 0.4);
-    assert_eq!(code(guess_in_lesson(&mut session, 3.0)), "guess_not_possible");
-    guess_in_lesson(&mut session, 2.0).expect("a guess");
-    week(&mut session).expect("a week");
-    week(&mut session).expect("a week");
-    assert_eq!(session.ended(), Some(Ended::Lesson));
+    assert_eq!(rejection_code(submit_guess(&mut session, 3.0)), "guess_not_possible");
+    submit_guess(&mut session, 2.0).expect("a guess");
+    advance_lesson_week(&mut session).expect("a week");
+    advance_lesson_week(&mut session).expect("a week");
+    assert_eq!(session.ended(), Some(RunEndReason::Lesson));
     assert!(session.lesson().expect("a lesson").has_reached_all());
     assert_eq!(session.lesson().expect("a lesson").outcome(1).expect("an outcome").met, Some(true));
-    assert_eq!(code(week(&mut session)), "lesson_over");
+    assert_eq!(rejection_code(advance_lesson_week(&mut session)), "lesson_over");
 }
 
 #[test]
-fn what_if_and_branch_wait_for_the_guess_and_decide_nothing_that_the_lesson_locks() {
+fn what_if_and_branch_respect_lesson_locks() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut session = begin(folder.path());
+    let mut session = begin_lesson(folder.path());
     let place = session.folder().expect("a folder").to_owned();
-    let what_if = || WhatIf::read(&place).expect("it is read");
+    let what_if = || WhatIf::open(&place).expect("it is read");
     let on = &|_, _| std::ops::ControlFlow::Continue(());
-    assert_eq!(code(what_if().decisions(1)), "guess_first");
-    assert_eq!(code(what_if().compare(1, None, &[], on)), "guess_first");
-    assert_eq!(code(session.branch(1, Mode::Sandbox)), "guess_first");
-    guess_in_lesson(&mut session, 950_000.0).expect("a guess");
-    week(&mut session).expect("a week");
+    assert_eq!(rejection_code(what_if().decisions(1)), "guess_first");
+    assert_eq!(rejection_code(what_if().compare(1, None, &[], on)), "guess_first");
+    assert_eq!(rejection_code(session.branch(1, Mode::Sandbox)), "guess_first");
+    submit_guess(&mut session, 950_000.0).expect("a guess");
+    advance_lesson_week(&mut session).expect("a week");
     let decided = |text: &str| vec![vec![text.parse::<DecisionEdit>().expect(text)]];
     for text in [
         "set_model_tiers {\"A\": 2}",
@@ -176,10 +176,10 @@ fn what_if_and_branch_wait_for_the_guess_and_decide_nothing_that_the_lesson_lock
         "capacity follows usage",
     ] {
         let refused = what_if().compare(2, None, &decided(text), on);
-        assert_eq!(code(refused), "not_in_this_lesson", "{text}");
+        assert_eq!(rejection_code(refused), "not_in_this_lesson", "{text}");
         let mut go_on = |_| std::ops::ControlFlow::Continue(());
-        let adopted = branch_with_decisions(&session, 2, &decided(text)[0], Mode::Sandbox, &mut go_on);
-        assert_eq!(code(adopted.map(drop)), "not_in_this_lesson", "{text}");
+        let adopted = create_branch_with_decisions(&session, 2, &decided(text)[0], Mode::Sandbox, &mut go_on);
+        assert_eq!(rejection_code(adopted.map(drop)), "not_in_this_lesson", "{text}");
     }
     let found = what_if().compare(2, None, &decided("set_prices {\"A\": 10}"), on);
     assert!(found.expect("branches").is_some());
@@ -187,51 +187,51 @@ fn what_if_and_branch_wait_for_the_guess_and_decide_nothing_that_the_lesson_lock
 }
 
 #[test]
-fn the_record_of_a_lesson_is_replayed_and_taken_up_again() {
+fn lesson_run_verifies_and_resumes() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut session = begin(folder.path());
-    guess_in_lesson(&mut session, 1.0).expect("a guess");
+    let mut session = begin_lesson(folder.path());
+    submit_guess(&mut session, 1.0).expect("a guess");
     take_hint(&mut session).expect("a hint");
-    week(&mut session).expect("a week");
+    advance_lesson_week(&mut session).expect("a week");
     let (hash, own) = (session.state_hash(), session.folder().expect("a folder").to_owned());
-    let page = LessonPage::of(&mut session).expect("a page");
+    let page = LessonStatus::from_session(&mut session).expect("a page");
     drop(session);
     let mut again = Session::open(&own, Access::Write, true).expect("it opens");
     assert_eq!(again.state_hash(), hash);
-    assert_eq!(LessonPage::of(&mut again).expect("a page"), page);
-    week(&mut again).expect("a week");
-    guess_in_lesson(&mut again, 1.0).expect("a guess");
-    week(&mut again).expect("a week");
-    week(&mut again).expect("a week");
+    assert_eq!(LessonStatus::from_session(&mut again).expect("a page"), page);
+    advance_lesson_week(&mut again).expect("a week");
+    submit_guess(&mut again, 1.0).expect("a guess");
+    advance_lesson_week(&mut again).expect("a week");
+    advance_lesson_week(&mut again).expect("a week");
     assert_eq!(again.lesson().expect("a lesson").outcome(1).expect("an outcome").met, Some(false));
     drop(again);
     verify(&own).expect("the record is sound");
 }
 
 #[test]
-fn a_company_that_goes_bankrupt_in_a_lesson_is_judged_before_the_end_and_once() {
+fn bankruptcy_in_a_lesson_is_evaluated_once() {
     for (operations, step) in [(100_000, 0), (45_000, 1)] {
         let folder = tempfile::tempdir().expect("a folder");
-        let mut session = begin(folder.path());
+        let mut session = begin_lesson(folder.path());
         let spend = json!({"operations": operations, "development": 0});
         session.call("set_daily_spend", &spend, Via::Plain).expect("spending");
         for own in 0..=step {
-            guess_in_lesson(&mut session, 1.0).expect("a guess");
+            submit_guess(&mut session, 1.0).expect("a guess");
             for _ in 0..2 {
                 if session.ended().is_none() {
-                    week(&mut session).expect("a week");
+                    advance_lesson_week(&mut session).expect("a week");
                 }
             }
             assert_eq!(session.ended().is_some(), own == step, "{operations}");
         }
-        assert_eq!(session.ended(), Some(Ended::Bankruptcy));
+        assert_eq!(session.ended(), Some(RunEndReason::Bankruptcy));
         assert!(!session.day().is_multiple_of(7), "the cash runs out within a week");
         let standing = session.lesson().expect("a lesson").clone();
         let cash = session.weeks().last().expect("a week").cash;
         assert_eq!(standing.outcome(step).expect("an outcome").met, (step == 1).then_some(false));
-        assert_eq!(standing.goals(step)[0].met, Some(false));
-        assert_eq!(standing.goals(step)[0].value, Some(cash));
-        assert_eq!(standing.pitfalls(), ["costly"]);
+        assert_eq!(standing.goal_results(step)[0].met, Some(false));
+        assert_eq!(standing.goal_results(step)[0].value, Some(cash));
+        assert_eq!(standing.met_pitfalls(), ["costly"]);
         let own = session.folder().expect("a folder").to_owned();
         drop(session);
         let again = Session::open(&own, Access::Write, true).expect("it opens");
@@ -241,12 +241,12 @@ fn a_company_that_goes_bankrupt_in_a_lesson_is_judged_before_the_end_and_once() 
 }
 
 #[test]
-fn a_week_whose_judgement_did_not_reach_the_disk_is_judged_when_the_run_is_opened() {
+fn missing_evaluation_is_added_on_open() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut session = begin(folder.path());
-    guess_in_lesson(&mut session, 1.0).expect("a guess");
-    week(&mut session).expect("a week");
-    week(&mut session).expect("a week");
+    let mut session = begin_lesson(folder.path());
+    submit_guess(&mut session, 1.0).expect("a guess");
+    advance_lesson_week(&mut session).expect("a week");
+    advance_lesson_week(&mut session).expect("a week");
     let standing = session.lesson().expect("a lesson").clone();
     let own = session.folder().expect("a folder").to_owned();
     drop(session);
@@ -270,30 +270,30 @@ fn a_week_whose_judgement_did_not_reach_the_disk_is_judged_when_the_run_is_opene
 }
 
 #[test]
-fn another_try_begins_where_the_step_began_and_is_counted() {
+fn retry_restarts_the_step_and_is_counted() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut session = begin(folder.path());
-    guess_in_lesson(&mut session, 1.0).expect("a guess");
-    week(&mut session).expect("a week");
-    week(&mut session).expect("a week");
-    guess_in_lesson(&mut session, 1.0).expect("a guess");
+    let mut session = begin_lesson(folder.path());
+    submit_guess(&mut session, 1.0).expect("a guess");
+    advance_lesson_week(&mut session).expect("a week");
+    advance_lesson_week(&mut session).expect("a week");
+    submit_guess(&mut session, 1.0).expect("a guess");
     let begun = session.state_hash();
-    week(&mut session).expect("a week");
-    let again = try_step_again(&session, 1).expect("another try");
+    advance_lesson_week(&mut session).expect("a week");
+    let again = retry_step(&session, 1).expect("another try");
     assert_eq!(again.state_hash(), begun);
     let standing = again.lesson().expect("a lesson");
-    assert_eq!((standing.tries(0), standing.tries(1)), (1, 2));
+    assert_eq!((standing.attempt(0), standing.attempt(1)), (1, 2));
     assert_eq!((standing.guess(0), standing.guess(1)), (Some(1.0), Some(1.0)), "the first guess stands");
-    assert!(standing.goals(0).len() == 1 && standing.goals(1).is_empty());
-    let third = try_step_again(&again, 1).expect("a third try");
-    assert_eq!(third.lesson().expect("a lesson").tries(1), 3);
-    assert_eq!(code(try_step_again(&third, 2)), "step_unknown");
+    assert!(standing.goal_results(0).len() == 1 && standing.goal_results(1).is_empty());
+    let third = retry_step(&again, 1).expect("a third try");
+    assert_eq!(third.lesson().expect("a lesson").attempt(1), 3);
+    assert_eq!(rejection_code(retry_step(&third, 2)), "step_unknown");
 }
 
 #[test]
-fn a_lesson_that_was_altered_beside_its_run_is_named() {
+fn modified_lesson_is_reported() {
     let folder = tempfile::tempdir().expect("a folder");
-    let session = begin(folder.path());
+    let session = begin_lesson(folder.path());
     let own = session.folder().expect("a folder").to_owned();
     drop(session);
     let path = own.join("lesson.toml");
@@ -306,38 +306,38 @@ fn a_lesson_that_was_altered_beside_its_run_is_named() {
 #[test]
 fn pitfalls_are_met_once_and_reference_plays_differ() {
     let folder = tempfile::tempdir().expect("a folder");
-    let lesson = Arc::new(lesson_of(folder.path(), "two", PLAN).expect("a lesson"));
+    let lesson = Arc::new(write_lesson(folder.path(), "two", PLAN).expect("a lesson"));
     let check = check_plays(&lesson, &[7, 8]).expect("plays");
-    assert!(check.problems().is_empty(), "{:?}", check.problems());
-    assert_eq!(check.bad[0].pitfalls, ["costly"]);
-    assert!(check.good[0].pitfalls.is_empty());
+    assert!(check.describe_problems().is_empty(), "{:?}", check.describe_problems());
+    assert_eq!(check.pitfall_results[0].pitfalls, ["costly"]);
+    assert!(check.reference_results[0].pitfalls.is_empty());
 }
 
 /// The shortest lessons, which every test run plays.
 const SHORT: [&str; 4] = ["ads-in-the-product", "ladder", "list-price", "price-follows-quality"];
 
-fn keep_their_promises(names: &[&str]) {
-    let configuration = Configuration::shipped();
-    let shipped = configuration.lessons();
+fn check_lessons(names: &[&str]) {
+    let configuration = Configuration::bundled();
+    let shipped = configuration.lesson_names();
     assert_eq!(shipped.len(), 12);
     for name in shipped {
         let lesson =
-            Arc::new(Lesson::named(&name, &configuration).unwrap_or_else(|error| panic!("{name}: {error}")));
-        assert!(!lesson.debrief.is_empty() && !lesson.for_teachers.is_empty(), "{name}");
+            Arc::new(Lesson::load(&name, &configuration).unwrap_or_else(|error| panic!("{name}: {error}")));
+        assert!(!lesson.debrief.is_empty() && !lesson.instructor_notes.is_empty(), "{name}");
         if names.is_empty() || names.contains(&name.as_str()) {
             let check = check_plays(&lesson, &[2]).unwrap_or_else(|error| panic!("{name}: {error}"));
-            assert!(check.problems().is_empty(), "{name}: {:?}", check.problems());
+            assert!(check.describe_problems().is_empty(), "{name}: {:?}", check.describe_problems());
         }
     }
 }
 
 #[test]
-fn short_lessons_keep_their_promises_on_a_seed() {
-    keep_their_promises(&SHORT);
+fn short_lessons_pass_their_check_on_a_seed() {
+    check_lessons(&SHORT);
 }
 
 #[test]
 #[ignore = "slow: .ci/full runs it"]
-fn all_lessons_keep_their_promises_on_a_seed() {
-    keep_their_promises(&[]);
+fn all_lessons_pass_their_check_on_a_seed() {
+    check_lessons(&[]);
 }

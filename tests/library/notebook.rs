@@ -3,34 +3,34 @@
 use novamind::record::folder::configuration::Configuration;
 use novamind::record::trajectory::record::Via;
 use novamind::session::{Access, NewRun, Session, Storage, verify};
-use novamind::tools::Refusal;
+use novamind::tools::Rejection;
 use serde_json::{Value, json};
 
-use crate::support::company::{call, week};
-use crate::support::forging::forge;
+use crate::support::company::{advance_week, call_tool};
+use crate::support::forging::forge_lines;
 
 fn create(storage: Storage) -> Session {
     let new = NewRun { seed: Some(7), days: Some(28), storage, ..NewRun::default() };
-    Session::create(new, &Configuration::shipped()).expect("the run begins")
+    Session::create(new, &Configuration::bundled()).expect("the run begins")
 }
 
-fn try_call(session: &mut Session, tool: &str, arguments: Value) -> Result<Value, Refusal> {
+fn try_call(session: &mut Session, tool: &str, arguments: Value) -> Result<Value, Rejection> {
     session.call(tool, &arguments, Via::Script).map(|answer| answer.to_json())
 }
 
 #[test]
-fn statements_are_run_as_tables() {
+fn script_statements_return_tables() {
     let mut session = create(Storage::Memory);
-    let data = call(&mut session, "python_exec", json!({"code": "SELECT COUNT(*) AS n FROM customers"}));
+    let data = call_tool(&mut session, "python_exec", json!({"code": "SELECT COUNT(*) AS n FROM customers"}));
     assert_eq!(data, json!({"returncode": 0, "stdout": "n\n1\n", "stderr": ""}));
     let several = "SELECT day, category FROM ledger; -- more\n SELECT 'a;b' AS t;\n;";
-    let data = call(&mut session, "python_exec", json!({"code": several}));
+    let data = call_tool(&mut session, "python_exec", json!({"code": several}));
     assert_eq!(data["stdout"], "day  category\n0    initial_funding\nt\na;b\n");
-    let empty = call(&mut session, "python_exec", json!({"code": " -- nothing\n"}));
+    let empty = call_tool(&mut session, "python_exec", json!({"code": " -- nothing\n"}));
     assert_eq!((&empty["stdout"], &empty["returncode"]), (&json!(""), &json!(0)));
     let long = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n WHERE x < 9000) SELECT x FROM n; \
                 SELECT * FROM subscriptions WHERE status = 'active'";
-    let data = call(&mut session, "python_exec", json!({"code": long}));
+    let data = call_tool(&mut session, "python_exec", json!({"code": long}));
     let length = |field: &str| data[field].as_str().map_or(0, |text| text.chars().count());
     assert_eq!(length("stdout"), 5000);
     let remarks = data["stderr"].as_str().expect("text");
@@ -38,7 +38,7 @@ fn statements_are_run_as_tables() {
 }
 
 #[test]
-fn what_a_query_may_not_a_script_may_not() {
+fn scripts_have_the_limits_of_queries() {
     let mut session = create(Storage::Memory);
     let hash = session.state_hash();
     for (code, part) in [
@@ -60,33 +60,33 @@ fn what_a_query_may_not_a_script_may_not() {
     let given = json!({"code": endless, "timeout_seconds": 0.05});
     let refusal = try_call(&mut session, "python_exec", given).expect_err("endless");
     assert_eq!(refusal.code, "script_timeout");
-    call(&mut session, "register_script", json!({"name": "bad", "code": "SELECT nothing"}));
+    call_tool(&mut session, "register_script", json!({"name": "bad", "code": "SELECT nothing"}));
     let refusal = try_call(&mut session, "run_script", json!({"name": "bad"})).expect_err("no such column");
     assert_eq!(refusal.code, "script_failed");
     assert_eq!(session.state_hash(), hash);
-    call(&mut session, "python_exec", json!({"code": "SELECT 1"}));
+    call_tool(&mut session, "python_exec", json!({"code": "SELECT 1"}));
 }
 
 #[test]
 fn calculations_run_before_the_week_and_stand_on_its_dashboard() {
     let mut session = create(Storage::Memory);
     let cash = "SELECT max(day) AS day, sum(amount) AS cash FROM ledger";
-    call(&mut session, "register_daily_calculation", json!({"name": "money", "code": cash}));
-    call(
+    call_tool(&mut session, "register_daily_calculation", json!({"name": "money", "code": cash}));
+    call_tool(
         &mut session,
         "register_daily_calculation",
         json!({"name": "wrong", "code": "SELECT c_max FROM customers"}),
     );
     let long =
         "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n WHERE x < 900) SELECT x FROM n";
-    call(&mut session, "register_daily_calculation", json!({"name": "long", "code": long}));
+    call_tool(&mut session, "register_daily_calculation", json!({"name": "long", "code": long}));
     assert!(!session.company().dashboard().contains("Weekly Calculations"));
-    let dashboard = week(&mut session).dashboard;
+    let dashboard = advance_week(&mut session).dashboard;
     let expected = "\n--- Weekly Calculations ---\nmoney:\n  day  cash\n  0    1000000.0\nwrong:\n  failed: statement 1: there is no column c_max";
     assert!(dashboard.contains(expected), "{dashboard}");
-    assert_eq!(session.company().calculated()[2].output.chars().count(), 500);
-    call(&mut session, "remove_daily_calculation", json!({"name": "long"}));
-    let dashboard = week(&mut session).dashboard;
+    assert_eq!(session.company().calculation_outputs()[2].output.chars().count(), 500);
+    call_tool(&mut session, "remove_daily_calculation", json!({"name": "long"}));
+    let dashboard = advance_week(&mut session).dashboard;
     assert!(
         dashboard.contains("money:\n  day  cash\n  7    999405.0\n") && !dashboard.contains("long:"),
         "{dashboard}"
@@ -94,73 +94,76 @@ fn calculations_run_before_the_week_and_stand_on_its_dashboard() {
 }
 
 #[test]
-fn what_is_kept_survives_leaving_and_is_verified() {
+fn stored_scripts_survive_reopening() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut session = create(Storage::Runs(runs.path().to_owned()));
     let folder = session.folder().expect("a folder").to_owned();
     let cash = "SELECT sum(amount) AS cash FROM ledger";
-    call(&mut session, "register_daily_calculation", json!({"name": "money", "code": cash}));
-    call(&mut session, "register_script", json!({"name": "one", "code": "SELECT 1"}));
-    call(&mut session, "register_script", json!({"name": "two", "code": "SELECT 2"}));
-    call(&mut session, "delete_script", json!({"name": "one"}));
-    let random = call(&mut session, "python_exec", json!({"code": "SELECT random() AS r"}));
+    call_tool(&mut session, "register_daily_calculation", json!({"name": "money", "code": cash}));
+    call_tool(&mut session, "register_script", json!({"name": "one", "code": "SELECT 1"}));
+    call_tool(&mut session, "register_script", json!({"name": "two", "code": "SELECT 2"}));
+    call_tool(&mut session, "delete_script", json!({"name": "one"}));
+    let random = call_tool(&mut session, "python_exec", json!({"code": "SELECT random() AS r"}));
     assert_eq!(random["returncode"], 0);
-    call(&mut session, "run_script", json!({"name": "two"}));
-    let dashboard = week(&mut session).dashboard;
+    call_tool(&mut session, "run_script", json!({"name": "two"}));
+    let dashboard = advance_week(&mut session).dashboard;
     drop(session);
     // Outputs of scripts are not compared, so random functions in SQL do not damage a run.
     assert_eq!(verify(&folder).expect("it verifies").states, 1);
     let mut session = Session::open(&folder, Access::Write, true).expect("it opens");
     assert_eq!(session.company().dashboard(), dashboard);
     assert!(dashboard.contains("money:\n  cash\n  1000000.0\n"), "{dashboard}");
-    assert_eq!(call(&mut session, "list_scripts", json!({})), json!({"scripts": ["two"]}));
-    assert_eq!(call(&mut session, "run_script", json!({"name": "two"}))["stdout"], "2\n2\n");
-    let dashboard = week(&mut session).dashboard;
+    assert_eq!(call_tool(&mut session, "list_scripts", json!({})), json!({"scripts": ["two"]}));
+    assert_eq!(call_tool(&mut session, "run_script", json!({"name": "two"}))["stdout"], "2\n2\n");
+    let dashboard = advance_week(&mut session).dashboard;
     assert!(dashboard.contains("money:\n  cash\n  999405.0\n"), "{dashboard}");
 
     // Branches copy earlier calculations and scripts.
     let mut branch = session.branch(2, novamind::record::mode::Mode::Sandbox).expect("a branch");
-    assert_eq!(call(&mut branch, "list_daily_calculations", json!({})), json!({"calculations": ["money"]}));
+    assert_eq!(
+        call_tool(&mut branch, "list_daily_calculations", json!({})),
+        json!({"calculations": ["money"]})
+    );
 }
 
 #[test]
-fn after_the_end_scripts_still_run() {
+fn scripts_run_after_the_end() {
     let mut session = create(Storage::Memory);
     (0..4).for_each(|_| {
-        week(&mut session);
+        advance_week(&mut session);
     });
     assert!(session.ended().is_some());
-    assert_eq!(call(&mut session, "python_exec", json!({"code": "SELECT 5 AS x"}))["stdout"], "x\n5\n");
-    call(&mut session, "register_script", json!({"name": "late", "code": "SELECT 1"}));
+    assert_eq!(call_tool(&mut session, "python_exec", json!({"code": "SELECT 5 AS x"}))["stdout"], "x\n5\n");
+    call_tool(&mut session, "register_script", json!({"name": "late", "code": "SELECT 1"}));
     assert_eq!(
         try_call(&mut session, "research_market", json!({})).expect_err("it is over").code,
         "run_over"
     );
-    assert_eq!(call(&mut session, "get_market_overview", json!({}))["undiscovered_count"], 20);
+    assert_eq!(call_tool(&mut session, "get_market_overview", json!({}))["undiscovered_count"], 20);
 }
 
 #[test]
-fn documents_come_from_the_run() {
+fn documentation_tools_describe_the_run() {
     let mut session = create(Storage::Memory);
-    let tables = call(&mut session, "list_all_tables", json!({}));
+    let tables = call_tool(&mut session, "list_all_tables", json!({}));
     assert_eq!(
         (tables["count"].as_u64(), tables["tables"].as_object().map(|all| all.len())),
         (Some(19), Some(19))
     );
-    let described = call(&mut session, "describe_tables", json!({}));
+    let described = call_tool(&mut session, "describe_tables", json!({}));
     let columns = described["tables"].as_object().expect("tables").values();
     let count: usize =
         columns.map(|table| table["columns"].as_object().map_or(0, |columns| columns.len())).sum();
     assert_eq!(count, 148);
-    let overview = call(&mut session, "get_market_overview", json!({}));
+    let overview = call_tool(&mut session, "get_market_overview", json!({}));
     assert_eq!(overview["macroeconomic"], Value::Null);
 }
 
 #[test]
-fn the_dashboard_is_that_of_the_last_week_until_the_next() {
+fn dashboard_changes_only_with_the_week() {
     let runs = tempfile::tempdir().expect("a folder");
     let new = NewRun { days: Some(60), storage: Storage::Runs(runs.path().to_owned()), ..NewRun::default() };
-    let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+    let mut session = Session::create(new, &Configuration::bundled()).expect("a run");
     let set = |session: &mut Session, price: f64| {
         session.call("set_prices", &json!({ "A": price }), Via::Script).expect("prices");
     };
@@ -189,7 +192,7 @@ fn the_dashboard_is_that_of_the_last_week_until_the_next() {
 }
 
 #[test]
-fn quotas_hold_for_new_calls_and_not_for_recorded_ones() {
+fn text_quotas_apply_only_to_new_calls() {
     let place = tempfile::tempdir().expect("a folder");
     let mut session = create(Storage::Runs(place.path().to_owned()));
     let folder = session.folder().expect("a folder").to_owned();
@@ -204,10 +207,10 @@ fn quotas_hold_for_new_calls_and_not_for_recorded_ones() {
             refusal.message
         );
     }
-    call(&mut session, "register_script", json!({"name": "small", "code": "SELECT 1"}));
+    call_tool(&mut session, "register_script", json!({"name": "small", "code": "SELECT 1"}));
     drop(session);
     // A record of a version without quotas.
-    forge(&folder, |_, line| {
+    forge_lines(&folder, |_, line| {
         if line["tool"] == "register_script" && line["ok"] == true {
             line["args"]["code"] = large.clone().into();
             line["result"]["code_length"] = 300_009.into();
@@ -218,6 +221,7 @@ fn quotas_hold_for_new_calls_and_not_for_recorded_ones() {
         let _ = std::fs::remove_file(folder.join(derived));
     }
     let session = Session::open(&folder, Access::Write, true).expect("it opens");
-    let kept = session.notebook().statements(novamind::tools::Kept::Script).get("small").map(str::len);
+    let kept =
+        session.notebook().statements(novamind::tools::NotebookSection::Script).get("small").map(str::len);
     assert_eq!(kept, Some(300_009));
 }

@@ -9,40 +9,42 @@ use novamind::record::folder::runs::list_runs;
 use novamind::record::mode::Mode;
 use novamind::record::trajectory::record::Via;
 use novamind::record::trajectory::{Record, Trajectory};
-use novamind::session::{Access, Goal, NewRun, Playback, SealKey, Session, rescue, verify};
+use novamind::session::{Access, NewRun, Playback, SealKey, SeekTarget, Session, recover, verify};
 use novamind::world::identifiers::Group;
 use serde_json::{Value, json};
 
-use crate::support::company::{begin_run, call, open_shop, rows, week, weeks};
-use crate::support::forging::forge;
+use crate::support::company::{
+    advance_week, advance_weeks, apply_opening_decisions, begin_run, call_tool, query_rows,
+};
+use crate::support::forging::forge_lines;
 
-fn set(session: &mut Session, key: &str, value: Value, from: Option<u32>) {
+fn set_parameter(session: &mut Session, key: &str, value: Value, from: Option<u32>) {
     session.set_parameter(key, &value, from).unwrap_or_else(|refusal| panic!("{key}: {refusal}"));
 }
 
 /// Plays a run of eight weeks that sets parameters of all types: at once, within a week, and from later days on.
-fn changed(folder: &Path) -> Session {
+fn run_with_overrides(folder: &Path) -> Session {
     let mut session = begin_run(folder, Mode::Debug, 140);
-    open_shop(&mut session);
-    weeks(&mut session, 2);
-    set(&mut session, "group.S1.c_max_mean", json!(90), None);
-    set(&mut session, "capacity_tier.0.capacity_units", json!(1_000), Some(24));
-    set(&mut session, "capacity_tier.0.capacity_units", json!(2_000_000), Some(40));
-    week(&mut session);
-    set(&mut session, "reputation_influence.S1.S3", json!(2.5), None);
-    set(&mut session, "leads.lead_acquisition_cost", json!(9.5), Some(26));
+    apply_opening_decisions(&mut session);
+    advance_weeks(&mut session, 2);
+    set_parameter(&mut session, "group.S1.c_max_mean", json!(90), None);
+    set_parameter(&mut session, "capacity_tier.0.capacity_units", json!(1_000), Some(24));
+    set_parameter(&mut session, "capacity_tier.0.capacity_units", json!(2_000_000), Some(40));
+    advance_week(&mut session);
+    set_parameter(&mut session, "reputation_influence.S1.S3", json!(2.5), None);
+    set_parameter(&mut session, "leads.lead_acquisition_cost", json!(9.5), Some(26));
     session.step(3, &mut |_| {}).expect("days");
-    set(&mut session, "calendar.weekly", json!([2, 2, 2, 2, 2, 2, 2]), None);
-    set(&mut session, "satisfaction.satisfaction_ema_alpha", json!(0.5), Some(52));
-    call(&mut session, "set_prices", json!({"A": 14}));
-    weeks(&mut session, 3);
-    set(&mut session, "research_tier.1.cost", json!(10), None);
-    call(&mut session, "start_research_project", json!({"tier": 1}));
-    weeks(&mut session, 2);
+    set_parameter(&mut session, "calendar.weekly", json!([2, 2, 2, 2, 2, 2, 2]), None);
+    set_parameter(&mut session, "satisfaction.satisfaction_ema_alpha", json!(0.5), Some(52));
+    call_tool(&mut session, "set_prices", json!({"A": 14}));
+    advance_weeks(&mut session, 3);
+    set_parameter(&mut session, "research_tier.1.cost", json!(10), None);
+    call_tool(&mut session, "start_research_project", json!({"tier": 1}));
+    advance_weeks(&mut session, 2);
     session
 }
 
-fn place(session: &Session) -> PathBuf {
+fn run_folder(session: &Session) -> PathBuf {
     session.folder().expect("a folder").to_owned()
 }
 
@@ -56,34 +58,34 @@ fn states(folder: &Path) -> Vec<(u32, String)> {
 }
 
 /// Returns all data about money and customers in a database.
-fn tables(session: &mut Session) -> Vec<Vec<novamind::database::Cell>> {
+fn money_and_customer_rows(session: &mut Session) -> Vec<Vec<novamind::database::Cell>> {
     let mut all = Vec::new();
     for sql in [
         "SELECT day, category, sum(amount), count(*) FROM ledger GROUP BY day, category ORDER BY day, category",
         "SELECT group_id, count(*), max(customer_id) FROM customers GROUP BY group_id ORDER BY group_id",
         "SELECT status, plan, count(*), max(end_day) FROM subscriptions GROUP BY status, plan ORDER BY 1, 2",
     ] {
-        all.extend(rows(session, sql));
+        all.extend(query_rows(session, sql));
     }
     all
 }
 
 #[test]
-fn a_run_with_set_parameters_is_reached_again_from_everywhere() {
+fn run_with_overrides_resumes_and_verifies() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut session = changed(folder.path());
-    let (own, day, hash) = (place(&session), session.day(), session.state_hash());
-    let seen = tables(&mut session);
+    let mut session = run_with_overrides(folder.path());
+    let (own, day, hash) = (run_folder(&session), session.day(), session.state_hash());
+    let seen = money_and_customer_rows(&mut session);
     let unchanged = {
         let mut other = begin_run(folder.path(), Mode::Debug, 140);
-        open_shop(&mut other);
-        weeks(&mut other, 8);
+        apply_opening_decisions(&mut other);
+        advance_weeks(&mut other, 8);
         other.state_hash()
     };
     assert_ne!(unchanged, hash, "the parameters act");
     session.save().expect("saved");
     let charged = "SELECT DISTINCT amount FROM ledger WHERE category = 'lead_acquisition_cost' ORDER BY 1";
-    assert_eq!(rows(&mut session, charged).len(), 2, "rows are made with the parameters of their day");
+    assert_eq!(query_rows(&mut session, charged).len(), 2, "rows are made with the parameters of their day");
     drop(session);
     let kinds = Trajectory::read(&own.join("trajectory.jsonl")).expect("lines").lines;
     assert_eq!(kinds.iter().filter(|line| line.record.kind() == "override").count(), 8);
@@ -96,15 +98,22 @@ fn a_run_with_set_parameters_is_reached_again_from_everywhere() {
         }
         let mut again = Session::open(&own, Access::Write, true).expect("it opens");
         assert_eq!((again.day(), again.state_hash()), (day, hash.clone()), "{gone:?}");
-        assert_eq!(tables(&mut again), seen, "{gone:?}");
+        assert_eq!(money_and_customer_rows(&mut again), seen, "{gone:?}");
         again.save().expect("saved");
     }
 
     // Forward and backward.
     let mut playback = Playback::open(&own).expect("it opens");
     let on = &mut |_| ControlFlow::Continue(());
-    for goal in [Goal::Last, Goal::Week(3), Goal::Week(5), Goal::First, Goal::Week(8), Goal::Last] {
-        playback.go(goal, on).expect("every state is reached");
+    for goal in [
+        SeekTarget::Last,
+        SeekTarget::Week(3),
+        SeekTarget::Week(5),
+        SeekTarget::First,
+        SeekTarget::Week(8),
+        SeekTarget::Last,
+    ] {
+        playback.seek(goal, on).expect("every state is reached");
     }
     assert_eq!(playback.session().state_hash(), hash);
 
@@ -115,13 +124,13 @@ fn a_run_with_set_parameters_is_reached_again_from_everywhere() {
 }
 
 #[test]
-fn a_run_that_was_killed_goes_on_with_what_was_set() {
+fn killed_run_keeps_its_overrides() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut whole = changed(folder.path());
-    set(&mut whole, "operations.base_outage_prob", json!(0.9), Some(70));
-    weeks(&mut whole, 4);
-    let expected = states(&place(&whole));
-    let path = place(&whole).join("trajectory.jsonl");
+    let mut whole = run_with_overrides(folder.path());
+    set_parameter(&mut whole, "operations.base_outage_prob", json!(0.9), Some(70));
+    advance_weeks(&mut whole, 4);
+    let expected = states(&run_folder(&whole));
+    let path = run_folder(&whole).join("trajectory.jsonl");
     drop(whole);
     let text = std::fs::read_to_string(&path).expect("lines");
     let lines: Vec<&str> = text.split_inclusive('\n').collect();
@@ -136,45 +145,45 @@ fn a_run_that_was_killed_goes_on_with_what_was_set() {
             let _ = std::fs::remove_file(path.with_file_name(name));
         }
         std::fs::write(&path, lines[..=at].concat() + "{\"seq\"").expect("written");
-        let mut again = Session::open(&place_of(&path), Access::Write, true).expect("it opens");
-        let reached = states(&place(&again));
+        let mut again = Session::open(&parent_run_folder(&path), Access::Write, true).expect("it opens");
+        let reached = states(&run_folder(&again));
         assert_eq!(reached, expected[..reached.len()], "cut after line {}", at + 1);
         if again.day() == 56 {
             // Settings for later days stay pending, also after a snapshot.
             again.save().expect("saved");
             drop(again);
-            let mut again = Session::open(&place_of(&path), Access::Write, true).expect("it opens");
+            let mut again = Session::open(&parent_run_folder(&path), Access::Write, true).expect("it opens");
             let waiting = again
                 .company()
                 .debug_parameters()
-                .and_then(|own| own.changed())
+                .and_then(|own| own.changes())
                 .expect("a debug run")
                 .waiting;
             let outages = waiting.iter().any(|own| own.key == "operations.base_outage_prob");
             if outages {
-                weeks(&mut again, 4);
-                assert_eq!(states(&place(&again)), expected);
+                advance_weeks(&mut again, 4);
+                assert_eq!(states(&run_folder(&again)), expected);
             }
         }
     }
 }
 
-fn place_of(path: &Path) -> PathBuf {
+fn parent_run_folder(path: &Path) -> PathBuf {
     path.parent().expect("a folder").to_owned()
 }
 
 #[test]
-fn branches_and_rescued_runs_keep_what_was_set_before_them_and_are_debug_runs() {
+fn branches_and_recovered_runs_keep_overrides() {
     let folder = tempfile::tempdir().expect("a folder");
-    let session = changed(folder.path());
-    let expected = states(&place(&session));
+    let session = run_with_overrides(folder.path());
+    let expected = states(&run_folder(&session));
     for (week, count) in [(1, 0), (3, 0), (4, 2), (9, 8)] {
         let mut branch = session.branch(week, Mode::Debug).expect("a branch");
-        let lines = Trajectory::read(&place(&branch).join("trajectory.jsonl")).expect("lines").lines;
+        let lines = Trajectory::read(&run_folder(&branch).join("trajectory.jsonl")).expect("lines").lines;
         let set = lines.iter().filter(|line| line.record.kind() == "override").count();
         assert!(set >= count, "week {week}: {set}");
-        self::week(&mut branch);
-        let own = place(&branch);
+        self::advance_week(&mut branch);
+        let own = run_folder(&branch);
         drop(branch);
         let reached = states(&own);
         assert_eq!(reached[..reached.len() - 1], expected[..reached.len() - 1], "week {week}");
@@ -183,25 +192,25 @@ fn branches_and_rescued_runs_keep_what_was_set_before_them_and_are_debug_runs() 
     let refused = session.branch(9, Mode::Sandbox).err().expect("no sandbox");
     assert_eq!(refused.code, "not_in_this_mode");
     assert!(session.branch(2, Mode::Sandbox).is_ok(), "nothing was set before week 2");
-    let own = place(&session);
+    let own = run_folder(&session);
     drop(session);
     let path = own.join("trajectory.jsonl");
     let mut bytes = std::fs::read(&path).expect("lines");
     let at = bytes.len() - 40;
     bytes[at] ^= 1;
     std::fs::write(&path, bytes).expect("written");
-    let found = rescue(&own, &SealKey::default()).expect("a branch");
+    let found = recover(&own, &SealKey::default()).expect("a branch");
     assert_eq!(found.mode, Mode::Debug);
     verify(&own.with_file_name(found.run)).expect("it verifies");
 }
 
 #[test]
-fn parameters_are_set_in_debug_runs_alone_and_the_refusal_is_always_the_same() {
+fn overrides_require_a_debug_run() {
     let folder = tempfile::tempdir().expect("a folder");
     for mode in [Mode::Baseline, Mode::Sandbox, Mode::Lesson] {
         let mut session = begin_run(folder.path(), mode, 140);
-        open_shop(&mut session);
-        let before = states(&place(&session)).len();
+        apply_opening_decisions(&mut session);
+        let before = states(&run_folder(&session)).len();
         let tried = |session: &mut Session| {
             let mut told = Vec::new();
             for (key, value, from) in [
@@ -223,7 +232,7 @@ fn parameters_are_set_in_debug_runs_alone_and_the_refusal_is_always_the_same() {
                 session
                     .company()
                     .debug_parameters()
-                    .and_then(|own| own.changed())
+                    .and_then(|own| own.changes())
                     .expect_err("refused")
                     .to_string(),
             );
@@ -231,23 +240,23 @@ fn parameters_are_set_in_debug_runs_alone_and_the_refusal_is_always_the_same() {
         };
         let told = tried(&mut session);
         assert!(told.iter().all(|one| *one == "not_in_this_mode: parameters can be set in debug runs only"));
-        session.end().expect("it ends");
+        session.abandon().expect("it ends");
         assert_eq!(tried(&mut session), told, "{mode}");
-        assert_eq!(states(&place(&session)).len(), before);
+        assert_eq!(states(&run_folder(&session)).len(), before);
     }
     let mut session = begin_run(folder.path(), Mode::Debug, 140);
-    session.end().expect("it ends");
+    session.abandon().expect("it ends");
     let refused = session.set_parameter("group.S1.c_max_mean", &json!(300), None).expect_err("it is over");
     assert_eq!(refused.code, "run_over");
-    assert!(session.company().debug_parameters().and_then(|own| own.changed()).is_ok());
+    assert!(session.company().debug_parameters().and_then(|own| own.changes()).is_ok());
 }
 
 #[test]
-fn bad_keys_values_and_days_are_refused_and_leave_no_trace() {
+fn invalid_overrides_are_rejected_without_effect() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = begin_run(folder.path(), Mode::Debug, 140);
-    week(&mut session);
-    let own = place(&session);
+    advance_week(&mut session);
+    let own = run_folder(&session);
     let lines = || Trajectory::read(&own.join("trajectory.jsonl")).expect("lines").lines.len();
     let (before, hash) = (lines(), session.state_hash());
     let mut deep = json!(1);
@@ -291,12 +300,12 @@ fn bad_keys_values_and_days_are_refused_and_leave_no_trace() {
 }
 
 #[test]
-fn a_line_that_sets_a_parameter_cannot_be_forged() {
+fn forged_override_line_is_rejected() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = begin_run(folder.path(), Mode::Debug, 140);
-    set(&mut session, "operations.base_outage_prob", json!(0.9), Some(10));
-    weeks(&mut session, 2);
-    let own = place(&session);
+    set_parameter(&mut session, "operations.base_outage_prob", json!(0.9), Some(10));
+    advance_weeks(&mut session, 2);
+    let own = run_folder(&session);
     drop(session);
     let path = own.join("trajectory.jsonl");
     let good = std::fs::read(&path).expect("lines");
@@ -305,7 +314,7 @@ fn a_line_that_sets_a_parameter_cannot_be_forged() {
         for name in ["world.db", "snapshot.bin"] {
             let _ = std::fs::remove_file(own.join(name));
         }
-        forge(&own, |_, line| {
+        forge_lines(&own, |_, line| {
             if line["kind"] == "override" {
                 line[field] = value.clone();
             }
@@ -328,7 +337,7 @@ fn a_line_that_sets_a_parameter_cannot_be_forged() {
     }
     // A run of another mode must not have such a line.
     std::fs::write(&path, &good).expect("written");
-    forge(&own, |_, line| {
+    forge_lines(&own, |_, line| {
         if line["kind"] == "start" {
             line["mode"] = "sandbox".into();
             line["rules"] = Value::Null;
@@ -339,7 +348,7 @@ fn a_line_that_sets_a_parameter_cannot_be_forged() {
 }
 
 #[test]
-fn a_run_in_which_a_parameter_was_set_is_not_compared_with_others() {
+fn run_with_overrides_is_excluded_from_comparisons() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = begin_run(folder.path(), Mode::Debug, 140);
     assert!(!session.company().observe().has_own_parameters);
@@ -354,23 +363,23 @@ fn a_run_in_which_a_parameter_was_set_is_not_compared_with_others() {
         .debug_parameters()
         .and_then(|own| own.value("operations.base_outage_prob"))
         .expect("a value");
-    set(&mut session, "operations.base_outage_prob", json!(0.9), Some(100));
+    set_parameter(&mut session, "operations.base_outage_prob", json!(0.9), Some(100));
     assert!(session.company().observe().has_own_parameters && own(&id));
-    set(&mut session, "operations.base_outage_prob", before, None);
+    set_parameter(&mut session, "operations.base_outage_prob", before, None);
     assert!(session.company().observe().has_own_parameters, "the settings stay in the record");
-    let changed = session.company().debug_parameters().and_then(|own| own.changed()).expect("a debug run");
+    let changed = session.company().debug_parameters().and_then(|own| own.changes()).expect("a debug run");
     assert_eq!(
         (changed.scenario.as_deref(), changed.in_force.len(), changed.waiting.len()),
         (Some("default"), 0, 1)
     );
-    week(&mut session);
+    advance_week(&mut session);
     drop(session);
     let again = Session::open(&folder.path().join(id), Access::Write, true).expect("it opens");
     assert!(again.company().observe().has_own_parameters);
 }
 
 /// Returns one parameter of each kind: `group.*.c_max_mean` once instead of 26 times.
-fn kinds(params: &Value) -> Vec<String> {
+fn parameter_kinds(params: &Value) -> Vec<String> {
     fn walk(path: &str, value: &Value, found: &mut std::collections::BTreeMap<String, String>) {
         let below = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
         match value {
@@ -402,7 +411,7 @@ fn kinds(params: &Value) -> Vec<String> {
 }
 
 #[test]
-fn whatever_is_set_the_days_go_on() {
+fn every_parameter_can_be_overridden() {
     let new = NewRun {
         mode: Mode::Debug,
         seed: Some(7),
@@ -411,16 +420,16 @@ fn whatever_is_set_the_days_go_on() {
         projection: false,
         ..NewRun::default()
     };
-    let configuration = Configuration::shipped();
+    let configuration = Configuration::bundled();
     let fresh = || {
         let mut session = Session::create(new.clone(), &configuration).expect("the run begins");
-        open_shop(&mut session);
-        weeks(&mut session, 6);
+        apply_opening_decisions(&mut session);
+        advance_weeks(&mut session, 6);
         session
     };
     let mut session = fresh();
     let (mut accepted, mut refused) = (0, 0);
-    let all = kinds(&serde_json::to_value(session.params()).expect("JSON"));
+    let all = parameter_kinds(&serde_json::to_value(session.params()).expect("JSON"));
     for (at, key) in all.into_iter().enumerate() {
         let old = session.company().debug_parameters().and_then(|own| own.value(&key)).expect("its value");
         let value = [json!(0), json!(8)][at % 2].clone();
@@ -438,11 +447,11 @@ fn whatever_is_set_the_days_go_on() {
 }
 
 #[test]
-fn a_day_for_whose_leads_there_is_no_room_is_refused_and_the_run_stays() {
+fn excessive_leads_are_rejected_and_the_run_stays_intact() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut session = begin_run(runs.path(), Mode::Debug, 140);
-    open_shop(&mut session);
-    weeks(&mut session, 3);
+    apply_opening_decisions(&mut session);
+    advance_weeks(&mut session, 3);
     let today = session.day();
     let crowded = json!([1e6, 1e6, 1e6, 1e6, 1e6, 1e6, 1e6]);
     let usual = session.set_parameter("calendar.weekly", &crowded, None).expect("in its range").old;
@@ -473,7 +482,7 @@ fn a_day_for_whose_leads_there_is_no_room_is_refused_and_the_run_stays() {
 }
 
 #[test]
-fn a_table_that_names_nothing_is_refused_and_elements_of_lists_are_called_by_name() {
+fn override_keys_must_exist_and_lists_use_names() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = begin_run(folder.path(), Mode::Debug, 140);
     for (key, value, said) in [

@@ -4,16 +4,16 @@ use std::ops::ControlFlow;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use novamind::insight::branch_with_decisions;
+use novamind::insight::create_branch_with_decisions;
 use novamind::record::folder::configuration::Configuration;
 use novamind::record::mode::Mode;
 use novamind::record::trajectory::record::{QuerySource, Via};
 use novamind::record::trajectory::{Record, Trajectory};
 use novamind::session::{Access, NewRun, Session, Storage, verify};
-use novamind::tools::Refusal;
+use novamind::tools::Rejection;
 use serde_json::{Value, json};
 
-use crate::support::company::{call, week};
+use crate::support::company::{advance_week, call_tool};
 
 /// Starts a run if python3 is available. Otherwise there is nothing to test.
 fn run_with_python(storage: Storage) -> Option<Session> {
@@ -22,15 +22,15 @@ fn run_with_python(storage: Storage) -> Option<Session> {
         return None;
     }
     let new = NewRun { seed: Some(7), days: Some(28), storage, ..NewRun::default() };
-    Some(Session::create(new, &Configuration::shipped()).expect("the run begins"))
+    Some(Session::create(new, &Configuration::bundled()).expect("the run begins"))
 }
 
-fn run(session: &mut Session, code: &str) -> Value {
-    call(session, "python_exec", json!({ "code": format!("# python\n{code}") }))
+fn run_script(session: &mut Session, code: &str) -> Value {
+    call_tool(session, "python_exec", json!({ "code": format!("# python\n{code}") }))
 }
 
 #[track_caller]
-fn refusal(session: &mut Session, code: &str, seconds: f64) -> Refusal {
+fn script_rejection(session: &mut Session, code: &str, seconds: f64) -> Rejection {
     let given = json!({ "code": format!("# python\n{code}"), "timeout_seconds": seconds });
     let refusal = session.call("python_exec", &given, Via::Script).expect_err(code);
     assert_eq!(refusal.field.as_deref(), Some("code"), "{refusal}");
@@ -39,7 +39,7 @@ fn refusal(session: &mut Session, code: &str, seconds: f64) -> Refusal {
 
 #[track_caller]
 fn assert_fails(session: &mut Session, code: &str, parts: &[&str]) {
-    let refusal = refusal(session, code, 60.0);
+    let refusal = script_rejection(session, code, 60.0);
     assert_eq!(refusal.code, "script_failed", "{code}: {refusal}");
     for part in parts {
         assert!(refusal.message.contains(part), "{code}: {part} is not in\n{}", refusal.message);
@@ -47,11 +47,11 @@ fn assert_fails(session: &mut Session, code: &str, parts: &[&str]) {
 }
 
 #[test]
-fn a_script_asks_and_prints() {
+fn script_queries_and_prints() {
     let Some(mut session) = run_with_python(Storage::Memory) else { return };
     let hash = session.state_hash();
-    let asked = session.company().asked().to_vec();
-    let said = run(
+    let asked = session.company().query_history().to_vec();
+    let said = run_script(
         &mut session,
         "rows = query('SELECT day, category, amount FROM ledger')\nprint(rows, get_vars())\n\
          print(sum(row['amount'] for row in rows))",
@@ -59,26 +59,29 @@ fn a_script_asks_and_prints() {
     let first =
         "[{'day': 0, 'category': 'initial_funding', 'amount': 1000000.0}] {'current_day': 0}\n1000000.0\n";
     assert_eq!(said, json!({ "returncode": 0, "stdout": first, "stderr": "" }));
-    let said = run(
+    let said = run_script(
         &mut session,
         "from novamind_script import query as ask\nimport statistics, sys\n\
          print(ask(\"SELECT * FROM subscriptions WHERE status = 'active'\"), statistics.mean([1, 3]))\nsys.exit(0)",
     );
     assert_eq!(said["stdout"], "[] 2\n");
     assert!(said["stderr"].as_str().is_some_and(|text| text.contains("status is never 'active'")), "{said}");
-    call(
+    call_tool(
         &mut session,
         "register_script",
         json!({ "name": "day", "code": "#!/usr/bin/env python3\nprint(get_vars())" }),
     );
-    week(&mut session);
-    assert_eq!(call(&mut session, "run_script", json!({ "name": "day" }))["stdout"], "{'current_day': 7}\n");
+    advance_week(&mut session);
+    assert_eq!(
+        call_tool(&mut session, "run_script", json!({ "name": "day" }))["stdout"],
+        "{'current_day': 7}\n"
+    );
     assert_ne!(session.state_hash(), hash, "a week has passed");
-    assert_eq!(session.company().asked(), asked, "queries of a script are not in the query history");
+    assert_eq!(session.company().query_history(), asked, "queries of a script are not in the query history");
 }
 
 #[test]
-fn what_fails_says_why_and_changes_nothing() {
+fn failed_script_reports_why_and_changes_nothing() {
     let Some(mut session) = run_with_python(Storage::Memory) else { return };
     let hash = session.state_hash();
     let code = "print('so far')\ndef half(x):\n    return x / 0\nhalf(1)";
@@ -105,7 +108,7 @@ fn what_fails_says_why_and_changes_nothing() {
 }
 
 #[test]
-fn what_a_query_may_not_a_script_may_not_ask() {
+fn python_queries_have_the_limits_of_queries() {
     let Some(mut session) = run_with_python(Storage::Memory) else { return };
     for (sql, part) in [
         ("SELECT c_max FROM customers", "there is no column c_max"),
@@ -118,7 +121,7 @@ fn what_a_query_may_not_a_script_may_not_ask() {
         assert_fails(&mut session, &format!("query({sql:?})"), &["NovamindError", part]);
     }
     let caught = "try:\n    query('SELECT nothing')\nexcept NovamindError as error:\n    print(error.code)";
-    assert_eq!(run(&mut session, caught)["stdout"], "sql_error\n");
+    assert_eq!(run_script(&mut session, caught)["stdout"], "sql_error\n");
     assert_fails(&mut session, "query(5)", &["TypeError"]);
     assert_fails(
         &mut session,
@@ -133,12 +136,12 @@ fn what_a_query_may_not_a_script_may_not_ask() {
     let endless =
         "query('WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n) SELECT count(*) FROM n')";
     let begun = Instant::now();
-    let stopped = refusal(&mut session, endless, 1.0);
+    let stopped = script_rejection(&mut session, endless, 1.0);
     assert!(begun.elapsed() < Duration::from_secs(20), "{stopped}");
 }
 
 #[test]
-fn nothing_a_script_does_holds_the_run_up() {
+fn scripts_cannot_block_the_run() {
     let Some(mut session) = run_with_python(Storage::Memory) else { return };
     for code in [
         "print('begun')\nwhile True: pass",
@@ -149,7 +152,7 @@ fn nothing_a_script_does_holds_the_run_up() {
         "print('begun')\nwhile True: print('x' * 4000)",
     ] {
         let begun = Instant::now();
-        let refusal = refusal(&mut session, code, 1.5);
+        let refusal = script_rejection(&mut session, code, 1.5);
         assert_eq!(refusal.code, "script_timeout", "{code}: {refusal}");
         assert!(refusal.message.starts_with("it did not end in 1.5 s"), "{refusal}");
         assert!(begun.elapsed() < Duration::from_secs(20), "{code}");
@@ -157,18 +160,18 @@ fn nothing_a_script_does_holds_the_run_up() {
     }
     let flood =
         "import sys\nfor _ in range(20000):\n    print('x' * 999)\n    print('é' * 999, file=sys.stderr)";
-    let said = run(&mut session, flood);
+    let said = run_script(&mut session, flood);
     let length = |field: &str| said[field].as_str().map_or(0, |text| text.chars().count());
     assert_eq!((length("stdout"), length("stderr")), (5000, 2000));
     // Invalid requests on the socket.
     let noise = "import os\nfor place in range(3, 64):\n    try: os.write(place, b'{}\\n\\xff\\n' * 100)\n    except OSError: pass\nprint('over')";
-    assert_eq!(run(&mut session, noise)["stdout"], "over\n");
-    assert_eq!(run(&mut session, "print(get_vars())")["stdout"], "{'current_day': 0}\n");
+    assert_eq!(run_script(&mut session, noise)["stdout"], "over\n");
+    assert_eq!(run_script(&mut session, "print(get_vars())")["stdout"], "{'current_day': 0}\n");
 }
 
 #[cfg(target_os = "linux")]
 #[test]
-fn on_linux_a_script_is_fenced_in() {
+fn scripts_are_sandboxed_on_linux() {
     let Some(mut session) = run_with_python(Storage::Memory) else { return };
     let begun = Instant::now();
     assert_fails(&mut session, "hog = []\nwhile True: hog.append(bytearray(50 << 20))", &["MemoryError"]);
@@ -179,7 +182,8 @@ fn on_linux_a_script_is_fenced_in() {
     let file = file.display().to_string();
     // Only if the kernel has Landlock.
     let fence = "import ctypes\nprint(ctypes.CDLL(None).syscall(444, None, 0, 1))";
-    let has_fence = run(&mut session, fence)["stdout"].as_str().is_some_and(|text| !text.starts_with('-'));
+    let has_fence =
+        run_script(&mut session, fence)["stdout"].as_str().is_some_and(|text| !text.starts_with('-'));
     let mut forbidden = vec![
         format!("open({file:?}, 'a').write('x' * 100000)"),
         "import os\nos.fork()".to_owned(),
@@ -201,22 +205,26 @@ fn on_linux_a_script_is_fenced_in() {
     }
     assert_eq!(std::fs::read_to_string(&file).expect("the file"), "kept");
     let empty = "import os\nprint(os.listdir('.'), sorted(set(os.environ) - {'PATH', 'LC_CTYPE'}))";
-    let said = run(&mut session, empty)["stdout"].clone();
+    let said = run_script(&mut session, empty)["stdout"].clone();
     let said = said.as_str().unwrap_or_default();
     assert!(said.starts_with("[] [") && !said.contains("NOVAMIND"), "{said}");
 }
 
 #[test]
-fn records_hold_what_was_said_and_run_nothing() {
+fn replay_uses_recorded_script_output() {
     let runs = tempfile::tempdir().expect("a folder");
     let Some(mut session) = run_with_python(Storage::Runs(runs.path().to_owned())) else { return };
     let folder = session.folder().expect("a folder").to_owned();
     // Its output differs in each run.
     let code = "# python\nimport time\nprint(query('SELECT count(*) AS n FROM ledger'), time.time_ns())";
-    call(&mut session, "register_daily_calculation", json!({ "name": "now", "code": code }));
-    call(&mut session, "register_daily_calculation", json!({ "name": "wrong", "code": "# python\n1 / 0" }));
-    call(&mut session, "python_exec", json!({ "code": code }));
-    let dashboard = week(&mut session).dashboard;
+    call_tool(&mut session, "register_daily_calculation", json!({ "name": "now", "code": code }));
+    call_tool(
+        &mut session,
+        "register_daily_calculation",
+        json!({ "name": "wrong", "code": "# python\n1 / 0" }),
+    );
+    call_tool(&mut session, "python_exec", json!({ "code": code }));
+    let dashboard = advance_week(&mut session).dashboard;
     assert!(dashboard.contains("now:\n  [{'n': 1}] "), "{dashboard}");
     assert!(
         dashboard.contains("wrong:\n  failed: ZeroDivisionError: division by zero; python3 ended"),
@@ -238,12 +246,13 @@ fn records_hold_what_was_said_and_run_nothing() {
     let mut session = Session::open(&folder, Access::Write, true).expect("it opens");
     assert_eq!(session.company().dashboard(), dashboard);
     assert!(session.remarks().join(" ").contains("Calculations in Python run before each week: now, wrong."));
-    week(&mut session);
+    advance_week(&mut session);
 
     // A re-simulation does not run registered calculations.
-    let again = branch_with_decisions(&session, 2, &[], Mode::Sandbox, &mut |_| ControlFlow::Continue(()));
+    let again =
+        create_branch_with_decisions(&session, 2, &[], Mode::Sandbox, &mut |_| ControlFlow::Continue(()));
     let branch = again.unwrap_or_else(|refusal| panic!("{refusal}")).session;
     assert_eq!(branch.state_hash(), session.state_hash());
-    let said = &branch.company().calculated()[0].output;
+    let said = &branch.company().calculation_outputs()[0].output;
     assert!(said.starts_with("failed: Python is not run"), "{said}");
 }

@@ -2,19 +2,19 @@
 
 use std::collections::BTreeMap;
 
-use novamind::database::{Cell, Rows, number_at, text_at};
+use novamind::database::{Cell, QueryResult, number_at, text_at};
 use novamind::record::folder::configuration::Configuration;
-use novamind::record::folder::library::Library;
+use novamind::record::folder::query_library::QueryLibrary;
 use novamind::record::trajectory::record::Via;
 use novamind::session::{NewRun, Session};
 use serde_json::{Value, json};
 
-use crate::support::company::{call, number, numbers, rows};
+use crate::support::company::{call_tool, query_number, query_numbers, query_rows};
 
 /// Returns a company with few individuals and many enterprises, after some weeks of offers at two prices.
 fn company_with_offers() -> Session {
     let new = NewRun { seed: Some(11), cash: Some(20_000_000.0), ..NewRun::default() };
-    let mut session = Session::create(new, &Configuration::shipped()).expect("the run begins");
+    let mut session = Session::create(new, &Configuration::bundled()).expect("the run begins");
     let ads = json!({"S1": 750, "S2": 500, "E1": 4000, "E2": 4000, "E3": 4000});
     for (tool, arguments) in [
         ("set_prices", json!({"A": 12, "B": 25, "C": 55})),
@@ -24,7 +24,7 @@ fn company_with_offers() -> Session {
         ("set_targeted_ad_spend", json!({"targeted_spend": {"content_marketing": ads, "linkedin": ads}})),
         ("set_capacity_tier", json!({"tier": 5})),
     ] {
-        call(&mut session, tool, arguments);
+        call_tool(&mut session, tool, arguments);
     }
     while session.day() < 84 {
         let waiting = session.company().observe().waiting;
@@ -35,54 +35,54 @@ fn company_with_offers() -> Session {
         });
         let offers: Vec<Value> = offered.collect();
         if !offers.is_empty() {
-            call(&mut session, "send_enterprise_deal", json!({ "deals": offers }));
+            call_tool(&mut session, "send_enterprise_deal", json!({ "deals": offers }));
         }
-        week(&mut session);
+        advance_week(&mut session);
     }
     session
 }
 
-fn week(session: &mut Session) {
+fn advance_week(session: &mut Session) {
     let forecasts = session.company().naive_forecasts();
     session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
 }
 
-fn answer(session: &mut Session, name: &str) -> Rows {
-    let library = Library::shipped();
+fn run_named_query(session: &mut Session, name: &str) -> QueryResult {
+    let library = QueryLibrary::bundled();
     let query = library.find(name).unwrap_or_else(|| panic!("no query {name}"));
     session.query(&query.sql).unwrap_or_else(|refusal| panic!("{name}: {refusal}"))
 }
 
-fn column(rows: &Rows, name: &str) -> usize {
+fn column(rows: &QueryResult, name: &str) -> usize {
     rows.columns.iter().position(|own| own == name).unwrap_or_else(|| panic!("no column {name}"))
 }
 
-fn sum(rows: &Rows, name: &str) -> f64 {
+fn sum(rows: &QueryResult, name: &str) -> f64 {
     let at = column(rows, name);
     rows.rows.iter().map(|row| number_at(row, at)).sum()
 }
 
 /// Returns the rows of a statement that ends with a condition, beyond the row limit of one query.
-fn in_parts(session: &mut Session, sql: &str) -> Vec<Vec<f64>> {
-    (0..8).flat_map(|part| numbers(session, &format!("{sql} AND customer_id % 8 = {part}"))).collect()
+fn query_in_parts(session: &mut Session, sql: &str) -> Vec<Vec<f64>> {
+    (0..8).flat_map(|part| query_numbers(session, &format!("{sql} AND customer_id % 8 = {part}"))).collect()
 }
 
 #[test]
-fn bills_that_are_due_are_paid_by_those_who_stay() {
+fn due_bills_are_paid_by_active_subscribers() {
     let mut session = company_with_offers();
-    let due = answer(&mut session, "billing-waves");
+    let due = run_named_query(&mut session, "billing-waves");
     let today = session.day();
     assert_eq!(due.rows.len(), 28);
     let subscribed = "SELECT customer_id, billing_day_mod30, effective_price * seat_count
                       FROM subscriptions WHERE status = 'subscribed'";
-    let before = in_parts(&mut session, subscribed);
-    week(&mut session);
+    let before = query_in_parts(&mut session, subscribed);
+    advance_week(&mut session);
     let terms = format!(
         "SELECT customer_id, effective_price * seat_count FROM subscriptions
          WHERE status IN ('subscribed', 'cancelled') AND coalesce(end_day, 999) > {today}"
     );
     let terms: BTreeMap<u64, f64> =
-        in_parts(&mut session, &terms).iter().map(|row| (row[0] as u64, row[1])).collect();
+        query_in_parts(&mut session, &terms).iter().map(|row| (row[0] as u64, row[1])).collect();
     let mut payments = 0;
     for (row, day) in due.rows.iter().zip(today + 1..) {
         assert_eq!(number_at(row, column(&due, "day")), f64::from(day));
@@ -96,7 +96,7 @@ fn bills_that_are_due_are_paid_by_those_who_stay() {
              FROM ledger WHERE category = 'subscription_payment' AND day = {day}"
         );
         let paid: BTreeMap<u64, f64> =
-            numbers(&mut session, &paid).iter().map(|row| (row[0] as u64, row[1])).collect();
+            query_numbers(&mut session, &paid).iter().map(|row| (row[0] as u64, row[1])).collect();
         for own in billed {
             let (customer, dollars) = (own[0] as u64, own[2]);
             if let Some(amount) = paid.get(&customer).filter(|_| terms.get(&customer) == Some(&dollars)) {
@@ -109,9 +109,9 @@ fn bills_that_are_due_are_paid_by_those_who_stay() {
 }
 
 #[test]
-fn every_lead_of_the_last_week_has_one_choice() {
+fn every_lead_has_one_choice() {
     let mut session = company_with_offers();
-    let chosen = answer(&mut session, "choices-of-new-leads");
+    let chosen = run_named_query(&mut session, "choices-of-new-leads");
     let since = session.day() - 7;
     let leads = format!(
         "FROM customers LEFT JOIN subscriptions USING (customer_id)
@@ -127,7 +127,7 @@ fn every_lead_of_the_last_week_has_one_choice() {
         ("no_thread", "status IS NULL"),
     ];
     for (name, condition) in conditions {
-        let counted = number(&mut session, &format!("SELECT count(*) {leads} AND {condition}"));
+        let counted = query_number(&mut session, &format!("SELECT count(*) {leads} AND {condition}"));
         assert_eq!(sum(&chosen, name), counted, "{name}");
     }
     let parts: f64 = conditions[1..].iter().map(|(name, _)| sum(&chosen, name)).sum();
@@ -143,8 +143,8 @@ fn every_lead_of_the_last_week_has_one_choice() {
 #[test]
 fn first_offers_are_those_of_the_turns() {
     let mut session = company_with_offers();
-    let offers = answer(&mut session, "first-offers");
-    let turns = rows(
+    let offers = run_named_query(&mut session, "first-offers");
+    let turns = query_rows(
         &mut session,
         "SELECT thread_id, customer_id, day FROM enterprise_turns t WHERE thread_type = 'new_lead' AND sender = 'agent'
          AND message_id = (SELECT min(message_id) FROM enterprise_turns WHERE thread_id = t.thread_id AND sender = 'agent')",
@@ -160,9 +160,9 @@ fn first_offers_are_those_of_the_turns() {
     }
     let deals = "SELECT count(DISTINCT thread_id) FROM enterprise_turns WHERE thread_type = 'new_lead'
                  AND close_reason = 'accepted'";
-    assert_eq!(signed, number(&mut session, deals));
+    assert_eq!(signed, query_number(&mut session, deals));
     let open =
         "SELECT count(DISTINCT t.thread_id) FROM enterprise_turns t JOIN subscriptions s USING (customer_id)
                 WHERE t.thread_type = 'new_lead' AND t.sender = 'agent' AND s.status = 'lead'";
-    assert_eq!(waiting, number(&mut session, open));
+    assert_eq!(waiting, query_number(&mut session, open));
 }

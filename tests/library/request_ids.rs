@@ -6,15 +6,20 @@ use std::path::Path;
 use novamind::record::mode::Mode;
 use novamind::record::trajectory::record::Via;
 use novamind::record::trajectory::{Record, Trajectory};
-use novamind::session::{Session, WeekRequest, lines_afterwards, verify};
+use novamind::session::{Session, WeekRequest, read_afterwards, verify};
 use serde_json::{Value, json};
 
 use crate::durability::run::{create, open, runs};
 
-fn week(session: &mut Session, rationale: &str, expected_day: Value, id: &str) -> Result<Value, String> {
-    let predictions = session.company().naive_forecasts().as_predictions();
+fn advance_week(
+    session: &mut Session,
+    rationale: &str,
+    expected_day: Value,
+    id: &str,
+) -> Result<Value, String> {
+    let predictions = session.company().naive_forecasts().to_predictions();
     // The forecasts are part of the digest, so they must not change.
-    let predictions = if rationale == "naive" { predictions } else { fixed() };
+    let predictions = if rationale == "naive" { predictions } else { fixed_predictions() };
     let request = WeekRequest {
         rationale: &json!(rationale),
         predictions: &predictions,
@@ -24,14 +29,14 @@ fn week(session: &mut Session, rationale: &str, expected_day: Value, id: &str) -
     session
         .advance_once(&request, Via::Http)
         .map(|week| {
-            let mut told = week.as_json();
+            let mut told = week.to_json();
             told.as_object_mut().expect("an object").remove("notifications");
             told
         })
         .map_err(|refusal| refusal.code)
 }
 
-fn fixed() -> Value {
+fn fixed_predictions() -> Value {
     let forecast = json!({ "point": 1e6, "lower": 0, "upper": 2e6 });
     json!({ "cash_1wk": forecast, "cash_4wk": forecast, "cash_12wk": forecast, "cash_26wk": forecast })
 }
@@ -40,13 +45,13 @@ fn call(session: &mut Session, tool: &str, args: Value, id: &str) -> Result<Valu
     session.call_once(tool, &args, Via::Http, &json!(id)).map_err(|refusal| refusal.code)
 }
 
-fn count(folder: &Path, kind: &str) -> usize {
+fn count_lines(folder: &Path, kind: &str) -> usize {
     let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).expect("it reads");
     trajectory.lines.iter().filter(|line| line.record.kind() == kind).count()
 }
 
 #[test]
-fn a_retry_returns_the_first_answer_also_after_the_run_was_reopened() {
+fn retry_returns_the_first_response_after_reopening() {
     let place = runs();
     let mut session = create(place.path(), 7, 28);
     let folder = session.folder().expect("a folder").to_owned();
@@ -56,8 +61,9 @@ fn a_retry_returns_the_first_answer_also_after_the_run_was_reopened() {
     assert_eq!(refused, Err("price_not_positive".to_owned()));
     let unknown = call(&mut session, "set_wages", json!({ "A": 1 }), "u");
     assert_eq!(unknown, Err("unknown_tool".to_owned()));
-    let weeks: Vec<Value> =
-        (0..4).map(|n| week(&mut session, "on", json!(7 * n), &format!("w{n}")).expect("a week")).collect();
+    let weeks: Vec<Value> = (0..4)
+        .map(|n| advance_week(&mut session, "on", json!(7 * n), &format!("w{n}")).expect("a week"))
+        .collect();
     assert_eq!((&weeks[3]["ended"], &weeks[0]["ended"]), (&json!("horizon"), &Value::Null));
     call(&mut session, "delete_script", json!({ "name": "none" }), "after").expect_err("none of that name");
     let written = fs::read(folder.join("trajectory.jsonl")).expect("a file");
@@ -66,7 +72,11 @@ fn a_retry_returns_the_first_answer_also_after_the_run_was_reopened() {
         assert_eq!(call(session, "set_prices", json!({ "A": -1 }), "r"), refused);
         assert_eq!(call(session, "set_wages", json!({ "A": 1 }), "u"), unknown);
         for (n, first) in weeks.iter().enumerate() {
-            assert_eq!(week(session, "on", json!(7 * n), &format!("w{n}")).as_ref(), Ok(first), "week {n}");
+            assert_eq!(
+                advance_week(session, "on", json!(7 * n), &format!("w{n}")).as_ref(),
+                Ok(first),
+                "week {n}"
+            );
         }
         call(session, "delete_script", json!({ "name": "none" }), "after").expect_err("none of that name");
     };
@@ -83,13 +93,13 @@ fn a_retry_returns_the_first_answer_also_after_the_run_was_reopened() {
     drop(session);
     assert_eq!(fs::read(folder.join("trajectory.jsonl")).expect("a file"), written, "nothing ran again");
     let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).expect("it reads");
-    let after = lines_afterwards(&folder, &trajectory).expect("it reads").lines;
+    let after = read_afterwards(&folder, &trajectory).expect("it reads").lines;
     assert_eq!(after.iter().filter(|line| line.record.kind() == "call").count(), 1);
     verify(&folder).expect("it verifies");
 }
 
 #[test]
-fn another_payload_another_day_and_strange_ids_are_refused() {
+fn reused_or_invalid_request_ids_are_rejected() {
     let place = runs();
     let mut session = create(place.path(), 7, 28);
     let code = |refused: Result<Value, String>| refused.expect_err("a refusal");
@@ -104,8 +114,8 @@ fn another_payload_another_day_and_strange_ids_are_refused() {
         code(call(&mut session, "set_usage_quotas", json!({ "A": 12, "B": 25 }), "x")),
         "request_id_payload_mismatch"
     );
-    assert_eq!(code(week(&mut session, "on", Value::Null, "x")), "request_id_payload_mismatch");
-    assert_eq!(session.company().current("set_prices")["A"], 12.0);
+    assert_eq!(code(advance_week(&mut session, "on", Value::Null, "x")), "request_id_payload_mismatch");
+    assert_eq!(session.company().current_arguments("set_prices")["A"], 12.0);
     for id in ["".to_owned(), "ä".repeat(129)] {
         assert_eq!(code(call(&mut session, "set_prices", json!({ "A": 13 }), &id)), "request_id_invalid");
     }
@@ -115,22 +125,22 @@ fn another_payload_another_day_and_strange_ids_are_refused() {
     // Tools that only read ignore the id.
     call(&mut session, "get_vars", json!({}), "x").expect("the day");
     call(&mut session, "get_vars", json!({}), "").expect("the day");
-    assert_eq!(code(week(&mut session, "on", json!(7), "w")), "unexpected_day");
-    assert_eq!(code(week(&mut session, "on", json!("0"), "v")), "wrong_type");
+    assert_eq!(code(advance_week(&mut session, "on", json!(7), "w")), "unexpected_day");
+    assert_eq!(code(advance_week(&mut session, "on", json!("0"), "v")), "wrong_type");
     assert_eq!(session.day(), 0);
-    week(&mut session, "on", json!(0), "w0").expect("a week");
+    advance_week(&mut session, "on", json!(0), "w0").expect("a week");
     // The rejection is repeated, although the run has reached that day.
-    assert_eq!(code(week(&mut session, "on", json!(7), "w")), "unexpected_day");
+    assert_eq!(code(advance_week(&mut session, "on", json!(7), "w")), "unexpected_day");
     assert_eq!(session.day(), 7);
 }
 
 #[test]
-fn a_week_that_a_kill_interrupted_answers_the_retry() {
+fn retry_answers_after_an_interrupted_week() {
     let place = runs();
     let mut session = create(place.path(), 7, 28);
     let folder = session.folder().expect("a folder").to_owned();
-    week(&mut session, "on", Value::Null, "w0").expect("a week");
-    let first = week(&mut session, "on", Value::Null, "w1").expect("a week");
+    advance_week(&mut session, "on", Value::Null, "w0").expect("a week");
+    let first = advance_week(&mut session, "on", Value::Null, "w1").expect("a week");
     session.save().expect("it is saved");
     drop(session);
     // A kill directly after the line of the request.
@@ -144,45 +154,45 @@ fn a_week_that_a_kill_interrupted_answers_the_retry() {
     }
     let mut session = open(&folder);
     assert_eq!(session.day(), 14);
-    assert_eq!(week(&mut session, "on", Value::Null, "w1"), Ok(first));
-    assert_eq!((session.day(), count(&folder, "advance"), count(&folder, "week")), (14, 2, 2));
+    assert_eq!(advance_week(&mut session, "on", Value::Null, "w1"), Ok(first));
+    assert_eq!((session.day(), count_lines(&folder, "advance"), count_lines(&folder, "week")), (14, 2, 2));
     drop(session);
     verify(&folder).expect("it verifies");
 }
 
 #[test]
-fn a_branch_keeps_the_ids_of_the_lines_that_it_shares() {
+fn branch_keeps_request_ids_of_shared_lines() {
     let place = runs();
     let mut session = create(place.path(), 7, 28);
     let first = call(&mut session, "set_prices", json!({ "A": 12 }), "p").expect("a price");
-    let passed = week(&mut session, "on", Value::Null, "w0").expect("a week");
+    let passed = advance_week(&mut session, "on", Value::Null, "w0").expect("a week");
     call(&mut session, "set_prices", json!({ "A": 14 }), "q").expect("a price");
     let mut branch = session.branch(2, Mode::Sandbox).expect("a branch");
     assert_eq!(call(&mut branch, "set_prices", json!({ "A": 12 }), "p"), Ok(first));
-    assert_eq!(week(&mut branch, "on", Value::Null, "w0"), Ok(passed));
+    assert_eq!(advance_week(&mut branch, "on", Value::Null, "w0"), Ok(passed));
     // Later decisions are not in the record of the branch.
-    assert_eq!(branch.company().current("set_prices")["A"], 12.0);
+    assert_eq!(branch.company().current_arguments("set_prices")["A"], 12.0);
     call(&mut branch, "set_prices", json!({ "A": 15 }), "q").expect("a new request");
-    assert_eq!(branch.company().current("set_prices")["A"], 15.0);
+    assert_eq!(branch.company().current_arguments("set_prices")["A"], 15.0);
 }
 
 #[test]
-fn undo_does_not_free_an_id() {
+fn undo_does_not_release_a_request_id() {
     let place = runs();
     let mut session = create(place.path(), 7, 28);
     call(&mut session, "set_prices", json!({ "A": 12 }), "o").expect("a price");
     let first = call(&mut session, "set_prices", json!({ "A": 14 }), "p").expect("a price");
     session.undo(Via::Plain).expect("it is taken back");
     assert_eq!(call(&mut session, "set_prices", json!({ "A": 14 }), "p"), Ok(first));
-    assert_eq!(session.company().current("set_prices")["A"], 12.0);
+    assert_eq!(session.company().current_arguments("set_prices")["A"], 12.0);
 }
 
 #[test]
-fn records_without_ids_keep_their_bytes() {
+fn records_without_request_ids_are_unchanged() {
     let place = runs();
     let mut session = create(place.path(), 7, 28);
     session.call_once("set_prices", &json!({ "A": 12 }), Via::Http, &Value::Null).expect("a price");
-    week(&mut session, "naive", Value::Null, "w").expect("a week");
+    advance_week(&mut session, "naive", Value::Null, "w").expect("a week");
     let path = session.folder().expect("a folder").join("trajectory.jsonl");
     let text = fs::read_to_string(path).expect("a trajectory");
     let with: Vec<&str> = text.lines().filter(|line| line.contains("request_")).collect();
@@ -212,6 +222,6 @@ fn calls_of_unknown_tools_are_recorded_with_names_of_bounded_length() {
         .collect();
     let names: Vec<usize> = calls.iter().map(|call| call.tool.name().chars().count()).collect();
     assert_eq!(names, [0, 21, 128]);
-    assert!(calls.iter().all(|call| call.tool.known().is_none() && call.args["sent"] == json!([1, null])));
+    assert!(calls.iter().all(|call| call.tool.tool_id().is_none() && call.args["sent"] == json!([1, null])));
     verify(&folder).expect("it verifies");
 }

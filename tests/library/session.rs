@@ -5,19 +5,21 @@ use std::path::Path;
 use novamind::record::folder::configuration::Configuration;
 use novamind::record::folder::runs::{find_run, find_run_to_read, list_runs};
 use novamind::record::mode::Mode;
-use novamind::record::trajectory::record::{Call, Ended, Outcome, Via};
+use novamind::record::trajectory::record::{Call, Outcome, RunEndReason, Via};
 use novamind::record::trajectory::{Line, Record, Trajectory};
 use novamind::session::{Access, Forecasts, NewRun, Session, SettingId, Storage, verify};
 use serde_json::{Value, json};
 
-use crate::support::company::{call, number, open_shop, text, week, weeks};
+use crate::support::company::{
+    advance_week, advance_weeks, apply_opening_decisions, call_tool, query_number, query_text,
+};
 
 fn new_run(storage: Storage) -> NewRun {
     NewRun { seed: Some(7), days: Some(60), storage, ..NewRun::default() }
 }
 
 fn create(new: NewRun) -> Session {
-    Session::create(new, &Configuration::shipped()).expect("the run begins")
+    Session::create(new, &Configuration::bundled()).expect("the run begins")
 }
 
 fn runs(folder: &tempfile::TempDir) -> Storage {
@@ -25,21 +27,21 @@ fn runs(folder: &tempfile::TempDir) -> Storage {
 }
 
 #[test]
-fn the_database_holds_what_the_run_says() {
+fn database_matches_the_session() {
     let mut session = create(new_run(Storage::Memory));
-    open_shop(&mut session);
-    weeks(&mut session, 6);
+    apply_opening_decisions(&mut session);
+    advance_weeks(&mut session, 6);
     let observation = session.company().observe();
-    assert!((number(&mut session, "SELECT sum(amount) FROM ledger") - observation.cash).abs() < 1e-6);
+    assert!((query_number(&mut session, "SELECT sum(amount) FROM ledger") - observation.cash).abs() < 1e-6);
     let active = "SELECT count(*) FROM subscriptions WHERE status = 'subscribed'";
-    assert_eq!(number(&mut session, active), f64::from(observation.subscribers));
+    assert_eq!(query_number(&mut session, active), f64::from(observation.subscribers));
     let last = observation.last_week.expect("a week");
     let leads = "SELECT count(*) FROM customers WHERE created_day > 35 AND customer_type = 'small'";
-    assert_eq!(number(&mut session, leads), f64::from(last.new_individual_leads));
+    assert_eq!(query_number(&mut session, leads), f64::from(last.new_individual_leads));
     let paid = "SELECT sum(amount) FROM ledger WHERE day > 35 AND category = 'subscription_payment'";
-    assert!((number(&mut session, paid) - last.payments).abs() < 1e-6);
-    assert_eq!(number(&mut session, "SELECT count(*) FROM config_overrides"), 2.0);
-    assert_eq!(number(&mut session, "SELECT price_B FROM config_history"), 25.0);
+    assert!((query_number(&mut session, paid) - last.payments).abs() < 1e-6);
+    assert_eq!(query_number(&mut session, "SELECT count(*) FROM config_overrides"), 2.0);
+    assert_eq!(query_number(&mut session, "SELECT price_B FROM config_history"), 25.0);
     assert!(observation.dashboard.contains("=== Week 6 (day 42) ==="));
 }
 
@@ -59,7 +61,7 @@ fn refused_calls_change_nothing_and_are_recorded() {
     drop(session);
     let lines = Trajectory::read(&place.join("trajectory.jsonl")).expect("it reads").lines;
     let refused = |line: &Line| match &line.record {
-        Record::Call(Call { outcome: Outcome::Refused(refusal), .. }) => Some(refusal.code.clone()),
+        Record::Call(Call { outcome: Outcome::Rejected(refusal), .. }) => Some(refusal.code.clone()),
         _ => None,
     };
     let recorded: Vec<Option<String>> = lines.iter().skip(1).map(refused).collect();
@@ -68,43 +70,43 @@ fn refused_calls_change_nothing_and_are_recorded() {
 }
 
 #[test]
-fn checking_shows_cost_and_changes_and_does_nothing() {
+fn check_reports_cost_and_changes_without_effect() {
     let mut session = create(new_run(Storage::Memory));
     let before = session.state_hash();
-    let preview = session.check("set_capacity_tier", &json!({"tier": 2})).expect("it would work");
+    let preview = session.preview_call("set_capacity_tier", &json!({"tier": 2})).expect("it would work");
     assert_eq!((preview.cost_per_day, preview.effect_day), (445.0, Some(1)));
     assert_eq!(preview.changes[0].setting, SettingId::CapacityTier);
-    let preview = session.check("start_research_project", &json!({"tier": 1})).expect("it would work");
+    let preview = session.preview_call("start_research_project", &json!({"tier": 1})).expect("it would work");
     assert_eq!(preview.cost_now, 166_667.0);
     assert_eq!(
-        session.check("set_prices", &json!({"A": -1})).expect_err("refused").code,
+        session.preview_call("set_prices", &json!({"A": -1})).expect_err("refused").code,
         "price_not_positive"
     );
     assert_eq!(session.state_hash(), before);
     let cash = session.company().observe().cash;
-    call(&mut session, "start_research_project", json!({"tier": 1}));
+    call_tool(&mut session, "start_research_project", json!({"tier": 1}));
     assert_eq!(session.company().observe().cash, cash - preview.cost_now);
     assert_eq!(session.company().observe().running_research, 1);
 }
 
 #[test]
-fn settings_of_the_week_can_be_taken_back() {
+fn undo_restores_settings_of_the_week() {
     let mut session = create(new_run(Storage::Memory));
     assert_eq!(session.undo(Via::Form).expect_err("nothing yet").code, "nothing_to_undo");
-    call(&mut session, "set_prices", json!({"A": 12}));
+    call_tool(&mut session, "set_prices", json!({"A": 12}));
     assert_eq!(session.undo(Via::Form).expect_err("price 0").code, "cannot_undo");
-    call(&mut session, "set_prices", json!({"A": 14}));
-    call(&mut session, "set_targeted_ad_spend", json!({"linkedin": {"E1": 200}}));
+    call_tool(&mut session, "set_prices", json!({"A": 14}));
+    call_tool(&mut session, "set_targeted_ad_spend", json!({"linkedin": {"E1": 200}}));
     let back = session.undo(Via::Form).expect("it is taken back");
     assert_eq!(
         (back[0].setting.to_string().as_str(), back[0].old, back[0].new),
         ("ads linkedin E1", 200.0, 0.0)
     );
     session.undo(Via::Form).expect("it is taken back");
-    assert_eq!(session.company().current("set_prices")["A"], 12);
-    assert_eq!(session.company().changes().len(), 1);
-    week(&mut session);
-    assert!(session.company().changes().is_empty());
+    assert_eq!(session.company().current_arguments("set_prices")["A"], 12);
+    assert_eq!(session.company().setting_changes().len(), 1);
+    advance_week(&mut session);
+    assert!(session.company().setting_changes().is_empty());
     assert_eq!(session.undo(Via::Form).expect_err("a week has passed").code, "nothing_to_undo");
 }
 
@@ -112,26 +114,26 @@ fn settings_of_the_week_can_be_taken_back() {
 fn calls_that_changed_nothing_do_not_block_undo() {
     let mut session = create(new_run(Storage::Memory));
     for price in [10, 11, 11] {
-        call(&mut session, "set_prices", json!({"A": price}));
+        call_tool(&mut session, "set_prices", json!({"A": price}));
     }
-    call(&mut session, "set_daily_spend", json!({"operations": 0}));
+    call_tool(&mut session, "set_daily_spend", json!({"operations": 0}));
     let back = session.undo(Via::Form).expect("11 is taken back");
     assert_eq!((back[0].setting.to_string().as_str(), back[0].old, back[0].new), ("price A", 11.0, 10.0));
-    assert_eq!(session.company().current("set_prices")["A"], 10);
+    assert_eq!(session.company().current_arguments("set_prices")["A"], 10);
     assert_eq!(session.undo(Via::Form).expect_err("no price before").code, "cannot_undo");
 }
 
 #[test]
-fn redo_sets_again_what_undo_took_back_until_something_new_is_set() {
+fn redo_reapplies_until_a_new_setting() {
     let mut session = create(new_run(Storage::Memory));
     assert_eq!(session.redo(Via::Form).expect_err("nothing undone").code, "nothing_to_redo");
-    call(&mut session, "set_prices", json!({"A": 10, "B": 20}));
-    call(&mut session, "set_prices", json!({"A": 12}));
-    call(&mut session, "set_targeted_dev_spend", json!({"targeted_spend": {"S2": 700}}));
+    call_tool(&mut session, "set_prices", json!({"A": 10, "B": 20}));
+    call_tool(&mut session, "set_prices", json!({"A": 12}));
+    call_tool(&mut session, "set_targeted_dev_spend", json!({"targeted_spend": {"S2": 700}}));
     let there = session.state_hash().1["settings"].clone();
     session.undo(Via::Form).expect("undone");
     session.undo(Via::Form).expect("undone");
-    assert_eq!(session.company().current("set_prices")["A"], 10);
+    assert_eq!(session.company().current_arguments("set_prices")["A"], 10);
     let again = session.redo(Via::Form).expect("redone");
     assert_eq!((again[0].setting.to_string().as_str(), again[0].old, again[0].new), ("price A", 10.0, 12.0));
     session.undo(Via::Form).expect("a redo can be undone");
@@ -140,21 +142,21 @@ fn redo_sets_again_what_undo_took_back_until_something_new_is_set() {
     assert_eq!(session.state_hash().1["settings"], there);
     assert_eq!(session.redo(Via::Form).expect_err("all is redone").code, "nothing_to_redo");
     session.undo(Via::Form).expect("undone");
-    call(&mut session, "set_capacity_tier", json!({"tier": 1}));
+    call_tool(&mut session, "set_capacity_tier", json!({"tier": 1}));
     assert_eq!(session.redo(Via::Form).expect_err("something new was set").code, "nothing_to_redo");
     session.undo(Via::Form).expect("undone");
-    week(&mut session);
+    advance_week(&mut session);
     assert_eq!(session.redo(Via::Form).expect_err("a week has passed").code, "nothing_to_redo");
 }
 
 #[test]
-fn what_can_be_undone_and_redone_survives_leaving() {
+fn undo_history_survives_reopening() {
     let folder = tempfile::tempdir().expect("a folder");
     for snapshot in [false, true] {
         let mut session = create(new_run(runs(&folder)));
-        call(&mut session, "set_prices", json!({"A": 10}));
-        call(&mut session, "set_prices", json!({"A": 12}));
-        call(&mut session, "set_capacity_tier", json!({"tier": 2}));
+        call_tool(&mut session, "set_prices", json!({"A": 10}));
+        call_tool(&mut session, "set_prices", json!({"A": 12}));
+        call_tool(&mut session, "set_capacity_tier", json!({"tier": 2}));
         session.undo(Via::Form).expect("undone");
         let place = session.folder().expect("a folder").to_owned();
         if snapshot {
@@ -164,44 +166,46 @@ fn what_can_be_undone_and_redone_survives_leaving() {
         assert_eq!(place.join("snapshot.bin").exists(), snapshot);
         let mut session = Session::open(&place, Access::Write, true).expect("it opens");
         session.redo(Via::Form).expect("redone");
-        assert_eq!(session.company().current("set_capacity_tier")["tier"], 2);
+        assert_eq!(session.company().current_arguments("set_capacity_tier")["tier"], 2);
         session.undo(Via::Form).expect("undone");
         session.undo(Via::Form).expect("undone");
-        assert_eq!(session.company().current("set_prices")["A"], 10);
+        assert_eq!(session.company().current_arguments("set_prices")["A"], 10);
     }
 }
 
 #[test]
-fn purchases_of_a_decision_day_count_in_the_week_they_open() {
+fn purchases_count_in_the_following_week() {
     let mut session = create(new_run(Storage::Memory));
-    call(&mut session, "research_market", json!({}));
+    call_tool(&mut session, "research_market", json!({}));
     assert_eq!(
         (session.company().observe().cash_change, session.company().observe().cash),
         (0.0, 975_000.0),
         "no week yet"
     );
-    week(&mut session);
+    advance_week(&mut session);
     let seen = session.company().observe();
     let week_figures = seen.last_week.expect("a week");
     assert_eq!(seen.cash_change, seen.cash - 1_000_000.0);
     assert_eq!(week_figures.cash_change, seen.cash_change);
     assert!(seen.dashboard.contains(&format!("{:.0}", -seen.cash_change)[..2]), "{}", seen.dashboard);
-    call(&mut session, "research_market", json!({}));
+    call_tool(&mut session, "research_market", json!({}));
     assert_eq!(session.company().observe().cash_change, seen.cash_change, "the last week is what it was");
-    let sql = format!("SELECT sum(amount) FROM ledger WHERE {}", novamind::session::entries_of_weeks(1, 1));
-    assert!((number(&mut session, &sql) - seen.cash_change).abs() < 1e-6);
-    let sql = format!("SELECT sum(amount) FROM ledger WHERE {}", novamind::session::entries_of_weeks(2, 2));
-    assert_eq!(number(&mut session, &sql), -25_000.0);
+    let sql =
+        format!("SELECT sum(amount) FROM ledger WHERE {}", novamind::session::entries_of_weeks_sql(1, 1));
+    assert!((query_number(&mut session, &sql) - seen.cash_change).abs() < 1e-6);
+    let sql =
+        format!("SELECT sum(amount) FROM ledger WHERE {}", novamind::session::entries_of_weeks_sql(2, 2));
+    assert_eq!(query_number(&mut session, &sql), -25_000.0);
 }
 
 #[test]
-fn a_run_ends_on_its_last_day_and_refuses_to_act_then() {
+fn finished_run_rejects_calls() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = create(NewRun { days: Some(10), ..new_run(runs(&folder)) });
-    week(&mut session);
+    advance_week(&mut session);
     let forecasts = session.company().naive_forecasts();
     let last = session.advance("the end", &forecasts, Via::Script, &mut |_| {}).expect("three days");
-    assert_eq!((last.figures.day, last.figures.days_run, last.ended), (10, 3, Some(Ended::Horizon)));
+    assert_eq!((last.figures.day, last.figures.days_run, last.ended), (10, 3, Some(RunEndReason::Horizon)));
     assert_eq!(session.score(), Some(session.company().observe().cash));
     for tool in ["set_prices", "start_research_project"] {
         assert_eq!(session.call(tool, &json!({"A": 5}), Via::Script).expect_err("over").code, "run_over");
@@ -209,7 +213,7 @@ fn a_run_ends_on_its_last_day_and_refuses_to_act_then() {
     let again = session.advance("more", &forecasts, Via::Script, &mut |_| {}).expect_err("over");
     assert_eq!(again.code, "run_over");
     assert!(session.call("get_cost_info", &json!({}), Via::Script).is_ok());
-    assert_eq!(number(&mut session, "SELECT max(day) FROM service_day"), 10.0);
+    assert_eq!(query_number(&mut session, "SELECT max(day) FROM service_day"), 10.0);
     let place = session.folder().expect("a folder").to_owned();
     drop(session);
     let kinds = |place: &Path| -> Vec<String> {
@@ -218,19 +222,22 @@ fn a_run_ends_on_its_last_day_and_refuses_to_act_then() {
     };
     assert_eq!(kinds(&place), ["start", "advance", "week", "advance", "week", "end"]);
     let opened = Session::open(&place, Access::Write, true).expect("it opens");
-    assert_eq!(opened.ended(), Some(Ended::Horizon));
+    assert_eq!(opened.ended(), Some(RunEndReason::Horizon));
 }
 
 #[test]
 fn bankruptcy_ends_the_week_and_the_run() {
     let mut session = create(NewRun { cash: Some(30_000.0), ..new_run(Storage::Memory) });
-    call(&mut session, "set_daily_spend", json!({"operations": 3000, "development": 1500}));
+    call_tool(&mut session, "set_daily_spend", json!({"operations": 3000, "development": 1500}));
     let forecasts = session.company().naive_forecasts();
     let broke = session.advance("spend", &forecasts, Via::Script, &mut |_| {}).expect("a week");
-    assert_eq!((broke.figures.day, broke.ended, session.score()), (7, Some(Ended::Bankruptcy), Some(0.0)));
+    assert_eq!(
+        (broke.figures.day, broke.ended, session.score()),
+        (7, Some(RunEndReason::Bankruptcy), Some(0.0))
+    );
     assert!((broke.figures.cash - -2095.0).abs() < 1e-9);
     let mut session = create(new_run(Storage::Memory));
-    call(&mut session, "set_targeted_dev_spend", json!({"S1": 200000}));
+    call_tool(&mut session, "set_targeted_dev_spend", json!({"S1": 200000}));
     let forecasts = session.company().naive_forecasts();
     let broke = session.advance("spend", &forecasts, Via::Script, &mut |_| {}).expect("a week");
     assert_eq!((broke.figures.day, broke.figures.days_run), (5, 5));
@@ -238,11 +245,11 @@ fn bankruptcy_ends_the_week_and_the_run() {
 }
 
 #[test]
-fn damage_is_named_and_refused() {
+fn damaged_run_is_rejected() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = create(new_run(runs(&folder)));
-    open_shop(&mut session);
-    week(&mut session);
+    apply_opening_decisions(&mut session);
+    advance_week(&mut session);
     let place = session.folder().expect("a folder").to_owned();
     drop(session);
     let path = place.join("trajectory.jsonl");
@@ -273,11 +280,11 @@ fn damage_is_named_and_refused() {
 }
 
 #[test]
-fn one_program_writes_a_run_and_others_are_told() {
+fn run_in_use_is_locked() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = create(new_run(runs(&folder)));
-    open_shop(&mut session);
-    week(&mut session);
+    apply_opening_decisions(&mut session);
+    advance_week(&mut session);
     let place = session.folder().expect("a folder").to_owned();
     let error = Session::open(&place, Access::Write, true).err().expect("in use").to_string();
     assert!(error.contains("another program") && error.contains("--watch"), "{error}");
@@ -287,8 +294,8 @@ fn one_program_writes_a_run_and_others_are_told() {
         reader.call("set_prices", &json!({"A": 5}), Via::Script).expect_err("read only").code,
         "read_only"
     );
-    assert_eq!(number(&mut reader, "SELECT max(day) FROM service_day"), 7.0);
-    week(&mut session);
+    assert_eq!(query_number(&mut reader, "SELECT max(day) FROM service_day"), 7.0);
+    advance_week(&mut session);
 }
 
 #[test]
@@ -296,7 +303,7 @@ fn runs_are_listed_found_and_named() {
     let folder = tempfile::tempdir().expect("a folder");
     assert!(list_runs(&folder.path().join("nothing")).expect("an empty list").is_empty());
     let mut first = create(new_run(runs(&folder)));
-    week(&mut first);
+    advance_week(&mut first);
     let mut second = create(NewRun { days: Some(500), ..new_run(runs(&folder)) });
     assert_eq!((first.manifest().earlier_runs, second.manifest().earlier_runs), (0, 1));
     let list = list_runs(folder.path()).expect("a list");
@@ -306,18 +313,18 @@ fn runs_are_listed_found_and_named() {
     assert!(find_run(folder.path(), &second.manifest().id[..6]).is_ok());
     assert!(find_run(folder.path(), "latest").is_ok());
     assert!(find_run(folder.path(), "zz").is_err());
-    second.end().expect("given up");
+    second.abandon().expect("given up");
     let open = find_run(folder.path(), "latest").expect("the unfinished one");
     assert!(open.ends_with(&first.manifest().id));
     assert!(find_run_to_read(folder.path(), "latest").is_ok());
-    first.end().expect("given up");
+    first.abandon().expect("given up");
     assert!(find_run(folder.path(), "latest").is_err(), "nothing is left to play");
     assert!(find_run_to_read(folder.path(), "latest").is_ok(), "something is left to read");
 }
 
 #[test]
-fn what_cannot_be_started_is_said() {
-    let wrong = |new: NewRun| match Session::create(new, &Configuration::shipped()) {
+fn invalid_new_runs_are_rejected() {
+    let wrong = |new: NewRun| match Session::create(new, &Configuration::bundled()) {
         Ok(_) => panic!("it began"),
         Err(error) => error.to_string(),
     };
@@ -329,7 +336,7 @@ fn what_cannot_be_started_is_said() {
     let set = vec![("quality.base_product_quality".to_owned(), "0.3".to_owned())];
     assert!(wrong(NewRun { overrides: set.clone(), ..plain() }).contains("debug runs only"));
     assert!(
-        Session::create(NewRun { overrides: set, mode: Mode::Debug, ..plain() }, &Configuration::shipped())
+        Session::create(NewRun { overrides: set, mode: Mode::Debug, ..plain() }, &Configuration::bundled())
             .is_ok()
     );
     let nowhere = Storage::Runs("/dev/null/runs".into());
@@ -337,19 +344,19 @@ fn what_cannot_be_started_is_said() {
 }
 
 #[test]
-fn hidden_state_is_for_debug_runs() {
+fn hidden_state_requires_a_debug_run() {
     let mut sandbox = create(new_run(Storage::Memory));
-    assert_eq!(sandbox.xray().err().expect("hidden").code, "not_in_this_mode");
+    assert_eq!(sandbox.debug_hidden_state().err().expect("hidden").code, "not_in_this_mode");
     assert_eq!(sandbox.step(1, &mut |_| {}).expect_err("weeks only").code, "not_in_this_mode");
     let mut debug = create(NewRun { mode: Mode::Debug, ..new_run(Storage::Memory) });
-    open_shop(&mut debug);
-    open_shop(&mut sandbox);
+    apply_opening_decisions(&mut debug);
+    apply_opening_decisions(&mut sandbox);
     for days in [1, 3, 9] {
         debug.step(days, &mut |day| assert!(day.xray.is_some())).expect("days");
     }
     assert_eq!(debug.day(), 7);
     debug.step(2, &mut |_| {}).expect("days");
-    week(&mut debug);
+    advance_week(&mut debug);
     let mut hidden = 0;
     for _ in 0..2 {
         let forecasts = sandbox.company().naive_forecasts();
@@ -361,7 +368,7 @@ fn hidden_state_is_for_debug_runs() {
 }
 
 #[test]
-fn forecasts_are_filed_and_come_back() {
+fn filed_forecasts_can_be_read() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = create(new_run(runs(&folder)));
     let predictions = json!({
@@ -370,27 +377,29 @@ fn forecasts_are_filed_and_come_back() {
         "cash_12wk": {"point": 900000, "lower": 800000, "upper": 1000000},
         "cash_26wk": {"point": 900000, "lower": 500000, "upper": 1500000},
     });
-    session.advance_given(&json!("why"), &predictions, [false; 4], Via::Http, &mut |_| {}).expect("a week");
+    session
+        .advance_with_json(&json!("why"), &predictions, [false; 4], Via::Http, &mut |_| {})
+        .expect("a week");
     let sum = "SELECT sum(predicted_value + horizon_days) FROM predictions WHERE submit_day = 0 AND metric = 'cash'";
     let expected = 990_000.0 + 960_000.0 + 900_000.0 + 900_000.0 + 301.0;
-    assert_eq!(number(&mut session, sum), expected);
-    let filed = number(&mut session, "SELECT submitted_at FROM predictions");
+    assert_eq!(query_number(&mut session, sum), expected);
+    let filed = query_number(&mut session, "SELECT submitted_at FROM predictions");
     let place = session.folder().expect("a folder").to_owned();
     drop(session);
     std::fs::remove_file(place.join("world.db")).expect("it is there");
     let mut session = Session::open(&place, Access::Write, true).expect("it opens");
-    assert_eq!(number(&mut session, sum), expected);
-    assert_eq!(number(&mut session, "SELECT submitted_at FROM predictions"), filed);
+    assert_eq!(query_number(&mut session, sum), expected);
+    assert_eq!(query_number(&mut session, "SELECT submitted_at FROM predictions"), filed);
     let naive: Forecasts = session.company().naive_forecasts();
     assert!(naive.filled_naively == [true; 4] && naive.all[0].lower < naive.all[0].point);
 }
 
 #[test]
-fn a_branch_shares_the_past_and_then_goes_its_own_way() {
+fn branch_shares_history_and_then_differs() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut parent = create(new_run(runs(&folder)));
-    open_shop(&mut parent);
-    weeks(&mut parent, 3);
+    apply_opening_decisions(&mut parent);
+    advance_weeks(&mut parent, 3);
     let at_week_3 = parent.cash_by_day()[..=14].to_vec();
     let mut branch = parent.branch(3, Mode::Debug).expect("a branch");
     assert_eq!((branch.day(), branch.manifest().mode), (14, Mode::Debug));
@@ -399,11 +408,11 @@ fn a_branch_shares_the_past_and_then_goes_its_own_way() {
         branch.manifest().parent.as_ref().map(|parent| parent.run.clone()),
         Some(parent.manifest().id.clone())
     );
-    week(&mut branch);
+    advance_week(&mut branch);
     assert_eq!(branch.state_hash(), parent.state_hash(), "the same decisions lead to the same world");
-    call(&mut branch, "set_prices", json!({"A": 99}));
-    week(&mut branch);
-    week(&mut parent);
+    call_tool(&mut branch, "set_prices", json!({"A": 99}));
+    advance_week(&mut branch);
+    advance_week(&mut parent);
     assert_ne!(branch.state_hash(), parent.state_hash());
     branch.save().expect("saved");
     assert_eq!(verify(branch.folder().expect("a folder")).expect("verified").day, branch.day());
@@ -415,22 +424,22 @@ fn a_branch_shares_the_past_and_then_goes_its_own_way() {
 }
 
 #[test]
-fn nobody_looks_into_the_future_of_a_baseline_run() {
+fn baseline_run_cannot_be_branched_before_its_end() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut run = create(NewRun { mode: Mode::Baseline, ..new_run(runs(&folder)) });
-    week(&mut run);
+    advance_week(&mut run);
     assert_eq!(run.branch(1, Mode::Sandbox).map(drop).expect_err("unfinished").code, "not_in_this_mode");
-    run.end().expect("given up");
+    run.abandon().expect("given up");
     assert!(run.branch(2, Mode::Debug).is_ok());
 }
 
 #[test]
-fn the_journal_tells_the_run_and_scores_its_forecasts() {
+fn journal_lists_decisions_and_scores_forecasts() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut run = create(new_run(runs(&folder)));
-    open_shop(&mut run);
-    weeks(&mut run, 5);
-    run.set_memo("prices were a guess").expect("noted");
+    apply_opening_decisions(&mut run);
+    advance_weeks(&mut run, 5);
+    run.set_notes("prices were a guess").expect("noted");
     let scores = run.company().forecast_scores();
     assert_eq!(
         scores.iter().map(|score| (score.horizon_days, score.scored)).collect::<Vec<_>>(),
@@ -442,47 +451,48 @@ fn the_journal_tells_the_run_and_scores_its_forecasts() {
     let again = Session::open(&folder.path().join(id), Access::Write, true).expect("opens");
     assert_eq!(again.journal(), journal);
     assert_eq!(again.company().forecast_scores(), scores);
-    assert_eq!(again.memo().expect("readable"), "prices were a guess");
+    assert_eq!(again.notes().expect("readable"), "prices were a guess");
 }
 
 #[test]
-fn a_post_is_read_judged_answered_and_told_about() {
+fn player_post_gets_reactions_comments_and_a_notice() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = create(NewRun { mode: Mode::Debug, ..new_run(runs(&folder)) });
-    open_shop(&mut session);
-    weeks(&mut session, 2);
-    let complaint = number(&mut session, "SELECT max(post_id) FROM social_media_posts WHERE day % 7 = 0");
+    apply_opening_decisions(&mut session);
+    advance_weeks(&mut session, 2);
+    let complaint =
+        query_number(&mut session, "SELECT max(post_id) FROM social_media_posts WHERE day % 7 = 0");
     assert!(complaint > 0.0, "customers posted on the seventh day");
     // A real discount, posted for a group that values discounts.
-    call(&mut session, "set_promotion", json!({"by_group": {"S1": 2}}));
+    call_tool(&mut session, "set_promotion", json!({"by_group": {"S1": 2}}));
     let content = "Every plan is $2 off from today: no tricks, cancel anytime. We cut the price because students asked for \
                    it, and the discount stays free of small print. Tell the community forum what you think.";
-    let made = call(&mut session, "post_social_media", json!({"content": content}));
+    let made = call_tool(&mut session, "post_social_media", json!({"content": content}));
     assert_eq!((&made["agent_post_id"], &made["day"]), (&json!(1), &json!(14)));
     let again = session.call("post_social_media", &json!({"content": "More."}), Via::Script);
     assert_eq!(again.expect_err("one a day").code, "already_posted");
     let own = "SELECT views FROM agent_social_media_posts";
-    assert_eq!(number(&mut session, own), 0.0);
+    assert_eq!(query_number(&mut session, own), 0.0);
     let insult = |session: &mut Session| {
-        call(
+        call_tool(
             session,
             "post_social_media",
             json!({"content": "Read the docs, you idiots. Shut up.", "reply_to_post_id": 1}),
         )
     };
 
-    week(&mut session);
+    advance_week(&mut session);
     assert!(
         session.company().dashboard().contains("--- Your posts ---\nDay 14: "),
         "{}",
         session.company().dashboard()
     );
     insult(&mut session);
-    let views = number(&mut session, own);
+    let views = query_number(&mut session, own);
     assert!(views >= 300.0, "six groups of at least 50: {views}");
-    let notice = text(&mut session, "SELECT message FROM notifications WHERE type = 'social_media'");
+    let notice = query_text(&mut session, "SELECT message FROM notifications WHERE type = 'social_media'");
     assert!(notice.contains("Every plan is $2 off") && notice.contains("S1 +"), "{notice}");
-    let judged = session.xray().expect("a debug run").judgements(1).to_vec();
+    let judged = session.debug_hidden_state().expect("a debug run").judgements(1).to_vec();
     assert_eq!(judged.len(), 6);
     assert!(
         judged[0].effect >= 0.6 && !judged[0].reason().is_empty(),
@@ -492,24 +502,28 @@ fn a_post_is_read_judged_answered_and_told_about() {
     );
     let viral = judged.iter().filter(|own| own.effect.abs() >= 0.6).count() as f64;
     let comments = "SELECT count(*) FROM social_media_posts WHERE reply_to_agent_post_id = 1";
-    assert_eq!(number(&mut session, comments), viral);
-    let listed =
-        text(&mut session, "SELECT comment_post_ids FROM agent_social_media_posts WHERE agent_post_id = 1");
+    assert_eq!(query_number(&mut session, comments), viral);
+    let listed = query_text(
+        &mut session,
+        "SELECT comment_post_ids FROM agent_social_media_posts WHERE agent_post_id = 1",
+    );
     let listed: Vec<u32> = serde_json::from_str(&listed).expect("a JSON list");
     assert_eq!(listed.len() as f64, viral);
 
-    week(&mut session);
-    let answers = call(&mut session, "get_social_posts", json!({"limit": -1}));
+    advance_week(&mut session);
+    let answers = call_tool(&mut session, "get_social_posts", json!({"limit": -1}));
     let against = answers["posts"]
         .as_array()
         .expect("a list")
         .iter()
         .filter(|post| post["reply_to_agent_post_id"] == 2);
     assert!(against.count() >= 1);
-    assert!(session.xray().expect("a debug run").judgements(2).iter().all(|own| own.effect < -0.3));
+    assert!(
+        session.debug_hidden_state().expect("a debug run").judgements(2).iter().all(|own| own.effect < -0.3)
+    );
     assert_eq!(
         session.company().posts().len() as f64,
-        number(&mut session, "SELECT count(*) FROM social_media_posts")
+        query_number(&mut session, "SELECT count(*) FROM social_media_posts")
     );
 
     let place = session.folder().expect("a folder").to_owned();

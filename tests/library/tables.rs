@@ -9,21 +9,21 @@ use novamind::record::trajectory::record::Via;
 use novamind::session::{NewRun, Session};
 use serde_json::json;
 
-use crate::support::company::{call, number, rows, text};
+use crate::support::company::{call_tool, query_number, query_rows, query_text};
 
 fn create(overrides: &[(&str, &str)]) -> Session {
     let overrides = overrides.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
     let new = NewRun { seed: Some(7), days: Some(140), mode: Mode::Debug, overrides, ..NewRun::default() };
-    Session::create(new, &Configuration::shipped()).expect("the run begins")
+    Session::create(new, &Configuration::bundled()).expect("the run begins")
 }
 
 /// Starts a company with two channels, one of them for two groups, one of which has no budget.
 fn fund_two_channels(session: &mut Session) {
-    call(session, "set_prices", json!({"A": 12, "B": 25, "C": 55}));
-    call(session, "set_model_tiers", json!({"B": 2, "C": 4}));
-    call(session, "set_usage_quotas", json!({"A": 60000, "B": 250000, "C": 1200000}));
-    call(session, "set_targeted_dev_spend", json!({"S1": 6000}));
-    call(
+    call_tool(session, "set_prices", json!({"A": 12, "B": 25, "C": 55}));
+    call_tool(session, "set_model_tiers", json!({"B": 2, "C": 4}));
+    call_tool(session, "set_usage_quotas", json!({"A": 60000, "B": 250000, "C": 1200000}));
+    call_tool(session, "set_targeted_dev_spend", json!({"S1": 6000}));
+    call_tool(
         session,
         "set_targeted_ad_spend",
         json!({"content_marketing": {"S1": 750}, "linkedin": {"E1": 3000, "S1": 0}}),
@@ -34,25 +34,25 @@ fn fund_two_channels(session: &mut Session) {
 fn open_for_companies() -> Session {
     let new =
         NewRun { seed: Some(7), days: Some(140), cash: Some(20e6), mode: Mode::Debug, ..NewRun::default() };
-    let mut session = Session::create(new, &Configuration::shipped()).expect("the run begins");
-    call(&mut session, "set_prices", json!({"A": 14, "B": 32, "C": 55}));
-    call(&mut session, "set_model_tiers", json!({"A": 4, "B": 4, "C": 4}));
-    call(&mut session, "set_usage_quotas", json!({"A": 300, "B": 30000, "C": 1000000}));
-    call(&mut session, "set_targeted_dev_spend", json!({"S1": 6000, "E1": 20000, "E2": 20000}));
+    let mut session = Session::create(new, &Configuration::bundled()).expect("the run begins");
+    call_tool(&mut session, "set_prices", json!({"A": 14, "B": 32, "C": 55}));
+    call_tool(&mut session, "set_model_tiers", json!({"A": 4, "B": 4, "C": 4}));
+    call_tool(&mut session, "set_usage_quotas", json!({"A": 300, "B": 30000, "C": 1000000}));
+    call_tool(&mut session, "set_targeted_dev_spend", json!({"S1": 6000, "E1": 20000, "E2": 20000}));
     let ads = json!({"content_marketing": {"S1": 750}, "linkedin": {"E1": 8000, "E2": 8000}});
-    call(&mut session, "set_targeted_ad_spend", ads);
+    call_tool(&mut session, "set_targeted_ad_spend", ads);
     session
 }
 
 /// Simulates single days across the ends of weeks.
-fn days(session: &mut Session, count: u32) {
+fn advance_days(session: &mut Session, count: u32) {
     for _ in 0..count {
         session.step(1, &mut |_| {}).expect("a day");
     }
 }
 
-fn never(session: &mut Session, table: &str, condition: &str) {
-    let found = rows(session, &format!("SELECT * FROM {table} WHERE {condition} LIMIT 3"));
+fn assert_no_rows(session: &mut Session, table: &str, condition: &str) {
+    let found = query_rows(session, &format!("SELECT * FROM {table} WHERE {condition} LIMIT 3"));
     assert!(found.is_empty(), "{table} where {condition}: {found:?}");
 }
 
@@ -93,69 +93,85 @@ fn day_0_has_its_rows_and_no_others() {
             _ => 0.0,
         };
         assert_eq!(
-            number(&mut session, &format!("SELECT count(*) FROM {}", table.name)),
+            query_number(&mut session, &format!("SELECT count(*) FROM {}", table.name)),
             expected,
             "{}",
             table.name
         );
     }
     let observer = "SELECT customer_type || group_id || created_day || email FROM customers";
-    assert_eq!(text(&mut session, observer), "smallS10market_observer@external");
-    assert_eq!(text(&mut session, "SELECT category || day FROM ledger"), "initial_funding0");
+    assert_eq!(query_text(&mut session, observer), "smallS10market_observer@external");
+    assert_eq!(query_text(&mut session, "SELECT category || day FROM ledger"), "initial_funding0");
 }
 
 #[test]
-fn customers_and_subscriptions_come_together() {
+fn customers_match_subscriptions() {
     let mut session = open_for_companies();
-    days(&mut session, 70);
-    let leads = number(&mut session, "SELECT count(*) FROM customers WHERE customer_id > 1");
+    advance_days(&mut session, 70);
+    let leads = query_number(&mut session, "SELECT count(*) FROM customers WHERE customer_id > 1");
     assert!(leads > 1000.0);
     assert_eq!(
-        number(
+        query_number(
             &mut session,
             "SELECT sum(amount) / -0.5 FROM ledger WHERE category = 'lead_acquisition_cost'"
         ),
         leads
     );
-    never(&mut session, "customers", "customer_id > 1 AND created_day NOT BETWEEN 1 AND 70");
-    never(&mut session, "customers", "customer_type = 'small' AND customer_id > 1 AND email IS NOT NULL");
-    never(&mut session, "customers", "customer_type = 'large' AND email IS NULL");
-    never(&mut session, "customers", "contract_start_day IS NOT NULL");
+    assert_no_rows(&mut session, "customers", "customer_id > 1 AND created_day NOT BETWEEN 1 AND 70");
+    assert_no_rows(
+        &mut session,
+        "customers",
+        "customer_type = 'small' AND customer_id > 1 AND email IS NOT NULL",
+    );
+    assert_no_rows(&mut session, "customers", "customer_type = 'large' AND email IS NULL");
+    assert_no_rows(&mut session, "customers", "contract_start_day IS NOT NULL");
     let sources = "SELECT DISTINCT acquisition_source FROM customers WHERE customer_id > 1 ORDER BY 1";
     let sources: Vec<String> =
-        rows(&mut session, sources).iter().map(|row| format!("{:?}", row[0])).collect();
+        query_rows(&mut session, sources).iter().map(|row| format!("{:?}", row[0])).collect();
     assert_eq!(sources, ["Text(\"content_marketing\")", "Text(\"linkedin\")", "Text(\"network\")"]);
 
     let joined = "subscriptions JOIN customers USING (customer_id)";
-    never(&mut session, "(SELECT customer_id, count(*) AS n FROM subscriptions GROUP BY 1)", "n > 1");
-    never(&mut session, joined, "start_day <> created_day");
-    never(&mut session, "subscriptions", "billing_day_mod30 <> start_day % 30");
-    never(&mut session, "subscriptions", "effective_price <> max(0, listed_price - promotion)");
-    never(
+    assert_no_rows(
+        &mut session,
+        "(SELECT customer_id, count(*) AS n FROM subscriptions GROUP BY 1)",
+        "n > 1",
+    );
+    assert_no_rows(&mut session, joined, "start_day <> created_day");
+    assert_no_rows(&mut session, "subscriptions", "billing_day_mod30 <> start_day % 30");
+    assert_no_rows(&mut session, "subscriptions", "effective_price <> max(0, listed_price - promotion)");
+    assert_no_rows(
         &mut session,
         "subscriptions",
         "contract_months <> 1 OR pending_plan IS NOT NULL OR pending_price IS NOT NULL",
     );
     // Leads without an acceptable plan are lost on the same day and have no end day.
-    never(&mut session, joined, "customer_type = 'small' AND status = 'lost' AND end_day IS NOT NULL");
-    never(&mut session, joined, "customer_type = 'small' AND (status = 'lead' OR plan = 'pending')");
-    never(
+    assert_no_rows(
+        &mut session,
+        joined,
+        "customer_type = 'small' AND status = 'lost' AND end_day IS NOT NULL",
+    );
+    assert_no_rows(&mut session, joined, "customer_type = 'small' AND (status = 'lead' OR plan = 'pending')");
+    assert_no_rows(
         &mut session,
         joined,
         "customer_type = 'small' AND status IN ('subscribed', 'cancelled') AND first_billing_done <> 1",
     );
-    never(
+    assert_no_rows(
         &mut session,
         "subscriptions",
         "status = 'cancelled' AND (end_day IS NULL OR end_day % 30 <> start_day % 30)",
     );
-    never(&mut session, "subscriptions", "status = 'subscribed' AND end_day IS NOT NULL");
+    assert_no_rows(&mut session, "subscriptions", "status = 'subscribed' AND end_day IS NOT NULL");
     // Enterprises get no reply here: a lead is lost after seven days.
-    never(&mut session, joined, "customer_type = 'large' AND plan <> 'pending'");
-    never(&mut session, joined, "customer_type = 'large' AND status = 'lead' AND start_day <= 63");
-    never(&mut session, joined, "customer_type = 'large' AND status = 'lost' AND end_day <> start_day + 7");
+    assert_no_rows(&mut session, joined, "customer_type = 'large' AND plan <> 'pending'");
+    assert_no_rows(&mut session, joined, "customer_type = 'large' AND status = 'lead' AND start_day <= 63");
+    assert_no_rows(
+        &mut session,
+        joined,
+        "customer_type = 'large' AND status = 'lost' AND end_day <> start_day + 7",
+    );
     assert!(
-        number(
+        query_number(
             &mut session,
             &format!("SELECT count(*) FROM {joined} WHERE status = 'lost' AND plan = 'pending'")
         ) > 3.0
@@ -166,28 +182,28 @@ fn customers_and_subscriptions_come_together() {
 fn usage_service_and_settings_follow_the_days() {
     let mut session = create(&[]);
     fund_two_channels(&mut session);
-    days(&mut session, 10);
-    call(&mut session, "set_capacity_tier", json!({"tier": 2}));
-    call(&mut session, "set_prices", json!({"A": 13}));
-    call(&mut session, "set_prices", json!({"A": 14}));
-    days(&mut session, 32);
+    advance_days(&mut session, 10);
+    call_tool(&mut session, "set_capacity_tier", json!({"tier": 2}));
+    call_tool(&mut session, "set_prices", json!({"A": 13}));
+    call_tool(&mut session, "set_prices", json!({"A": 14}));
+    advance_days(&mut session, 32);
     // The first usage of a subscriber is on the day after the start; rows older than 30 days are deleted every ten days.
     let first = "SELECT count(*) FROM (SELECT min(day) AS first, customer_id FROM daily_usage GROUP BY 2) \
                  JOIN subscriptions USING (customer_id) WHERE start_day >= 10 AND first <> start_day + 1";
-    assert_eq!(number(&mut session, first), 0.0);
-    assert_eq!(number(&mut session, "SELECT min(day) FROM daily_usage"), 10.0);
+    assert_eq!(query_number(&mut session, first), 0.0);
+    assert_eq!(query_number(&mut session, "SELECT min(day) FROM daily_usage"), 10.0);
     let totals =
         "(SELECT day, sum(usage_units) AS used FROM daily_usage GROUP BY 1) JOIN service_day USING (day)";
-    never(&mut session, totals, "used <> total_usage_units");
-    assert_eq!(number(&mut session, "SELECT count(*) FROM service_day"), 42.0);
-    never(&mut session, "service_day", "capacity_tier <> CASE WHEN day <= 10 THEN 0 ELSE 2 END");
-    never(
+    assert_no_rows(&mut session, totals, "used <> total_usage_units");
+    assert_eq!(query_number(&mut session, "SELECT count(*) FROM service_day"), 42.0);
+    assert_no_rows(&mut session, "service_day", "capacity_tier <> CASE WHEN day <= 10 THEN 0 ELSE 2 END");
+    assert_no_rows(
         &mut session,
         "service_day",
         "downtime_minutes NOT IN (0, 10, 30, 90) OR error_rate NOT BETWEEN 0 AND 1",
     );
     // One row per day with changes; days without a call have none.
-    let history = rows(
+    let history = query_rows(
         &mut session,
         "SELECT day, price_A, price_B, capacity_tier, spend_advertising FROM config_history",
     );
@@ -200,16 +216,26 @@ fn usage_service_and_settings_follow_the_days() {
 #[test]
 fn overrides_keep_the_whole_family_after_every_call() {
     let mut session = create(&[]);
-    call(&mut session, "set_targeted_ops_spend", json!({"E1": 30}));
-    call(&mut session, "set_targeted_ops_spend", json!({"by_plan": {"A": 10}, "by_customer": {"42": 7}}));
-    call(&mut session, "set_promotion", json!({}));
-    days(&mut session, 3);
-    call(&mut session, "set_targeted_dev_spend", json!({"S1": 4000, "E1": 80.0, "S2": 0.5}));
-    call(&mut session, "set_targeted_ad_spend", json!({"linkedin": {"E1": 80, "S1": 40.0}}));
-    call(&mut session, "set_targeted_ad_spend", json!({"E1": {"linkedin": 80}, "S1": {"linkedin": 40.0}}));
-    call(&mut session, "set_ads_strength", json!({"by_group": {"S1": 1}}));
-    let kept =
-        rows(&mut session, "SELECT id, day, tool_name, setting_type, settings_json FROM config_overrides");
+    call_tool(&mut session, "set_targeted_ops_spend", json!({"E1": 30}));
+    call_tool(
+        &mut session,
+        "set_targeted_ops_spend",
+        json!({"by_plan": {"A": 10}, "by_customer": {"42": 7}}),
+    );
+    call_tool(&mut session, "set_promotion", json!({}));
+    advance_days(&mut session, 3);
+    call_tool(&mut session, "set_targeted_dev_spend", json!({"S1": 4000, "E1": 80.0, "S2": 0.5}));
+    call_tool(&mut session, "set_targeted_ad_spend", json!({"linkedin": {"E1": 80, "S1": 40.0}}));
+    call_tool(
+        &mut session,
+        "set_targeted_ad_spend",
+        json!({"E1": {"linkedin": 80}, "S1": {"linkedin": 40.0}}),
+    );
+    call_tool(&mut session, "set_ads_strength", json!({"by_group": {"S1": 1}}));
+    let kept = query_rows(
+        &mut session,
+        "SELECT id, day, tool_name, setting_type, settings_json FROM config_overrides",
+    );
     let row = |id, day, tool: &str, kind: &str, json: &str| {
         let text = |text: &str| Cell::Text(text.to_owned());
         vec![Cell::Integer(id), Cell::Integer(day), text(tool), text(kind), text(json)]
@@ -237,15 +263,16 @@ fn overrides_keep_the_whole_family_after_every_call() {
 fn the_ledger_is_ordered_and_adds_up_to_the_cash() {
     let mut session = create(&[]);
     fund_two_channels(&mut session);
-    call(&mut session, "set_targeted_ops_spend", json!({"S1": 20}));
-    call(&mut session, "set_ads_strength", json!({"global_strength": 0.5}));
-    call(&mut session, "research_market", json!({}));
-    call(&mut session, "research_group", json!({"group_id": "S1"}));
-    call(&mut session, "start_research_project", json!({"tier": 1}));
-    days(&mut session, 20);
+    call_tool(&mut session, "set_targeted_ops_spend", json!({"S1": 20}));
+    call_tool(&mut session, "set_ads_strength", json!({"global_strength": 0.5}));
+    call_tool(&mut session, "research_market", json!({}));
+    call_tool(&mut session, "research_group", json!({"group_id": "S1"}));
+    call_tool(&mut session, "start_research_project", json!({"tier": 1}));
+    advance_days(&mut session, 20);
     let cash = session.company().observe().cash;
-    assert!((number(&mut session, "SELECT sum(amount) FROM ledger") - cash).abs() < 1e-6);
-    let tools = rows(&mut session, "SELECT category, amount, note FROM ledger WHERE day = 0 ORDER BY id");
+    assert!((query_number(&mut session, "SELECT sum(amount) FROM ledger") - cash).abs() < 1e-6);
+    let tools =
+        query_rows(&mut session, "SELECT category, amount, note FROM ledger WHERE day = 0 ORDER BY id");
     let written: Vec<String> = tools.iter().map(|row| format!("{:?} {:?}", row[0], row[1])).collect();
     let row = |category: &str, amount: f64| format!("Text(\"{category}\") Real({amount:?})");
     let expected = [
@@ -257,7 +284,8 @@ fn the_ledger_is_ordered_and_adds_up_to_the_cash() {
     assert_eq!(written, expected);
     assert_eq!(tools[2][2], Cell::Text("Group research: S1, level 1 to 2".to_owned()));
     let order = "SELECT category FROM (SELECT category, min(id) AS first FROM ledger WHERE day = 15 GROUP BY category, note LIKE 'Targeted%') ORDER BY first";
-    let order: Vec<String> = rows(&mut session, order).iter().map(|row| format!("{:?}", row[0])).collect();
+    let order: Vec<String> =
+        query_rows(&mut session, order).iter().map(|row| format!("{:?}", row[0])).collect();
     let expected = [
         "lead_acquisition_cost",
         "subscription_payment",
@@ -271,7 +299,7 @@ fn the_ledger_is_ordered_and_adds_up_to_the_cash() {
         "ad_revenue",
     ];
     assert_eq!(order, expected.map(|category| format!("Text(\"{category}\")")));
-    never(
+    assert_no_rows(
         &mut session,
         "ledger",
         "amount > 0 AND category NOT IN ('initial_funding', 'subscription_payment', 'ad_revenue')",
@@ -279,33 +307,34 @@ fn the_ledger_is_ordered_and_adds_up_to_the_cash() {
 }
 
 #[test]
-fn forecasts_stand_with_the_day_they_were_filed() {
+fn forecasts_have_the_day_they_were_filed() {
     let mut session = create(&[]);
     for _ in 0..2 {
         let forecasts = session.company().naive_forecasts();
         session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
     }
-    let filed = rows(&mut session, "SELECT submit_day, horizon_days, metric FROM predictions ORDER BY 1, 2");
+    let filed =
+        query_rows(&mut session, "SELECT submit_day, horizon_days, metric FROM predictions ORDER BY 1, 2");
     let row = |day, horizon| vec![Cell::Integer(day), Cell::Integer(horizon), Cell::Text("cash".to_owned())];
     let expected: Vec<_> =
         [0, 7].iter().flat_map(|day| [7, 28, 84, 182].map(|horizon| row(*day, horizon))).collect();
     assert_eq!(filed, expected);
-    never(
+    assert_no_rows(
         &mut session,
         "predictions",
         "NOT (predicted_lower <= predicted_value AND predicted_value <= predicted_upper)",
     );
-    never(&mut session, "predictions", "submitted_at < 1.7e9");
+    assert_no_rows(&mut session, "predictions", "submitted_at < 1.7e9");
 }
 
 #[test]
 fn research_discovery_and_the_economy_are_announced() {
     let mut session = create(&[("market_research.market_research_discover_prob", "1.0")]);
-    days(&mut session, 7);
-    let found = call(&mut session, "research_market", json!({}));
+    advance_days(&mut session, 7);
+    let found = call_tool(&mut session, "research_market", json!({}));
     let group = found["discovered_group_id"].as_str().expect("a group").to_owned();
     let attempt =
-        rows(&mut session, "SELECT id, day, cost, success, discovered_group_id FROM segment_discovery");
+        query_rows(&mut session, "SELECT id, day, cost, success, discovered_group_id FROM segment_discovery");
     let expected = vec![
         Cell::Integer(1),
         Cell::Integer(7),
@@ -318,18 +347,18 @@ fn research_discovery_and_the_economy_are_announced() {
         let sql = format!(
             "SELECT info_level, is_discoverable, discovered_day, last_research_day FROM group_info_levels WHERE group_id = '{group}'"
         );
-        rows(session, &sql).remove(0)
+        query_rows(session, &sql).remove(0)
     };
     let levels = |values: [i64; 4]| values.map(Cell::Integer).to_vec();
     assert_eq!(level(&mut session, &group), levels([1, 1, 7, 7]));
     let initial = [Cell::Integer(1), Cell::Integer(0), Cell::Integer(0), Cell::Null];
     assert_eq!(level(&mut session, "S1"), initial);
     let unknown = "SELECT count(*) FROM group_info_levels WHERE info_level = 0 AND discovered_day IS NULL AND last_research_day IS NULL";
-    assert_eq!(number(&mut session, unknown), 19.0);
+    assert_eq!(query_number(&mut session, unknown), 19.0);
     let notice = |session: &mut Session, kind: &str| {
         let sql = format!("SELECT day, message FROM notifications WHERE type = '{kind}'");
         let text = |cell: &Cell| if let Cell::Text(text) = cell { text.clone() } else { String::new() };
-        rows(session, &sql).iter().map(|row| (row[0].clone(), text(&row[1]))).collect::<Vec<_>>()
+        query_rows(session, &sql).iter().map(|row| (row[0].clone(), text(&row[1]))).collect::<Vec<_>>()
     };
     let announced = notice(&mut session, "market_discovery");
     assert_eq!(announced.len(), 1);
@@ -339,38 +368,38 @@ fn research_discovery_and_the_economy_are_announced() {
             && announced[0].1.contains("attempt 1")
     );
 
-    call(&mut session, "research_group", json!({"group_id": group, "target_level": 3}));
-    let project = call(&mut session, "start_research_project", json!({"tier": 1}));
+    call_tool(&mut session, "research_group", json!({"group_id": group, "target_level": 3}));
+    let project = call_tool(&mut session, "start_research_project", json!({"tier": 1}));
     let due = project["expected_completion_day"].as_u64().expect("a day") as u32;
-    days(&mut session, 4);
+    advance_days(&mut session, 4);
     assert_eq!(level(&mut session, &group), levels([1, 1, 7, 7]));
     assert!(notice(&mut session, "group_research_complete").is_empty());
-    days(&mut session, 1);
+    advance_days(&mut session, 1);
     assert_eq!(level(&mut session, &group), levels([3, 1, 7, 12]));
     let announced = notice(&mut session, "group_research_complete");
     assert!(announced[0].0 == Cell::Integer(12) && announced[0].1.contains("\u{b1}25%"), "{announced:?}");
-    call(&mut session, "research_group", json!({"group_id": group, "target_level": 3}));
-    days(&mut session, 5);
+    call_tool(&mut session, "research_group", json!({"group_id": group, "target_level": 3}));
+    advance_days(&mut session, 5);
     assert_eq!(level(&mut session, &group), levels([3, 1, 7, 12]));
     assert!(notice(&mut session, "group_research_complete")[1].1.contains("refreshed"));
 
     // Readings of the economy are published a month later.
-    days(&mut session, 30 - 17);
-    assert_eq!(number(&mut session, "SELECT count(*) FROM macroeconomic_conditions"), 0.0);
+    advance_days(&mut session, 30 - 17);
+    assert_eq!(query_number(&mut session, "SELECT count(*) FROM macroeconomic_conditions"), 0.0);
     let running =
         "SELECT count(*) FROM research_projects WHERE status = 'in_progress' AND quality_boost_applied = 0";
-    assert_eq!(number(&mut session, running), 1.0);
-    days(&mut session, 1);
-    assert_eq!(number(&mut session, "SELECT day FROM macroeconomic_conditions"), 1.0);
+    assert_eq!(query_number(&mut session, running), 1.0);
+    advance_days(&mut session, 1);
+    assert_eq!(query_number(&mut session, "SELECT day FROM macroeconomic_conditions"), 1.0);
     assert_eq!(notice(&mut session, "macro_economic_update")[0].0, Cell::Integer(31));
 
-    days(&mut session, due - 1 - 31);
-    assert_eq!(number(&mut session, running), 1.0);
+    advance_days(&mut session, due - 1 - 31);
+    assert_eq!(query_number(&mut session, running), 1.0);
     assert!(notice(&mut session, "research_complete").is_empty());
-    days(&mut session, 1);
+    advance_days(&mut session, 1);
     let done = "SELECT count(*) FROM research_projects WHERE project_id = 't1_1' AND status = 'completed' \
                 AND quality_boost_applied = expected_quality_boost AND started_day = 7";
-    assert_eq!(number(&mut session, done), 1.0);
+    assert_eq!(query_number(&mut session, done), 1.0);
     assert_eq!(
         notice(&mut session, "research_complete")[0],
         (Cell::Integer(i64::from(due)), "R&D complete: t1_1".to_owned())
@@ -381,9 +410,9 @@ fn research_discovery_and_the_economy_are_announced() {
 fn funded_channels_have_a_row_a_day_and_ads_one_per_subscriber() {
     let mut session = create(&[]);
     fund_two_channels(&mut session);
-    days(&mut session, 35);
+    advance_days(&mut session, 35);
     // The third pair has no budget, so it has no rows.
-    let pairs = rows(
+    let pairs = query_rows(
         &mut session,
         "SELECT channel_id, group_id, count(*), sum(leads_generated) > 0 FROM ad_channel_leads GROUP BY 1, 2",
     );
@@ -392,20 +421,24 @@ fn funded_channels_have_a_row_a_day_and_ads_one_per_subscriber() {
     assert_eq!(pairs, [expected("content_marketing", "S1"), expected("linkedin", "E1")]);
     let attributed = "SELECT count(*) FROM customers WHERE acquisition_source = 'content_marketing'";
     let counted = "SELECT sum(leads_generated) FROM ad_channel_leads WHERE channel_id = 'content_marketing'";
-    assert_eq!(number(&mut session, attributed), number(&mut session, counted));
+    assert_eq!(query_number(&mut session, attributed), query_number(&mut session, counted));
 
-    assert_eq!(number(&mut session, "SELECT count(*) FROM ads_revenue"), 0.0);
-    call(&mut session, "set_ads_strength", json!({"global_strength": 0.2, "by_group": {"S1": 0.1}}));
-    days(&mut session, 2);
-    call(&mut session, "set_ads_strength", json!({"global_strength": 0, "by_group": {}}));
-    days(&mut session, 2);
-    let shown = rows(&mut session, "SELECT DISTINCT day FROM ads_revenue ORDER BY 1");
+    assert_eq!(query_number(&mut session, "SELECT count(*) FROM ads_revenue"), 0.0);
+    call_tool(&mut session, "set_ads_strength", json!({"global_strength": 0.2, "by_group": {"S1": 0.1}}));
+    advance_days(&mut session, 2);
+    call_tool(&mut session, "set_ads_strength", json!({"global_strength": 0, "by_group": {}}));
+    advance_days(&mut session, 2);
+    let shown = query_rows(&mut session, "SELECT DISTINCT day FROM ads_revenue ORDER BY 1");
     assert_eq!(shown, [[Cell::Integer(36)], [Cell::Integer(37)]]);
-    never(&mut session, "ads_revenue", "revenue <= 0");
-    never(&mut session, "ads_revenue", "group_id = 'S1' AND abs(ads_strength - 0.568201724) > 1e-9");
-    never(&mut session, "ads_revenue", "group_id <> 'S1' AND abs(ads_strength - 0.447158031) > 1e-9");
+    assert_no_rows(&mut session, "ads_revenue", "revenue <= 0");
+    assert_no_rows(&mut session, "ads_revenue", "group_id = 'S1' AND abs(ads_strength - 0.568201724) > 1e-9");
+    assert_no_rows(
+        &mut session,
+        "ads_revenue",
+        "group_id <> 'S1' AND abs(ads_strength - 0.447158031) > 1e-9",
+    );
     let earned = "SELECT abs((SELECT sum(revenue) FROM ads_revenue) - (SELECT sum(amount) FROM ledger WHERE category = 'ad_revenue')) < 1e-6";
-    assert_eq!(number(&mut session, earned), 1.0);
+    assert_eq!(query_number(&mut session, earned), 1.0);
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -418,7 +451,7 @@ struct Issue {
 }
 
 #[test]
-fn issues_are_exactly_what_happened() {
+fn issue_rows_match_the_facts() {
     let mut session = create(&[]);
     fund_two_channels(&mut session);
     let mut issues: BTreeMap<u32, Issue> = BTreeMap::new();
@@ -481,22 +514,24 @@ fn issues_are_exactly_what_happened() {
         })
         .collect();
     let shown = expected.len().min(5000);
-    assert_eq!(rows(&mut session, sql), expected[..shown]);
+    assert_eq!(query_rows(&mut session, sql), expected[..shown]);
     // Issues of former customers stay open forever.
     let left = "SELECT count(*) FROM issues JOIN subscriptions USING (customer_id) \
                 WHERE issues.status = 'open' AND subscriptions.status = 'cancelled'";
-    assert!(number(&mut session, left) > 0.0);
+    assert!(query_number(&mut session, left) > 0.0);
 }
 
 #[test]
-fn inbox_rows_come_with_the_leads_of_companies() {
+fn inbox_rows_match_enterprise_leads() {
     let mut session = open_for_companies();
-    days(&mut session, 60);
-    let leads =
-        number(&mut session, "SELECT count(*) FROM notifications WHERE type = 'large_customer_message'");
+    advance_days(&mut session, 60);
+    let leads = query_number(
+        &mut session,
+        "SELECT count(*) FROM notifications WHERE type = 'large_customer_message'",
+    );
     let opened =
         "SELECT count(*) FROM subscriptions JOIN customers USING (customer_id) WHERE customer_type = 'large'";
-    assert!(leads > 0.0 && leads == number(&mut session, opened));
+    assert!(leads > 0.0 && leads == query_number(&mut session, opened));
     let lost = "SELECT count(DISTINCT day) > 0 FROM notifications WHERE type = 'lead_lost'";
-    assert_eq!(number(&mut session, lost), 1.0);
+    assert_eq!(query_number(&mut session, lost), 1.0);
 }

@@ -13,10 +13,10 @@ use rusqlite::Connection;
 use rusqlite::types::Value;
 use serde_json::json;
 
-use crate::support::company::{call, open_shop, week, weeks};
+use crate::support::company::{advance_week, advance_weeks, apply_opening_decisions, call_tool};
 
 /// Returns the words that would reveal a group: its name, and profile words that no initially known group uses.
-fn telling(group: Group, params: &Params) -> BTreeSet<String> {
+fn revealing_words(group: Group, params: &Params) -> BTreeSet<String> {
     let words = |group: Group| {
         let own = &params.personas.group[group.index()];
         [
@@ -34,7 +34,7 @@ fn telling(group: Group, params: &Params) -> BTreeSet<String> {
         .collect::<Vec<String>>()
     };
     let known: BTreeSet<String> =
-        Group::all().filter(|other| other.initially_known()).flat_map(words).collect();
+        Group::all().filter(|other| other.is_initially_known()).flat_map(words).collect();
     // A known word can contain another one: Chief Compliance Officer, Compliance Officer.
     let own = words(group)
         .into_iter()
@@ -43,7 +43,7 @@ fn telling(group: Group, params: &Params) -> BTreeSet<String> {
 }
 
 /// Returns the bytes of the database and its write-ahead log.
-fn bytes(folder: &Path) -> Vec<u8> {
+fn database_bytes(folder: &Path) -> Vec<u8> {
     ["world.db", "world.db-wal"]
         .iter()
         .flat_map(|name| fs::read(folder.join(name)).unwrap_or_default())
@@ -56,7 +56,7 @@ fn contains(bytes: &[u8], text: &str) -> bool {
 }
 
 /// Returns all texts of all tables, including internal ones, by table and column.
-fn texts(folder: &Path) -> BTreeMap<String, BTreeSet<String>> {
+fn database_texts(folder: &Path) -> BTreeMap<String, BTreeSet<String>> {
     let connection = Connection::open(folder.join("world.db")).expect("a database");
     let mut names =
         connection.prepare("SELECT name FROM sqlite_master WHERE type = 'table'").expect("tables");
@@ -79,15 +79,15 @@ fn texts(folder: &Path) -> BTreeMap<String, BTreeSet<String>> {
 }
 
 /// Returns the words of groups in the file that are not among `known`.
-fn check(session: &mut Session, found: &BTreeSet<Group>) {
+fn check_undiscovered_groups(session: &mut Session, found: &BTreeSet<Group>) {
     session.save().expect("saved");
     let folder = session.folder().expect("a folder").to_owned();
-    let (bytes, texts) = (bytes(&folder), texts(&folder));
+    let (bytes, texts) = (database_bytes(&folder), database_texts(&folder));
     let params = session.params();
-    let used: BTreeSet<String> = found.iter().flat_map(|group| telling(*group, params)).collect();
-    for group in Group::all().filter(|group| !group.initially_known()) {
+    let used: BTreeSet<String> = found.iter().flat_map(|group| revealing_words(*group, params)).collect();
+    for group in Group::all().filter(|group| !group.is_initially_known()) {
         let known = found.contains(&group);
-        let own = telling(group, params);
+        let own = revealing_words(group, params);
         // Words that are part of a found word do not count.
         for word in own.iter().filter(|word| !used.iter().any(|other| other.contains(word.as_str()))) {
             assert!(known || !contains(&bytes, word), "{word} of {group} is in the file");
@@ -104,7 +104,7 @@ fn check(session: &mut Session, found: &BTreeSet<Group>) {
 }
 
 #[test]
-fn the_file_tells_nothing_of_groups_that_nobody_has_found() {
+fn database_reveals_no_undiscovered_groups() {
     let place = tempfile::tempdir().expect("a folder");
     let new = NewRun {
         seed: Some(11),
@@ -112,28 +112,28 @@ fn the_file_tells_nothing_of_groups_that_nobody_has_found() {
         storage: Storage::Runs(place.path().to_owned()),
         ..NewRun::default()
     };
-    let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
-    open_shop(&mut session);
-    check(&mut session, &BTreeSet::new());
-    weeks(&mut session, 8);
-    check(&mut session, &BTreeSet::new());
+    let mut session = Session::create(new, &Configuration::bundled()).expect("a run");
+    apply_opening_decisions(&mut session);
+    check_undiscovered_groups(&mut session, &BTreeSet::new());
+    advance_weeks(&mut session, 8);
+    check_undiscovered_groups(&mut session, &BTreeSet::new());
     let mut found = BTreeSet::new();
     while found.len() < 2 {
-        let text = call(&mut session, "research_market", json!({})).to_string();
-        let new = Group::all().filter(|group| !group.initially_known() && text.contains(group.id()));
+        let text = call_tool(&mut session, "research_market", json!({})).to_string();
+        let new = Group::all().filter(|group| !group.is_initially_known() && text.contains(group.id()));
         let before = found.len();
         found.extend(new);
         if found.len() > before {
-            check(&mut session, &found);
+            check_undiscovered_groups(&mut session, &found);
         }
-        week(&mut session);
+        advance_week(&mut session);
     }
-    weeks(&mut session, 4);
-    check(&mut session, &found);
+    advance_weeks(&mut session, 4);
+    check_undiscovered_groups(&mut session, &found);
     // After reopening, the words are the same.
     let folder = session.folder().expect("a folder").to_owned();
     drop(session);
     let mut session = super::durability::run::open(&folder);
-    week(&mut session);
-    check(&mut session, &found);
+    advance_week(&mut session);
+    check_undiscovered_groups(&mut session, &found);
 }

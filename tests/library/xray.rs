@@ -4,26 +4,28 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use novamind::database::Cell;
-use novamind::insight::{CustomerLens, DayOutcome, Inspect, LeadFactor, Lens};
+use novamind::insight::{CustomerView, IndividualView, Inspect, LeadFactor, SubscriberOutcome};
 use novamind::record::folder::configuration::Configuration;
 use novamind::record::mode::Mode;
 use novamind::record::trajectory::record::{Activity, Via};
 use novamind::record::trajectory::{Record, Trajectory};
 use novamind::session::{
-    Access, CompanyAnswer, EndCause, NewRun, Session, Storage, WaitingThread, lines_afterwards, verify,
+    Access, EndCause, NewRun, OfferResponse, Session, Storage, WaitingThread, read_afterwards, verify,
 };
 use novamind::world::identifiers::Group;
 use serde_json::{Value, json};
 
-use crate::support::company::{begin_run, column, open_shop, rows, week, weeks};
+use crate::support::company::{
+    advance_week, advance_weeks, apply_opening_decisions, begin_run, query_column, query_rows,
+};
 
 fn s2() -> Group {
     Group::parse("S2").expect("a group")
 }
 
-fn looks(lines: &Trajectory) -> Vec<(String, String)> {
+fn inspections(lines: &Trajectory) -> Vec<(String, String)> {
     let look = |record: &Record| match record {
-        Record::Activity(Activity::Xray(look)) => {
+        Record::Activity(Activity::Inspection(look)) => {
             Some((look.what.clone(), format!("{} {}", look.which, look.shown_day)))
         }
         _ => None,
@@ -32,12 +34,12 @@ fn looks(lines: &Trajectory) -> Vec<(String, String)> {
 }
 
 #[test]
-fn an_unfinished_baseline_sandbox_or_lesson_run_is_not_looked_into() {
+fn unfinished_non_debug_runs_cannot_be_inspected() {
     let folder = tempfile::tempdir().expect("a folder");
     for mode in [Mode::Baseline, Mode::Sandbox, Mode::Lesson] {
         let mut session = begin_run(folder.path(), mode, 28);
-        open_shop(&mut session);
-        week(&mut session);
+        apply_opening_decisions(&mut session);
+        advance_week(&mut session);
         let place = session.folder().expect("a folder").to_owned();
         let lines = || Trajectory::read(&place.join("trajectory.jsonl")).expect("lines").lines.len();
         let before = lines();
@@ -53,24 +55,24 @@ fn an_unfinished_baseline_sandbox_or_lesson_run_is_not_looked_into() {
         assert_eq!(told[0], "not_in_this_mode: the x-ray works in debug runs and in runs that are over");
         assert_eq!(lines(), before, "no inspection happened, so no line is recorded");
         // After abandoning the run, the user can inspect it, but not continue it.
-        session.end().expect("it ends");
+        session.abandon().expect("it ends");
         assert_eq!(session.inspect().lead_equations(s2(), Some(3)).expect("a look").len(), 3);
         drop(session);
         let trajectory = Trajectory::read(&place.join("trajectory.jsonl")).expect("lines");
-        assert_eq!(looks(&trajectory), [], "the end is the last line");
-        let after = lines_afterwards(&place, &trajectory).expect("lines");
-        assert_eq!(looks(&after), [("leads".to_owned(), "S2 3".to_owned())]);
+        assert_eq!(inspections(&trajectory), [], "the end is the last line");
+        let after = read_afterwards(&place, &trajectory).expect("lines");
+        assert_eq!(inspections(&after), [("leads".to_owned(), "S2 3".to_owned())]);
     }
 }
 
 #[test]
-fn looking_changes_no_hash_and_each_look_is_a_line() {
+fn inspections_are_recorded_without_changing_the_state() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut watched = begin_run(folder.path(), Mode::Debug, 60);
     let mut alone = begin_run(folder.path(), Mode::Debug, 60);
     for session in [&mut watched, &mut alone] {
-        open_shop(session);
-        week(session);
+        apply_opening_decisions(session);
+        advance_week(session);
     }
     watched.inspect().lead_equations(s2(), Some(2)).expect("a look");
     watched.step(3, &mut |_| {}).expect("days");
@@ -84,8 +86,8 @@ fn looking_changes_no_hash_and_each_look_is_a_line() {
         Some(10)
     );
     watched.inspect().lead_equations(s2(), Some(4)).expect("a look");
-    week(&mut watched);
-    week(&mut alone);
+    advance_week(&mut watched);
+    advance_week(&mut alone);
     assert_eq!(watched.state_hash(), alone.state_hash());
     let refused = watched.inspect().lead_equations(s2(), Some(15)).expect_err("not simulated");
     assert_eq!(refused.to_string(), "day_unknown (day): there is no day 15; choose a day from 1 to 14");
@@ -93,7 +95,7 @@ fn looking_changes_no_hash_and_each_look_is_a_line() {
     drop(watched);
     let trajectory = Trajectory::read(&place.join("trajectory.jsonl")).expect("lines");
     let told: Vec<String> =
-        looks(&trajectory).into_iter().map(|(what, which)| format!("{what} {which}")).collect();
+        inspections(&trajectory).into_iter().map(|(what, which)| format!("{what} {which}")).collect();
     assert_eq!(told, ["leads S2 2", "leads S2 10", "leads S2 4"]);
     assert_eq!(verify(&place).expect("it verifies").day, 14);
     let mut again = Session::open(&place, Access::Write, false).expect("it opens");
@@ -101,10 +103,10 @@ fn looking_changes_no_hash_and_each_look_is_a_line() {
 }
 
 #[test]
-fn the_lead_equation_comes_to_the_expectation_that_numbers_are_drawn_around() {
+fn lead_equation_yields_the_expectation_of_the_draw() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = begin_run(folder.path(), Mode::Debug, 60);
-    open_shop(&mut session);
+    apply_opening_decisions(&mut session);
     let mut recorded: BTreeMap<(u32, &str), (f64, u32)> = BTreeMap::new();
     for _ in 0..6 {
         let forecasts = session.company().naive_forecasts();
@@ -135,9 +137,10 @@ fn the_lead_equation_comes_to_the_expectation_that_numbers_are_drawn_around() {
                 "{group} {}: {shown} {expected}",
                 own.day
             );
-            assert_eq!((own.expected(), own.came), (expected, came));
-            assert_eq!(own.is_known, group.initially_known());
-            let held = own.holding(&[(LeadFactor::Reputation, 2.0 * own.factor(LeadFactor::Reputation))]);
+            assert_eq!((own.expected_leads(), own.actual_leads), (expected, came));
+            assert_eq!(own.is_known, group.is_initially_known());
+            let held =
+                own.expected_with(&[(LeadFactor::Reputation, 2.0 * own.factor(LeadFactor::Reputation))]);
             assert!((held - 2.0 * expected).abs() <= 1e-12 * expected.max(1.0));
             compared += 1;
         }
@@ -145,24 +148,24 @@ fn the_lead_equation_comes_to_the_expectation_that_numbers_are_drawn_around() {
     assert!(compared > 26 * 40);
 }
 
-fn individual(session: &mut Session, customer: u32, day: Option<u32>) -> CustomerLens {
-    match session.inspect().lens(customer, day).expect("a look") {
-        Lens::Individual(lens) => *lens,
-        Lens::Company(_) => panic!("customer {customer} is an enterprise"),
+fn individual_view(session: &mut Session, customer: u32, day: Option<u32>) -> IndividualView {
+    match session.inspect().customer_view(customer, day).expect("a look") {
+        CustomerView::Individual(lens) => *lens,
+        CustomerView::Enterprise(_) => panic!("customer {customer} is an enterprise"),
     }
 }
 
 #[test]
-fn the_lens_says_what_the_tables_say_of_a_customer() {
+fn customer_view_matches_the_tables() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = begin_run(folder.path(), Mode::Debug, 90);
-    open_shop(&mut session);
-    weeks(&mut session, 8);
+    apply_opening_decisions(&mut session);
+    advance_weeks(&mut session, 8);
     session.call("set_prices", &json!({"A": 24, "B": 50}), Via::Script).expect("dearer");
-    weeks(&mut session, 4);
+    advance_weeks(&mut session, 4);
     let sql = "SELECT customer_id, plan, start_day, end_day, status FROM subscriptions JOIN customers USING (customer_id) \
                WHERE group_id IN ('S1', 'S2', 'S3') ORDER BY customer_id";
-    let known: Vec<Vec<Cell>> = rows(&mut session, sql);
+    let known: Vec<Vec<Cell>> = query_rows(&mut session, sql);
     let whole = |cell: &Cell| match cell {
         Cell::Integer(number) => Some(u32::try_from(*number).expect("a number")),
         _ => None,
@@ -176,38 +179,39 @@ fn the_lens_says_what_the_tables_say_of_a_customer() {
     for status in ["lost", "cancelled", "subscribed"] {
         for row in known.iter().filter(|row| word(&row[4]) == status).step_by(17).take(12) {
             let customer = whole(&row[0]).expect("a customer");
-            let lens = individual(&mut session, customer, None);
-            assert_eq!(lens.first.signed_up, status != "lost", "customer {customer}");
-            assert_eq!(Some(lens.first.day), whole(&row[2]), "customer {customer}");
-            let left = lens.days.iter().find(|own| matches!(own.outcome, DayOutcome::Leaves(_)));
+            let lens = individual_view(&mut session, customer, None);
+            assert_eq!(lens.signup.signed_up, status != "lost", "customer {customer}");
+            assert_eq!(Some(lens.signup.day), whole(&row[2]), "customer {customer}");
+            let left = lens.days.iter().find(|own| matches!(own.outcome, SubscriberOutcome::Cancels(_)));
             assert_eq!(left.map(|own| own.day), whole(&row[3]).filter(|_| status == "cancelled"));
             if status == "subscribed" {
                 assert_eq!(
-                    lens.shown().map(|own| own.day),
-                    Some(last_day).filter(|_| lens.first.day < last_day)
+                    lens.day_shown().map(|own| own.day),
+                    Some(last_day).filter(|_| lens.signup.day < last_day)
                 );
             }
             for own in lens.days.iter().filter(|own| own.is_due) {
-                let stays = !matches!(own.outcome, DayOutcome::Leaves(EndCause::Price | EndCause::Quality));
-                let failed = own.outcome == DayOutcome::Leaves(EndCause::Involuntary);
+                let stays =
+                    !matches!(own.outcome, SubscriberOutcome::Cancels(EndCause::Price | EndCause::Quality));
+                let failed = own.outcome == SubscriberOutcome::Cancels(EndCause::Involuntary);
                 assert!(
-                    failed || own.weighed.choice.is_some() == stays,
+                    failed || own.weighed_decision.choice.is_some() == stays,
                     "customer {customer} on day {}",
                     own.day
                 );
             }
-            if let (Some(since), Some(shown)) = (lens.issue_since(), lens.shown()) {
+            if let (Some(since), Some(shown)) = (lens.issue_opened_on(), lens.day_shown()) {
                 let sql = format!(
                     "SELECT max(open_day) FROM issues WHERE customer_id = {customer} AND open_day <= {}",
                     shown.day
                 );
-                assert_eq!(column(&mut session, &sql), [f64::from(since)], "customer {customer}");
+                assert_eq!(query_column(&mut session, &sql), [f64::from(since)], "customer {customer}");
                 *seen.entry("with an issue").or_insert(0) += 1;
             }
             // The result for an earlier day is a prefix.
-            let shown = lens.first.day + 1;
+            let shown = lens.signup.day + 1;
             if shown <= last_day {
-                let earlier = individual(&mut session, customer, Some(shown));
+                let earlier = individual_view(&mut session, customer, Some(shown));
                 assert!(earlier.days.len() <= 1 && earlier.days.len() <= lens.days.len());
             }
             *seen.entry(status).or_insert(0) += 1;
@@ -217,8 +221,9 @@ fn the_lens_says_what_the_tables_say_of_a_customer() {
         ["lost", "cancelled", "subscribed", "with an issue"].iter().all(|status| seen.get(status) > Some(&2)),
         "{seen:?}"
     );
-    let refused =
-        |session: &mut Session, customer, day| session.inspect().lens(customer, day).expect_err("no").code;
+    let refused = |session: &mut Session, customer, day| {
+        session.inspect().customer_view(customer, day).expect_err("no").code
+    };
     assert_eq!(refused(&mut session, 0, None), "customer_not_found");
     assert_eq!(refused(&mut session, u32::MAX, None), "customer_not_found");
     let late = whole(&known.last().expect("a customer")[0]).expect("a customer");
@@ -229,7 +234,7 @@ fn the_lens_says_what_the_tables_say_of_a_customer() {
 }
 
 /// Plays a debug run that offers each enterprise its requested price or slightly less.
-pub fn courted(folder: &Path, count: u32) -> Session {
+pub fn debug_run_with_offers(folder: &Path, count: u32) -> Session {
     let new = NewRun {
         seed: Some(11),
         cash: Some(20_000_000.0),
@@ -237,7 +242,7 @@ pub fn courted(folder: &Path, count: u32) -> Session {
         storage: Storage::Runs(folder.to_owned()),
         ..NewRun::default()
     };
-    let mut session = Session::create(new, &Configuration::shipped()).expect("the run begins");
+    let mut session = Session::create(new, &Configuration::bundled()).expect("the run begins");
     for (tool, arguments) in [
         ("set_prices", json!({"A": 14, "B": 32, "C": 55})),
         ("set_model_tiers", json!({"A": 4, "B": 4, "C": 4})),
@@ -258,21 +263,21 @@ pub fn courted(folder: &Path, count: u32) -> Session {
         if !deals.is_empty() {
             session.call("send_enterprise_deal", &json!({ "deals": deals }), Via::Script).expect("offers");
         }
-        week(&mut session);
+        advance_week(&mut session);
     }
     session
 }
 
 #[test]
-fn the_lens_of_a_company_foresees_the_answers_that_it_gave() {
+fn enterprise_view_predicts_recorded_answers() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut session = courted(folder.path(), 10);
+    let mut session = debug_run_with_offers(folder.path(), 10);
     // Replies: turns of enterprises after one of the player.
     let sql = "SELECT customer_id, thread_id, day, offer_json FROM enterprise_turns AS own \
                WHERE sender = 'customer' AND EXISTS (SELECT 1 FROM enterprise_turns AS other \
                WHERE other.thread_id = own.thread_id AND other.sender = 'agent' \
                AND other.message_id < own.message_id) ORDER BY message_id";
-    let turns = rows(&mut session, sql);
+    let turns = query_rows(&mut session, sql);
     assert!(turns.len() > 40, "{}", turns.len());
     let whole = |cell: &Cell| match cell {
         Cell::Integer(number) => u32::try_from(*number).expect("a number"),
@@ -283,35 +288,37 @@ fn the_lens_of_a_company_foresees_the_answers_that_it_gave() {
         let [customer, thread, day] = [0, 1, 2].map(|at| whole(&turn[at]));
         let Cell::Text(said) = &turn[3] else { panic!("{turn:?}") };
         let said: Value = serde_json::from_str(said).expect("JSON");
-        let Lens::Company(lens) = session.inspect().lens(customer, Some(day)).expect("a look") else {
+        let CustomerView::Enterprise(lens) =
+            session.inspect().customer_view(customer, Some(day)).expect("a look")
+        else {
             panic!("a company")
         };
-        let own = lens.shown().find(|own| own.thread == thread).expect("its thread");
+        let own = lens.threads_of_day().find(|own| own.thread == thread).expect("its thread");
         assert_eq!(own.reply_day, Some(day));
         let price = match own.answer.expect("an answer") {
-            CompanyAnswer::Accept(at) => {
+            OfferResponse::Accept(at) => {
                 accepted += 1;
                 let offering = own.offerings[at];
                 let judged = own.plans[offering.plan];
                 assert!(judged.accepts_any_price || offering.price <= judged.accepts_below + 1e-9);
                 offering.price
             }
-            CompanyAnswer::Counter(at, price) => {
+            OfferResponse::Counter(at, price) => {
                 named += 1;
                 assert_eq!(own.plans[own.offerings[at].plan].counter, price);
                 price
             }
-            CompanyAnswer::Silence => panic!("customer {customer} answered on day {day}"),
+            OfferResponse::Silence => panic!("customer {customer} answered on day {day}"),
         };
         assert_eq!(said["price"].as_f64(), Some(price), "customer {customer} on day {day}");
-        assert!(own.turns_left > 0);
+        assert!(own.remaining_turns > 0);
     }
     assert!(accepted > 3 && named > 3, "{accepted} {named}");
 }
 
 /// Lead counts follow a Poisson distribution around their expectations: Pearson's statistic over 1,000 days.
 #[test]
-fn residuals_of_a_thousand_days_are_those_of_a_poisson_distribution() {
+fn lead_residuals_fit_a_poisson_distribution() {
     let folder = tempfile::tempdir().expect("a folder");
     let new = NewRun {
         cash: Some(1e9),
@@ -322,11 +329,11 @@ fn residuals_of_a_thousand_days_are_those_of_a_poisson_distribution() {
         projection: false,
         ..NewRun::default()
     };
-    let mut session = Session::create(new, &Configuration::shipped()).expect("the run begins");
-    open_shop(&mut session);
+    let mut session = Session::create(new, &Configuration::bundled()).expect("the run begins");
+    apply_opening_decisions(&mut session);
     let spend = json!({"targeted_spend": {"content_marketing": {"S1": 50, "S2": 50, "S3": 50}}});
     session.call("set_targeted_ad_spend", &spend, Via::Script).expect("ads");
-    weeks(&mut session, 143);
+    advance_weeks(&mut session, 143);
     assert_eq!(session.day(), 1000, "the company lives");
     for id in ["S1", "S2", "S3"] {
         let group = Group::parse(id).expect("a group");
@@ -334,7 +341,7 @@ fn residuals_of_a_thousand_days_are_those_of_a_poisson_distribution() {
         for last in (28..=1000).step_by(28).chain([1000]) {
             let days = session.inspect().lead_equations(group, Some(last)).expect("a look");
             for own in days.iter().rev().take(if last == 1000 { 20 } else { 28 }) {
-                let (expected, came) = (own.expected(), f64::from(own.came));
+                let (expected, came) = (own.expected_leads(), f64::from(own.actual_leads));
                 if expected > 0.0 {
                     statistic += (came - expected) * (came - expected) / expected;
                     // Variance of a term: 2 + 1 / λ.
@@ -355,19 +362,22 @@ fn residuals_of_a_thousand_days_are_those_of_a_poisson_distribution() {
 }
 
 #[test]
-fn a_run_that_is_only_read_is_not_looked_into() {
+fn read_only_run_cannot_be_inspected() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = begin_run(folder.path(), Mode::Debug, 28);
-    open_shop(&mut session);
-    weeks(&mut session, 2);
+    apply_opening_decisions(&mut session);
+    advance_weeks(&mut session, 2);
     session.save().expect("saved");
     let own = session.folder().expect("a folder").to_owned();
     drop(session);
     let before = std::fs::read(own.join("trajectory.jsonl")).expect("bytes");
     let mut read = Session::open(&own, Access::Read, true).expect("it opens");
     assert_eq!(read.inspect().lead_equations(s2(), None).expect_err("a refusal").code, "read_only");
-    assert_eq!(read.inspect().xray_query("SELECT 1", None).expect_err("a refusal").code, "read_only");
-    assert_eq!(read.inspect().difference_of_days(3, 4).expect_err("a refusal").code, "read_only");
+    assert_eq!(
+        read.inspect().query_hidden_tables("SELECT 1", None).expect_err("a refusal").code,
+        "read_only"
+    );
+    assert_eq!(read.inspect().compare_days(3, 4).expect_err("a refusal").code, "read_only");
     // Errors mention hidden tables only on connections that have them.
     let refused = read.query("SELECT * FROM hidden.customers").expect_err("no such table");
     assert!(refused.message.contains("query --xray"), "{refused}");

@@ -2,26 +2,26 @@
 
 use std::path::Path;
 
-use novamind::insight::{DrawnPart, Inspect};
+use novamind::insight::{Inspect, RandomPart};
 use novamind::record::mode::Mode;
 use novamind::record::trajectory::Trajectory;
 use novamind::record::trajectory::record::Via;
-use novamind::session::{Session, lines_afterwards, verify};
-use novamind::tools::Refusal;
+use novamind::session::{Session, read_afterwards, verify};
+use novamind::tools::Rejection;
 use novamind::world::identifiers::Group;
 use serde_json::json;
 
-use crate::support::company::{begin_run, open_shop, week, weeks};
-use crate::support::record::looks;
+use crate::support::company::{advance_week, advance_weeks, apply_opening_decisions, begin_run};
+use crate::support::record::inspections;
 
 fn run_in(folder: &Path, mode: Mode) -> Session {
     let mut session = begin_run(folder, mode, 60);
-    open_shop(&mut session);
+    apply_opening_decisions(&mut session);
     session
 }
 
 /// Returns the output or the rejection of every view for a group and a day.
-fn views(session: &mut Session, group: &str, day: Option<u32>) -> Vec<Result<(), Refusal>> {
+fn views(session: &mut Session, group: &str, day: Option<u32>) -> Vec<Result<(), Rejection>> {
     let group = Group::parse(group).expect("a group");
     let mut inside = session.inspect();
     vec![
@@ -29,18 +29,18 @@ fn views(session: &mut Session, group: &str, day: Option<u32>) -> Vec<Result<(),
         inside.satisfaction_equation(group, day).map(drop),
         inside.reputation_equation(group, day).map(drop),
         inside.spillover(day).map(drop),
-        inside.rival_state(day).map(drop),
+        inside.competitor_state(day).map(drop),
         inside.drift_state(day).map(drop),
         inside.hidden_values(day).map(drop),
     ]
 }
 
 #[test]
-fn no_view_is_shown_of_an_unfinished_baseline_sandbox_or_lesson_run() {
+fn views_are_unavailable_in_unfinished_non_debug_runs() {
     let folder = tempfile::tempdir().expect("a folder");
     for mode in [Mode::Baseline, Mode::Sandbox, Mode::Lesson] {
         let mut session = run_in(folder.path(), mode);
-        week(&mut session);
+        advance_week(&mut session);
         let place = session.folder().expect("a folder").to_owned();
         let lines = || Trajectory::read(&place.join("trajectory.jsonl")).expect("lines").lines.len();
         let before = lines();
@@ -48,7 +48,7 @@ fn no_view_is_shown_of_an_unfinished_baseline_sandbox_or_lesson_run() {
         let mut told = views(&mut session, "S1", None);
         told.extend(views(&mut session, "D_E10", Some(3)));
         told.extend(views(&mut session, "S1", Some(9000)));
-        for part in DrawnPart::ALL {
+        for part in RandomPart::ALL {
             told.extend(
                 [None, Some(0), Some(3), Some(usize::MAX)]
                     .map(|count| session.inspect().next_draws(part, count).map(drop)),
@@ -59,13 +59,13 @@ fn no_view_is_shown_of_an_unfinished_baseline_sandbox_or_lesson_run() {
             assert_eq!(refusal, "not_in_this_mode: the x-ray works in debug runs and in runs that are over");
         }
         assert_eq!(lines(), before, "no inspection happened, so no line is recorded");
-        session.end().expect("it ends");
+        session.abandon().expect("it ends");
         assert!(views(&mut session, "S1", Some(3)).into_iter().all(|answer| answer.is_ok()));
-        session.inspect().next_draws(DrawnPart::Service, None).expect("a look");
+        session.inspect().next_draws(RandomPart::Service, None).expect("a look");
         drop(session);
         let trajectory = Trajectory::read(&place.join("trajectory.jsonl")).expect("lines");
-        assert!(looks(&trajectory).is_empty(), "the end is the last line");
-        let after = lines_afterwards(&place, &trajectory).expect("lines");
+        assert!(inspections(&trajectory).is_empty(), "the end is the last line");
+        let after = read_afterwards(&place, &trajectory).expect("lines");
         let expected = [
             "quality S1 3",
             "satisfaction S1 3",
@@ -76,12 +76,12 @@ fn no_view_is_shown_of_an_unfinished_baseline_sandbox_or_lesson_run() {
             "values  3",
             "streams service 8",
         ];
-        assert_eq!(looks(&after), expected);
+        assert_eq!(inspections(&after), expected);
     }
 }
 
 #[test]
-fn looking_at_views_changes_no_hash() {
+fn views_do_not_change_the_state_hash() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut watched = run_in(folder.path(), Mode::Debug);
     let mut alone = run_in(folder.path(), Mode::Debug);
@@ -94,11 +94,11 @@ fn looking_at_views_changes_no_hash() {
         for shown in [None, Some(1), Some(day)] {
             assert!(views(&mut watched, "S1", shown).into_iter().all(|answer| answer.is_ok()));
         }
-        for part in DrawnPart::ALL {
+        for part in RandomPart::ALL {
             watched.inspect().next_draws(part, Some(5)).expect("a look");
         }
-        week(&mut watched);
-        week(&mut alone);
+        advance_week(&mut watched);
+        advance_week(&mut alone);
         assert_eq!(watched.state_hash(), alone.state_hash());
     }
     for answer in views(&mut watched, "S2", Some(41)) {
@@ -111,22 +111,22 @@ fn looking_at_views_changes_no_hash() {
 }
 
 #[test]
-fn before_the_first_day_only_draws_are_there() {
+fn only_draws_are_available_before_the_first_day() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = run_in(folder.path(), Mode::Debug);
     for answer in views(&mut session, "S1", None) {
         assert_eq!(answer.expect_err("no day").to_string(), "day_unknown (day): no day has run yet");
     }
-    for part in DrawnPart::ALL {
+    for part in RandomPart::ALL {
         assert_eq!(session.inspect().next_draws(part, None).expect("a look").day, 1);
     }
 }
 
 #[test]
-fn a_view_of_a_past_day_stays_as_it_was() {
+fn view_of_a_past_day_is_stable() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = run_in(folder.path(), Mode::Debug);
-    weeks(&mut session, 3);
+    advance_weeks(&mut session, 3);
     let group = Group::parse("S1").expect("a group");
     let all = |session: &mut Session| {
         let mut inside = session.inspect();
@@ -140,6 +140,6 @@ fn a_view_of_a_past_day_stays_as_it_was() {
     };
     let before = all(&mut session);
     session.call("set_prices", &json!({"A": 90}), Via::Script).expect("a price");
-    weeks(&mut session, 2);
+    advance_weeks(&mut session, 2);
     assert_eq!(all(&mut session), before);
 }

@@ -4,11 +4,11 @@ use std::collections::BTreeSet;
 
 use serde_json::{Value, json};
 
-use crate::doors::{NEW, Server};
+use crate::interfaces::{NEW_RUN_OPTIONS, Server};
 use crate::support::home::Home;
 
 /// Returns the names of the fields of a result; a name in angle brackets stands for any requested name.
-fn documented(tool: &Value) -> BTreeSet<&str> {
+fn documented_fields(tool: &Value) -> BTreeSet<&str> {
     let returns = tool["returns"].as_array().expect("returns");
     returns.iter().map(|output| output["name"].as_str().expect("a name")).collect()
 }
@@ -16,7 +16,7 @@ fn documented(tool: &Value) -> BTreeSet<&str> {
 #[test]
 fn every_tool_answers_and_refuses_as_the_catalogue_says() {
     let home = Home::new();
-    let server = Server::start(&home, &NEW);
+    let server = Server::start(&home, &NEW_RUN_OPTIONS);
     let tools = server.get("/tools");
     let mut answered = 0;
     for tool in tools.as_array().expect("tools") {
@@ -33,7 +33,7 @@ fn every_tool_answers_and_refuses_as_the_catalogue_says() {
         if said["success"] == true {
             answered += 1;
             let returned = said["data"].as_object().unwrap_or_else(|| panic!("{name}: {said}"));
-            let known = documented(tool);
+            let known = documented_fields(tool);
             let other: Vec<&String> = returned
                 .keys()
                 .filter(|key| !known.contains(key.as_str()) && !known.contains("<tool>"))
@@ -54,7 +54,7 @@ fn every_tool_answers_and_refuses_as_the_catalogue_says() {
         }
     }
     assert!(answered > 20, "{answered}");
-    routes_are_described(&server);
+    check_described_routes(&server);
 }
 
 /// Checks that a rejection is in the catalog or common to all tools.
@@ -66,7 +66,7 @@ fn is_documented(tool: &Value, said: &Value) {
 }
 
 /// Checks that every described route answers with the described methods.
-fn routes_are_described(server: &Server) {
+fn check_described_routes(server: &Server) {
     let described = server.get("/openapi.json");
     let paths = described["paths"].as_object().expect("paths");
     assert!(paths.len() >= 10, "{paths:?}");
@@ -74,9 +74,10 @@ fn routes_are_described(server: &Server) {
         // This request stops the server, as `agent stop` does.
         let may_be_tried = |method: &&String| path != "/shutdown" || *method != "post";
         for method in methods.as_object().expect("methods").keys().filter(may_be_tried) {
-            let (status, said) = server.with_head(&method.to_uppercase(), path, "host: 127.0.0.1\r\n", "");
+            let (status, said) =
+                server.request_with_head(&method.to_uppercase(), path, "host: 127.0.0.1\r\n", "");
             assert_ne!(status, 404, "{method} {path}: {said}");
         }
-        assert_eq!(server.with_head("PATCH", path, "host: 127.0.0.1\r\n", "").0, 404, "{path}");
+        assert_eq!(server.request_with_head("PATCH", path, "host: 127.0.0.1\r\n", "").0, 404, "{path}");
     }
 }

@@ -35,23 +35,23 @@ fn run(command: &mut Command) -> Vec<Value> {
 }
 
 /// A market that fills so fast that all threads have work after a few weeks.
-const CROWDED: [&str; 4] = ["--cash", "1e9", "--set", "leads.saturation_base=14.5"];
+const SATURATED_MARKET: [&str; 4] = ["--cash", "1e9", "--set", "leads.saturation_base=14.5"];
 
 #[test]
 fn the_built_program_and_the_library_reach_the_same_state() {
     let runs = tempfile::tempdir().expect("a folder");
-    let configuration = Configuration::shipped();
-    for (name, until, extra) in [("P6", 60, &[][..]), ("P1a", 32, &CROWDED)] {
+    let configuration = Configuration::bundled();
+    for (name, until, extra) in [("P6", 60, &[][..]), ("P1a", 32, &SATURATED_MARKET)] {
         let mut command = program(runs.path());
         command.args(["run", "--policy", name, "--seed", "3", "--until", &until.to_string()]).args(extra);
         let built = run(&mut command).remove(0);
         let policy = Policy::find(name, &configuration).expect("a bundled policy");
-        let mut spec = RunSpec { until: Some(until), ..RunSpec::of_seed(3) };
+        let mut spec = RunSpec { stop_after_day: Some(until), ..RunSpec::for_seed(3) };
         if !extra.is_empty() {
             spec.cash = Some(1e9);
             spec.overrides = vec![("leads.saturation_base".to_owned(), "14.5".to_owned())];
         }
-        let own = play(&policy, &spec, &configuration, &mut Collector::idle()).expect("it plays");
+        let own = play(&policy, &spec, &configuration, &mut Collector::disabled()).expect("it plays");
         assert_eq!(built["state_hash"], own.state_hash, "{name}");
         assert_eq!(built["cash"].as_f64().map(f64::to_bits), Some(own.cash.to_bits()), "{name}");
         assert_eq!((built["day"].as_u64(), own.day), (Some(u64::from(until)), until));
@@ -63,7 +63,7 @@ fn figures_and_states_do_not_depend_on_threads() {
     let runs = tempfile::tempdir().expect("a folder");
     let with = |jobs: Option<&str>, threads: &str, seeds: &str| {
         let mut command = program(runs.path());
-        command.args(["run", "--policy", "P1a", "--seed", seeds, "--until", "32"]).args(CROWDED);
+        command.args(["run", "--policy", "P1a", "--seed", seeds, "--until", "32"]).args(SATURATED_MARKET);
         command.env("RAYON_NUM_THREADS", threads);
         if let Some(jobs) = jobs {
             command.args(["--jobs", jobs]);
@@ -79,7 +79,7 @@ fn figures_and_states_do_not_depend_on_threads() {
 }
 
 #[test]
-fn a_saved_run_holds_the_state_that_was_reported() {
+fn saved_run_has_the_reported_state() {
     let runs = tempfile::tempdir().expect("a folder");
     // Spending in fractions of dollars: the trajectory must preserve every bit.
     let mut command = program(runs.path());
@@ -119,10 +119,10 @@ fn play_a_week(session: &mut Session, week: u32) {
 }
 
 #[test]
-fn leaving_at_any_week_changes_nothing() {
+fn reopening_at_any_week_keeps_the_state() {
     let folder = tempfile::tempdir().expect("a folder");
     let new = |storage| NewRun { seed: Some(11), days: Some(42), storage, ..NewRun::default() };
-    let create = |storage| Session::create(new(storage), &Configuration::shipped()).expect("it begins");
+    let create = |storage| Session::create(new(storage), &Configuration::bundled()).expect("it begins");
     let mut straight = create(Storage::Memory);
     (0..WEEKS).for_each(|week| play_a_week(&mut straight, week));
     // Closed after every week, and after only one of them.
@@ -144,10 +144,10 @@ fn leaving_at_any_week_changes_nothing() {
 }
 
 #[test]
-fn the_mode_of_a_run_changes_nothing() {
+fn state_does_not_depend_on_the_mode() {
     let hash = |mode| {
         let new = NewRun { seed: Some(11), days: Some(42), mode, ..NewRun::default() };
-        let mut session = Session::create(new, &Configuration::shipped()).expect("it begins");
+        let mut session = Session::create(new, &Configuration::bundled()).expect("it begins");
         (0..3).for_each(|week| play_a_week(&mut session, week));
         session.state_hash()
     };
@@ -178,12 +178,12 @@ fn start(runs: &Path, options: &[&str]) -> Child {
 }
 
 fn new_run_options() -> Vec<&'static str> {
-    [&["--seed", "9", "--days", "56", "--mode", "debug"][..], &CROWDED].concat()
+    [&["--seed", "9", "--days", "56", "--mode", "debug"][..], &SATURATED_MARKET].concat()
 }
 
 /// Returns the number of complete weeks on disk if the last line is an advance, so that the next week is in progress. Reads only the
 /// kinds of lines, because it must be much faster than a week.
-fn in_a_week(folder: &Path) -> Option<usize> {
+fn complete_weeks_while_simulating(folder: &Path) -> Option<usize> {
     let text = fs::read_to_string(folder.join("trajectory.jsonl")).ok()?;
     let last = text.strip_suffix('\n')?.lines().last()?;
     let complete = text.matches(r#""kind":"week""#).count();
@@ -197,7 +197,7 @@ fn kill_in_a_week(mut child: Child, runs: &Path, complete: usize) {
         let mut entries = fs::read_dir(runs).expect("a folder").flatten().map(|entry| entry.path());
         entries
             .find(|path| path.is_dir())
-            .and_then(|folder| in_a_week(&folder))
+            .and_then(|folder| complete_weeks_while_simulating(&folder))
             .is_some_and(|weeks| weeks >= complete)
     };
     while !is_there() {
@@ -231,7 +231,7 @@ fn a_program_killed_in_the_middle_of_a_week_loses_nothing() {
     let mut interrupted = 0;
     for complete in 2..5 {
         kill_in_a_week(child, broken.path(), complete);
-        interrupted += usize::from(in_a_week(&only_run(broken.path())).is_some());
+        interrupted += usize::from(complete_weeks_while_simulating(&only_run(broken.path())).is_some());
         // Any number of complete weeks is valid, because the check may miss one.
         child = start(broken.path(), &["--run", "latest"]);
         tell(&mut child, &next.repeat(8));

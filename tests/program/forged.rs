@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use novamind::session::Seal;
 use serde_json::{Map, Value};
 
-use crate::support::home::{Home, Said, id};
+use crate::support::home::{Home, ProgramOutput, run_id};
 
 /// The lines of a trajectory as objects.
 type Lines = Vec<Map<String, Value>>;
@@ -17,35 +17,35 @@ fn lines_of(text: &str) -> Lines {
     text.lines().map(|line| serde_json::from_str(line).expect("a line")).collect()
 }
 
-fn hash(text: &str) -> String {
+fn digest(text: &str) -> String {
     blake3::hash(text.as_bytes()).to_hex().to_string()
 }
 
 /// Returns the line with a matching checksum.
-fn summed(mut line: Map<String, Value>) -> String {
+fn line_with_checksum(mut line: Map<String, Value>) -> String {
     line.shift_remove("sum");
-    let sum = hash(&Value::Object(line.clone()).to_string())[..16].to_owned();
+    let sum = digest(&Value::Object(line.clone()).to_string())[..16].to_owned();
     line.insert("sum".to_owned(), sum.into());
     Value::Object(line).to_string()
 }
 
 /// Returns the file with recomputed checksums, and optionally with recomputed links to the previous lines.
-fn written(lines: Lines, chained: bool) -> String {
+fn trajectory_text(lines: Lines, chained: bool) -> String {
     let mut text = String::new();
-    let mut before = hash("");
+    let mut before = digest("");
     for mut line in lines {
         if chained {
             line.insert("prev".to_owned(), before.into());
         }
-        let line = summed(line);
-        before = hash(&line);
+        let line = line_with_checksum(line);
+        before = digest(&line);
         text += &(line + "\n");
     }
     text
 }
 
 /// Changes the price of the second week.
-fn cheaper(lines: &mut Lines) -> usize {
+fn change_price(lines: &mut Lines) -> usize {
     let is_it = |line: &Map<String, Value>| line.get("args").is_some_and(|args| args["C"] == 50);
     let at = lines.iter().position(is_it).expect("the call of the second week");
     lines[at]["args"]["C"] = 49.into();
@@ -53,16 +53,16 @@ fn cheaper(lines: &mut Lines) -> usize {
 }
 
 /// An unpacked archive: its files, and a seal that can be recomputed.
-struct Opened {
+struct OpenedArchive {
     files: BTreeMap<String, Vec<u8>>,
     seal: Seal,
 }
 
-impl Opened {
-    fn of(home: &Home, run: &Path) -> Opened {
+impl OpenedArchive {
+    fn export(home: &Home, run: &Path) -> OpenedArchive {
         let archive = home.0.path().join("run.tar");
-        let said = home.run(&["runs", "export", &id(run), "--out", &archive.to_string_lossy()]);
-        assert_eq!(said.code, 0, "{}", said.err);
+        let said = home.run(&["runs", "export", &run_id(run), "--out", &archive.to_string_lossy()]);
+        assert_eq!(said.exit_code, 0, "{}", said.stderr);
         let mut files = BTreeMap::new();
         for entry in tar::Archive::new(fs::File::open(&archive).expect("a file")).entries().expect("entries")
         {
@@ -75,7 +75,7 @@ impl Opened {
         }
         let seal = files.remove("seal.toml").expect("a seal");
         let seal = toml::from_str(&String::from_utf8(seal).expect("text")).expect("a seal");
-        Opened { files, seal }
+        OpenedArchive { files, seal }
     }
 
     fn text(&self, file: &str) -> String {
@@ -83,20 +83,20 @@ impl Opened {
     }
 
     /// Replaces a file and recomputes the seal.
-    fn put(&mut self, file: &str, text: String) {
+    fn replace_file(&mut self, file: &str, text: String) {
         if file == "trajectory.jsonl" {
-            self.seal.last_hash = hash(text.lines().last().expect("lines"));
+            self.seal.last_hash = digest(text.lines().last().expect("lines"));
         }
         let own = self.seal.file.iter_mut().find(|own| own.name == file).expect("it is sealed");
-        (own.bytes, own.blake3) = (text.len() as u64, hash(&text));
+        (own.bytes, own.blake3) = (text.len() as u64, digest(&text));
         self.files.insert(file.to_owned(), text.into_bytes());
-        self.seal = self.seal.clone().signed();
+        self.seal = self.seal.clone().with_checksum();
     }
 
-    fn import(&self, home: &Home) -> Said {
+    fn import(&self, home: &Home) -> ProgramOutput {
         let archive = home.0.path().join("forged.tar");
         let mut builder = tar::Builder::new(fs::File::create(&archive).expect("a file"));
-        let seal = ("seal.toml".to_owned(), self.seal.text().into_bytes());
+        let seal = ("seal.toml".to_owned(), self.seal.to_toml().into_bytes());
         for (name, bytes) in self.files.clone().into_iter().chain([seal]) {
             let mut header = tar::Header::new_ustar();
             header.set_size(bytes.len() as u64);
@@ -117,59 +117,61 @@ fn two_weeks() -> (Home, PathBuf) {
 }
 
 #[test]
-fn a_middle_line_that_was_edited_and_summed_anew_is_refused_by_the_next() {
+fn edited_line_breaks_the_hash_chain() {
     let (home, run) = two_weeks();
     let path = run.join("trajectory.jsonl");
     let mut lines = lines_of(&fs::read_to_string(&path).expect("text"));
-    let at = cheaper(&mut lines);
-    fs::write(&path, written(lines, false)).expect("written");
+    let at = change_price(&mut lines);
+    fs::write(&path, trajectory_text(lines, false)).expect("written");
     let next = format!("line {}", at + 2);
-    home.run(&["replay", &id(&run), "--verify"])
-        .fails(3, &[&next, "does not have the hash of the previous line"]);
+    home.run(&["replay", &run_id(&run), "--verify"])
+        .assert_fails(3, &[&next, "does not have the hash of the previous line"]);
 }
 
 #[test]
-fn a_trajectory_that_was_chained_anew_does_not_reach_its_states() {
+fn rechained_trajectory_does_not_verify() {
     let (home, run) = two_weeks();
     let path = run.join("trajectory.jsonl");
     let mut lines = lines_of(&fs::read_to_string(&path).expect("text"));
-    cheaper(&mut lines);
-    fs::write(&path, written(lines, true)).expect("written");
+    change_price(&mut lines);
+    fs::write(&path, trajectory_text(lines, true)).expect("written");
     // The database would reveal the change; without it the states must.
     fs::remove_file(run.join("world.db")).expect("it is there");
     fs::remove_file(run.join("snapshot.bin")).unwrap_or_default();
-    let said = home.run(&["replay", &id(&run), "--verify"]);
-    said.fails(3, &["different"]);
+    let said = home.run(&["replay", &run_id(&run), "--verify"]);
+    said.assert_fails(3, &["different"]);
 }
 
 #[test]
-fn an_archive_that_was_sealed_anew_is_still_read_line_by_line() {
+fn resealed_archive_is_still_verified() {
     let (home, run) = two_weeks();
     let other = Home::new();
-    let whole = Opened::of(&home, &run);
-    let opened = || Opened { files: whole.files.clone(), seal: whole.seal.clone() };
-    assert_eq!(whole.import(&other).code, 0, "a fitting seal is accepted");
-    fs::remove_dir_all(other.runs().join(id(&run))).expect("it was there");
+    let whole = OpenedArchive::export(&home, &run);
+    let opened = || OpenedArchive { files: whole.files.clone(), seal: whole.seal.clone() };
+    assert_eq!(whole.import(&other).exit_code, 0, "a fitting seal is accepted");
+    fs::remove_dir_all(other.runs().join(run_id(&run))).expect("it was there");
 
     let mut forged = opened();
     let mut lines = lines_of(&forged.text("trajectory.jsonl"));
-    cheaper(&mut lines);
-    forged.put("trajectory.jsonl", written(lines, false));
-    forged.import(&other).fails(3, &["trajectory.jsonl", "does not have the hash of the previous line"]);
+    change_price(&mut lines);
+    forged.replace_file("trajectory.jsonl", trajectory_text(lines, false));
+    forged
+        .import(&other)
+        .assert_fails(3, &["trajectory.jsonl", "does not have the hash of the previous line"]);
 
     let mut forged = opened();
     let seed =
         forged.text("run.toml").lines().find(|line| line.starts_with("seed")).expect("a seed").to_owned();
     let manifest = forged.text("run.toml").replace(&seed, "seed = 8");
-    forged.put("run.toml", manifest);
+    forged.replace_file("run.toml", manifest);
     let said = forged.import(&other);
-    assert_eq!(said.code, 3, "another seed than the first line names: {}{}", said.out, said.err);
+    assert_eq!(said.exit_code, 3, "another seed than the first line names: {}{}", said.stdout, said.stderr);
 
     // Recomputing everything gives another run, which its states reveal.
     let mut forged = opened();
     let mut lines = lines_of(&forged.text("trajectory.jsonl"));
-    cheaper(&mut lines);
-    forged.put("trajectory.jsonl", written(lines, true));
-    assert_eq!(forged.import(&other).code, 0);
-    other.run(&["replay", &id(&run), "--verify"]).fails(3, &["different"]);
+    change_price(&mut lines);
+    forged.replace_file("trajectory.jsonl", trajectory_text(lines, true));
+    assert_eq!(forged.import(&other).exit_code, 0);
+    other.run(&["replay", &run_id(&run), "--verify"]).assert_fails(3, &["different"]);
 }

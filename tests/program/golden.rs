@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-fn data(below: &str) -> PathBuf {
+fn data_path(below: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(below)
 }
 
@@ -14,20 +14,20 @@ fn data(below: &str) -> PathBuf {
 const FAST: [&str; 2] = ["P6", "P8"];
 
 #[test]
-fn policies_end_where_the_released_simulator_ends() {
-    policies_end_where_they_should(&FAST);
+fn fast_policies_match_golden_figures() {
+    check_policies(&FAST);
 }
 
 #[test]
 #[ignore = "slow: .ci/full runs it"]
-fn all_policies_end_where_the_released_simulator_ends() {
-    policies_end_where_they_should(&["P0", "P10", "P1a", "P1b", "P6", "P8"]);
+fn all_policies_match_golden_figures() {
+    check_policies(&["P0", "P10", "P1a", "P1b", "P6", "P8"]);
 }
 
-fn policies_end_where_they_should(policies: &[&str]) {
+fn check_policies(policies: &[&str]) {
     let runs = tempfile::tempdir().expect("a folder");
     let mut command = Command::new(env!("CARGO_BIN_EXE_novamind"));
-    command.args(["lab", "golden"]).arg(data("golden")).env("NOVAMIND_RUNS", runs.path());
+    command.args(["lab", "golden"]).arg(data_path("golden")).env("NOVAMIND_RUNS", runs.path());
     command.args(policies.iter().flat_map(|policy| ["--only", policy]));
     let output = command.output().expect("the program starts");
     let said = String::from_utf8_lossy(&output.stdout);
@@ -35,17 +35,17 @@ fn policies_end_where_they_should(policies: &[&str]) {
     for policy in policies {
         assert!(said.contains(&format!("{policy} ")), "{policy} was not compared:\n{said}");
     }
-    figures_stay_where_they_were(policies, &said);
+    check_deviation_changes(policies, &said);
 }
 
 /// Standard errors by which a figure may change against the released simulator between versions. The seeds are the same, so only a
 /// change of the mechanics changes it at all.
-const SWAY: f64 = 0.25;
+const MAX_DEVIATION_CHANGE: f64 = 0.25;
 
 /// Compares the median deviation of every figure with that of the last release. The verdict of the laboratory allows any difference that
 /// chance explains; this comparison does not.
-fn figures_stay_where_they_were(policies: &[&str], said: &str) {
-    let text = fs::read_to_string(data("medians.csv")).expect("the deviations of the last release");
+fn check_deviation_changes(policies: &[&str], said: &str) {
+    let text = fs::read_to_string(data_path("medians.csv")).expect("the deviations of the last release");
     let mut policy = "";
     let mut own: BTreeMap<(String, String), f64> = BTreeMap::new();
     for line in said.lines() {
@@ -65,7 +65,7 @@ fn figures_stay_where_they_were(policies: &[&str], said: &str) {
         }
         let now = own.remove(&(policy.to_owned(), figure.to_owned()));
         let before: f64 = before.parse().expect("a number");
-        if now.is_none_or(|now| (now - before).abs() > SWAY) {
+        if now.is_none_or(|now| (now - before).abs() > MAX_DEVIATION_CHANGE) {
             moved.push(format!("  {policy} {figure}: {now:?}, not {before}"));
         }
     }
@@ -85,9 +85,9 @@ fn figures(path: &Path) -> Figures {
 /// Compares exact figures. Random streams are the same in every version, so any difference is a change of the code: a mistake, or
 /// intended with a new mechanics number and new figures.
 #[track_caller]
-fn pair(name: &str, policy: &str, seeds: &str, until: &str, days: &str) {
+fn check_figures(name: &str, policy: &str, seeds: &str, until: &str, days: &str) {
     let folder = tempfile::tempdir().expect("a folder");
-    let (own, kept) = (folder.path().join("own.csv"), data("paired").join(name));
+    let (own, kept) = (folder.path().join("own.csv"), data_path("paired").join(name));
     let options = [
         "run",
         "--policy",
@@ -125,18 +125,18 @@ fn pair(name: &str, policy: &str, seeds: &str, until: &str, days: &str) {
 }
 
 #[test]
-fn a_company_that_uses_every_lever_has_the_figures_of_the_last_release() {
-    let policy = data("policies/everything.toml");
-    pair("everything.csv", &policy.to_string_lossy(), "1..2", "182", "56,119,182");
+fn run_with_every_setting_keeps_released_figures() {
+    let policy = data_path("policies/everything.toml");
+    check_figures("everything.csv", &policy.to_string_lossy(), "1..2", "182", "56,119,182");
 }
 
 #[test]
-fn a_company_that_fills_its_market_has_the_figures_of_the_last_release() {
-    pair("P1a.csv", "P1a", "3", "300", "120,300");
+fn run_with_saturated_market_keeps_released_figures() {
+    check_figures("P1a.csv", "P1a", "3", "300", "120,300");
 }
 
 #[test]
-fn companies_of_other_policies_have_the_figures_of_the_last_release() {
-    pair("P8.csv", "P8", "4", "200", "60,200");
-    pair("P10.csv", "P10", "5", "200", "60,200");
+fn other_policies_keep_released_figures() {
+    check_figures("P8.csv", "P8", "4", "200", "60,200");
+    check_figures("P10.csv", "P10", "5", "200", "60,200");
 }

@@ -4,11 +4,11 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use crate::doors::{NEW, Server, predictions};
+use crate::interfaces::{NEW_RUN_OPTIONS, Server, predictions};
 use crate::support::home::Home;
 
 /// A company with individuals and enterprises.
-const STORY: &str = r#"
+const FIXTURE_COMMANDS: &str = r#"
 set_prices A=12 B=22.5 C=40
 set_model_tiers B=2 C=5
 set_usage_quotas A=60000 B=250000 C=1200000
@@ -45,7 +45,7 @@ sql SELECT * FROM enterprise_turns LIMIT 1
 "#;
 
 /// The runs and answers that the examples check.
-struct Stage {
+struct Fixture {
     home: Home,
     story: Vec<Value>,
     server: Server,
@@ -53,19 +53,19 @@ struct Stage {
     _served: Home,
 }
 
-impl Stage {
-    fn new() -> Stage {
+impl Fixture {
+    fn new() -> Fixture {
         let (home, served) = (Home::new(), Home::new());
         let options = ["--json", "--echo", "--seed", "7", "--days", "84", "--cash", "20000000"];
-        let said = home.play(&options, STORY);
-        assert_eq!(said.code, 0, "{}{}", said.out, said.err);
-        let story = said.objects();
-        let server = Server::start(&served, &NEW);
-        Stage { home, story, server, _served: served }
+        let said = home.play(&options, FIXTURE_COMMANDS);
+        assert_eq!(said.exit_code, 0, "{}{}", said.stdout, said.stderr);
+        let story = said.json_lines();
+        let server = Server::start(&served, &NEW_RUN_OPTIONS);
+        Fixture { home, story, server, _served: served }
     }
 
     /// Returns the data of the last answer to a line with this prefix.
-    fn story(&self, line: &str) -> &Value {
+    fn fixture_data(&self, line: &str) -> &Value {
         let is_it = |answer: &&Value| answer["input"].as_str().is_some_and(|input| input.starts_with(line));
         let answer = self.story.iter().rev().find(is_it).unwrap_or_else(|| panic!("{line} was not played"));
         assert_eq!(answer["ok"], true, "{answer}");
@@ -75,7 +75,7 @@ impl Stage {
     /// Returns the answers of another run in plain mode.
     fn play(&self, options: &[&str], lines: &str) -> Vec<Value> {
         let home = Home::new();
-        home.play(&[&["--json"], options].concat(), lines).objects()
+        home.play(&[&["--json"], options].concat(), lines).json_lines()
     }
 
     fn baseline(&self, lines: &str) -> Vec<Value> {
@@ -83,8 +83,8 @@ impl Stage {
     }
 
     /// Returns the text of plain mode after the last line of the story.
-    fn afterwards(&self, lines: &str) -> String {
-        self.home.play(&["--run", "latest"], lines).out
+    fn play_after_fixture(&self, lines: &str) -> String {
+        self.home.play(&["--run", "latest"], lines).stdout
     }
 
     fn call(&self, tool: &str, args: Value) -> Value {
@@ -98,7 +98,7 @@ impl Stage {
     }
 
     #[track_caller]
-    fn refuses(&self, tool: &str, args: Value, code: &str) {
+    fn assert_rejected(&self, tool: &str, args: Value, code: &str) {
         let answer = self.call(tool, args);
         assert_eq!((&answer["success"], &answer["code"]), (&json!(false), &json!(code)), "{tool}: {answer}");
     }
@@ -109,22 +109,22 @@ impl Stage {
 
     #[track_caller]
     fn manual_says(&self, tool: &str, parts: &[&str]) {
-        has(&self.home.run(&["tools", tool]).out, parts);
+        assert_contains(&self.home.run(&["tools", tool]).stdout, parts);
     }
 
     #[track_caller]
     fn term_says(&self, term: &str, parts: &[&str]) {
-        has(&self.afterwards(&format!("explain {term}\n")), parts);
+        assert_contains(&self.play_after_fixture(&format!("explain {term}\n")), parts);
     }
 
     /// Returns the dashboard of the last week.
     fn dashboard(&self) -> &str {
-        self.story("next")["dashboard"].as_str().expect("a dashboard")
+        self.fixture_data("next")["dashboard"].as_str().expect("a dashboard")
     }
 }
 
 #[track_caller]
-fn has(text: &str, parts: &[&str]) {
+fn assert_contains(text: &str, parts: &[&str]) {
     for part in parts {
         assert!(text.contains(part), "{part} is missing in: {text}");
     }
@@ -139,9 +139,9 @@ fn columns(answer: &Value) -> Vec<&str> {
 }
 
 /// The beginning of a line of the page, and its example.
-type Example = (&'static str, fn(&Stage));
+type Example = (&'static str, fn(&Fixture));
 
-const IN_INSTRUCTIONS: [Example; 6] = [
+const INSTRUCTION_EXAMPLES: [Example; 6] = [
     ("the probability of an outage", |stage| {
         stage.manual_says("set_daily_spend", &["probability", "solve open issues"]);
         stage.manual_says("set_targeted_ops_spend", &["per day and dollar"]);
@@ -169,7 +169,7 @@ const IN_INSTRUCTIONS: [Example; 6] = [
     }),
 ];
 
-const TOLD_TO_PEOPLE: [Example; 15] = [
+const PLAYER_INFORMATION_EXAMPLES: [Example; 15] = [
     ("the situations that need", |stage| {
         let needs = stage.play(&["--seed", "3"], "needs\n");
         let needs = list(&needs[1]["data"]["needs"]);
@@ -180,67 +180,67 @@ const TOLD_TO_PEOPLE: [Example; 15] = [
     }),
     ("the fact that an enterprise that", |stage| {
         stage.term_says("retention thread", &["pays nothing"]);
-        assert!(stage.story("inbox")["threads"][0]["days_left"].is_u64());
+        assert!(stage.fixture_data("inbox")["threads"][0]["days_left"].is_u64());
     }),
     ("the number and group of the enterprise", |stage| {
-        let rows = list(&stage.story("sql SELECT message")["rows"]);
-        has(rows[0]["message"].as_str().expect("a message"), &["Customer ", "(E1, "]);
+        let rows = list(&stage.fixture_data("sql SELECT message")["rows"]);
+        assert_contains(rows[0]["message"].as_str().expect("a message"), &["Customer ", "(E1, "]);
     }),
     ("a name for every enterprise,", |stage| {
-        let shown = &stage.story("inbox")["threads"][0]["company"];
+        let shown = &stage.fixture_data("inbox")["threads"][0]["company"];
         assert!(shown.as_str().is_some_and(|name| !name.is_empty()), "{shown}");
-        assert!(!stage.story("sql SELECT * FROM enterprise_turns").to_string().contains("company"));
+        assert!(!stage.fixture_data("sql SELECT * FROM enterprise_turns").to_string().contains("company"));
     }),
     ("the delivered quality next to", |stage| {
-        let group = &stage.story("fit")["groups"][0];
+        let group = &stage.fixture_data("fit")["groups"][0];
         assert!(group["floor"]["least"].is_f64() && group["plans"][0]["quality"].is_f64(), "{group}");
     }),
     ("the numbers of leads,", |stage| {
-        assert!(stage.story("fit")["groups"][0]["last_4_weeks"]["leads"].is_u64());
-        let funnel = &stage.story("inbox")["funnels"][0];
+        assert!(stage.fixture_data("fit")["groups"][0]["last_4_weeks"]["leads"].is_u64());
+        let funnel = &stage.fixture_data("inbox")["funnels"][0];
         assert!(["came", "no_plan_good_enough", "asked", "signed"].iter().all(|name| funnel[name].is_u64()));
     }),
     ("for each thread, all offers,", |stage| {
-        let thread = &stage.story("inbox")["threads"][0];
+        let thread = &stage.fixture_data("inbox")["threads"][0];
         let names = ["offers_so_far", "last_offer", "asked", "asked_plan", "needed_quota"];
         assert!(names.iter().all(|name| thread.get(name).is_some()), "{thread}");
     }),
     ("the outcome of new leads", |stage| {
-        assert!(list(&stage.story("queries first-offers")["rows"])[0]["signed_percent"].is_number());
+        assert!(list(&stage.fixture_data("queries first-offers")["rows"])[0]["signed_percent"].is_number());
     }),
     ("the change of cash in the last week", |stage| {
-        let report = stage.story("report week");
+        let report = stage.fixture_data("report week");
         assert!(list(&report["parts"]).iter().any(|part| part["part"] == "payments"), "{report}");
         assert!(report["decided"].is_array());
     }),
     ("the runway", |stage| {
-        assert!(stage.story("status").get("runway_weeks").is_some());
-        assert!(stage.story("changes")["committed_per_day"].is_number());
+        assert!(stage.fixture_data("status").get("runway_weeks").is_some());
+        assert!(stage.fixture_data("changes")["committed_per_day"].is_number());
         let filled = stage.play(&["--days", "28"], "next naive\nsql SELECT count(*) AS n FROM predictions\n");
         assert_eq!(filled[2]["data"]["rows"][0]["n"], 4);
     }),
     ("the gross margin", |stage| {
-        has(&stage.afterwards("check set_prices C=20\n"), &["gross margins", "plan C"]);
-        assert!(stage.story("changes")["alike_plans"].is_array());
+        assert_contains(&stage.play_after_fixture("check set_prices C=20\n"), &["gross margins", "plan C"]);
+        assert!(stage.fixture_data("changes")["alike_plans"].is_array());
     }),
     ("next week's peak usage at", |stage| {
-        assert!(stage.story("status")["next_peak_at_last_growth"].is_number());
+        assert!(stage.fixture_data("status")["next_peak_at_last_growth"].is_number());
     }),
     ("the distributions of duration", |stage| {
-        assert!(stage.story("check start_research")["research"]["spread"].is_object());
+        assert!(stage.fixture_data("check start_research")["research"]["spread"].is_object());
         let check = stage.baseline("check start_research_project tier=1\n");
         assert!(check[1]["data"]["research"]["spread"].is_null(), "{}", check[1]);
     }),
     ("the accuracy of earlier forecasts", |stage| {
-        assert!(list(&stage.story("queries forecast-record")["rows"])[0]["inside"].is_number());
+        assert!(list(&stage.fixture_data("queries forecast-record")["rows"])[0]["inside"].is_number());
     }),
     ("the meaning of a term, figure,", |stage| {
         stage.term_says("daily_usage", &["daily_usage"]);
-        assert!(!stage.story("glossary cohort")["terms"][0]["text"].is_null());
+        assert!(!stage.fixture_data("glossary cohort")["terms"][0]["text"].is_null());
     }),
 ];
 
-const DONE_BY_PEOPLE: [Example; 5] = [
+const PLAYER_ACTION_EXAMPLES: [Example; 5] = [
     ("A person writes a rationale and four forecasts", |stage| {
         let answers = stage.baseline("next\nnext naive\n");
         assert!(answers[1..3].iter().all(|answer| answer["code"] == "rationale_missing"), "{answers:?}");
@@ -248,51 +248,53 @@ const DONE_BY_PEOPLE: [Example; 5] = [
     ("A person can undo and redo settings", |stage| {
         let file = stage.home.only_run().join("trajectory.jsonl");
         let text = std::fs::read_to_string(file).expect("a trajectory");
-        has(&text, &["\"undoes\":", "\"redoes\":"]);
+        assert_contains(&text, &["\"undoes\":", "\"redoes\":"]);
         let tables = stage.home.0.path().join("tables");
         let exported = stage.home.run(&["runs", "export", "--all", "--out", &tables.to_string_lossy()]);
-        assert_eq!(exported.code, 0, "{}", exported.err);
-        has(&std::fs::read_to_string(tables.join("weeks.csv")).expect("weeks"), &["undone"]);
+        assert_eq!(exported.exit_code, 0, "{}", exported.stderr);
+        assert_contains(&std::fs::read_to_string(tables.join("weeks.csv")).expect("weeks"), &["undone"]);
     }),
     ("A person can answer waiting enterprises", |stage| {
-        let sent = stage.story("rules send");
+        let sent = stage.fixture_data("rules send");
         assert!(sent["rules"][0]["companies"].as_u64() > Some(0), "{sent}");
         assert_eq!(sent["calls"][0]["tool"], "send_enterprise_deal");
     }),
     ("A sandbox run can use [a", |stage| {
-        has(&stage.home.run(&["play", "--help"]).out, &["--voice"]);
+        assert_contains(&stage.home.run(&["play", "--help"]).stdout, &["--voice"]);
     }),
     ("A person sees charts", |stage| {
         assert!(
-            stage.story("glossary cohort")["picture"].as_str().is_some_and(|picture| picture.contains('*'))
+            stage.fixture_data("glossary cohort")["picture"]
+                .as_str()
+                .is_some_and(|picture| picture.contains('*'))
         );
     }),
 ];
 
-const DONE_BY_AGENTS: [Example; 1] = [("Agents run Python in", |stage| {
-    has(&stage.story("python_exec").to_string(), &["2"]);
+const AGENT_ACTION_EXAMPLES: [Example; 1] = [("Agents run Python in", |stage| {
+    assert_contains(&stage.fixture_data("python_exec").to_string(), &["2"]);
     stage.manual_says("python_exec", &["#", "Python"]);
 })];
 
-const ARGUMENTS_AND_ANSWERS: [Example; 15] = [
+const CALL_EXAMPLES: [Example; 15] = [
     ("ignores unknown arguments", |stage| {
         let args = json!({ "A": 1, "B": 1, "C": 1, "D": 1 });
-        stage.refuses("set_usage_quotas", args, "unknown_argument");
+        stage.assert_rejected("set_usage_quotas", args, "unknown_argument");
     }),
     ("accepts `true` and `false`", |stage| {
-        stage.refuses("set_capacity_tier", json!({ "tier": true }), "capacity_out_of_range");
-        stage.refuses("set_prices", json!({ "A": true }), "wrong_type");
+        stage.assert_rejected("set_capacity_tier", json!({ "tier": true }), "capacity_out_of_range");
+        stage.assert_rejected("set_prices", json!({ "A": true }), "wrong_type");
     }),
     ("answers a value of the wrong", |stage| {
         let (status, answer) = stage.server.post("/call", &json!({"tool": "set_prices", "args": {"A": "x"}}));
         assert_eq!((status, &answer["code"], &answer["field"]), (200, &json!("wrong_type"), &json!("A")));
     }),
     ("treats *set_capacity_tier* without", |stage| {
-        stage.refuses("set_capacity_tier", json!({}), "argument_missing");
+        stage.assert_rejected("set_capacity_tier", json!({}), "argument_missing");
     }),
     ("treats *set_targeted_ad_spend*", |stage| {
-        stage.refuses("set_targeted_ad_spend", json!({}), "argument_missing");
-        stage.refuses("set_targeted_dev_spend", json!({}), "argument_missing");
+        stage.assert_rejected("set_targeted_ad_spend", json!({}), "argument_missing");
+        stage.assert_rejected("set_targeted_dev_spend", json!({}), "argument_missing");
     }),
     ("accepts texts and Booleans as", |stage| {
         for point in [json!("1000000"), json!(true)] {
@@ -303,14 +305,14 @@ const ARGUMENTS_AND_ANSWERS: [Example; 15] = [
         }
     }),
     ("accepts amounts of any size", |stage| {
-        stage.refuses("set_prices", json!({ "A": 1e10 }), "amount_too_large");
+        stage.assert_rejected("set_prices", json!({ "A": 1e10 }), "amount_too_large");
     }),
     ("returns a tier that was sent", |stage| {
         assert_eq!(stage.data("set_capacity_tier", json!({ "tier": 3.0 }))["tier"].to_string(), "3");
     }),
     ("applies scopes one by one", |stage| {
         let args = json!({ "by_group": {"S2": 9}, "by_plan": {"D": 1} });
-        stage.refuses("set_targeted_ops_spend", args, "unknown_plan");
+        stage.assert_rejected("set_targeted_ops_spend", args, "unknown_plan");
         assert_eq!(stage.data("set_targeted_ops_spend", json!({ "by_plan": {} }))["by_group"], json!({}));
     }),
     ("accepts the scope of *set_targeted_ops_spend*", |stage| {
@@ -318,8 +320,16 @@ const ARGUMENTS_AND_ANSWERS: [Example; 15] = [
         assert_eq!(set["by_plan"].to_string(), r#"{"A":10.0}"#);
     }),
     ("offers a plan that does not exist", |stage| {
-        stage.refuses("send_enterprise_deal", json!({ "deals": [[9, [["D", 8]]]] }), "offering_malformed");
-        stage.refuses("send_enterprise_deal", json!({ "deals": [[9, [["A", -8]]]] }), "offering_malformed");
+        stage.assert_rejected(
+            "send_enterprise_deal",
+            json!({ "deals": [[9, [["D", 8]]]] }),
+            "offering_malformed",
+        );
+        stage.assert_rejected(
+            "send_enterprise_deal",
+            json!({ "deals": [[9, [["A", -8]]]] }),
+            "offering_malformed",
+        );
     }),
     ("documents tools 24 to 34", |stage| {
         assert_eq!(stage.data("list_scripts", json!({}))["scripts"], json!([]));
@@ -343,7 +353,7 @@ const ARGUMENTS_AND_ANSWERS: [Example; 15] = [
     }),
 ];
 
-const TIME: [Example; 2] = [
+const TIME_EXAMPLES: [Example; 2] = [
     ("continues after its last day", |stage| {
         let answers = stage.play(&["--days", "8"], "next naive\nnext naive\nset_prices A=5\nnext naive\n");
         assert_eq!((&answers[2]["data"]["day"], &answers[2]["data"]["days_run"]), (&json!(8), &json!(1)));
@@ -351,13 +361,16 @@ const TIME: [Example; 2] = [
     }),
     ("forgets discounts", |_| {
         let home = Home::new();
-        assert_eq!(home.play(&["--days", "28"], "set_promotion global_promotion=3\nnext naive\n").code, 0);
-        let again = home.play(&["--json", "--run", "latest"], "set_promotion\n").objects();
+        assert_eq!(
+            home.play(&["--days", "28"], "set_promotion global_promotion=3\nnext naive\n").exit_code,
+            0
+        );
+        let again = home.play(&["--json", "--run", "latest"], "set_promotion\n").json_lines();
         assert_eq!(again[1]["data"]["global"], 3.0, "{}", again[1]);
     }),
 ];
 
-const QUERIES: [Example; 9] = [
+const QUERY_EXAMPLES: [Example; 9] = [
     ("removes hidden columns", |stage| {
         for sql in ["SELECT c_max AS x FROM customers", "SELECT AVG(c_max) FROM customers"] {
             assert_eq!(stage.query(sql)["code"], "sql_error", "{sql}");
@@ -399,7 +412,7 @@ const QUERIES: [Example; 9] = [
     ("shows `source_group_id`", |stage| {
         let shown = stage.query("SELECT * FROM social_media_posts");
         assert!(!columns(&shown).contains(&"source_group_id"), "{shown}");
-        assert!(stage.story("get_social_posts")["posts"][0].get("source_group_id").is_some());
+        assert!(stage.fixture_data("get_social_posts")["posts"][0].get("source_group_id").is_some());
     }),
     ("reports `plan = 'A'` in", |stage| {
         let of_plan = stage.query("SELECT * FROM subscriptions WHERE plan = 'A'");
@@ -411,37 +424,42 @@ const QUERIES: [Example; 9] = [
     }),
 ];
 
-const DASHBOARD: [Example; 5] = [
+const DASHBOARD_EXAMPLES: [Example; 5] = [
     ("its own layout", |stage| {
         let shown = ["Cash Change:", "Recurring Revenue:", "Payments:", "Running Costs:", "Enterprise Lost:"];
-        has(stage.dashboard(), &shown);
+        assert_contains(stage.dashboard(), &shown);
     }),
     ("rounds prices to dollars", |stage| {
-        has(stage.dashboard(), &["Prices: A $12 | B $22.50 | C $40", "dev $90,000/day, ads $3,300/day"]);
+        assert_contains(
+            stage.dashboard(),
+            &["Prices: A $12 | B $22.50 | C $40", "dev $90,000/day, ads $3,300/day"],
+        );
     }),
     ("\"awaiting your response\" counts", |stage| {
         let weeks = stage.story.iter().filter(|answer| answer["command"] == "next");
         let first = weeks.map(|week| week["data"]["dashboard"].as_str().expect("a dashboard")).next();
-        has(first.expect("a week"), &["1 awaiting your response; the first is lost in"]);
+        assert_contains(first.expect("a week"), &["1 awaiting your response; the first is lost in"]);
     }),
     ("never lists posts of the company", |stage| {
         let weeks = stage.story.iter().filter(|answer| answer["command"] == "next");
         let listed = weeks.filter(|week| week["data"]["dashboard"].to_string().contains("Your posts"));
         assert_eq!(listed.count(), 1);
     }),
-    ("lists daily calculations", |stage| has(stage.dashboard(), &["--- Weekly Calculations ---\ncash:\n"])),
+    ("lists daily calculations", |stage| {
+        assert_contains(stage.dashboard(), &["--- Weekly Calculations ---\ncash:\n"])
+    }),
 ];
 
-const DOCUMENTS_TEXTS_AND_CHANCE: [Example; 4] = [
+const DOCUMENT_EXAMPLES: [Example; 4] = [
     ("tool documents with coefficients", |stage| {
         let manual = stage.data("get_tool_documentation", json!({ "tool_names": ["all"] }));
         let (support, development) = (&manual["set_targeted_ops_spend"], &manual["set_targeted_dev_spend"]);
-        has(&support.to_string(), &["0.6 per day and dollar", "0.1 for enterprises"]);
-        has(&development.to_string(), &["0.0225 ln(1 + spend / 5000)"]);
+        assert_contains(&support.to_string(), &["0.6 per day and dollar", "0.1 for enterprises"]);
+        assert_contains(&development.to_string(), &["0.0225 ln(1 + spend / 5000)"]);
     }),
     ("posts, messages and notices", |stage| {
         assert!(
-            stage.story("get_social_posts")["posts"][0]["content"]
+            stage.fixture_data("get_social_posts")["posts"][0]["content"]
                 .as_str()
                 .is_some_and(|text| text.len() > 9)
         );
@@ -463,7 +481,7 @@ const DOCUMENTS_TEXTS_AND_CHANCE: [Example; 4] = [
 ];
 
 /// Returns the rows and bullets of the page: the text of the first cell or of the bullet.
-fn lines_of_the_page() -> Vec<String> {
+fn documented_differences() -> Vec<String> {
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/known-differences.md");
     let page = std::fs::read_to_string(page).expect("the page");
     let line = |line: &str| {
@@ -475,26 +493,26 @@ fn lines_of_the_page() -> Vec<String> {
 }
 
 #[test]
-fn every_known_difference_has_an_example_that_holds() {
+fn every_known_difference_has_a_passing_example() {
     let examples = [
-        &IN_INSTRUCTIONS[..],
-        &TOLD_TO_PEOPLE,
-        &DONE_BY_PEOPLE,
-        &DONE_BY_AGENTS,
-        &ARGUMENTS_AND_ANSWERS,
-        &TIME,
-        &QUERIES,
-        &DASHBOARD,
-        &DOCUMENTS_TEXTS_AND_CHANCE,
+        &INSTRUCTION_EXAMPLES[..],
+        &PLAYER_INFORMATION_EXAMPLES,
+        &PLAYER_ACTION_EXAMPLES,
+        &AGENT_ACTION_EXAMPLES,
+        &CALL_EXAMPLES,
+        &TIME_EXAMPLES,
+        &QUERY_EXAMPLES,
+        &DASHBOARD_EXAMPLES,
+        &DOCUMENT_EXAMPLES,
     ];
     let examples: Vec<&Example> = examples.into_iter().flatten().collect();
-    let lines = lines_of_the_page();
+    let lines = documented_differences();
     for line in &lines {
         let own = examples.iter().filter(|(beginning, _)| line.starts_with(beginning));
         assert_eq!(own.count(), 1, "a line of the page has no example, or several: {line}");
     }
     assert_eq!(lines.len(), examples.len(), "an example has no line on the page");
-    let stage = Stage::new();
+    let stage = Fixture::new();
     for (beginning, example) in examples {
         println!("{beginning}");
         example(&stage);
@@ -502,8 +520,8 @@ fn every_known_difference_has_an_example_that_holds() {
 }
 
 #[test]
-fn answers_have_the_form_of_the_release() {
-    let stage = Stage::new();
+fn responses_have_the_released_form() {
+    let stage = Fixture::new();
     let prices = stage.data("set_prices", json!({ "A": 12 }));
     assert_eq!(prices.to_string(), r#"{"updated":{"A":12},"current":{"A":12,"B":0.0,"C":0.0}}"#);
     let quotas = stage.data("set_usage_quotas", json!({ "A": 60.0, "B": 70, "C": 0.5 }));
@@ -515,7 +533,7 @@ fn answers_have_the_form_of_the_release() {
     assert_eq!(spend["current"].to_string(), r#"{"operations":350,"development":0.0}"#);
     let ads = stage.data("set_targeted_ad_spend", json!({ "search_ads": {"S1": 80, "S3": 40} }));
     assert_eq!(ads["total_per_day"].to_string(), "120");
-    has(
+    assert_contains(
         stage.data("get_cost_info", json!({}))["note"].as_str().expect("a note"),
         &["1 unit = 1K", "tier 4 = 1.0×"],
     );
@@ -528,8 +546,8 @@ fn answers_have_the_form_of_the_release() {
     let cleared = stage.data("set_targeted_ops_spend", json!({}));
     assert_eq!((&cleared["by_group"], &cleared["by_plan"]["A"]), (&json!({}), &json!(10.0)));
     // Keys are checked before values; maps by customer entry by entry.
-    stage.refuses("set_promotion", json!({ "by_group": {"S1": -1, "S9": 5} }), "unknown_group");
-    stage.refuses("set_promotion", json!({ "by_customer": {"1": -1, "x": 5} }), "promotion_negative");
+    stage.assert_rejected("set_promotion", json!({ "by_group": {"S1": -1, "S9": 5} }), "unknown_group");
+    stage.assert_rejected("set_promotion", json!({ "by_customer": {"1": -1, "x": 5} }), "promotion_negative");
     let refused = stage.call("reject_enterprise_deal", json!({ "deals": [5, 6] }));
     assert_eq!(refused["error"], "customer 5: no active thread\ncustomer 6: no active thread");
     let one = stage.call("reject_enterprise_deal", json!({ "deals": [5] }));
@@ -538,7 +556,7 @@ fn answers_have_the_form_of_the_release() {
 
 #[test]
 fn game_status_counts_every_active_subscription() {
-    let home = Stage::new().home;
+    let home = Fixture::new().home;
     let server = Server::start(&home, &["--run", "latest"]);
     let count = |rest: &str| {
         let sql = format!("SELECT count(*) AS n FROM subscriptions WHERE status = 'subscribed' {rest}");

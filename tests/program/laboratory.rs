@@ -9,12 +9,12 @@ use crate::support::home::Home;
 /// Returns the JSON output of a command.
 fn json(home: &Home, arguments: &[&str]) -> Value {
     let said = home.run(&[arguments, &["--json"]].concat());
-    assert_eq!(said.code, 0, "{arguments:?}: {}", said.err);
-    serde_json::from_str(&said.out).expect("JSON")
+    assert_eq!(said.exit_code, 0, "{arguments:?}: {}", said.stderr);
+    serde_json::from_str(&said.stdout).expect("JSON")
 }
 
 #[test]
-fn what_needs_no_run_is_told_in_every_form() {
+fn lab_commands_without_runs_support_all_formats() {
     let home = Home::new();
     for (command, table) in [
         (vec!["lab", "bound", "--slack", "4"], "account"),
@@ -25,13 +25,13 @@ fn what_needs_no_run_is_told_in_every_form() {
     ] {
         let rows = json(&home, &command)["tables"][table]["rows"].as_array().map_or(0, Vec::len);
         let csv = home.run(&[&command[..], &["--csv"]].concat());
-        assert_eq!((csv.out.lines().count(), csv.code), (rows + 1, 0), "{command:?}");
-        let text = home.run(&[&command[..], &["--width", "80"]].concat()).out;
+        assert_eq!((csv.stdout.lines().count(), csv.exit_code), (rows + 1, 0), "{command:?}");
+        let text = home.run(&[&command[..], &["--width", "80"]].concat()).stdout;
         assert!(text.lines().all(|line| line.chars().count() <= 80), "{command:?}\n{text}");
     }
     let drawing = home.0.path().join("curves.svg");
     let path = drawing.to_string_lossy();
-    assert_eq!(home.run(&["lab", "curves", "--svg", &path]).code, 0);
+    assert_eq!(home.run(&["lab", "curves", "--svg", &path]).exit_code, 0);
     assert!(fs::read_to_string(&drawing).expect("a drawing").starts_with("<svg"));
     // Changed parameters change the account.
     let own = |row: usize, arguments: &[&str]| {
@@ -53,7 +53,7 @@ fn what_needs_no_run_is_told_in_every_form() {
 }
 
 #[test]
-fn what_is_not_there_is_refused_with_what_is() {
+fn unknown_names_list_the_valid_ones() {
     let home = Home::new();
     for (arguments, code, part) in [
         (vec!["lab", "laws", "cmax"], 2, "did you mean c_max?"),
@@ -70,12 +70,17 @@ fn what_is_not_there_is_refused_with_what_is() {
         (vec!["run", "--scenario", "none", "--policy", "P0"], 2, "default"),
     ] {
         let said = home.run(&arguments);
-        assert!(said.code == code && said.err.contains(part), "{arguments:?}: {} {}", said.code, said.err);
+        assert!(
+            said.exit_code == code && said.stderr.contains(part),
+            "{arguments:?}: {} {}",
+            said.exit_code,
+            said.stderr
+        );
     }
 }
 
 #[test]
-fn a_grid_of_ones_own_is_played_once_and_a_wrong_one_names_line_and_key() {
+fn user_grid_is_cached_and_errors_name_line_and_key() {
     let home = Home::new();
     let path = home.0.path().join("grid.toml");
     let file = path.to_string_lossy();
@@ -96,9 +101,9 @@ fn a_grid_of_ones_own_is_played_once_and_a_wrong_one_names_line_and_key() {
     fs::write(&path, grid.replace("990_000", "990_000, cashfloor = 1")).expect("a file");
     let said = home.run(&arguments);
     assert!(
-        said.code == 3 && said.err.contains("line 12") && said.err.contains("`cashfloor`"),
+        said.exit_code == 3 && said.stderr.contains("line 12") && said.stderr.contains("`cashfloor`"),
         "{}",
-        said.err
+        said.stderr
     );
 }
 
@@ -107,10 +112,10 @@ fn opponents_play_the_world_of_a_run_that_is_over() {
     let home = Home::new();
     let said =
         home.run(&["run", "--policy", "P1a", "--seed", "9", "--days", "28", "--surges", "on", "--save"]);
-    assert_eq!(said.code, 0, "{}", said.err);
+    assert_eq!(said.exit_code, 0, "{}", said.stderr);
     let told = home.run(&["lab", "opponents", "latest", "--json"]);
-    assert_eq!(told.code, 0, "{}", told.err);
-    let opponents: serde_json::Value = serde_json::from_str(&told.out).expect("JSON");
+    assert_eq!(told.exit_code, 0, "{}", told.stderr);
+    let opponents: serde_json::Value = serde_json::from_str(&told.stdout).expect("JSON");
     let policies = opponents["policies"].as_array().expect("policies");
     assert_eq!((opponents["day"].as_u64(), policies.len()), (Some(28), 5));
     for own in policies {
@@ -118,12 +123,12 @@ fn opponents_play_the_world_of_a_run_that_is_over() {
         let alone =
             home.run(&["run", "--policy", name, "--seed", "9", "--days", "28", "--surges", "on", "--json"]);
         let alone: serde_json::Value =
-            serde_json::from_str(alone.out.lines().next().expect("a line")).expect("JSON");
+            serde_json::from_str(alone.stdout.lines().next().expect("a line")).expect("JSON");
         assert_eq!((&own["cash"], &own["day"]), (&alone["cash"], &alone["day"]), "{name}");
     }
-    let text = home.run(&["lab", "opponents", "latest"]).out;
+    let text = home.run(&["lab", "opponents", "latest"]).stdout;
     assert!(text.contains("same seed") && text.contains("harvest-late"), "{text}");
     let other = Home::new();
     other.two_weeks();
-    other.run(&["lab", "opponents", "latest"]).fails(1, &["End this run first"]);
+    other.run(&["lab", "opponents", "latest"]).assert_fails(1, &["End this run first"]);
 }

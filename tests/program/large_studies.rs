@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::support::home::{Home, said};
+use crate::support::home::{Home, run_with_input};
 
 /// 100 short runs.
 const STUDY: &str = r#"
@@ -20,28 +20,28 @@ days = 28
 
 const SHARDS: usize = 4;
 /// The shard that the test kills.
-const KILLED: usize = 3;
+const KILLED_SHARD: usize = 3;
 
-fn study(home: &Home, text: &str) -> String {
+fn write_study(home: &Home, text: &str) -> String {
     let path = home.0.path().join("study.toml");
     fs::write(&path, text).expect("a file");
     path.to_string_lossy().into_owned()
 }
 
 /// Returns the files with stored runs.
-fn kept(home: &Home) -> Vec<PathBuf> {
+fn result_files(home: &Home) -> Vec<PathBuf> {
     let entries = fs::read_dir(home.runs().join(".lab/studies")).into_iter().flatten().flatten();
     entries.map(|entry| entry.path()).collect()
 }
 
 /// Counts the stored runs of a shard or of the unsplit study.
-fn kept_runs(home: &Home, ending: &str) -> usize {
-    let own = kept(home).into_iter().find(|path| path.to_string_lossy().ends_with(ending));
+fn count_stored_runs(home: &Home, ending: &str) -> usize {
+    let own = result_files(home).into_iter().find(|path| path.to_string_lossy().ends_with(ending));
     let bytes = own.and_then(|path| fs::read(path).ok()).unwrap_or_default();
     bytes.iter().filter(|byte| **byte == b'\n').count()
 }
 
-fn signal(name: &str, process: &str) {
+fn send_signal(name: &str, process: &str) {
     let sent = Command::new("kill").args([name, process]).status().expect("kill");
     assert!(sent.success(), "{name} {process}");
 }
@@ -64,7 +64,7 @@ struct Scheduler<'a> {
 }
 
 impl Scheduler<'_> {
-    fn of<'a>(home: &'a Home, file: &'a str, out: &'a Path) -> Scheduler<'a> {
+    fn new<'a>(home: &'a Home, file: &'a str, out: &'a Path) -> Scheduler<'a> {
         let found = Command::new("parallel").arg("--version").output();
         let has_parallel =
             found.is_ok_and(|own| String::from_utf8_lossy(&own.stdout).starts_with("GNU parallel"));
@@ -75,7 +75,7 @@ impl Scheduler<'_> {
     }
 
     /// Returns the shell command of a shard, which writes its process ID to a file.
-    fn shard(&self, shard: &str) -> String {
+    fn shard_command(&self, shard: &str) -> String {
         let folder = self.home.0.path().display();
         format!(
             "echo $$ > '{folder}/process-{shard}'; exec '{}' lab study '{}' --shard {shard}/{SHARDS} --out '{}' --jobs 1",
@@ -96,9 +96,10 @@ impl Scheduler<'_> {
                 .expect("it starts")
         };
         if !self.has_parallel {
-            let shards = (1..=SHARDS).filter(|shard| !only_failed || *shard == KILLED);
-            let start =
-                |shard: usize| quiet(self.home.command("sh").args(["-c", &self.shard(&shard.to_string())]));
+            let shards = (1..=SHARDS).filter(|shard| !only_failed || *shard == KILLED_SHARD);
+            let start = |shard: usize| {
+                quiet(self.home.command("sh").args(["-c", &self.shard_command(&shard.to_string())]))
+            };
             return shards.map(start).collect();
         }
         let log = self.home.0.path().join("log").display().to_string();
@@ -107,7 +108,7 @@ impl Scheduler<'_> {
         if only_failed {
             command.arg("--resume-failed");
         }
-        command.arg(self.shard("{}")).arg(":::").args((1..=SHARDS).map(|shard| shard.to_string()));
+        command.arg(self.shard_command("{}")).arg(":::").args((1..=SHARDS).map(|shard| shard.to_string()));
         vec![quiet(&mut command)]
     }
 
@@ -119,131 +120,135 @@ impl Scheduler<'_> {
 }
 
 #[test]
-fn shards_of_which_one_was_killed_and_repeated_are_the_study_that_was_not_split() {
+fn merged_shards_equal_the_unsplit_study() {
     let (home, alone) = (Home::new(), Home::new());
-    let file = study(&home, STUDY);
+    let file = write_study(&home, STUDY);
     let whole = alone.run(&["lab", "study", &file]);
-    assert_eq!(whole.code, 0, "{}", whole.err);
-    assert_eq!(whole.out.lines().count(), 101);
+    assert_eq!(whole.exit_code, 0, "{}", whole.stderr);
+    assert_eq!(whole.stdout.lines().count(), 101);
 
     let out = home.0.path().join("shards");
-    let scheduler = Scheduler::of(&home, &file, &out);
+    let scheduler = Scheduler::new(&home, &file, &out);
     let first = scheduler.start(false);
-    let own = format!(".{KILLED}-of-{SHARDS}.jsonl");
-    wait_for("a run of the shard", || kept_runs(&home, &own) > 2);
-    let process = fs::read_to_string(home.0.path().join(format!("process-{KILLED}"))).expect("a number");
-    signal("-KILL", process.trim());
+    let own = format!(".{KILLED_SHARD}-of-{SHARDS}.jsonl");
+    wait_for("a run of the shard", || count_stored_runs(&home, &own) > 2);
+    let process =
+        fs::read_to_string(home.0.path().join(format!("process-{KILLED_SHARD}"))).expect("a number");
+    send_signal("-KILL", process.trim());
     assert!(!Scheduler::wait(first), "a killed shard is a failure");
-    let before = kept_runs(&home, &own);
+    let before = count_stored_runs(&home, &own);
     assert!((3..25).contains(&before), "killed in the middle: {before}");
     let folder = out.to_string_lossy().into_owned();
-    home.run(&["lab", "merge", &folder]).fails(1, &["missing: small.3-of-4.csv", "nothing was written"]);
+    home.run(&["lab", "merge", &folder])
+        .assert_fails(1, &["missing: small.3-of-4.csv", "nothing was written"]);
 
     assert!(Scheduler::wait(scheduler.start(true)), "the shard is played to its end");
     assert_eq!(
-        kept_runs(&home, &own),
-        25 + usize::from(has_half_a_line(&home, &own)),
+        count_stored_runs(&home, &own),
+        25 + usize::from(has_incomplete_line(&home, &own)),
         "every run is played once"
     );
-    assert_eq!(kept_runs(&home, ".1-of-4.jsonl"), 25, "complete shards are not repeated");
+    assert_eq!(count_stored_runs(&home, ".1-of-4.jsonl"), 25, "complete shards are not repeated");
     let merged = home.run(&["lab", "merge", &folder]);
-    assert_eq!((merged.code, merged.err.as_str()), (0, ""));
-    assert_eq!(merged.out.as_bytes(), whole.out.as_bytes());
+    assert_eq!((merged.exit_code, merged.stderr.as_str()), (0, ""));
+    assert_eq!(merged.stdout.as_bytes(), whole.stdout.as_bytes());
     let into = home.0.path().join("small.csv").to_string_lossy().into_owned();
-    assert_eq!(home.run(&["lab", "merge", &folder, "--out", &into]).code, 0);
-    assert_eq!(fs::read(&into).expect("rows"), whole.out.as_bytes());
+    assert_eq!(home.run(&["lab", "merge", &folder, "--out", &into]).exit_code, 0);
+    assert_eq!(fs::read(&into).expect("rows"), whole.stdout.as_bytes());
 }
 
 /// Returns whether the kill truncated a line. Such a line stays, and its run is played again.
-fn has_half_a_line(home: &Home, ending: &str) -> bool {
-    let own = kept(home).into_iter().find(|path| path.to_string_lossy().ends_with(ending)).expect("a file");
+fn has_incomplete_line(home: &Home, ending: &str) -> bool {
+    let own =
+        result_files(home).into_iter().find(|path| path.to_string_lossy().ends_with(ending)).expect("a file");
     let text = fs::read_to_string(own).expect("lines");
     text.lines().any(|line| serde_json::from_str::<serde_json::Value>(line).is_err())
 }
 
 /// Twenty runs.
-const FEW: &str = "name = \"few\"\npolicies = [\"P1b\"]\nseeds = \"1..20\"\ndays = 56\n";
+const SMALL_STUDY: &str = "name = \"few\"\npolicies = [\"P1b\"]\nseeds = \"1..20\"\ndays = 56\n";
 
 #[test]
-fn ctrl_c_keeps_what_is_done_and_the_same_command_goes_on() {
+fn interrupted_study_resumes() {
     let (home, alone) = (Home::new(), Home::new());
-    let file = study(&home, FEW);
+    let file = write_study(&home, SMALL_STUDY);
     let whole = alone.run(&["lab", "study", &file]);
     let mut command = home.program();
     command.args(["lab", "study", &file, "--jobs", "1"]);
     let child = command.spawn().expect("the program starts");
-    wait_for("a run", || kept_runs(&home, ".jsonl") > 1);
-    signal("-INT", &child.id().to_string());
+    wait_for("a run", || count_stored_runs(&home, ".jsonl") > 1);
+    send_signal("-INT", &child.id().to_string());
     let output = child.wait_with_output().expect("it ends");
     let told = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!((output.status.code(), output.stdout.len()), (Some(130), 0), "{told}");
-    let done = kept_runs(&home, ".jsonl");
+    let done = count_stored_runs(&home, ".jsonl");
     assert!(
         told.contains(&format!("stopped: {done} of 20 runs are stored; the same command resumes")),
         "{told}"
     );
     let rest = home.run(&["lab", "study", &file]);
-    assert_eq!((rest.code, rest.out), (0, whole.out));
-    assert_eq!(kept_runs(&home, ".jsonl"), 20, "every run is played once");
+    assert_eq!((rest.exit_code, rest.stdout), (0, whole.stdout));
+    assert_eq!(count_stored_runs(&home, ".jsonl"), 20, "every run is played once");
 }
 
 #[test]
-fn a_full_disk_loses_nothing_that_was_kept() {
+fn full_disk_keeps_stored_runs() {
     let (home, alone) = (Home::new(), Home::new());
-    let file = study(&home, FEW);
+    let file = write_study(&home, SMALL_STUDY);
     let into = home.0.path().join("few.csv").to_string_lossy().into_owned();
-    let whole = alone.run(&["lab", "study", &file]).out;
+    let whole = alone.run(&["lab", "study", &file]).stdout;
     let program = env!("CARGO_BIN_EXE_novamind");
     // In blocks of 512 bytes: enough for some of the runs, then for all runs but not for the rows.
     let limited = |blocks: usize, more: &str| {
         let script = format!(
             "trap '' XFSZ; ulimit -f {blocks}; exec '{program}' lab study '{file}' --out '{into}' {more}"
         );
-        said(home.command("sh").args(["-c", &script]), "")
+        run_with_input(home.command("sh").args(["-c", &script]), "")
     };
-    limited(8, "--jobs 1").fails(1, &["few.", ".jsonl", "File too large", "are safe"]);
-    let before = kept_runs(&home, ".jsonl");
+    limited(8, "--jobs 1").assert_fails(1, &["few.", ".jsonl", "File too large", "are safe"]);
+    let before = count_stored_runs(&home, ".jsonl");
     assert!((1..20).contains(&before), "{before}");
-    let last = fs::read(&kept(&home)[0]).expect("runs");
+    let last = fs::read(&result_files(&home)[0]).expect("runs");
     assert!(last.ends_with(b"\n"), "a partial line is removed");
-    assert_eq!(home.run(&["lab", "study", &file]).out, whole, "there is room again");
-    assert_eq!(kept_runs(&home, ".jsonl"), 20);
-    limited(1, "").fails(1, &["few.csv", "File too large", "runs are kept"]);
+    assert_eq!(home.run(&["lab", "study", &file]).stdout, whole, "there is room again");
+    assert_eq!(count_stored_runs(&home, ".jsonl"), 20);
+    limited(1, "").assert_fails(1, &["few.csv", "File too large", "runs are kept"]);
     assert!(!Path::new(&into).exists(), "no partial table is written");
     let told = home.run(&["lab", "study", &file, "--out", &into]);
-    assert_eq!(told.code, 0, "{}", told.err);
+    assert_eq!(told.exit_code, 0, "{}", told.stderr);
     assert_eq!(fs::read_to_string(&into).expect("rows"), whole);
-    assert!(told.out.contains("few: 1 arm by 20 seeds") && told.out.contains("P1b"), "{}", told.out);
-    assert!(told.out.lines().all(|line| line.chars().count() <= 100), "{}", told.out);
+    assert!(told.stdout.contains("few: 1 arm by 20 seeds") && told.stdout.contains("P1b"), "{}", told.stdout);
+    assert!(told.stdout.lines().all(|line| line.chars().count() <= 100), "{}", told.stdout);
 }
 
 #[test]
-fn places_that_cannot_be_written_are_told_before_anything_is_played() {
+fn unwritable_outputs_are_reported_before_playing() {
     let home = Home::new();
-    let file = study(&home, FEW);
+    let file = write_study(&home, SMALL_STUDY);
     let inside = format!("{file}/shards");
-    home.run(&["lab", "study", &file, "--shard", "1/2", "--out", &inside]).fails(1, &["study.toml/shards"]);
-    assert_eq!(kept_runs(&home, ".jsonl"), 0);
+    home.run(&["lab", "study", &file, "--shard", "1/2", "--out", &inside])
+        .assert_fails(1, &["study.toml/shards"]);
+    assert_eq!(count_stored_runs(&home, ".jsonl"), 0);
     let wrong = home.run(&["lab", "study", &file, "--shard", "3/2", "--out", "x"]);
-    assert!(wrong.code == 2 && wrong.err.contains("3/2 is not a shard"), "{}", wrong.err);
+    assert!(wrong.exit_code == 2 && wrong.stderr.contains("3/2 is not a shard"), "{}", wrong.stderr);
     fs::write(home.runs().join(".lab"), "a file").expect("a file");
-    home.run(&["lab", "study", &file]).fails(1, &[".lab"]);
-    let wrong = study(&home, "name = \"x\"\npolicies = [\"P0\"]\nseeds = 1\nday = 4\n");
-    home.run(&["lab", "study", &wrong]).fails(3, &["study.toml, line 4", "day"]);
+    home.run(&["lab", "study", &file]).assert_fails(1, &[".lab"]);
+    let wrong = write_study(&home, "name = \"x\"\npolicies = [\"P0\"]\nseeds = 1\nday = 4\n");
+    home.run(&["lab", "study", &wrong]).assert_fails(3, &["study.toml, line 4", "day"]);
 }
 
 #[test]
-fn a_study_by_days_has_a_row_for_each_run_and_day() {
+fn daily_study_has_a_row_per_run_and_day() {
     let home = Home::new();
-    let file = study(&home, "name = \"d\"\npolicies = [\"P0\", \"P1b\"]\nseeds = [3, 9]\ndays = 14\n");
+    let file = write_study(&home, "name = \"d\"\npolicies = [\"P0\", \"P1b\"]\nseeds = [3, 9]\ndays = 14\n");
     let check = home.run(&["lab", "study", &file, "--check"]);
-    assert_eq!((check.code, check.out.as_str()), (0, "d: 2 arms by 2 seeds, 4 runs\n"));
+    assert_eq!((check.exit_code, check.stdout.as_str()), (0, "d: 2 arms by 2 seeds, 4 runs\n"));
     let daily = home.run(&["lab", "study", &file, "--daily"]);
-    assert_eq!(daily.code, 0, "{}", daily.err);
-    let lines: Vec<&str> = daily.out.lines().collect();
+    assert_eq!(daily.exit_code, 0, "{}", daily.stderr);
+    let lines: Vec<&str> = daily.stdout.lines().collect();
     assert_eq!(lines.len(), 1 + 4 * 14);
     assert!(lines[0].starts_with("run,policy,scenario,seed,day,cash,mrr,subscribers"), "{}", lines[0]);
-    let ends = home.run(&["lab", "study", &file]).out;
+    let ends = home.run(&["lab", "study", &file]).stdout;
     let cell = |line: &str, name: &str, head: &str| {
         let at = head.split(',').position(|own| own == name).expect("a column");
         line.split(',').nth(at).expect("a cell").to_owned()
@@ -258,23 +263,23 @@ fn a_study_by_days_has_a_row_for_each_run_and_day() {
 }
 
 #[test]
-fn what_is_read_is_not_replaced_by_what_is_written() {
+fn output_never_replaces_input() {
     let home = Home::new();
     let text = "name = \"s\"\npolicies = [\"P0\"]\nseeds = [1, 2]\ndays = 14\n";
-    let file = study(&home, text);
+    let file = write_study(&home, text);
     let place = |name: &str| home.0.path().join(name).to_string_lossy().into_owned();
     let twice = place("./rows");
     for places in [&["--out", &file][..], &["--svg", &file], &["--out", &place("rows"), "--svg", &twice]] {
-        home.run(&[&["lab", "study", &file], places].concat()).fails(2, &["overwrit"]);
+        home.run(&[&["lab", "study", &file], places].concat()).assert_fails(2, &["overwrit"]);
     }
     assert_eq!(fs::read_to_string(&file).expect("the study"), text);
     let folder = place("shards");
     for shard in ["1/2", "2/2"] {
         let said = home.run(&["lab", "study", &file, "--shard", shard, "--out", &folder]);
-        assert_eq!(said.code, 0, "{}", said.err);
+        assert_eq!(said.exit_code, 0, "{}", said.stderr);
     }
     let shard = place("shards/s.1-of-2.csv");
-    home.run(&["lab", "merge", &folder, "--out", &shard]).fails(2, &["is one of the shards"]);
+    home.run(&["lab", "merge", &folder, "--out", &shard]).assert_fails(2, &["is one of the shards"]);
     let whole = home.run(&["lab", "merge", &folder]);
-    assert_eq!((whole.code, whole.out.lines().count()), (0, 3), "{}", whole.err);
+    assert_eq!((whole.exit_code, whole.stdout.lines().count()), (0, 3), "{}", whole.stderr);
 }

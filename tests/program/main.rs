@@ -2,33 +2,31 @@
 
 #[cfg(all(feature = "server", unix))]
 mod agents;
-mod audited;
+mod audit;
 mod classes;
 #[cfg(feature = "server")]
 mod conformance;
 mod determinism;
-#[cfg(feature = "server")]
-mod doors;
-mod edges;
+mod exit_codes;
 mod exports;
+mod failures;
 mod forged;
 #[cfg(all(feature = "server", unix))]
 mod frozen;
 mod golden;
-mod hardship;
 #[cfg(feature = "server")]
-mod hostile;
+mod hostile_requests;
+#[cfg(feature = "server")]
+mod interfaces;
+mod kept_runs;
 #[cfg(feature = "server")]
 mod known_differences;
 mod laboratory;
 #[cfg(unix)]
 mod large_studies;
 mod lessons;
-mod looking;
 mod own_runs;
 mod plain;
-mod planted;
-mod preparation;
 #[cfg(feature = "server")]
 mod python_client;
 #[cfg(unix)]
@@ -36,7 +34,9 @@ mod python_scripts;
 #[cfg(feature = "server")]
 mod retries;
 mod scenarios;
+mod seeded_faults;
 mod studies;
+mod study_setup;
 #[path = "../support/mod.rs"]
 mod support;
 #[cfg(unix)]

@@ -3,16 +3,16 @@
 use std::collections::BTreeMap;
 use std::fs;
 
-use crate::support::home::{Home, Said, id};
+use crate::support::home::{Home, ProgramOutput, run_id};
 
 /// Parses CSV rows by column name.
-fn rows(said: &Said) -> Vec<BTreeMap<String, String>> {
-    assert_eq!(said.code, 0, "{}", said.err);
-    let mut reader = csv::Reader::from_reader(said.out.as_bytes());
+fn csv_rows(said: &ProgramOutput) -> Vec<BTreeMap<String, String>> {
+    assert_eq!(said.exit_code, 0, "{}", said.stderr);
+    let mut reader = csv::Reader::from_reader(said.stdout.as_bytes());
     reader.deserialize().map(|row| row.expect("a row")).collect()
 }
 
-fn named<'a>(rows: &'a [BTreeMap<String, String>], name: &str) -> &'a BTreeMap<String, String> {
+fn row_named<'a>(rows: &'a [BTreeMap<String, String>], name: &str) -> &'a BTreeMap<String, String> {
     rows.iter().find(|row| row["name"] == name).unwrap_or_else(|| panic!("no {name} in {rows:?}"))
 }
 
@@ -20,26 +20,26 @@ fn named<'a>(rows: &'a [BTreeMap<String, String>], name: &str) -> &'a BTreeMap<S
 fn the_results_table_holds_comparable_runs_and_says_why_others_are_not_there() {
     let home = Home::new();
     let saved = home.run(&["run", "--policy", "P0", "--seed", "7", "--surges", "on", "--save"]);
-    assert_eq!(saved.code, 0, "{}", saved.err);
+    assert_eq!(saved.exit_code, 0, "{}", saved.stderr);
     // A changed parameter, and a different length.
     for options in [&["--surges", "off", "--days", "500"][..], &["--surges", "on", "--days", "28"]] {
         let said = home.run(&[&["run", "--policy", "P0", "--save"], options].concat());
-        assert_eq!(said.code, 0, "{}", said.err);
+        assert_eq!(said.exit_code, 0, "{}", said.stderr);
     }
-    let table = rows(&home.run(&["lab", "table", "--csv"]));
-    let own = named(&table, "P0");
+    let table = csv_rows(&home.run(&["lab", "table", "--csv"]));
+    let own = row_named(&table, "P0");
     assert_eq!([&own["bankrupt"], &own["runs"], &own["source"]], ["0", "1", "own policy"]);
-    let idle = named(&table, "idle company");
+    let idle = row_named(&table, "idle company");
     for column in ["best_cash", "beats", "max_survival_days", "calls_per_week"] {
         assert_eq!(own[column], idle[column], "{column}: an idle company does not depend on the seed");
     }
     assert_eq!(idle["beats"], "13");
-    assert_eq!(named(&table, "GPT-5.6 Sol")["std_survival_days"], "145.7");
+    assert_eq!(row_named(&table, "GPT-5.6 Sol")["std_survival_days"], "145.7");
     assert_eq!(table.len(), 1 + 1 + 16 + 1);
     let cash: Vec<f64> = table.iter().map(|row| row["best_cash"].parse().expect("a number")).collect();
     assert!(cash.is_sorted_by(|one, other| one >= other), "{cash:?}");
 
-    let text = home.run(&["lab", "table", "--by", "policy"]).out;
+    let text = home.run(&["lab", "table", "--by", "policy"]).stdout;
     assert!(
         text.contains("2 finished runs are not ranked: different length (1), changed parameters (1)."),
         "{text}"
@@ -47,7 +47,7 @@ fn the_results_table_holds_comparable_runs_and_says_why_others_are_not_there() {
     assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
     let drawing = home.0.path().join("table.svg");
     let said = home.run(&["lab", "table", "--svg", &drawing.to_string_lossy()]);
-    assert_eq!(said.code, 0, "{}", said.err);
+    assert_eq!(said.exit_code, 0, "{}", said.stderr);
     assert!(fs::read_to_string(drawing).expect("a drawing").starts_with("<svg"));
 }
 
@@ -59,15 +59,15 @@ next \"as planned\" naive
 ";
 
 #[test]
-fn behaviour_is_told_of_one_run_and_of_many() {
+fn behaviour_command_accepts_one_or_many_runs() {
     let home = Home::new();
     for seed in ["3", "4"] {
-        assert_eq!(home.play(&["--seed", seed, "--days", "14", "--participant", "P01"], PLAY).code, 0);
+        assert_eq!(home.play(&["--seed", seed, "--days", "14", "--participant", "P01"], PLAY).exit_code, 0);
     }
-    let list = home.run(&["runs", "list"]).out;
+    let list = home.run(&["runs", "list"]).stdout;
     let runs: Vec<&str> = list.lines().filter_map(|line| line.split_whitespace().next()).collect();
     let table =
-        |name: &str| rows(&home.run(&["lab", "behaviour", runs[0], runs[1], "--csv", "--table", name]));
+        |name: &str| csv_rows(&home.run(&["lab", "behaviour", runs[0], runs[1], "--csv", "--table", name]));
     let measures = table("measures");
     let share = |row: &BTreeMap<String, String>| {
         row["ad_spend_on_the_truly_best_channel"].parse::<f64>().expect("a share")
@@ -75,7 +75,7 @@ fn behaviour_is_told_of_one_run_and_of_many() {
     let shares: Vec<f64> = measures.iter().map(share).collect();
     assert_eq!(shares.len(), 2, "rows of runs alone: {measures:?}");
     assert!((shares[0] - 750.0 / 850.0).abs() < 1e-9 && shares[0] == shares[1], "{measures:?}");
-    let told = home.run(&["lab", "behaviour", runs[0], runs[1], "--json"]).out;
+    let told = home.run(&["lab", "behaviour", runs[0], runs[1], "--json"]).stdout;
     let told: serde_json::Value = serde_json::from_str(&told).expect("JSON");
     let summary = &told["tables"]["measures"]["summary"];
     assert_eq!(summary[0]["ad_spend_on_the_truly_best_channel"].as_f64(), Some(shares[0]));
@@ -87,20 +87,21 @@ fn behaviour_is_told_of_one_run_and_of_many() {
     let notes = table("notes");
     assert_eq!((notes.len(), notes[0]["plans"].as_str()), (2, "If rivals move, cut ads."));
     assert!(table("customers").iter().any(|row| row["group"] == "S1"));
-    home.run(&["lab", "behaviour", runs[0], "--csv", "--table", "nothing"]).fails(2, &["measures", "notes"]);
+    home.run(&["lab", "behaviour", runs[0], "--csv", "--table", "nothing"])
+        .assert_fails(2, &["measures", "notes"]);
     let drawing = home.0.path().join("behaviour.svg");
     let said = home.run(&["lab", "behaviour", runs[0], runs[1], "--svg", &drawing.to_string_lossy()]);
-    assert!(said.out.contains("correlation"), "{}", said.out);
+    assert!(said.stdout.contains("correlation"), "{}", said.stdout);
     let drawn = fs::read_to_string(drawing).expect("a drawing");
     assert!(drawn.contains("Cash by day, P01") && drawn.contains(&format!("run {}", runs[1])), "{drawn}");
 }
 
 #[test]
-fn common_luck_is_tried_with_policies_of_ones_own() {
+fn consistency_command_accepts_user_policies() {
     let home = Home::new();
     let said =
         home.run(&["lab", "consistency", "--policy", "P0", "--policy", "P1b", "--until", "98", "--csv"]);
-    let claims = rows(&said);
+    let claims = csv_rows(&said);
     let verdict = |part: &str| {
         let claim = claims.iter().find(|row| row["claim"].contains(part)).expect(part);
         (claim["verdict"].clone(), claim["different"].clone())
@@ -108,7 +109,7 @@ fn common_luck_is_tried_with_policies_of_ones_own() {
     assert_eq!(verdict("index of the economy"), ("holds".to_owned(), "0".to_owned()));
     assert_eq!(verdict("same company"), ("holds".to_owned(), "0".to_owned()));
     assert_eq!(verdict("R&D tier").0, "not tried", "neither policy starts a project");
-    home.run(&["lab", "consistency", "--policy", "P0"]).fails(2, &["both policies are the same"]);
+    home.run(&["lab", "consistency", "--policy", "P0"]).assert_fails(2, &["both policies are the same"]);
 }
 
 #[test]
@@ -118,21 +119,21 @@ fn many_runs_are_compared_in_rows_that_fit() {
         home.run(&["run", "--policy", "P1b", "--seed", &seed.to_string(), "--days", "14", "--save"]);
     }
     let folders = fs::read_dir(home.runs()).expect("a folder").flatten().map(|entry| entry.path());
-    let runs: Vec<String> = folders.filter(|path| path.is_dir()).map(|path| id(&path)).collect();
+    let runs: Vec<String> = folders.filter(|path| path.is_dir()).map(|path| run_id(&path)).collect();
     let compare: Vec<&str> =
         [&["lab", "compare", "--width", "80"], &*runs.iter().map(String::as_str).collect::<Vec<_>>()]
             .concat();
     let said = home.run(&compare);
-    assert_eq!(said.code, 0, "{}", said.err);
-    assert!(said.out.lines().all(|line| line.chars().count() <= 80), "{}", said.out);
-    assert!(said.out.starts_with("3 runs, best result first"), "{}", said.out);
+    assert_eq!(said.exit_code, 0, "{}", said.stderr);
+    assert!(said.stdout.lines().all(|line| line.chars().count() <= 80), "{}", said.stdout);
+    assert!(said.stdout.starts_with("3 runs, best result first"), "{}", said.stdout);
     for run in &runs {
-        assert!(said.out.contains(run), "{}", said.out);
+        assert!(said.stdout.contains(run), "{}", said.stdout);
     }
 }
 
 /// Returns the commands of a section and their expected output: the first two cells of its table rows, by command.
-fn claims_of(section: &str) -> BTreeMap<&'static str, Vec<&'static str>> {
+fn documented_claims(section: &str) -> BTreeMap<&'static str, Vec<&'static str>> {
     let page = include_str!("../../docs/experiments.md");
     let (_, from) = page.split_once(&format!("\n## {section}\n")).expect(section);
     let cells = |line: &'static str| -> Option<(&'static str, &'static str)> {
@@ -147,24 +148,24 @@ fn claims_of(section: &str) -> BTreeMap<&'static str, Vec<&'static str>> {
     claims
 }
 
-fn commands_say_what_is_claimed(section: &str) {
+fn check_claims(section: &str) {
     let home = Home::new();
-    for (command, claims) in claims_of(section) {
+    for (command, claims) in documented_claims(section) {
         let said = home.run(&command.split(' ').collect::<Vec<_>>());
-        assert_eq!(said.code, 0, "{command}: {}", said.err);
+        assert_eq!(said.exit_code, 0, "{command}: {}", said.stderr);
         for says in claims {
-            assert!(said.out.contains(says), "{command} does not print {says}: {}", said.out);
+            assert!(said.stdout.contains(says), "{command} does not print {says}: {}", said.stdout);
         }
     }
 }
 
 #[test]
 fn figures_on_the_page_of_experiments_are_those_of_their_commands() {
-    commands_say_what_is_claimed("Figures that are checked");
+    check_claims("Figures that are checked");
 }
 
 #[test]
 #[ignore = "slow: .ci/full runs it"]
 fn figures_that_take_minutes_are_those_of_their_commands() {
-    commands_say_what_is_claimed("Figures that take minutes");
+    check_claims("Figures that take minutes");
 }

@@ -30,7 +30,7 @@ fn play(runs: &Path, options: &[&str], lines: impl AsRef<[u8]>) -> (String, i32)
     (String::from_utf8(stdout).expect("UTF-8"), code)
 }
 
-fn objects(text: &str) -> Vec<Value> {
+fn json_lines(text: &str) -> Vec<Value> {
     text.lines()
         .map(|line| serde_json::from_str(line).unwrap_or_else(|error| panic!("{line}: {error}")))
         .collect()
@@ -46,7 +46,7 @@ next "first prices" 990000 980000 995000  960000 930000 980000  900000 800000 10
 "#;
 
 #[test]
-fn a_piped_session_reads_like_a_dialogue() {
+fn piped_session_matches_the_example() {
     let runs = tempfile::tempdir().expect("a folder");
     let (said, code) = play(runs.path(), &["--seed", "7", "--days", "28", "--echo"], EXAMPLE);
     assert_eq!(code, 0);
@@ -75,10 +75,10 @@ fn a_piped_session_reads_like_a_dialogue() {
 }
 
 #[test]
-fn programs_get_one_object_per_line() {
+fn json_mode_prints_one_object_per_line() {
     let runs = tempfile::tempdir().expect("a folder");
     let (said, _) = play(runs.path(), &["--seed", "7", "--days", "28", "--json"], EXAMPLE);
-    let said = objects(&said);
+    let said = json_lines(&said);
     let lines: Vec<u64> = said.iter().filter_map(|object| object["line"].as_u64()).collect();
     assert_eq!(lines, [2, 3, 4, 5, 6, 7]);
     assert_eq!((said[0]["event"].as_str(), said[0]["days"].as_u64()), (Some("start"), Some(28)));
@@ -93,12 +93,12 @@ fn programs_get_one_object_per_line() {
 }
 
 #[test]
-fn a_line_that_cannot_be_read_says_where_and_what_is_near() {
+fn syntax_errors_name_column_and_suggestions() {
     let runs = tempfile::tempdir().expect("a folder");
     let lines = "set_pices A=3\nset_prices A=1 A=2\nset_prices A=\nnext \"x\" 1 2 3\nnext\nbranch\nstep 1\nset_prices X=3\ntables leger\nnext naive extra more\n";
     let (said, code) = play(runs.path(), &["--json", "--days", "28"], lines);
     assert_eq!(code, 0, "refusals are answers");
-    let said = objects(&said);
+    let said = json_lines(&said);
     let codes: Vec<&str> = said.iter().filter_map(|object| object["code"].as_str()).collect();
     assert_eq!(
         codes,
@@ -122,7 +122,7 @@ fn a_line_that_cannot_be_read_says_where_and_what_is_near() {
 
 /// A list of deals may be given without its name; there is no enterprise yet.
 #[test]
-fn deals_are_written_as_lists() {
+fn deal_lists_need_no_argument_name() {
     let runs = tempfile::tempdir().expect("a folder");
     let lines = r#"send_enterprise_deal [[99, [["B", 31.5]]], [98, []]]
 send_enterprise_deal deals=[[1, [["B", 31.5]]]]
@@ -134,7 +134,7 @@ inbox
     let (said, code) = play(runs.path(), &["--days", "28", "--json"], lines);
     assert_eq!(code, 0, "{said}");
     let answers: Vec<Value> =
-        objects(&said).into_iter().filter(|object| object.get("command").is_some()).collect();
+        json_lines(&said).into_iter().filter(|object| object.get("command").is_some()).collect();
     let codes: Vec<&str> = answers.iter().filter_map(|answer| answer["code"].as_str()).collect();
     let expected =
         ["customer_not_found", "not_enterprise", "offering_no_price", "no_active_thread", "deals_missing"];
@@ -143,26 +143,26 @@ inbox
 }
 
 #[test]
-fn strict_scripts_end_at_the_first_refusal() {
+fn strict_mode_ends_at_the_first_rejection() {
     let runs = tempfile::tempdir().expect("a folder");
     let (said, code) = play(
         runs.path(),
         &["--strict", "--json", "--days", "28"],
         "set_prices A=12\nset_prices A=0\nset_prices B=9\n",
     );
-    let said = objects(&said);
+    let said = json_lines(&said);
     assert_eq!((code, said.len(), said[3]["reason"].as_str()), (1, 4, Some("strict")));
 }
 
 #[test]
-fn strange_bytes_are_answered_and_do_no_harm() {
+fn invalid_bytes_are_rejected() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut bytes =
         b"\xef\xbb\xbfset_prices A=12\r\n\xff\xfe\n# comment\n\nset_prices \\\r\nB=25\r\n".to_vec();
     bytes.extend(std::iter::repeat_n(b'x', 1 << 21));
     bytes.extend(b"\nset_prices C=55");
     let (said, code) = play(runs.path(), &["--json", "--days", "28"], bytes);
-    let said = objects(&said);
+    let said = json_lines(&said);
     let ok: Vec<Option<bool>> = said[1..said.len() - 1].iter().map(|object| object["ok"].as_bool()).collect();
     assert_eq!((code, ok), (0, vec![Some(true), Some(false), Some(true), Some(false), Some(true)]));
     assert_eq!(said[5]["data"]["current"], serde_json::json!({"A": 12.0, "B": 25.0, "C": 55}));
@@ -187,7 +187,7 @@ fn a_run_is_left_continued_finished_and_replayed() {
 }
 
 #[test]
-fn what_cannot_start_is_said_with_its_exit_code() {
+fn invalid_starts_have_exit_codes() {
     let runs = tempfile::tempdir().expect("a folder");
     let failure = |options: &[&str]| {
         let output = program(runs.path()).args(["play", "--plain"]).args(options).output().expect("it runs");
@@ -241,7 +241,7 @@ fn market_and_engine_tools_are_commands() {
                  next naive\ndashboard\n";
     let (text, code) = play(runs.path(), &["--json", "--days", "28", "--seed", "7"], lines);
     assert_eq!(code, 0);
-    let said = objects(&text);
+    let said = json_lines(&text);
     let by_line = |line: u64| {
         said.iter()
             .find(|object| object["line"].as_u64() == Some(line))
@@ -295,7 +295,7 @@ fn named_queries_are_listed_and_answered() {
     let lines = "queries\nqueries mine\nqueries cash-by-week\nqueries cash-by-wek\nhelp queries\n";
     let (text, code) = play(runs.path(), &["--json", "--days", "28", "--seed", "7"], lines);
     assert_eq!(code, 0);
-    let said = objects(&text);
+    let said = json_lines(&text);
     let names = said[1]["data"]["queries"].as_array().expect("a list");
     assert!(names.len() > 24);
     assert_eq!((&names[0]["name"], &names[0]["title"]), (&"mine".into(), &"mine".into()));
@@ -309,7 +309,7 @@ fn named_queries_are_listed_and_answered() {
 }
 
 #[test]
-fn weeks_and_runs_are_told() {
+fn report_describes_weeks_and_runs() {
     let runs = tempfile::tempdir().expect("a folder");
     let lines = "report\nset_prices A=12 B=25 C=55\nnext \"if it sells, more\" naive\nreport\nreport run\nreport never\n";
     let (said, _) = play(runs.path(), &["--seed", "7", "--days", "28", "--echo"], lines);
@@ -328,7 +328,7 @@ fn weeks_and_runs_are_told() {
         assert!(said.contains(part), "{part} is missing in\n{said}");
     }
     let (said, _) = play(runs.path(), &["--run", "latest", "--json"], "report week\nreport run\n");
-    let told = objects(&said);
+    let told = json_lines(&said);
     assert_eq!(told[1]["data"]["day"], 7);
     assert!(told[1]["data"]["moves"].as_array().is_some_and(|moves| !moves.is_empty()));
     assert_eq!(told[2]["data"]["survival_days"], 7);
@@ -340,7 +340,7 @@ fn the_xray_answers_in_debug_runs_and_refuses_in_others() {
     let runs = tempfile::tempdir().expect("a folder");
     let lines = format!("{EXAMPLE}\nxray leads S1 R=1\nxray leads S9\nxray leads S1 8\nxray\n");
     let (said, _) = play(runs.path(), &["--seed", "7", "--days", "28", "--mode", "debug", "--json"], &lines);
-    let said = objects(&said);
+    let said = json_lines(&said);
     let answer = |at: usize| &said[said.len() - 5 + at];
     let data = &answer(0)["data"];
     assert_eq!((&data["group"], &data["day"], &data["known"]), (&"S1".into(), &7.into(), &true.into()));
@@ -351,7 +351,7 @@ fn the_xray_answers_in_debug_runs_and_refuses_in_others() {
     assert_eq!(answer(2)["code"], "day_unknown");
     assert_eq!(answer(3)["code"], "usage");
     let (said, _) = play(runs.path(), &["--seed", "7", "--days", "28", "--json"], &lines);
-    let said = objects(&said);
+    let said = json_lines(&said);
     for at in said.len() - 5..said.len() - 1 {
         assert_eq!(said[at]["code"], "not_in_this_mode", "{}", said[at]);
         assert_eq!(said[at]["error"], said[said.len() - 2]["error"]);
@@ -383,7 +383,7 @@ fn the_views_of_the_xray_answer_in_words_and_as_data() {
     let lines = format!("{EXAMPLE}\n{}\n", views.join("\n"));
     let debug = ["--seed", "7", "--days", "90", "--mode", "debug"];
     let (said, _) = play(runs.path(), &[&debug[..], &["--json"]].concat(), &lines);
-    let said = objects(&said);
+    let said = json_lines(&said);
     // The last line reports the end of the input.
     let answer = |at: usize| &said[said.len() - views.len() - 1 + at];
     let data = |at: usize| &answer(at)["data"];
@@ -432,7 +432,7 @@ fn the_views_of_the_xray_answer_in_words_and_as_data() {
     }
     // In a sandbox run the answer does not depend on the question.
     let (said, _) = play(runs.path(), &["--seed", "7", "--days", "90", "--json"], &lines);
-    let said = objects(&said);
+    let said = json_lines(&said);
     let answers = &said[said.len() - views.len() - 1..said.len() - 1];
     for answer in answers {
         assert_eq!((&answer["code"], &answer["error"]), (&"not_in_this_mode".into(), &answers[0]["error"]));
@@ -440,7 +440,7 @@ fn the_views_of_the_xray_answer_in_words_and_as_data() {
 }
 
 #[test]
-fn breakpoints_stop_debug_runs_and_refuse_others_whatever_is_asked() {
+fn breakpoints_require_a_debug_run() {
     let runs = tempfile::tempdir().expect("a folder");
     let asked = "\
 break subscribers(S1) >= 20   # a group
@@ -468,7 +468,7 @@ run 3 until subscribers(S1) < 0   # never
         &["--seed", "7", "--days", "70", "--mode", "debug", "--json"],
         format!("{EXAMPLE}{asked}"),
     );
-    let said = objects(&said);
+    let said = json_lines(&said);
     let answers = &said[said.len() - count - 1..];
     let data = |at: usize| &answers[at]["data"];
     assert_eq!(data(0)["condition"], "subscribers(S1) >= 20");
@@ -503,7 +503,7 @@ run 3 until subscribers(S1) < 0   # never
     // In a run without permission to inspect, all of them are rejected before anything is parsed.
     let (said, _) =
         play(runs.path(), &["--seed", "7", "--days", "28", "--json"], format!("{EXAMPLE}{asked}"));
-    let said = objects(&said);
+    let said = json_lines(&said);
     let told = &said[said.len() - count - 1..said.len() - 1];
     for one in told {
         assert_eq!((&one["code"], &one["error"]), (&"not_in_this_mode".into(), &told[0]["error"]), "{one}");
@@ -536,7 +536,7 @@ fn hidden_tables_answer_in_plain_mode_and_from_the_command_line() {
         &["--seed", "7", "--days", "28", "--mode", "debug", "--json"],
         format!("{EXAMPLE}\n{asked}"),
     );
-    let said = objects(&said);
+    let said = json_lines(&said);
     let answer = |at: usize| &said[said.len() - 8 + at];
     assert_eq!(answer(0)["data"]["row_count"], 7, "{}", answer(0));
     assert_eq!(answer(0)["data"]["rows"][6]["group_id"], "S1");
@@ -568,7 +568,7 @@ fn hidden_tables_answer_in_plain_mode_and_from_the_command_line() {
     // In other runs the answer is the same for any question.
     let (said, _) =
         play(runs.path(), &["--seed", "7", "--days", "28", "--json"], format!("{EXAMPLE}\n{asked}"));
-    let said = objects(&said);
+    let said = json_lines(&said);
     for at in said.len() - 8..said.len() - 3 {
         assert_eq!(said[at]["code"], "not_in_this_mode", "{}", said[at]);
         assert_eq!(said[at]["error"], said[said.len() - 4]["error"]);
@@ -601,7 +601,7 @@ fn parameters_are_set_in_debug_runs_and_refused_in_others() {
     ];
     let lines = format!("{EXAMPLE}\n{}\n", commands.join("\n"));
     let (said, _) = play(runs.path(), &["--seed", "7", "--days", "28", "--mode", "debug", "--json"], &lines);
-    let said = objects(&said);
+    let said = json_lines(&said);
     // The last line states where the run was saved.
     let first = said.len() - 1 - commands.len();
     let answer = |at: usize| &said[first + at];
@@ -628,20 +628,20 @@ fn parameters_are_set_in_debug_runs_and_refused_in_others() {
     assert!(answer(11)["data"]["difference"]["differs"].as_array().is_some_and(|all| !all.is_empty()));
     assert_eq!([12, 13].map(|at| answer(at)["code"].clone()), ["usage", "day_unknown"]);
     let (said, _) = play(runs.path(), &["--seed", "7", "--days", "28", "--json"], &lines);
-    let said = objects(&said);
+    let said = json_lines(&said);
     for answer in &said[first..said.len() - 1] {
         assert_eq!(answer["code"], "not_in_this_mode", "{answer}");
     }
 }
 
 #[test]
-fn the_curve_of_a_group_is_told_with_what_leads_would_do() {
+fn curve_shows_expected_lead_decisions() {
     let runs = tempfile::tempdir().expect("a folder");
     let lines =
         "curve S1\ncurve s1 20 0.4\ncurve\ncurve S9\ncurve S1 20\ncurve S1 -1 0.4\ncurve D_S05\nhelp curve\n";
     let (said, code) = play(runs.path(), &["--seed", "7", "--days", "28", "--json"], lines);
     assert_eq!(code, 0);
-    let told = &objects(&said)[1..];
+    let told = &json_lines(&said)[1..];
     let data = |at: usize| &told[at]["data"];
     assert_eq!(
         (&told[0]["command"], &data(0)["basis"]["kind"]),

@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 
 use serde_json::Value;
 
-use crate::doors::{NEW, Server};
+use crate::interfaces::{NEW_RUN_OPTIONS, Server};
 use crate::support::home::Home;
 
 /// Writes the client to a folder; `None` without Python.
@@ -17,7 +17,7 @@ fn client(home: &Home) -> Option<PathBuf> {
         return None;
     }
     let folder = home.0.path().join("client");
-    assert_eq!(home.run(&["serve", "--client", &folder.to_string_lossy()]).code, 0);
+    assert_eq!(home.run(&["serve", "--client", &folder.to_string_lossy()]).exit_code, 0);
     Some(folder)
 }
 
@@ -38,7 +38,7 @@ fn lines(home: &Home) -> Vec<Value> {
 fn four_threads_share_a_connection() {
     let home = Home::new();
     let Some(client) = client(&home) else { return };
-    let server = Server::start(&home, &NEW);
+    let server = Server::start(&home, &NEW_RUN_OPTIONS);
     python(
         &home,
         &client,
@@ -72,8 +72,9 @@ fn one_process_plays_two_runs() {
     let (home, other) = (Home::new(), Home::new());
     let Some(client) = client(&home) else { return };
     let token = home.0.path().join("token.txt");
-    let first = Server::start(&home, &NEW);
-    let second = Server::start(&other, &[&NEW[..], &["--token", &token.to_string_lossy()]].concat());
+    let first = Server::start(&home, &NEW_RUN_OPTIONS);
+    let second =
+        Server::start(&other, &[&NEW_RUN_OPTIONS[..], &["--token", &token.to_string_lossy()]].concat());
     let program = format!(
         "
 import novamind
@@ -100,7 +101,7 @@ else:
 }
 
 /// Reads one HTTP message, head and body.
-fn message(stream: &mut TcpStream) -> Vec<u8> {
+fn read_message(stream: &mut TcpStream) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut piece = [0; 4096];
     loop {
@@ -120,16 +121,16 @@ fn message(stream: &mut TcpStream) -> Vec<u8> {
 }
 
 #[test]
-fn a_request_whose_answer_was_lost_is_sent_again_and_runs_once() {
+fn lost_response_is_retried_and_runs_once() {
     let home = Home::new();
     let Some(client) = client(&home) else { return };
-    let server = Server::start(&home, &NEW);
+    let server = Server::start(&home, &NEW_RUN_OPTIONS);
     let listener = TcpListener::bind(("127.0.0.1", 0)).expect("a port");
     let (port, served) = (listener.local_addr().expect("an address").port(), server.port);
     let between = std::thread::spawn(move || {
         for attempt in 0..3 {
             let (mut from, _) = listener.accept().expect("a connection");
-            let asked = message(&mut from);
+            let asked = read_message(&mut from);
             if attempt == 1 {
                 let full = "HTTP/1.1 503 Service Unavailable\r\nretry-after: 1\r\ncontent-length: 2\r\nconnection: close\r\n\r\n{}";
                 from.write_all(full.as_bytes()).expect("sent");
@@ -137,7 +138,7 @@ fn a_request_whose_answer_was_lost_is_sent_again_and_runs_once() {
             }
             let mut to = TcpStream::connect(("127.0.0.1", served)).expect("a connection");
             to.write_all(&asked).expect("sent");
-            let answer = message(&mut to);
+            let answer = read_message(&mut to);
             // The response to the first attempt is lost.
             if attempt == 2 {
                 from.write_all(&answer).expect("sent");

@@ -2,10 +2,10 @@
 
 use serde_json::{Value, json};
 
-use crate::doors::{NEW, Server, predictions};
+use crate::interfaces::{NEW_RUN_OPTIONS, Server, predictions};
 use crate::support::home::Home;
 
-fn week(id: &str, expected_day: u32) -> Value {
+fn week_request(id: &str, expected_day: u32) -> Value {
     json!({ "rationale": "on", "predictions": predictions(), "expected_day": expected_day, "request_id": id })
 }
 
@@ -18,7 +18,7 @@ fn lines(home: &Home, kind: &str) -> Vec<Value> {
 #[test]
 fn a_retry_after_a_kill_returns_the_first_answer() {
     let home = Home::new();
-    let server = Server::start(&home, &NEW);
+    let server = Server::start(&home, &NEW_RUN_OPTIONS);
     let prices = json!({ "tool": "set_prices", "args": { "A": 10, "B": 20 }, "request_id": "p" });
     let script = json!({ "name": "s", "content": "SELECT 1", "request_id": "s" });
     let first = [server.post("/call", &prices), server.post("/daily-scripts", &script)];
@@ -26,9 +26,9 @@ fn a_retry_after_a_kill_returns_the_first_answer() {
     let refused =
         server.post("/call", &json!({ "tool": "set_prices", "args": { "A": 11 }, "request_id": "p" }));
     assert_eq!((refused.0, &refused.1["code"]), (200, &json!("request_id_payload_mismatch")), "{refused:?}");
-    let passed = server.post("/next-week", &week("w", 0));
+    let passed = server.post("/next-week", &week_request("w", 0));
     assert_eq!((passed.0, &passed.1["day"]), (200, &json!(7)), "{passed:?}");
-    let late = server.post("/next-week", &week("v", 0));
+    let late = server.post("/next-week", &week_request("v", 0));
     assert_eq!(
         (late.0, &late.1["code"], &late.1["field"]),
         (400, &json!("unexpected_day"), &json!("expected_day"))
@@ -38,9 +38,9 @@ fn a_retry_after_a_kill_returns_the_first_answer() {
     drop(server);
     let server = Server::start(&home, &["--run", "latest"]);
     assert_eq!([server.post("/call", &prices), server.post("/daily-scripts", &script)], first);
-    assert_eq!(server.post("/next-week", &week("w", 0)), passed);
-    assert_eq!(server.post("/next-week", &week("v", 0)), late);
-    let other = server.post("/next-week", &week("w", 7));
+    assert_eq!(server.post("/next-week", &week_request("w", 0)), passed);
+    assert_eq!(server.post("/next-week", &week_request("v", 0)), late);
+    let other = server.post("/next-week", &week_request("w", 7));
     assert_eq!((other.0, &other.1["code"]), (400, &json!("request_id_payload_mismatch")), "{other:?}");
     assert_eq!(server.get("/vars")["current_day"], 7);
     assert_eq!((lines(&home, "advance").len(), lines(&home, "week").len()), (1, 1));
@@ -49,9 +49,9 @@ fn a_retry_after_a_kill_returns_the_first_answer() {
 #[test]
 fn retries_that_arrive_while_the_first_request_runs_wait_for_its_answer() {
     let home = Home::new();
-    let server = Server::start(&home, &NEW);
+    let server = Server::start(&home, &NEW_RUN_OPTIONS);
     let answers: Vec<(u16, Value)> = std::thread::scope(|scope| {
-        let ask = || server.post("/next-week", &week("w", 0));
+        let ask = || server.post("/next-week", &week_request("w", 0));
         let all: Vec<_> = (0..8).map(|_| scope.spawn(ask)).collect();
         all.into_iter().map(|one| one.join().expect("an answer")).collect()
     });
@@ -62,8 +62,8 @@ fn retries_that_arrive_while_the_first_request_runs_wait_for_its_answer() {
 #[test]
 fn a_week_refuses_arguments_that_it_does_not_have() {
     let home = Home::new();
-    let server = Server::start(&home, &NEW);
-    let mut mistyped = week("a", 0);
+    let server = Server::start(&home, &NEW_RUN_OPTIONS);
+    let mut mistyped = week_request("a", 0);
     mistyped["expected_dy"] = 7.into();
     let routes = [
         ("/next-week", 400, mistyped.clone()),

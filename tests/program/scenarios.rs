@@ -12,7 +12,7 @@ fn program(folder: &Path, arguments: &[&str]) -> Output {
         .expect("the program starts")
 }
 
-fn said(folder: &Path, arguments: &[&str]) -> String {
+fn program_output(folder: &Path, arguments: &[&str]) -> String {
     let output = program(folder, arguments);
     assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
     String::from_utf8(output.stdout).expect("UTF-8")
@@ -21,27 +21,28 @@ fn said(folder: &Path, arguments: &[&str]) -> String {
 #[test]
 fn all_scenarios_are_listed_and_shown_with_their_parameters() {
     let folder = tempfile::tempdir().expect("a folder");
-    let list = said(folder.path(), &["scenario", "list"]);
+    let list = program_output(folder.path(), &["scenario", "list"]);
     for name in ["default", "short", "competitor-hard", "paper", "corrected", "reference-seed42"] {
         assert!(list.lines().any(|line| line.starts_with(&format!("{name} "))), "{name} is missing:\n{list}");
     }
-    let shown = said(folder.path(), &["scenario", "show", "reference-seed42"]);
+    let shown = program_output(folder.path(), &["scenario", "show", "reference-seed42"]);
     let table: toml::Table = shown.parse().expect("TOML");
     assert_eq!(table["series"]["replayed"].as_str(), Some("seed42"));
     assert!(shown.starts_with("# Reference seed 42: "));
-    let usual: toml::Table = said(folder.path(), &["scenario", "show", "default"]).parse().expect("TOML");
+    let usual: toml::Table =
+        program_output(folder.path(), &["scenario", "show", "default"]).parse().expect("TOML");
     assert_eq!(usual["series"]["replayed"].as_str(), Some("none"));
 }
 
 /// The hidden index and the competitors are the recorded ones for every seed.
 #[test]
-fn a_run_under_the_reference_scenario_meets_the_recorded_market() {
+fn reference_scenario_uses_the_recorded_market() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("figures.csv");
     let file = file.to_str().expect("a path");
     let common = ["run", "--policy", "P0", "--scenario", "reference-seed42", "--seed", "5", "--until", "140"];
     let days = ["--metrics-days", "1,100,140", "--metrics", file];
-    said(folder.path(), &[&common[..], &days[..]].concat());
+    program_output(folder.path(), &[&common[..], &days[..]].concat());
     let text = std::fs::read_to_string(file).expect("figures");
     let recorded = include_str!("../data/seed42/pmi_daily.csv");
     for day in [1, 100, 140] {
@@ -59,7 +60,7 @@ fn a_run_under_the_reference_scenario_meets_the_recorded_market() {
 }
 
 #[test]
-fn a_reference_folder_without_its_policy_fails_by_name() {
+fn missing_reference_policy_is_named() {
     let folder = tempfile::tempdir().expect("a folder");
     let figures = "policy,figure,group,day,n_seeds,mean,std\nP77,cash,,30,8,1.0,1.0\n";
     std::fs::write(folder.path().join("P77.csv"), figures).expect("a file");

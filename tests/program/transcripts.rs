@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use crate::support::home::{Home, id};
+use crate::support::home::{Home, run_id};
 
 const PLAY: &str = r#"set_prices A=12 B=25 C=55
 set_prices A=-1
@@ -24,15 +24,15 @@ next "help" naive
 "#;
 
 /// Plays a run in plain mode; returns its id and last hash.
-fn played(home: &Home) -> (String, String) {
-    played_with(home, &["--seed", "11", "--days", "28", "--participant", "P01"])
+fn played_run(home: &Home) -> (String, String) {
+    played_run_with(home, &["--seed", "11", "--days", "28", "--participant", "P01"])
 }
 
-fn played_with(home: &Home, options: &[&str]) -> (String, String) {
+fn played_run_with(home: &Home, options: &[&str]) -> (String, String) {
     let said = home.play(options, PLAY);
-    assert_eq!(said.code, 0, "{}", said.err);
+    assert_eq!(said.exit_code, 0, "{}", said.stderr);
     let folder = home.only_run();
-    (id(&folder), last_hash(&folder))
+    (run_id(&folder), last_hash(&folder))
 }
 
 fn last_hash(folder: &Path) -> String {
@@ -45,24 +45,24 @@ fn last_hash(folder: &Path) -> String {
 fn export(home: &Home, run: &str, format: &str) -> Value {
     let out = home.0.path().join(format!("{format}.json"));
     let said = home.run(&["runs", "export", run, "--format", format, "--out", &out.to_string_lossy()]);
-    assert_eq!(said.code, 0, "{}", said.err);
+    assert_eq!(said.exit_code, 0, "{}", said.stderr);
     serde_json::from_str(&fs::read_to_string(out).expect("a file")).expect("JSON")
 }
 
 #[test]
-fn a_script_of_a_run_leads_to_its_state() {
-    leads_to_its_state(&["--seed", "11", "--days", "28", "--participant", "P01"]);
+fn exported_script_reaches_the_same_state() {
+    check_exported_script(&["--seed", "11", "--days", "28", "--participant", "P01"]);
 }
 
 #[test]
-fn so_does_a_script_of_a_baseline() {
-    leads_to_its_state(&["--seed", "11", "--mode", "baseline", "--participant", "P01"]);
+fn exported_baseline_script_reaches_the_same_state() {
+    check_exported_script(&["--seed", "11", "--mode", "baseline", "--participant", "P01"]);
 }
 
 #[test]
-fn a_run_is_exported_to_a_name_alone() {
+fn export_accepts_a_bare_file_name() {
     let home = Home::new();
-    let (run, _) = played(&home);
+    let (run, _) = played_run(&home);
     for format in ["archive", "atif"] {
         let mut command = home.program();
         command
@@ -75,28 +75,28 @@ fn a_run_is_exported_to_a_name_alone() {
 }
 
 #[track_caller]
-fn leads_to_its_state(options: &[&str]) {
+fn check_exported_script(options: &[&str]) {
     let home = Home::new();
-    let (run, hash) = played_with(&home, options);
+    let (run, hash) = played_run_with(&home, options);
     let out = home.0.path().join("script");
     let said = home.run(&["runs", "export", &run, "--format", "script", "--out", &out.to_string_lossy()]);
-    assert_eq!(said.code, 0, "{}", said.err);
+    assert_eq!(said.exit_code, 0, "{}", said.stderr);
     let script = fs::read_to_string(out.join("play.txt")).expect("a script");
     let command = script.lines().nth(1).expect("a command");
     let options = command.strip_prefix("# novamind play --plain --strict ").expect(command);
     let options: Vec<&str> = options.trim_end_matches(" < THIS FILE").split(' ').collect();
     let other = Home::new();
     let said = other.play(&[&["--strict"], &*options].concat(), &script);
-    assert_eq!(said.code, 0, "{}{}", said.out, said.err);
+    assert_eq!(said.exit_code, 0, "{}{}", said.stdout, said.stderr);
     assert_eq!(last_hash(&other.only_run()), hash);
     let again = home.run(&["runs", "export", &run, "--format", "script", "--out", &out.to_string_lossy()]);
-    again.fails(1, &["play.txt already exists"]);
+    again.assert_fails(1, &["play.txt already exists"]);
 }
 
 #[test]
-fn a_trajectory_holds_what_was_called_and_answered_and_nothing_that_was_not_told() {
+fn atif_export_contains_calls_and_responses_only() {
     let home = Home::new();
-    let (run, hash) = played(&home);
+    let (run, hash) = played_run(&home);
     let told = export(&home, &run, "atif");
     assert_eq!(told["schema_version"], "ATIF-v1.8");
     assert_eq!(
@@ -137,7 +137,7 @@ fn every_export_has_the_calls_of_unknown_tools() {
     let lines = "set_wages {\"sales\": 3}\nhlep\nhlep me\nset_prices A=12\nnext naive\n";
     home.play(&["--seed", "11", "--days", "28"], lines);
     let folder = home.only_run();
-    let run = id(&folder);
+    let run = run_id(&folder);
     let text = fs::read_to_string(folder.join("trajectory.jsonl")).expect("a trajectory");
     let refused = |line: &Value| line["kind"] == "call" && line["ok"] == false;
     let calls: Vec<Value> =
@@ -153,8 +153,8 @@ fn every_export_has_the_calls_of_unknown_tools() {
     let out = |name: &str| home.0.path().join(name).to_string_lossy().into_owned();
     let done = |words: &[&str]| {
         let said = home.run(words);
-        assert_eq!(said.code, 0, "{words:?}: {}{}", said.out, said.err);
-        said.out
+        assert_eq!(said.exit_code, 0, "{words:?}: {}{}", said.stdout, said.stderr);
+        said.stdout
     };
     done(&["runs", "export", &run, "--format", "script", "--out", &out("script")]);
     for file in ["play.txt", "play.py"] {
@@ -173,7 +173,7 @@ fn every_export_has_the_calls_of_unknown_tools() {
 #[test]
 fn evaluation_log_has_a_sample_with_every_message() {
     let home = Home::new();
-    let (run, _) = played(&home);
+    let (run, _) = played_run(&home);
     let log = export(&home, &run, "inspect");
     let sample = &log["samples"][0];
     assert_eq!((&log["version"], &sample["id"]), (&json!(2), &json!(run)));
@@ -203,31 +203,31 @@ fn evaluation_log_has_a_sample_with_every_message() {
 
 /// Returns what `runs show` prints of an unfinished, an abandoned, a finished and a bankrupt run, and their logs for Inspect.
 fn shown_and_logged(home: &Home) -> Vec<(Value, Value)> {
-    played(home);
-    assert_eq!(home.play(&["--seed", "12", "--days", "28"], "next naive\n").code, 0);
-    assert_eq!(home.run(&["runs", "end", "latest"]).code, 0);
+    played_run(home);
+    assert_eq!(home.play(&["--seed", "12", "--days", "28"], "next naive\n").exit_code, 0);
+    assert_eq!(home.run(&["runs", "end", "latest"]).exit_code, 0);
     for options in [&["--days", "14"][..], &["--days", "14", "--cash", "500"]] {
         let said = home.run(&[&["run", "--policy", "P0", "--seed", "3", "--save"], options].concat());
-        assert_eq!(said.code, 0, "{}", said.err);
+        assert_eq!(said.exit_code, 0, "{}", said.stderr);
     }
-    let list: Value = serde_json::from_str(&home.run(&["runs", "list", "--json"]).out).expect("JSON");
+    let list: Value = serde_json::from_str(&home.run(&["runs", "list", "--json"]).stdout).expect("JSON");
     let logs = home.0.path().join("logs");
     let of_run = |run: &Value| {
         let id = run["id"].as_str().expect("a name");
         let shown = home.run(&["runs", "show", id, "--json"]);
         let said = home.run(&["runs", "export", id, "--format", "inspect", "--out", &logs.to_string_lossy()]);
-        assert_eq!((shown.code, said.code), (0, 0), "{}{}", shown.err, said.err);
+        assert_eq!((shown.exit_code, said.exit_code), (0, 0), "{}{}", shown.stderr, said.stderr);
         let moment = run["created"].as_str().expect("a moment")[..19].replace(':', "-");
         let file = logs.join(format!("{moment}-00-00_novamind_{id}.json"));
         let log = fs::read_to_string(file).expect("a log");
-        let parsed = [shown.out, log].map(|text| serde_json::from_str(&text).expect("JSON"));
+        let parsed = [shown.stdout, log].map(|text| serde_json::from_str(&text).expect("JSON"));
         parsed.into()
     };
     list.as_array().expect("runs").iter().map(of_run).collect()
 }
 
 #[test]
-fn score_of_a_run_is_that_of_the_rules_wherever_it_is_shown() {
+fn score_is_consistent_everywhere() {
     let home = Home::new();
     let mut seen = Vec::new();
     for (shown, log) in shown_and_logged(&home) {
@@ -253,22 +253,22 @@ fn score_of_a_run_is_that_of_the_rules_wherever_it_is_shown() {
 #[test]
 fn log_is_not_written_as_an_archive_that_inspect_cannot_read() {
     let home = Home::new();
-    let (run, _) = played(&home);
+    let (run, _) = played_run(&home);
     let out = home.0.path().join("log.eval").to_string_lossy().into_owned();
     home.run(&["runs", "export", &run, "--format", "inspect", "--out", &out])
-        .fails(2, &["log.eval", ".json", "folder"]);
+        .assert_fails(2, &["log.eval", ".json", "folder"]);
 }
 
 #[test]
 fn evaluation_log_becomes_a_run_in_the_same_state() {
     let home = Home::new();
-    let (run, hash) = played(&home);
+    let (run, hash) = played_run(&home);
     export(&home, &run, "inspect");
     let file = home.0.path().join("inspect.json");
     let other = Home::new();
     let said = other.run(&["runs", "import", "--transcript", &file.to_string_lossy()]);
-    assert_eq!(said.code, 0, "{}{}", said.out, said.err);
-    assert!(said.out.contains(&hash), "{}", said.out);
+    assert_eq!(said.exit_code, 0, "{}{}", said.stdout, said.stderr);
+    assert!(said.stdout.contains(&hash), "{}", said.stdout);
 }
 
 /// `tests/data/inspect.eval` was written by Inspect 0.3.285: four calls of tools of this program, one of which was rejected, and one of
@@ -278,31 +278,31 @@ fn archive_of_inspect_is_imported() {
     let home = Home::new();
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/inspect.eval");
     let said = home.run(&["runs", "import", "--transcript", &file.to_string_lossy(), "--days", "28"]);
-    assert_eq!(said.code, 0, "{}{}", said.out, said.err);
-    assert!(said.out.contains(": 4 calls, day 7,"), "{}", said.out);
+    assert_eq!(said.exit_code, 0, "{}{}", said.stdout, said.stderr);
+    assert!(said.stdout.contains(": 4 calls, day 7,"), "{}", said.stdout);
     let manifest = fs::read_to_string(home.only_run().join("run.toml")).expect("a manifest");
     assert!(
         manifest.contains("seed = 9") && manifest.contains("participant = \"mockllm/model\""),
         "{manifest}"
     );
-    home.run(&["runs", "import", &file.to_string_lossy()]).fails(2, &["inspect.eval", "--transcript"]);
+    home.run(&["runs", "import", &file.to_string_lossy()]).assert_fails(2, &["inspect.eval", "--transcript"]);
     let bytes = fs::read(&file).expect("an archive");
     let cut = home.0.path().join("cut.eval");
     fs::write(&cut, &bytes[..bytes.len() - 30]).expect("a file");
     home.run(&["runs", "import", "--transcript", &cut.to_string_lossy(), "--seed", "3"])
-        .fails(1, &["cut short"]);
+        .assert_fails(1, &["cut short"]);
 }
 
 #[test]
 fn a_trajectory_becomes_a_run_in_the_same_state() {
     let home = Home::new();
-    let (run, hash) = played(&home);
+    let (run, hash) = played_run(&home);
     export(&home, &run, "atif");
     let file = home.0.path().join("atif.json");
     let other = Home::new();
     let said = other.run(&["runs", "import", "--transcript", &file.to_string_lossy()]);
-    assert_eq!(said.code, 0, "{}{}", said.out, said.err);
-    assert!(said.out.contains(&hash), "{}", said.out);
+    assert_eq!(said.exit_code, 0, "{}{}", said.stdout, said.stderr);
+    assert!(said.stdout.contains(&hash), "{}", said.stdout);
     let folder = other.only_run();
     assert_eq!(last_hash(&folder), hash);
     let manifest = fs::read_to_string(folder.join("run.toml")).expect("a manifest");
@@ -310,31 +310,31 @@ fn a_trajectory_becomes_a_run_in_the_same_state() {
         manifest.contains("participant = \"P01\"") && manifest.contains("mode = \"sandbox\""),
         "{manifest}"
     );
-    assert_eq!(other.run(&["replay", "latest", "--verify"]).code, 0);
+    assert_eq!(other.run(&["replay", "latest", "--verify"]).exit_code, 0);
     // Another world answers differently, and the import reports it.
     let said = other.run(&["runs", "import", "--transcript", &file.to_string_lossy(), "--seed", "12"]);
-    said.fails(1, &["the final state differs"]);
+    said.assert_fails(1, &["the final state differs"]);
     let lines = other.0.path().join("calls.jsonl");
     fs::write(&lines, "{\"tool\": \"set_prices\", \"args\": {\"A\": 12}, \"success\": false}\n")
         .expect("a file");
     let lines = lines.to_string_lossy().into_owned();
-    other.run(&["runs", "import", "--transcript", &lines]).fails(2, &["--seed"]);
+    other.run(&["runs", "import", "--transcript", &lines]).assert_fails(2, &["--seed"]);
     other
         .run(&["runs", "import", "--transcript", &lines, "--seed", "3"])
-        .fails(1, &["differs from the transcript"]);
-    other.run(&["runs", "import", "--transcript", "nothing.json"]).fails(1, &["nothing.json"]);
-    other.run(&["runs", "import", "--seed", "3", "run.nmrun"]).fails(2, &["--transcript"]);
+        .assert_fails(1, &["differs from the transcript"]);
+    other.run(&["runs", "import", "--transcript", "nothing.json"]).assert_fails(1, &["nothing.json"]);
+    other.run(&["runs", "import", "--seed", "3", "run.nmrun"]).assert_fails(2, &["--transcript"]);
 }
 
 #[test]
 fn weeks_of_a_replay_are_recorded_for_terminal_players() {
     let home = Home::new();
-    let (run, _) = played(&home);
+    let (run, _) = played_run(&home);
     let file = home.0.path().join("talk.cast");
     let file = file.to_string_lossy().into_owned();
     let said =
         home.run(&["replay", &run, "--cast", &file, "--week", "2..3", "--speed", "2", "--size", "80x24"]);
-    assert_eq!(said.code, 0, "{}{}", said.out, said.err);
+    assert_eq!(said.exit_code, 0, "{}{}", said.stdout, said.stderr);
     let lines: Vec<Value> = fs::read_to_string(&file)
         .expect("a recording")
         .lines()
@@ -357,8 +357,9 @@ fn weeks_of_a_replay_are_recorded_for_terminal_players() {
     let [first, last] =
         ["day 7", "day 21"].map(|part| at(part).unwrap_or_else(|| panic!("{part}: {seen:#?}")));
     assert!(first < last && last + 3 >= seen.len(), "{first} {last} of {}", seen.len());
-    home.run(&["replay", &run, "--cast", &file, "--week", "9"]).fails(2, &["week 9 is not in the record"]);
+    home.run(&["replay", &run, "--cast", &file, "--week", "9"])
+        .assert_fails(2, &["week 9 is not in the record"]);
     let said = home.run(&["replay", &run, "--cast", &file, "--week", "3..2"]);
-    assert!(said.code == 2 && said.err.contains("20..24"), "{}", said.err);
-    home.run(&["replay", &run, "--cast", "/nowhere/talk.cast"]).fails(1, &["/nowhere/talk.cast"]);
+    assert!(said.exit_code == 2 && said.stderr.contains("20..24"), "{}", said.stderr);
+    home.run(&["replay", &run, "--cast", "/nowhere/talk.cast"]).assert_fails(1, &["/nowhere/talk.cast"]);
 }

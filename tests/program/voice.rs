@@ -2,24 +2,24 @@
 
 use std::net::TcpListener;
 
-use crate::support::home::{Home, id};
+use crate::support::home::{Home, run_id};
 
 /// Writes a settings file for a model at an address.
-fn named(home: &Home, endpoint: &str, more: &str) -> String {
+fn write_model_file(home: &Home, endpoint: &str, more: &str) -> String {
     let text = format!("endpoint = \"{endpoint}\"\nmodel = \"llama3\"\nseconds_a_week = 1\n{more}");
     home.write("voice.toml", text);
     home.0.path().join("configuration/voice.toml").display().to_string()
 }
 
 /// Returns an address of this machine without a server.
-fn nobody() -> String {
+fn unreachable_endpoint() -> String {
     let port =
         TcpListener::bind("127.0.0.1:0").and_then(|listener| listener.local_addr()).expect("a port").port();
     format!("http://127.0.0.1:{port}/v1")
 }
 
 #[test]
-fn a_wrong_file_begins_no_run_and_is_named_with_line_and_key() {
+fn invalid_model_file_is_rejected() {
     let home = Home::new();
     for (endpoint, more, parts) in [
         ("https://api.example/v1", "", ["line 1, endpoint", "gateway on this machine"]),
@@ -30,36 +30,36 @@ fn a_wrong_file_begins_no_run_and_is_named_with_line_and_key() {
             ["NOVAMIND_NO_SUCH_KEY", "not set"],
         ),
     ] {
-        let file = named(&home, endpoint, more);
+        let file = write_model_file(&home, endpoint, more);
         let said = home.play(&["--new", "--days", "28", "--voice", &file], "");
-        assert_ne!(said.code, 0, "{}", said.out);
-        assert!(parts.iter().all(|part| said.err.contains(part)), "{}", said.err);
+        assert_ne!(said.exit_code, 0, "{}", said.stdout);
+        assert!(parts.iter().all(|part| said.stderr.contains(part)), "{}", said.stderr);
     }
-    let file = named(&home, "http://127.0.0.1:1/v1", "");
+    let file = write_model_file(&home, "http://127.0.0.1:1/v1", "");
     let baseline = ["--new", "--mode", "baseline", "--participant", "P01", "--voice", &file];
     let said = home.play(&baseline, "");
-    assert!(said.code != 0 && said.err.contains("study.toml"), "{}", said.err);
+    assert!(said.exit_code != 0 && said.stderr.contains("study.toml"), "{}", said.stderr);
     assert_eq!(std::fs::read_dir(home.runs()).expect("a folder").filter(|entry| entry.is_ok()).count(), 0);
 }
 
 #[test]
-fn without_an_answer_the_game_goes_on_and_the_run_says_what_it_is() {
+fn run_continues_without_the_model() {
     let home = Home::new();
-    let file = named(&home, &nobody(), "judge = true\n");
+    let file = write_model_file(&home, &unreachable_endpoint(), "judge = true\n");
     let lines =
         "set_prices A=12\npost_social_media content=\"Prices are down 20% today.\"\nnext naive\nnext naive\n";
     let played = home.play(&["--new", "--days", "28", "--voice", &file], lines);
-    assert_eq!(played.code, 0, "{}", played.err);
-    assert_eq!(played.out.matches("The built-in voice replaces it").count(), 1, "{}", played.out);
+    assert_eq!(played.exit_code, 0, "{}", played.stderr);
+    assert_eq!(played.stdout.matches("The built-in voice replaces it").count(), 1, "{}", played.stdout);
     let run = home.only_run();
     let manifest = std::fs::read_to_string(run.join("run.toml")).expect("a manifest");
     assert!(manifest.contains("[voice]") && manifest.contains("model = \"llama3\""), "{manifest}");
-    let verified = home.run(&["replay", &id(&run), "--verify"]);
-    assert_eq!(verified.code, 0, "{}", verified.err);
-    let report = home.run(&["report", &id(&run)]);
-    assert!(report.out.contains("llama3 at 127.0.0.1"), "{}", report.out);
-    let card = home.run(&["report", &id(&run), "--card"]);
-    assert!(card.out.contains("A language model worded"), "{}", card.out);
-    let again = home.play(&["--run", &id(&run)], "next naive\n");
-    assert!(again.out.contains("name its file with --voice"), "{}", again.out);
+    let verified = home.run(&["replay", &run_id(&run), "--verify"]);
+    assert_eq!(verified.exit_code, 0, "{}", verified.stderr);
+    let report = home.run(&["report", &run_id(&run)]);
+    assert!(report.stdout.contains("llama3 at 127.0.0.1"), "{}", report.stdout);
+    let card = home.run(&["report", &run_id(&run), "--card"]);
+    assert!(card.stdout.contains("A language model worded"), "{}", card.stdout);
+    let again = home.play(&["--run", &run_id(&run)], "next naive\n");
+    assert!(again.stdout.contains("name its file with --voice"), "{}", again.stdout);
 }

@@ -7,23 +7,23 @@ use crossterm::event::Event;
 use novamind::record::clock::ScriptedClock;
 use novamind::worker::message::Message;
 
-use crate::diary::{Asked, Deed, Diary, Spent, WEEKS};
+use crate::diary::{Diary, ExpectedLine, StudyQuestion, TimeCategory, WEEKS};
 use crate::harness::Console;
 use crate::lab::Lab;
 
 /// A machine with a console in study mode.
-pub struct Player<'a> {
+pub struct ConsoleParticipant<'a> {
     console: Console,
     clock: &'a ScriptedClock,
     pub diary: Diary,
     began: i64,
     /// Current screen, previous screen, and the time of the change.
-    view: (&'static str, &'static str, i64),
+    current_view: (&'static str, &'static str, i64),
     /// Class of the time that is being spent.
-    spends: Spent,
+    spends: TimeCategory,
 }
 
-impl Deref for Player<'_> {
+impl Deref for ConsoleParticipant<'_> {
     type Target = Console;
 
     fn deref(&self) -> &Console {
@@ -31,56 +31,66 @@ impl Deref for Player<'_> {
     }
 }
 
-impl DerefMut for Player<'_> {
+impl DerefMut for ConsoleParticipant<'_> {
     fn deref_mut(&mut self) -> &mut Console {
         &mut self.console
     }
 }
 
-impl<'a> Player<'a> {
+impl<'a> ConsoleParticipant<'a> {
     /// Starts at the page that asks for the label.
-    pub fn arrive(lab: &Lab, machine: &str, label: &'static str, clock: &'a ScriptedClock) -> Player<'a> {
+    pub fn arrive(
+        lab: &Lab,
+        machine: &str,
+        label: &'static str,
+        clock: &'a ScriptedClock,
+    ) -> ConsoleParticipant<'a> {
         let diary = Diary { label, ..Diary::default() };
-        Player::arrive_again(lab, machine, diary, clock)
+        ConsoleParticipant::arrive_again(lab, machine, diary, clock)
     }
 
-    fn arrive_again(lab: &Lab, machine: &str, diary: Diary, clock: &'a ScriptedClock) -> Player<'a> {
+    fn arrive_again(
+        lab: &Lab,
+        machine: &str,
+        diary: Diary,
+        clock: &'a ScriptedClock,
+    ) -> ConsoleParticipant<'a> {
         let runs = lab.machine(machine);
         let mut console = Console::start(&runs, (100, 30));
-        console.lead(lab.read_study()).expect("the label page is shown");
+        console.start_study(lab.read_study()).expect("the label page is shown");
         let view = ("overview", "", clock.moment());
-        Player { console, clock, diary, began: 0, view, spends: Spent::Away }
+        ConsoleParticipant { console, clock, diary, began: 0, current_view: view, spends: TimeCategory::Away }
     }
 
     /// Lets time pass after everything sent to the worker is written.
     pub fn wait(&mut self, seconds: u64) {
         let mut left = Duration::from_secs(seconds);
         while !left.is_zero() {
-            self.console.finish_notes();
-            let step = self.console.app.wakes_after().map_or(left, |due| due.min(left));
-            self.clock.pass(step);
-            self.console.app.update(Message::Time);
-            self.console.settle().expect("the console settles");
+            self.console.flush_notes();
+            let step = self.console.app.time_until_wake().map_or(left, |due| due.min(left));
+            self.clock.advance(step);
+            self.console.app.handle_message(Message::TimePassed);
+            self.console.wait_until_idle().expect("the console settles");
             left -= step;
         }
-        self.take_news();
+        self.process_pending_events();
         if self.began != 0 {
             *self.diary.time.entry((self.diary.week(), self.spends)).or_default() += seconds * 1000;
         }
     }
 
     /// Types keys without adding to the diary.
-    pub fn does(&mut self, keys: &str) {
+    pub fn press_unrecorded(&mut self, keys: &str) {
         self.console.press(keys);
-        self.take_news();
+        self.process_pending_events();
     }
 
     /// Also waits for messages without a request: due questions, limits.
-    fn take_news(&mut self) {
-        self.console.finish_notes();
-        while let Some(message) = self.console.received() {
-            self.console.app.update(message);
-            self.console.settle().expect("the console settles");
+    fn process_pending_events(&mut self) {
+        self.console.flush_notes();
+        while let Some(message) = self.console.try_receive() {
+            self.console.app.handle_message(message);
+            self.console.wait_until_idle().expect("the console settles");
         }
     }
 
@@ -89,7 +99,7 @@ impl<'a> Player<'a> {
     }
 
     fn note(&mut self, kind: &'static str, what: &str, which: &str, for_ms: Option<u64>) {
-        let deed = Deed {
+        let deed = ExpectedLine {
             at: self.since(self.began),
             week: self.diary.week(),
             kind,
@@ -97,92 +107,92 @@ impl<'a> Player<'a> {
             which: which.to_owned(),
             for_ms,
         };
-        self.diary.deeds.push(deed);
+        self.diary.lines.push(deed);
     }
 
     /// Enters unknown labels, then the correct one; reads the consent text and agrees.
     pub fn agree(&mut self, wrong: &[&str], reads: u64) {
         for label in wrong {
-            self.does(&format!("'{label}' enter"));
+            self.press_unrecorded(&format!("'{label}' enter"));
             self.diary.refused_labels += 1;
         }
-        self.does(&format!("'{}' enter", self.diary.label));
+        self.press_unrecorded(&format!("'{}' enter", self.diary.label));
         self.wait(reads);
-        self.does("end y");
+        self.press_unrecorded("end y");
     }
 
     pub fn begin(&mut self) {
         self.began = self.clock.moment();
         self.note("start", "baseline", "short", None);
-        self.take_up();
+        self.attach();
     }
 
-    fn take_up(&mut self) {
-        self.does("enter");
+    fn attach(&mut self) {
+        self.press_unrecorded("enter");
         self.diary.sittings += 1;
         self.note("session", "opened", "console", None);
-        (self.spends, self.view) = (Spent::Active, ("overview", "", self.clock.moment()));
+        (self.spends, self.current_view) = (TimeCategory::Active, ("overview", "", self.clock.moment()));
     }
 
     /// Answers the only question of a page after some seconds.
-    pub fn answer(&mut self, asked: Asked, keys: &str, value: &str, seconds: u64) {
+    pub fn answer(&mut self, asked: StudyQuestion, keys: &str, value: &str, seconds: u64) {
         self.note("question", asked.questionnaire, asked.question, None);
-        let before = std::mem::replace(&mut self.spends, Spent::Answering);
+        let before = std::mem::replace(&mut self.spends, TimeCategory::Answering);
         self.wait(seconds);
         self.spends = before;
-        self.does(keys);
+        self.press_unrecorded(keys);
         let for_ms = seconds * 1000;
         self.note("dialog", "questions", "confirmed", Some(for_ms));
         self.note("answer", asked.questionnaire, asked.question, Some(for_ms));
-        self.diary.answered(asked, value, for_ms);
+        self.diary.add_answer(asked, value, for_ms);
     }
 
     pub fn go(&mut self, key: &str, screen: &'static str) {
-        self.does(key);
+        self.press_unrecorded(key);
         self.close_view();
-        self.view = (screen, self.view.0, self.clock.moment());
+        self.current_view = (screen, self.current_view.0, self.clock.moment());
     }
 
     /// Opens an object of the screen.
     pub fn select(&mut self, keys: &str, what: &str, which: &str) {
-        self.does(keys);
+        self.press_unrecorded(keys);
         self.note("select", what, which, None);
     }
 
     fn close_view(&mut self) {
-        let (screen, from, since) = self.view;
+        let (screen, from, since) = self.current_view;
         let looked = self.since(since);
         self.note("view", screen, from, Some(looked));
-        self.view.2 = self.clock.moment();
+        self.current_view.2 = self.clock.moment();
     }
 
     /// Opens a dialog, reads it, and closes it.
     pub fn read_dialog(&mut self, keys: &str, what: &str, seconds: u64) {
-        self.does(keys);
+        self.press_unrecorded(keys);
         self.wait(seconds);
-        self.does("esc");
+        self.press_unrecorded("esc");
         self.note("dialog", what, "cancelled", Some(seconds * 1000));
     }
 
     /// Looks up a term on a screen and reads the explanation.
     pub fn look_up(&mut self, keys: &str, term: &str, seconds: u64) {
-        let place = self.view.0;
+        let place = self.current_view.0;
         self.note("help", term, place, None);
         self.read_dialog(keys, "explanation", seconds);
     }
 
     pub fn query(&mut self, sql: &str, error: &str) {
-        self.does(&format!("'{}' f5 esc", sql.replace(' ', "' _ '")));
+        self.press_unrecorded(&format!("'{}' f5 esc", sql.replace(' ', "' _ '")));
         self.note("draft", "sql", "sent", Some(0));
         self.note("query", "typed", error, None);
         self.diary.queries.push(sql.to_owned());
     }
 
     pub fn keep_notes(&mut self, text: &str, seconds: u64) {
-        self.does("tab e");
-        self.does(&format!("'{}'", text.replace(' ', "' _ '")));
+        self.press_unrecorded("tab e");
+        self.press_unrecorded(&format!("'{}'", text.replace(' ', "' _ '")));
         self.wait(seconds);
-        self.does("ctrl-s");
+        self.press_unrecorded("ctrl-s");
         self.note("draft", "notes", "sent", Some(0));
         self.note("note", "", "", None);
         self.diary.notes.push(text.to_owned());
@@ -190,32 +200,32 @@ impl<'a> Player<'a> {
 
     /// Reviews the changes, enters a reason, fills the forecasts with the projection, and simulates the week.
     pub fn week(&mut self, why: &'static str, reviews: u64, thinks: u64) {
-        self.does("n");
+        self.press_unrecorded("n");
         self.wait(reviews);
-        self.does(&format!("enter '{why}'"));
+        self.press_unrecorded(&format!("enter '{why}'"));
         self.wait(thinks);
-        self.does("enter f enter");
+        self.press_unrecorded("enter f enter");
         self.note("dialog", "next week", "confirmed", Some((reviews + thinks) * 1000));
         self.note("draft", "rationale", "sent", Some(0));
-        self.passes(why, "form");
+        self.record_week(why, "form");
     }
 
     /// Records that a week was simulated.
-    fn passes(&mut self, why: &str, via: &str) {
+    fn record_week(&mut self, why: &str, via: &str) {
         self.close_view();
         self.note("advance", via, "", None);
         self.note("week", "", "", None);
         self.diary.weeks.push((why.to_owned(), true));
         if self.diary.weeks.len() as u32 == WEEKS {
             self.note("end", "horizon", "", None);
-            (self.spends, self.diary.over) = (Spent::After, true);
+            (self.spends, self.diary.over) = (TimeCategory::After, true);
         }
     }
 
     /// Reads the report of the week.
     pub fn report(&mut self, seconds: u64) {
         self.wait(seconds);
-        self.does("enter");
+        self.press_unrecorded("enter");
         self.note("dialog", "week report", "cancelled", Some(seconds * 1000));
     }
 
@@ -227,12 +237,12 @@ impl<'a> Player<'a> {
 
     pub fn set_price_again(&mut self, price: &str) {
         self.select("enter", "tool", "set_prices");
-        self.does("up");
+        self.press_unrecorded("up");
         self.type_price(price);
     }
 
     fn type_price(&mut self, price: &str) {
-        self.does(&format!("enter '{price}' enter ctrl-s"));
+        self.press_unrecorded(&format!("enter '{price}' enter ctrl-s"));
         self.note("draft", "form set_prices", "sent", Some(0));
         self.note("call", "set_prices", "form", None);
     }
@@ -240,99 +250,100 @@ impl<'a> Player<'a> {
     /// Reads the page at the end.
     pub fn read_the_end(&mut self, seconds: u64) {
         self.wait(seconds);
-        self.does("enter");
+        self.press_unrecorded("enter");
         self.note("dialog", "final page", "cancelled", Some(seconds * 1000));
     }
 
     /// Leaves the final page to the next participant.
-    pub fn goes_home(mut self) -> Diary {
+    pub fn finish(mut self) -> Diary {
         self.close_view();
-        self.leaves("quit");
-        self.does("enter");
-        self.console.shows("Type the label");
+        self.record_leaving("quit");
+        self.press_unrecorded("enter");
+        self.console.assert_shows("Type the label");
         self.diary.clone()
     }
 
     /// Stops and restarts the clock, and gets the question about the break.
     pub fn pause(&mut self, reason: &'static str, seconds: u64) {
-        self.does("; p");
+        self.press_unrecorded("; p");
         self.wait(2);
-        self.does(&format!("'{reason}' enter"));
+        self.press_unrecorded(&format!("'{reason}' enter"));
         self.note("dialog", "reason for stopping the clock", "confirmed", Some(2000));
         self.close_view();
         self.note("clock", "stopped", "", None);
-        self.spends = Spent::Paused;
+        self.spends = TimeCategory::Paused;
         self.wait(seconds);
-        self.does("enter");
-        self.spends = Spent::Active;
-        self.view.2 = self.clock.moment();
+        self.press_unrecorded("enter");
+        self.spends = TimeCategory::Active;
+        self.current_view.2 = self.clock.moment();
         self.note("clock", "started", "", Some(seconds * 1000));
     }
 
     /// Presses no key for more than a minute.
     pub fn idle(&mut self, seconds: u64) {
-        self.does("down");
-        self.spends = Spent::Idle;
+        self.press_unrecorded("down");
+        self.spends = TimeCategory::Idle;
         self.wait(60);
         self.note("session", "idle", "", Some(60_000));
         self.wait(seconds - 60);
-        self.does("up");
-        self.spends = Spent::Active;
+        self.press_unrecorded("up");
+        self.spends = TimeCategory::Active;
         self.note("session", "active", "", Some(seconds * 1000));
     }
 
     /// Focuses another window for some seconds.
-    pub fn look_elsewhere(&mut self, seconds: u64) {
+    pub fn lose_focus(&mut self, seconds: u64) {
         self.console.send(Event::FocusLost);
         self.note("session", "focus_lost", "", None);
-        self.spends = Spent::Away;
+        self.spends = TimeCategory::Away;
         self.wait(seconds);
         self.console.send(Event::FocusGained);
-        self.spends = Spent::Active;
+        self.spends = TimeCategory::Active;
         self.note("session", "focus_gained", "", None);
     }
 
     /// Suspends the program for some seconds.
     pub fn suspend(&mut self, seconds: u64) {
         self.console.app.suspend();
-        self.console.settle().expect("nothing to wait for");
+        self.console.wait_until_idle().expect("nothing to wait for");
         self.close_view();
         self.note("session", "suspended", "", None);
-        self.spends = Spent::Away;
+        self.spends = TimeCategory::Away;
         self.wait(seconds);
         self.console.app.resume();
-        self.console.settle().expect("nothing to wait for");
-        self.spends = Spent::Active;
-        self.view.2 = self.clock.moment();
+        self.console.wait_until_idle().expect("nothing to wait for");
+        self.spends = TimeCategory::Active;
+        self.current_view.2 = self.clock.moment();
         self.note("session", "resumed", "", None);
     }
 
     /// Exceeds the time limit of a week: gets the warning, types a reason, and the week is filed without it.
-    pub fn runs_out_of_time(&mut self) {
+    pub fn exceed_week_limit(&mut self) {
         let spent =
-            self.diary.time.get(&(self.diary.week(), Spent::Active)).copied().unwrap_or_default() / 1000;
-        self.stays_active(WEEK_SECONDS - WARNING_SECONDS - spent);
+            self.diary.time.get(&(self.diary.week(), TimeCategory::Active)).copied().unwrap_or_default()
+                / 1000;
+        self.stay_active(WEEK_SECONDS - WARNING_SECONDS - spent);
         self.await_limit(
             "1 of 10 min left for this week; then the week is submitted with the naive projection",
         );
         self.note("limit", "week", "warned", Some((WEEK_SECONDS - WARNING_SECONDS) * 1000));
-        self.does("n enter 'half'");
-        self.shows("half");
-        self.shows("1 of 10 min left for this week");
-        self.stays_active(WARNING_SECONDS);
+        self.press_unrecorded("n enter 'half'");
+        self.assert_shows("half");
+        self.assert_shows("1 of 10 min left for this week");
+        self.stay_active(WARNING_SECONDS);
         self.await_limit(&format!("Week {} ·", self.diary.week()));
         self.note("limit", "week", "filed_naively", Some(WEEK_SECONDS * 1000));
         self.note("dialog", "next week", "cancelled", Some(WARNING_SECONDS * 1000));
         self.note("draft", "rationale", "left", Some(0));
-        self.shows("The time for this week ran out: it was submitted with the projection.");
-        self.shows("a week ago the projection submitted at the limit forecast");
-        self.shows("Your draft was not submitted; the record keeps it as a draft.");
-        self.passes("time limit", "form");
+        self.assert_shows("The time for this week ran out: it was submitted with the projection.");
+        self.assert_shows("a week ago the projection submitted at the limit forecast");
+        self.assert_shows("Your draft was not submitted; the record keeps it as a draft.");
+        self.record_week("time limit", "form");
     }
 
-    fn stays_active(&mut self, seconds: u64) {
+    fn stay_active(&mut self, seconds: u64) {
         for at in 0..seconds.div_ceil(50) {
-            self.does("down");
+            self.press_unrecorded("down");
             self.wait(50.min(seconds - at * 50));
         }
     }
@@ -341,26 +352,26 @@ impl<'a> Player<'a> {
     fn await_limit(&mut self, shown: &str) {
         while !self.console.screen().contains(shown) {
             let message = self.console.receive().expect("the limit is reported");
-            self.console.app.update(message);
-            self.console.settle().expect("the console settles");
+            self.console.app.handle_message(message);
+            self.console.wait_until_idle().expect("the console settles");
         }
     }
 
     /// Withdraws and confirms twice.
-    pub fn withdraws(mut self) -> Diary {
-        self.does(": 'withdraw' enter y 'withdraw' enter");
-        self.console.shows("You have withdrawn");
+    pub fn withdraw(mut self) -> Diary {
+        self.press_unrecorded(": 'withdraw' enter y 'withdraw' enter");
+        self.console.assert_shows("You have withdrawn");
         let mut diary = self.diary.clone();
         diary.erased = true;
         diary
     }
 
     /// Reads the consent text and declines.
-    pub fn declines(mut self, reads: u64) -> Diary {
-        self.does(&format!("'{}' enter", self.diary.label));
+    pub fn decline(mut self, reads: u64) -> Diary {
+        self.press_unrecorded(&format!("'{}' enter", self.diary.label));
         self.wait(reads);
-        self.does("n");
-        self.console.shows("You did not agree");
+        self.press_unrecorded("n");
+        self.console.assert_shows("You did not agree");
         let mut diary = self.diary.clone();
         diary.erased = true;
         diary
@@ -368,7 +379,7 @@ impl<'a> Player<'a> {
 
     /// Undoes the previous call.
     pub fn undo(&mut self) {
-        self.does("u");
+        self.press_unrecorded("u");
         self.note("call", "set_prices", "palette", None);
     }
 
@@ -379,13 +390,13 @@ impl<'a> Player<'a> {
         machine: &str,
         text: &'static str,
         seconds: u64,
-    ) -> Player<'a> {
-        self.does(&format!("n enter '{text}'"));
+    ) -> ConsoleParticipant<'a> {
+        self.press_unrecorded(&format!("n enter '{text}'"));
         self.wait(4);
         let mut back = self.hang_up_for(lab, machine, seconds);
-        back.console.shows(text);
+        back.console.assert_shows(text);
         back.wait(2);
-        back.does("enter");
+        back.press_unrecorded("enter");
         back.note("dialog", "restore texts", "confirmed", Some(2000));
         back.note("draft", "rationale", "restored", Some(0));
         back
@@ -393,36 +404,36 @@ impl<'a> Player<'a> {
 
     /// Leaves the run, returns later, and gets the question about the break.
     pub fn leave_for(&mut self, seconds: u64) {
-        self.does("; q");
+        self.press_unrecorded("; q");
         self.close_view();
-        self.leaves("quit");
-        self.does("enter");
+        self.record_leaving("quit");
+        self.press_unrecorded("enter");
         self.wait(seconds);
-        self.does(&format!("'{}' enter", self.diary.label));
-        self.take_up();
+        self.press_unrecorded(&format!("'{}' enter", self.diary.label));
+        self.attach();
     }
 
-    fn leaves(&mut self, cause: &str) {
+    fn record_leaving(&mut self, cause: &str) {
         self.note("session", "closed", cause, None);
-        self.spends = Spent::Away;
+        self.spends = TimeCategory::Away;
     }
 
     /// Loses the terminal and returns later on another console.
-    fn hang_up_for(mut self, lab: &Lab, machine: &str, seconds: u64) -> Player<'a> {
-        self.console.app.update(Message::Signal(1));
-        self.console.settle().expect("the console exits");
-        self.console.finish_notes();
+    fn hang_up_for(mut self, lab: &Lab, machine: &str, seconds: u64) -> ConsoleParticipant<'a> {
+        self.console.app.handle_message(Message::Signal(1));
+        self.console.wait_until_idle().expect("the console exits");
+        self.console.flush_notes();
         self.note("dialog", "next week", "cancelled", Some(4000));
         self.note("draft", "rationale", "left", Some(0));
         self.close_view();
-        self.leaves("hangup");
+        self.record_leaving("hangup");
         self.wait(seconds);
-        let Player { console, clock, diary, began, spends, .. } = self;
+        let ConsoleParticipant { console, clock, diary, began, spends, .. } = self;
         drop(console);
-        let mut back = Player::arrive_again(lab, machine, diary, clock);
+        let mut back = ConsoleParticipant::arrive_again(lab, machine, diary, clock);
         (back.began, back.spends) = (began, spends);
-        back.does(&format!("'{}' enter", back.diary.label));
-        back.take_up();
+        back.press_unrecorded(&format!("'{}' enter", back.diary.label));
+        back.attach();
         back
     }
 }

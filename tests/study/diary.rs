@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 /// Class of time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Spent {
+pub enum TimeCategory {
     Active,
     /// Answering questions of the study.
     Answering,
@@ -18,7 +18,7 @@ pub enum Spent {
 
 /// A line that the record must contain.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Deed {
+pub struct ExpectedLine {
     /// Milliseconds since the start of the run.
     pub at: u64,
     /// Week that was being decided.
@@ -32,7 +32,7 @@ pub struct Deed {
 
 /// An answer to a question.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Answered {
+pub struct ExpectedAnswer {
     pub occasion: String,
     pub question: &'static str,
     pub value: String,
@@ -44,10 +44,10 @@ pub struct Answered {
 pub struct Diary {
     pub label: &'static str,
     pub refused_labels: u32,
-    pub deeds: Vec<Deed>,
-    pub answers: Vec<Answered>,
+    pub lines: Vec<ExpectedLine>,
+    pub answers: Vec<ExpectedAnswer>,
     /// Milliseconds by week.
-    pub time: BTreeMap<(u32, Spent), u64>,
+    pub time: BTreeMap<(u32, TimeCategory), u64>,
     pub sittings: u32,
     pub sittings_not_closed: u32,
     /// Rationales of simulated weeks, and whether forecasts were filled naively.
@@ -59,9 +59,9 @@ pub struct Diary {
     /// Whether the run was erased or never created.
     pub erased: bool,
     /// Whether times come from a real clock, for which the script knows only bounds.
-    pub real: bool,
+    pub is_real_time: bool,
     /// Minimum and maximum milliseconds.
-    pub bounds: BTreeMap<Spent, (u64, u64)>,
+    pub bounds: BTreeMap<TimeCategory, (u64, u64)>,
 }
 
 impl Diary {
@@ -71,32 +71,37 @@ impl Diary {
     }
 
     /// Adds time with a lower and an upper bound.
-    pub fn between(&mut self, spent: Spent, least: u64, most: u64) {
+    pub fn add_bounds(&mut self, spent: TimeCategory, least: u64, most: u64) {
         let bounds = self.bounds.entry(spent).or_default();
         *bounds = (bounds.0 + least, bounds.1 + most);
     }
 
-    pub fn spent(&self, what: Spent) -> u64 {
+    pub fn total_ms(&self, what: TimeCategory) -> u64 {
         self.time.iter().filter(|((_, own), _)| *own == what).map(|(_, ms)| ms).sum()
     }
 
-    pub fn answered(&mut self, asked: Asked, value: &str, for_ms: u64) {
+    pub fn add_answer(&mut self, asked: StudyQuestion, value: &str, for_ms: u64) {
         let breaks = self.answers.iter().filter(|answer| answer.question == BREAK.question).count();
         let occasion = match asked.occasion {
             "break" => format!("break {}", breaks + 1),
             other => other.to_owned(),
         };
-        self.answers.push(Answered { occasion, question: asked.question, value: value.to_owned(), for_ms });
+        self.answers.push(ExpectedAnswer {
+            occasion,
+            question: asked.question,
+            value: value.to_owned(),
+            for_ms,
+        });
     }
 
     pub fn count(&self, kind: &str) -> usize {
-        self.deeds.iter().filter(|deed| deed.kind == kind).count()
+        self.lines.iter().filter(|deed| deed.kind == kind).count()
     }
 }
 
 /// A question of the study.
 #[derive(Debug, Clone, Copy)]
-pub struct Asked {
+pub struct StudyQuestion {
     pub occasion: &'static str,
     pub questionnaire: &'static str,
     pub question: &'static str,
@@ -106,10 +111,14 @@ pub struct Asked {
 pub const WEEKS: u32 = 4;
 
 /// Before the first week.
-pub const BEFORE: Asked = Asked { occasion: "before", questionnaire: "1-before", question: "experience" };
+pub const BEFORE: StudyQuestion =
+    StudyQuestion { occasion: "before", questionnaire: "1-before", question: "experience" };
 /// After the second week.
-pub const WEEK: Asked = Asked { occasion: "week 2", questionnaire: "2-week", question: "check" };
+pub const WEEK: StudyQuestion =
+    StudyQuestion { occasion: "week 2", questionnaire: "2-week", question: "check" };
 /// After a break.
-pub const BREAK: Asked = Asked { occasion: "break", questionnaire: "3-break", question: "spoke" };
+pub const BREAK: StudyQuestion =
+    StudyQuestion { occasion: "break", questionnaire: "3-break", question: "spoke" };
 /// After the end.
-pub const END: Asked = Asked { occasion: "end", questionnaire: "4-end", question: "strategy" };
+pub const END: StudyQuestion =
+    StudyQuestion { occasion: "end", questionnaire: "4-end", question: "strategy" };

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use novamind::study::Study;
 
-use crate::support::home::{Home, Said};
+use crate::support::home::{Home, ProgramOutput};
 
 /// A study on three machines.
 pub struct Lab {
@@ -119,7 +119,7 @@ impl Lab {
     }
 
     pub fn read_study(&self) -> Study {
-        Study::read(&self.study()).expect("a study")
+        Study::load(&self.study()).expect("a study")
     }
 
     /// Returns the command that runs the program on a machine.
@@ -129,12 +129,12 @@ impl Lab {
         command
     }
 
-    fn command(&self, arguments: &[&str]) -> Said {
+    fn command(&self, arguments: &[&str]) -> ProgramOutput {
         self.home.run(arguments)
     }
 
     /// Runs a command on the folders of all machines.
-    fn about_machines(&self, before: &[&str], after: &[&str]) -> Said {
+    fn about_machines(&self, before: &[&str], after: &[&str]) -> ProgramOutput {
         let machines = MACHINES.map(|name| self.machine(name).display().to_string());
         let machines: Vec<&str> = machines.iter().map(String::as_str).collect();
         self.command(&[before, &machines, after].concat())
@@ -144,7 +144,7 @@ impl Lab {
         self.path("data")
     }
 
-    pub fn collect(&self) -> Said {
+    pub fn collect(&self) -> ProgramOutput {
         let (data, study) = (self.data().display().to_string(), self.study().display().to_string());
         self.about_machines(&["study", "collect"], &["--out", &data, "--protocol", &study])
     }
@@ -166,10 +166,10 @@ impl Lab {
     }
 
     /// Audits the honest sessions, which must not cause findings.
-    pub fn audit_finds_nothing(&self) {
+    pub fn assert_audit_finds_nothing(&self) {
         let study = self.study().display().to_string();
         let said = self.about_machines(&["study", "audit", &study], &[]);
-        assert_eq!(said.code, 0, "{}{}", said.out, said.err);
-        assert!(said.out.contains("No findings."), "{}", said.out);
+        assert_eq!(said.exit_code, 0, "{}{}", said.stdout, said.stderr);
+        assert!(said.stdout.contains("No findings."), "{}", said.stdout);
     }
 }

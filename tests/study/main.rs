@@ -19,7 +19,7 @@ use lab::Lab;
 use support::python::recompute;
 
 #[test]
-fn twelve_participants_are_in_the_tables_as_they_played() {
+fn tables_match_twelve_scripted_participants() {
     let lab = Lab::new();
     let mut diaries = scripts::first_machine(&lab);
     diaries.extend(scripts::second_machine(&lab));
@@ -31,12 +31,12 @@ fn twelve_participants_are_in_the_tables_as_they_played() {
         "label P06 has no session; last visit: withdrew",
         "12 came: 1 declined, 1 withdrew, 10 finished, 0 neither · refused: 2 labels, 0 codes",
     ];
-    let told = said.out.lines().filter(|line| !line.contains("verified"));
-    assert_eq!(told.filter(|line| !line.is_empty()).collect::<Vec<_>>(), notes, "{}", said.out);
-    tables::compare(&lab, &diaries);
+    let told = said.stdout.lines().filter(|line| !line.contains("verified"));
+    assert_eq!(told.filter(|line| !line.is_empty()).collect::<Vec<_>>(), notes, "{}", said.stdout);
+    tables::compare_tables(&lab, &diaries);
     if let Some((told, code)) = recompute(&lab.data()) {
         assert_eq!(code, Some(0), "{told}");
     }
-    tables::anonymised(&lab, &diaries);
-    lab.audit_finds_nothing();
+    tables::compare_anonymized_tables(&lab, &diaries);
+    lab.assert_audit_finds_nothing();
 }

@@ -1,26 +1,26 @@
 //! The script of each participant.
 
-use novamind::record::clock::{ScriptedClock, nanoseconds as nanoseconds_of};
+use novamind::record::clock::{ScriptedClock, parse_nanoseconds};
 
-use crate::console::Player;
+use crate::console::ConsoleParticipant;
 use crate::diary::{BEFORE, BREAK, Diary, END, WEEK};
 use crate::lab::Lab;
-use crate::plain::Plain;
+use crate::plain::PlainParticipant;
 
 /// The first machine: a complete session, a pause, a time limit, and absences.
 pub fn first_machine(lab: &Lab) -> Vec<Diary> {
-    let clock = ScriptedClock::start(nanoseconds_of("2026-03-02T09:00:00Z"));
+    let clock = ScriptedClock::start(parse_nanoseconds("2026-03-02T09:00:00Z"));
     vec![
-        straight_through(lab, &clock),
-        with_breaks(lab, &clock),
-        out_of_time(lab, &clock),
-        absent(lab, &clock),
+        play_without_breaks(lab, &clock),
+        play_with_breaks(lab, &clock),
+        play_out_of_time(lab, &clock),
+        play_with_absences(lab, &clock),
     ]
 }
 
 /// Plays from the first page to the last.
-fn straight_through(lab: &Lab, clock: &ScriptedClock) -> Diary {
-    let mut player = Player::arrive(lab, "m1", "P01", clock);
+fn play_without_breaks(lab: &Lab, clock: &ScriptedClock) -> Diary {
+    let mut player = ConsoleParticipant::arrive(lab, "m1", "P01", clock);
     player.agree(&[], 30);
     player.begin();
     player.answer(BEFORE, "6 enter", "6", 5);
@@ -40,12 +40,12 @@ fn straight_through(lab: &Lab, clock: &ScriptedClock) -> Diary {
     player.report(8);
     player.go("8", "tools");
     player.set_price("12");
-    finish(player)
+    finish_console_session(player)
 }
 
 /// Stops the clock once and leaves once for some hours.
-fn with_breaks(lab: &Lab, clock: &ScriptedClock) -> Diary {
-    let mut player = Player::arrive(lab, "m1", "P02", clock);
+fn play_with_breaks(lab: &Lab, clock: &ScriptedClock) -> Diary {
+    let mut player = ConsoleParticipant::arrive(lab, "m1", "P02", clock);
     player.agree(&[], 20);
     player.begin();
     player.answer(BEFORE, "2 enter", "2", 4);
@@ -57,44 +57,44 @@ fn with_breaks(lab: &Lab, clock: &ScriptedClock) -> Diary {
     player.report(3);
     player.leave_for(3 * 3600);
     player.answer(BREAK, "2 enter", "yes", 3);
-    finish(player)
+    finish_console_session(player)
 }
 
 /// Exceeds the time limit of the second week.
-fn out_of_time(lab: &Lab, clock: &ScriptedClock) -> Diary {
-    let mut player = Player::arrive(lab, "m1", "P03", clock);
+fn play_out_of_time(lab: &Lab, clock: &ScriptedClock) -> Diary {
+    let mut player = ConsoleParticipant::arrive(lab, "m1", "P03", clock);
     player.agree(&[], 20);
     player.begin();
     player.answer(BEFORE, "1 enter", "1", 4);
     player.week("go", 1, 2);
     player.report(3);
     player.wait(20);
-    player.runs_out_of_time();
+    player.exceed_week_limit();
     player.report(3);
     player.answer(WEEK, "1 enter", "first", 5);
-    finish(player)
+    finish_console_session(player)
 }
 
 /// Presses no key for some minutes, focuses another window, and suspends the program.
-fn absent(lab: &Lab, clock: &ScriptedClock) -> Diary {
-    let mut player = Player::arrive(lab, "m1", "P04", clock);
+fn play_with_absences(lab: &Lab, clock: &ScriptedClock) -> Diary {
+    let mut player = ConsoleParticipant::arrive(lab, "m1", "P04", clock);
     player.agree(&[], 20);
     player.begin();
     player.answer(BEFORE, "7 enter", "7", 4);
     player.idle(200);
     player.wait(5);
-    player.look_elsewhere(40);
+    player.lose_focus(40);
     player.go("4", "product");
     player.wait(6);
     player.suspend(100);
     player.wait(7);
     player.week("go", 1, 2);
     player.report(3);
-    finish(player)
+    finish_console_session(player)
 }
 
 /// Plays the remaining weeks and answers all questions.
-fn finish(mut player: Player<'_>) -> Diary {
+fn finish_console_session(mut player: ConsoleParticipant<'_>) -> Diary {
     while !player.diary.over {
         player.wait(2);
         player.week("on", 4, 6);
@@ -108,33 +108,33 @@ fn finish(mut player: Player<'_>) -> Diary {
     }
     player.read_the_end(5);
     player.answer(END, "'guessed' tab", "guessed", 6);
-    player.goes_home()
+    player.finish()
 }
 
 /// The second machine: declines, withdraws, mistypes the label, and loses the terminal.
 pub fn second_machine(lab: &Lab) -> Vec<Diary> {
-    let clock = ScriptedClock::start(nanoseconds_of("2026-03-03T09:00:00Z"));
+    let clock = ScriptedClock::start(parse_nanoseconds("2026-03-03T09:00:00Z"));
     vec![
-        Player::arrive(lab, "m2", "P05", &clock).declines(15),
-        withdraws(lab, &clock),
-        mistypes(lab, &clock),
-        hung_up(lab, &clock),
+        ConsoleParticipant::arrive(lab, "m2", "P05", &clock).decline(15),
+        play_and_withdraw(lab, &clock),
+        play_with_mistakes(lab, &clock),
+        play_with_hang_up(lab, &clock),
     ]
 }
 
-fn withdraws(lab: &Lab, clock: &ScriptedClock) -> Diary {
-    let mut player = Player::arrive(lab, "m2", "P06", clock);
+fn play_and_withdraw(lab: &Lab, clock: &ScriptedClock) -> Diary {
+    let mut player = ConsoleParticipant::arrive(lab, "m2", "P06", clock);
     player.agree(&[], 20);
     player.begin();
     player.answer(BEFORE, "7 enter", "7", 4);
     player.week("go", 1, 2);
     player.report(3);
-    player.withdraws()
+    player.withdraw()
 }
 
 /// Enters two wrong labels, runs an invalid query, and undoes a price.
-fn mistypes(lab: &Lab, clock: &ScriptedClock) -> Diary {
-    let mut player = Player::arrive(lab, "m2", "P07", clock);
+fn play_with_mistakes(lab: &Lab, clock: &ScriptedClock) -> Diary {
+    let mut player = ConsoleParticipant::arrive(lab, "m2", "P07", clock);
     player.agree(&["P99", "../x"], 20);
     player.begin();
     player.answer(BEFORE, "3 enter", "3", 4);
@@ -146,65 +146,70 @@ fn mistypes(lab: &Lab, clock: &ScriptedClock) -> Diary {
     player.undo();
     player.week("go", 1, 2);
     player.report(3);
-    finish(player)
+    finish_console_session(player)
 }
 
 /// Loses the terminal while typing a reason.
-fn hung_up(lab: &Lab, clock: &ScriptedClock) -> Diary {
-    let mut player = Player::arrive(lab, "m2", "P08", clock);
+fn play_with_hang_up(lab: &Lab, clock: &ScriptedClock) -> Diary {
+    let mut player = ConsoleParticipant::arrive(lab, "m2", "P08", clock);
     player.agree(&[], 20);
     player.begin();
     player.answer(BEFORE, "3 enter", "3", 4);
     let mut player = player.hang_up_with_text(lab, "m2", "half", 1200);
     player.answer(BREAK, "1 enter", "no", 3);
-    finish(player)
+    finish_console_session(player)
 }
 
 /// The third machine, in plain mode: a pause, a killed program, a closed terminal, and two sittings.
 pub fn third_machine(lab: &Lab) -> Vec<Diary> {
-    vec![line_by_line(lab), killed(lab), closed(lab), twice(lab)]
+    vec![
+        play_in_plain_mode(lab),
+        play_with_kill(lab),
+        play_with_closed_terminal(lab),
+        play_in_two_sessions(lab),
+    ]
 }
 
-fn line_by_line(lab: &Lab) -> Diary {
-    let mut plain = Plain::arrive(lab, "m3", "P09");
+fn play_in_plain_mode(lab: &Lab) -> Diary {
+    let mut plain = PlainParticipant::arrive(lab, "m3", "P09");
     plain.answer(BEFORE, "4", "4");
     plain.call("set_prices", "A=12");
     plain.query("SELECT count(*) FROM ledger");
     plain.memo("ads for S1");
-    plain.look_around("churn", "churn");
+    plain.look_up_and_read_inbox("churn", "churn");
     plain.pause("tea");
     plain.answer(BREAK, "1", "no");
-    finish_lines(plain)
+    finish_plain_session(plain)
 }
 
-fn killed(lab: &Lab) -> Diary {
-    let mut plain = Plain::arrive(lab, "m3", "P10");
+fn play_with_kill(lab: &Lab) -> Diary {
+    let mut plain = PlainParticipant::arrive(lab, "m3", "P10");
     plain.answer(BEFORE, "1", "1");
     plain.week("go");
-    let mut plain = plain.killed_and_returns();
+    let mut plain = plain.kill_and_return();
     plain.answer(BREAK, "2", "yes");
-    finish_lines(plain)
+    finish_plain_session(plain)
 }
 
-fn closed(lab: &Lab) -> Diary {
-    let mut plain = Plain::arrive(lab, "m3", "P11");
+fn play_with_closed_terminal(lab: &Lab) -> Diary {
+    let mut plain = PlainParticipant::arrive(lab, "m3", "P11");
     plain.answer(BEFORE, "7", "7");
     plain.call("set_prices", "A=10 B=20");
-    let mut plain = plain.hung_up_and_returns();
+    let mut plain = plain.hang_up_and_return();
     plain.answer(BREAK, "1", "no");
-    finish_lines(plain)
+    finish_plain_session(plain)
 }
 
-fn twice(lab: &Lab) -> Diary {
-    let mut plain = Plain::arrive(lab, "m3", "P12");
+fn play_in_two_sessions(lab: &Lab) -> Diary {
+    let mut plain = PlainParticipant::arrive(lab, "m3", "P12");
     plain.answer(BEFORE, "2", "2");
     plain.week("go");
-    let mut plain = plain.leaves_and_returns();
+    let mut plain = plain.quit_and_return();
     plain.answer(BREAK, "1", "no");
-    finish_lines(plain)
+    finish_plain_session(plain)
 }
 
-fn finish_lines(mut plain: Plain<'_>) -> Diary {
+fn finish_plain_session(mut plain: PlainParticipant<'_>) -> Diary {
     while !plain.diary.over {
         plain.week("on");
         if plain.diary.weeks.len() == 2 {
@@ -212,5 +217,5 @@ fn finish_lines(mut plain: Plain<'_>) -> Diary {
         }
     }
     plain.answer(END, "guessed", "guessed");
-    plain.goes_home()
+    plain.finish()
 }

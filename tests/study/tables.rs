@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use crate::diary::{Answered, Deed, Diary, Spent, WEEKS};
+use crate::diary::{Diary, ExpectedAnswer, ExpectedLine, TimeCategory, WEEKS};
 use crate::lab::Lab;
 
 /// A row of a table by column.
 type Row = BTreeMap<String, String>;
 
-fn read(folder: &Path, table: &str) -> Vec<Row> {
+fn read_table(folder: &Path, table: &str) -> Vec<Row> {
     let text = fs::read_to_string(folder.join(table)).unwrap_or_else(|error| panic!("{table}: {error}"));
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let headings = reader.headers().expect("headings").clone();
@@ -20,45 +20,48 @@ fn read(folder: &Path, table: &str) -> Vec<Row> {
     reader.records().map(|record| row(record.expect("a row"))).collect()
 }
 
-fn of<'a>(rows: &'a [Row], label: &str) -> Vec<&'a Row> {
+fn rows_of<'a>(rows: &'a [Row], label: &str) -> Vec<&'a Row> {
     rows.iter().filter(|row| row["participant"] == label).collect()
 }
 
 /// Compares every table with the actions of the scripts.
-pub fn compare(lab: &Lab, diaries: &[Diary]) {
+pub fn compare_tables(lab: &Lab, diaries: &[Diary]) {
     let [runs, weeks, events, queries, answers, notes, forecasts] =
         ["runs", "weeks", "events", "queries", "answers", "notes", "forecasts"]
-            .map(|table| read(&lab.data(), &format!("{table}.csv")));
+            .map(|table| read_table(&lab.data(), &format!("{table}.csv")));
     assert_eq!(diaries.len(), 12);
     for diary in diaries {
         let own = [&runs, &weeks, &events, &queries, &answers, &notes, &forecasts];
-        let [run, weeks, events, queries, answers, notes, forecasts] = own.map(|rows| of(rows, diary.label));
+        let [run, weeks, events, queries, answers, notes, forecasts] =
+            own.map(|rows| rows_of(rows, diary.label));
         if diary.erased {
             assert!(run.is_empty() && events.is_empty() && answers.is_empty(), "{}", diary.label);
             continue;
         }
-        deeds(diary, &events);
+        compare_events(diary, &events);
         let [run] = run[..] else { panic!("{} has {} runs", diary.label, run.len()) };
-        whole_run(diary, run);
-        single_weeks(diary, &weeks);
-        cells(diary, &queries, "sql", &diary.queries);
-        cells(diary, &notes, "text", &diary.notes);
-        given(diary, &answers);
+        compare_run_row(diary, run);
+        compare_weeks(diary, &weeks);
+        compare_column(diary, &queries, "sql", &diary.queries);
+        compare_column(diary, &notes, "text", &diary.notes);
+        compare_answers(diary, &answers);
         assert_eq!(forecasts.len(), 4 * diary.weeks.len(), "{}", diary.label);
         assert!(forecasts.iter().all(|row| row["filled_naively"] == "1"), "{}", diary.label);
     }
 }
 
-fn deeds(diary: &Diary, rows: &[&Row]) {
-    let told: Vec<String> = rows.iter().map(|row| told(row, diary.real)).collect();
-    let done: Vec<String> = diary.deeds.iter().map(|deed| done(deed, diary.real)).collect();
+fn compare_events(diary: &Diary, rows: &[&Row]) {
+    let told: Vec<String> = rows.iter().map(|row| event_text(row, diary.is_real_time)).collect();
+    let done: Vec<String> =
+        diary.lines.iter().map(|deed| expected_event_text(deed, diary.is_real_time)).collect();
     let different = told.iter().zip(&done).find(|(told, done)| told != done);
     assert_eq!(different, None, "{}: the table differs from the diary", diary.label);
     assert_eq!(told.len(), done.len(), "{}", diary.label);
 }
 
-fn whole_run(diary: &Diary, row: &Row) {
-    let deeds = |part: fn(&Deed) -> bool| diary.deeds.iter().filter(|deed| part(deed)).count().to_string();
+fn compare_run_row(diary: &Diary, row: &Row) {
+    let deeds =
+        |part: fn(&ExpectedLine) -> bool| diary.lines.iter().filter(|deed| part(deed)).count().to_string();
     let number = diary.label[1..].parse::<u64>().expect("a number");
     let text = |text: &str| text.to_owned();
     let expected = [
@@ -88,10 +91,10 @@ fn whole_run(diary: &Diary, row: &Row) {
         assert_eq!(row[column], expected, "{}: {column}", diary.label);
     }
     // Actions after the end are not counted.
-    let before_the_end = diary.deeds.iter().position(|deed| deed.kind == "end").expect("it ended");
-    let played = Diary { deeds: diary.deeds[..before_the_end].to_vec(), ..diary.clone() };
+    let before_the_end = diary.lines.iter().position(|deed| deed.kind == "end").expect("it ended");
+    let played = Diary { lines: diary.lines[..before_the_end].to_vec(), ..diary.clone() };
     for (column, kind) in [("views", "view"), ("selects", "select"), ("helps", "help")] {
-        if diary.real && kind == "view" {
+        if diary.is_real_time && kind == "view" {
             // Plain mode has no screens.
             assert_eq!(row[column], "", "{}", diary.label);
             continue;
@@ -99,80 +102,80 @@ fn whole_run(diary: &Diary, row: &Row) {
         assert_eq!(row[column], played.count(kind).to_string(), "{}: {column}", diary.label);
     }
     for outcome in ["confirmed", "cancelled"] {
-        let own = played.deeds.iter().filter(|deed| deed.kind == "dialog" && deed.which == outcome);
-        let own = if diary.real { String::new() } else { own.count().to_string() };
+        let own = played.lines.iter().filter(|deed| deed.kind == "dialog" && deed.which == outcome);
+        let own = if diary.is_real_time { String::new() } else { own.count().to_string() };
         assert_eq!(row[&format!("dialogs_{outcome}")], own, "{}: {outcome}", diary.label);
     }
-    times(diary, row);
+    compare_times(diary, row);
 }
 
-fn told_ms(row: &Row, column: &str) -> u64 {
+fn cell_ms(row: &Row, column: &str) -> u64 {
     (row[column].parse::<f64>().expect("seconds") * 1e3).round() as u64
 }
 
 /// Compares the times of the whole run.
-fn times(diary: &Diary, row: &Row) {
-    let told = |column: &str| told_ms(row, column);
-    let own = |spent| diary.spent(spent);
-    if diary.real {
-        let within = |column: &str, spent: Spent| {
+fn compare_times(diary: &Diary, row: &Row) {
+    let told = |column: &str| cell_ms(row, column);
+    let own = |spent| diary.total_ms(spent);
+    if diary.is_real_time {
+        let within = |column: &str, spent: TimeCategory| {
             let (least, most) = diary.bounds.get(&spent).copied().unwrap_or_default();
             let told = told(column);
             assert!((least..=most).contains(&told), "{}: {column} {told}: {least} to {most}", diary.label);
         };
-        within("paused_seconds", Spent::Paused);
-        if !diary.bounds.contains_key(&Spent::Paused) {
-            within("away_seconds", Spent::Away);
+        within("paused_seconds", TimeCategory::Paused);
+        if !diary.bounds.contains_key(&TimeCategory::Paused) {
+            within("away_seconds", TimeCategory::Away);
         }
         assert_eq!(row["idle_seconds"], "0", "{}", diary.label);
         return;
     }
-    assert_eq!(told("active_seconds"), own(Spent::Active), "{}", diary.label);
+    assert_eq!(told("active_seconds"), own(TimeCategory::Active), "{}", diary.label);
     let after_the_end = diary.answers.last().map_or(0, |answer| answer.for_ms);
-    assert_eq!(told("answering_seconds"), own(Spent::Answering) - after_the_end, "{}", diary.label);
-    assert_eq!(told("idle_seconds"), own(Spent::Idle), "{}", diary.label);
-    assert_eq!(told("away_seconds"), own(Spent::Away) + own(Spent::Paused), "{}", diary.label);
-    assert_eq!(told("paused_seconds"), own(Spent::Paused), "{}", diary.label);
-    assert_eq!(told("active_seconds_after_end"), own(Spent::After), "{}", diary.label);
+    assert_eq!(told("answering_seconds"), own(TimeCategory::Answering) - after_the_end, "{}", diary.label);
+    assert_eq!(told("idle_seconds"), own(TimeCategory::Idle), "{}", diary.label);
+    assert_eq!(told("away_seconds"), own(TimeCategory::Away) + own(TimeCategory::Paused), "{}", diary.label);
+    assert_eq!(told("paused_seconds"), own(TimeCategory::Paused), "{}", diary.label);
+    assert_eq!(told("active_seconds_after_end"), own(TimeCategory::After), "{}", diary.label);
 }
 
-fn single_weeks(diary: &Diary, rows: &[&Row]) {
+fn compare_weeks(diary: &Diary, rows: &[&Row]) {
     assert_eq!(rows.len(), diary.weeks.len(), "{}", diary.label);
     for (week, row) in (1..).zip(rows) {
-        let told = |column: &str| told_ms(row, column);
+        let told = |column: &str| cell_ms(row, column);
         let own = |spent| diary.time.get(&(week, spent)).copied().unwrap_or_default();
         let count = |kind: &str| {
-            diary.deeds.iter().filter(|deed| deed.week == week && deed.kind == kind).count().to_string()
+            diary.lines.iter().filter(|deed| deed.week == week && deed.kind == kind).count().to_string()
         };
         assert_eq!(row["week"], week.to_string());
         assert_eq!((&row["calls"], &row["queries"]), (&count("call"), &count("query")), "{}", diary.label);
-        if diary.real {
+        if diary.is_real_time {
             continue;
         }
-        let expected = [Spent::Active, Spent::Idle, Spent::Paused].map(own);
+        let expected = [TimeCategory::Active, TimeCategory::Idle, TimeCategory::Paused].map(own);
         let told = ["active_seconds", "idle_seconds", "paused_seconds"].map(told);
         if week < WEEKS {
-            assert_eq!(told_ms(row, "answering_seconds"), own(Spent::Answering), "{}", diary.label);
+            assert_eq!(cell_ms(row, "answering_seconds"), own(TimeCategory::Answering), "{}", diary.label);
         }
         assert_eq!(told, expected, "{} in week {week}", diary.label);
-        let fast = if own(Spent::Active) < 10_000 { "1" } else { "0" };
+        let fast = if own(TimeCategory::Active) < 10_000 { "1" } else { "0" };
         assert_eq!(row["implausibly_fast"], fast, "{} in week {week}", diary.label);
     }
 }
 
-fn cells(diary: &Diary, rows: &[&Row], column: &str, expected: &[String]) {
+fn compare_column(diary: &Diary, rows: &[&Row], column: &str, expected: &[String]) {
     let told: Vec<&String> = rows.iter().map(|row| &row[column]).collect();
     assert_eq!(told, expected.iter().collect::<Vec<_>>(), "{}: {column}", diary.label);
 }
 
-fn given(diary: &Diary, rows: &[&Row]) {
-    let told: Vec<Answered> = rows
+fn compare_answers(diary: &Diary, rows: &[&Row]) {
+    let told: Vec<ExpectedAnswer> = rows
         .iter()
-        .map(|row| Answered {
+        .map(|row| ExpectedAnswer {
             occasion: row["occasion"].clone(),
             question: QUESTIONS.into_iter().find(|name| *name == row["question"]).expect("a question"),
             value: row["value"].clone(),
-            for_ms: if diary.real { 0 } else { row["for_ms"].parse().expect("milliseconds") },
+            for_ms: if diary.is_real_time { 0 } else { row["for_ms"].parse().expect("milliseconds") },
         })
         .collect();
     assert_eq!(told, diary.answers, "{}", diary.label);
@@ -184,27 +187,27 @@ fn given(diary: &Diary, rows: &[&Row]) {
 const QUESTIONS: [&str; 4] = ["experience", "check", "spoke", "strategy"];
 
 /// Kinds whose duration depends on the machine, not on the participant.
-const OF_MACHINE: [&str; 2] = ["query", "call"];
+const MACHINE_TIMED_KINDS: [&str; 2] = ["query", "call"];
 
 /// Describes a line of the table. Times of a real clock are compared elsewhere.
-fn told(row: &Row, real: bool) -> String {
+fn event_text(row: &Row, real: bool) -> String {
     let cell = |name: &str| row[name].as_str();
     let which = if cell("kind") == "note" { "" } else { cell("which") };
-    let is_measured = !real && !OF_MACHINE.contains(&cell("kind"));
+    let is_measured = !real && !MACHINE_TIMED_KINDS.contains(&cell("kind"));
     let for_ms = if is_measured { cell("for_ms") } else { "" };
     let at = if real { "" } else { cell("t") };
     format!("{at} week {}: {} {} {which} {for_ms}", cell("week"), cell("kind"), cell("what"))
 }
 
 /// Describes an action of the script in the same format.
-fn done(deed: &Deed, real: bool) -> String {
+fn expected_event_text(deed: &ExpectedLine, real: bool) -> String {
     let for_ms = deed.for_ms.map(|ms| ms.to_string()).unwrap_or_default();
     let at = if real { String::new() } else { (deed.at as f64 / 1e3).to_string() };
     format!("{at} week {}: {} {} {} {for_ms}", deed.week, deed.kind, deed.what, deed.which)
 }
 
 /// Checks that the anonymized tables contain the same runs.
-pub fn anonymised(lab: &Lab, diaries: &[Diary]) {
+pub fn compare_anonymized_tables(lab: &Lab, diaries: &[Diary]) {
     let public = lab.anonymise();
     for entry in fs::read_dir(&public).expect("a folder").flatten() {
         let text = fs::read_to_string(entry.path()).expect("a text");
@@ -216,7 +219,7 @@ pub fn anonymised(lab: &Lab, diaries: &[Diary]) {
         }
     }
     let times = |folder: &Path| {
-        let rows = read(folder, "runs.csv");
+        let rows = read_table(folder, "runs.csv");
         let mut times: Vec<[String; 3]> = rows
             .iter()
             .map(|row| ["active_seconds", "away_seconds", "seed"].map(|column| row[column].clone()))

@@ -6,12 +6,12 @@ use novamind::database::Cell;
 use novamind::record::folder::configuration::Configuration;
 use novamind::record::mode::Mode;
 use novamind::record::trajectory::record::Via;
-use novamind::session::{NewRun, Session, Storage, Week};
+use novamind::session::{NewRun, Session, Storage, WeekResult};
 use serde_json::{Value, json};
 
 /// Calls a tool that must accept.
 #[track_caller]
-pub fn call(session: &mut Session, tool: &str, arguments: Value) -> Value {
+pub fn call_tool(session: &mut Session, tool: &str, arguments: Value) -> Value {
     let answer = session.call(tool, &arguments, Via::Script);
     answer.unwrap_or_else(|refusal| panic!("{tool}: {refusal}")).to_json()
 }
@@ -27,18 +27,18 @@ pub fn begin_run(runs: &Path, mode: Mode, days: u32) -> Session {
         storage: Storage::Runs(runs.to_owned()),
         ..NewRun::default()
     };
-    Session::create(new, &Configuration::shipped()).expect("the run begins")
+    Session::create(new, &Configuration::bundled()).expect("the run begins")
 }
 
 /// Makes the first decisions of a sensible beginner.
-pub fn open_shop(session: &mut Session) {
-    for (tool, arguments) in opening() {
-        call(session, tool, arguments);
+pub fn apply_opening_decisions(session: &mut Session) {
+    for (tool, arguments) in opening_calls() {
+        call_tool(session, tool, arguments);
     }
 }
 
-/// Returns the calls of [`open_shop`].
-pub fn opening() -> [(&'static str, Value); 6] {
+/// Returns the calls of [`apply_opening_decisions`].
+pub fn opening_calls() -> [(&'static str, Value); 6] {
     [
         ("set_prices", json!({"A": 12, "B": 25, "C": 55})),
         ("set_model_tiers", json!({"B": 2, "C": 4})),
@@ -54,52 +54,52 @@ pub fn opening() -> [(&'static str, Value); 6] {
 
 /// Runs a week with naive forecasts.
 #[track_caller]
-pub fn week(session: &mut Session) -> Week {
+pub fn advance_week(session: &mut Session) -> WeekResult {
     let forecasts = session.company().naive_forecasts();
     session.advance("if leads hold, grow", &forecasts, Via::Script, &mut |_| {}).expect("a week")
 }
 
 /// Runs some weeks.
 #[track_caller]
-pub fn weeks(session: &mut Session, count: usize) {
+pub fn advance_weeks(session: &mut Session, count: usize) {
     for _ in 0..count {
-        week(session);
+        advance_week(session);
     }
 }
 
 /// Returns the rows of a statement, as many as a query may return.
 #[track_caller]
-pub fn rows(session: &mut Session, sql: &str) -> Vec<Vec<Cell>> {
+pub fn query_rows(session: &mut Session, sql: &str) -> Vec<Vec<Cell>> {
     session.query(sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}")).rows
 }
 
 /// Returns the rows of a statement as numbers.
 #[track_caller]
-pub fn numbers(session: &mut Session, sql: &str) -> Vec<Vec<f64>> {
+pub fn query_numbers(session: &mut Session, sql: &str) -> Vec<Vec<f64>> {
     let number = |cell: &Cell| match cell {
         Cell::Integer(number) => *number as f64,
         Cell::Real(number) => *number,
         other => panic!("{sql}: {other:?}"),
     };
-    rows(session, sql).iter().map(|row| row.iter().map(number).collect()).collect()
+    query_rows(session, sql).iter().map(|row| row.iter().map(number).collect()).collect()
 }
 
 /// Returns the first column of a statement as numbers.
 #[track_caller]
-pub fn column(session: &mut Session, sql: &str) -> Vec<f64> {
-    numbers(session, sql).iter().map(|row| row[0]).collect()
+pub fn query_column(session: &mut Session, sql: &str) -> Vec<f64> {
+    query_numbers(session, sql).iter().map(|row| row[0]).collect()
 }
 
 /// Returns the first cell of a statement as a number.
 #[track_caller]
-pub fn number(session: &mut Session, sql: &str) -> f64 {
-    column(session, sql)[0]
+pub fn query_number(session: &mut Session, sql: &str) -> f64 {
+    query_column(session, sql)[0]
 }
 
 /// Returns the first cell of a statement as a text.
 #[track_caller]
-pub fn text(session: &mut Session, sql: &str) -> String {
-    match &rows(session, sql)[0][0] {
+pub fn query_text(session: &mut Session, sql: &str) -> String {
+    match &query_rows(session, sql)[0][0] {
         Cell::Text(text) => text.clone(),
         other => panic!("{sql}: {other:?}"),
     }

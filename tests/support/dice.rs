@@ -10,7 +10,7 @@ impl Dice {
     }
 
     /// Creates the generator of a test; `NOVAMIND_TEST_SEED` sets another seed. The seed is printed and visible if the test fails.
-    pub fn of_test(name: &str) -> Dice {
+    pub fn for_test(name: &str) -> Dice {
         let seed = std::env::var("NOVAMIND_TEST_SEED").ok().and_then(|seed| seed.parse().ok()).unwrap_or(1);
         println!("{name}: NOVAMIND_TEST_SEED={seed}");
         Dice::new(seed)

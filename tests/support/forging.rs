@@ -6,7 +6,7 @@ use std::path::Path;
 use serde_json::Value;
 
 /// Changes lines and recomputes checksums and chain.
-pub fn forge(folder: &Path, change: impl Fn(usize, &mut Value)) {
+pub fn forge_lines(folder: &Path, change: impl Fn(usize, &mut Value)) {
     let path = folder.join("trajectory.jsonl");
     let text = fs::read_to_string(&path).expect("a trajectory");
     let mut previous = blake3::hash(b"").to_hex().to_string();

@@ -12,10 +12,10 @@ use tempfile::TempDir;
 pub struct Home(pub TempDir);
 
 /// The output of a program and its exit code.
-pub struct Said {
-    pub out: String,
-    pub err: String,
-    pub code: i32,
+pub struct ProgramOutput {
+    pub stdout: String,
+    pub stderr: String,
+    pub exit_code: i32,
 }
 
 impl Home {
@@ -47,18 +47,18 @@ impl Home {
         self.command(env!("CARGO_BIN_EXE_novamind"))
     }
 
-    pub fn run(&self, arguments: &[&str]) -> Said {
-        said(self.program().args(arguments), "")
+    pub fn run(&self, arguments: &[&str]) -> ProgramOutput {
+        run_with_input(self.program().args(arguments), "")
     }
 
-    pub fn play(&self, options: &[&str], lines: &str) -> Said {
-        said(self.program().args(["play", "--plain"]).args(options), lines)
+    pub fn play(&self, options: &[&str], lines: &str) -> ProgramOutput {
+        run_with_input(self.program().args(["play", "--plain"]).args(options), lines)
     }
 
     /// Plays a run of two weeks and closes it; returns its folder.
     pub fn two_weeks(&self) -> PathBuf {
         let lines = "set_prices A=12\nset_prices B=20\nnext naive\nset_prices C=50\nnext naive\n";
-        assert_eq!(self.play(&["--days", "28"], lines).code, 0);
+        assert_eq!(self.play(&["--days", "28"], lines).exit_code, 0);
         self.only_run()
     }
 
@@ -70,41 +70,45 @@ impl Home {
     }
 }
 
-pub fn said(command: &mut Command, lines: &str) -> Said {
+pub fn run_with_input(command: &mut Command, lines: &str) -> ProgramOutput {
     let mut child = command.spawn().expect("the program starts");
     // A program that cannot start does not read.
     let _ = child.stdin.take().expect("a pipe").write_all(lines.as_bytes());
     let Output { status, stdout, stderr } = child.wait_with_output().expect("the program ends");
     let text = |bytes| String::from_utf8(bytes).expect("UTF-8");
-    Said { out: text(stdout), err: text(stderr), code: status.code().expect("it ends by itself") }
+    ProgramOutput {
+        stdout: text(stdout),
+        stderr: text(stderr),
+        exit_code: status.code().expect("it ends by itself"),
+    }
 }
 
-impl Said {
+impl ProgramOutput {
     /// Checks the exit code, and that standard error is one line with all of these parts.
     #[track_caller]
-    pub fn fails(&self, code: i32, parts: &[&str]) {
-        assert_eq!(self.code, code, "{}{}", self.out, self.err);
-        assert!(self.err.starts_with("novamind: ") && self.err.lines().count() == 1, "{}", self.err);
+    pub fn assert_fails(&self, code: i32, parts: &[&str]) {
+        assert_eq!(self.exit_code, code, "{}{}", self.stdout, self.stderr);
+        assert!(self.stderr.starts_with("novamind: ") && self.stderr.lines().count() == 1, "{}", self.stderr);
         for part in parts {
-            assert!(self.err.contains(part), "{part} is missing in: {}", self.err);
+            assert!(self.stderr.contains(part), "{part} is missing in: {}", self.stderr);
         }
     }
 
     #[track_caller]
-    pub fn objects(&self) -> Vec<Value> {
+    pub fn json_lines(&self) -> Vec<Value> {
         let parse = |line: &str| serde_json::from_str(line).unwrap_or_else(|error| panic!("{line}: {error}"));
-        self.out.lines().map(parse).collect()
+        self.stdout.lines().map(parse).collect()
     }
 }
 
-pub fn id(folder: &Path) -> String {
+pub fn run_id(folder: &Path) -> String {
     folder.file_name().expect("a name").to_string_lossy().into_owned()
 }
 
-pub fn bytes_of(folder: &Path, file: &str) -> Vec<u8> {
+pub fn read_bytes(folder: &Path, file: &str) -> Vec<u8> {
     fs::read(folder.join(file)).expect("bytes")
 }
 
-pub fn lines_of(bytes: &[u8]) -> Vec<Vec<u8>> {
+pub fn split_lines(bytes: &[u8]) -> Vec<Vec<u8>> {
     bytes.split_inclusive(|byte| *byte == b'\n').map(<[u8]>::to_vec).collect()
 }

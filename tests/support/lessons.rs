@@ -8,35 +8,35 @@ use novamind::record::folder::configuration::Configuration;
 use novamind::record::mode::Mode;
 use novamind::record::trajectory::record::Via;
 use novamind::session::{LessonEntry, NewRun, Session, Storage};
-use novamind::tools::Refusal;
+use novamind::tools::Rejection;
 
 /// Reads a lesson from a plan, which is written to a file of that name.
-pub fn lesson_of(folder: &Path, name: &str, plan: &str) -> Result<Lesson, String> {
+pub fn write_lesson(folder: &Path, name: &str, plan: &str) -> Result<Lesson, String> {
     let path = folder.join(format!("{name}.toml"));
     std::fs::write(&path, plan).expect("a file");
     std::fs::write(folder.join(format!("{name}.md")), "## Debrief\n\nSo it goes.\n").expect("a file");
-    Lesson::of_file(&path).map_err(|error| error.to_string())
+    Lesson::from_file(&path).map_err(|error| error.to_string())
 }
 
 /// Starts the first part of the lesson.
-pub fn begin(folder: &Path, name: &str, plan: &str) -> Session {
-    let lesson = Arc::new(lesson_of(folder, name, plan).expect("a lesson"));
+pub fn begin_lesson(folder: &Path, name: &str, plan: &str) -> Session {
+    let lesson = Arc::new(write_lesson(folder, name, plan).expect("a lesson"));
     let new = NewRun {
         mode: Mode::Lesson,
         lesson: Some(LessonEntry { lesson, part: 0, is_judged: true }),
         storage: Storage::Runs(folder.join("runs")),
         ..NewRun::default()
     };
-    Session::create(new, &Configuration::shipped()).expect("the lesson begins")
+    Session::create(new, &Configuration::bundled()).expect("the lesson begins")
 }
 
 /// Runs a week without a rationale, with naive forecasts.
-pub fn week(session: &mut Session) -> Result<(), Refusal> {
+pub fn advance_lesson_week(session: &mut Session) -> Result<(), Rejection> {
     let forecasts = session.company().naive_forecasts();
     session.advance("", &forecasts, Via::Plain, &mut |_| {}).map(|_| ())
 }
 
 /// Returns the code of a rejection.
-pub fn code(result: Result<impl Sized, Refusal>) -> &'static str {
+pub fn rejection_code(result: Result<impl Sized, Rejection>) -> &'static str {
     result.err().map_or("accepted", |refusal| refusal.code)
 }

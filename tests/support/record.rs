@@ -7,21 +7,21 @@ use novamind::record::trajectory::{Record, Trajectory};
 
 /// Reads the lines of the run in a folder.
 #[track_caller]
-pub fn recorded(folder: &Path) -> Trajectory {
+pub fn read_trajectory(folder: &Path) -> Trajectory {
     Trajectory::read(&folder.join("trajectory.jsonl")).expect("lines")
 }
 
 /// Returns the folder of the only run, or of the one with the last name.
 #[track_caller]
-pub fn folder_of(runs: &Path) -> PathBuf {
+pub fn run_folder(runs: &Path) -> PathBuf {
     let folders = std::fs::read_dir(runs).expect("a folder").flatten().map(|entry| entry.path());
     folders.filter(|path| path.is_dir()).max().expect("a run")
 }
 
 /// Returns the x-ray views with object and day, in the order of the lines.
-pub fn looks(lines: &Trajectory) -> Vec<String> {
+pub fn inspections(lines: &Trajectory) -> Vec<String> {
     let look = |record: &Record| match record {
-        Record::Activity(Activity::Xray(look)) => {
+        Record::Activity(Activity::Inspection(look)) => {
             Some(format!("{} {} {}", look.what, look.which, look.shown_day))
         }
         _ => None,

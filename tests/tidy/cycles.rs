@@ -74,7 +74,7 @@ impl Unit {
             let Some(own) = file.module.first() else { continue };
             let edges = imports.entry(own.clone()).or_default();
             for path in paths(&file.text) {
-                let name = self.first_name(&file.module, &path.names);
+                let name = self.imported_module(&file.module, &path.names);
                 let module = name.filter(|name| modules.contains(name.as_str()));
                 let module = module.or_else(|| exports.get(name?));
                 edges.extend(module.filter(|module| *module != own).cloned());
@@ -108,7 +108,7 @@ impl Unit {
     }
 
     /// Returns the name directly below the crate to which a path in a module leads; `None` if it leads elsewhere.
-    fn first_name<'a>(&self, from: &[String], path: &'a [String]) -> Option<&'a String> {
+    fn imported_module<'a>(&self, from: &[String], path: &'a [String]) -> Option<&'a String> {
         let up = path.iter().take_while(|name| *name == "super").count();
         let rest = if path.first()? == "crate" {
             path[1..].strip_prefix(self.prefix.as_slice())?
@@ -141,8 +141,8 @@ fn without_tests(text: &str) -> (String, Vec<String>) {
     (kept, modules)
 }
 
-/// A path in a text: `crate::figures::Week` by its names.
-struct Names {
+/// A path in a text: `crate::figures::WeekResult` by its names.
+struct ImportedPath {
     names: Vec<String>,
     /// The exported name.
     exported: String,
@@ -151,27 +151,27 @@ struct Names {
 }
 
 /// Returns every path of a text, those of `use a::{b, c}` separately.
-fn paths(text: &str) -> impl Iterator<Item = Names> {
+fn paths(text: &str) -> impl Iterator<Item = ImportedPath> {
     let mut all = Vec::new();
     let mut end = 0;
     for (at, _) in text.match_indices("::") {
-        let begin = text[..at].rfind(|sign: char| !is_of_name(sign)).map_or(0, |before| before + 1);
+        let begin = text[..at].rfind(|sign: char| !is_name_character(sign)).map_or(0, |before| before + 1);
         let line = text[..begin].rsplit('\n').next().unwrap_or_default().trim_start();
         if begin < end || begin == at || line.ends_with("(in ") {
             continue;
         }
         let is_export = line.starts_with("pub") && line.ends_with("use ");
-        end = begin + tree(&text[begin..], &[], is_export, &mut all);
+        end = begin + parse_use_tree(&text[begin..], &[], is_export, &mut all);
     }
     all.into_iter()
 }
 
-fn is_of_name(sign: char) -> bool {
+fn is_name_character(sign: char) -> bool {
     sign.is_alphanumeric() || sign == '_'
 }
 
 /// Parses one tree of paths; returns its length.
-fn tree(text: &str, prefix: &[String], is_export: bool, all: &mut Vec<Names>) -> usize {
+fn parse_use_tree(text: &str, prefix: &[String], is_export: bool, all: &mut Vec<ImportedPath>) -> usize {
     let mut names = prefix.to_vec();
     let mut at = 0;
     loop {
@@ -180,13 +180,13 @@ fn tree(text: &str, prefix: &[String], is_export: bool, all: &mut Vec<Names>) ->
         if rest.starts_with('{') {
             at += 1;
             while !text[at..].trim_start().starts_with('}') && at < text.len() {
-                at += tree(&text[at..], &names, is_export, all).max(1);
+                at += parse_use_tree(&text[at..], &names, is_export, all).max(1);
                 at += text[at..].find([',', '}']).unwrap_or(0);
                 at += usize::from(text[at..].starts_with(','));
             }
             return at + text[at..].find('}').map_or(0, |end| end + 1);
         }
-        let length = rest.find(|sign: char| !is_of_name(sign)).unwrap_or(rest.len());
+        let length = rest.find(|sign: char| !is_name_character(sign)).unwrap_or(rest.len());
         names.push(rest[..length].to_owned());
         at += length;
         if length == 0 || !text[at..].starts_with("::") {
@@ -197,10 +197,10 @@ fn tree(text: &str, prefix: &[String], is_export: bool, all: &mut Vec<Names>) ->
     let alias = text[at..]
         .trim_start()
         .strip_prefix("as ")
-        .and_then(|rest| Some(rest.split(|sign: char| !is_of_name(sign)).next()?.to_owned()));
+        .and_then(|rest| Some(rest.split(|sign: char| !is_name_character(sign)).next()?.to_owned()));
     names.retain(|name| !name.is_empty());
     let last = names.iter().rfind(|name| *name != "self").cloned();
-    all.push(Names { exported: alias.or(last).unwrap_or_default(), names, is_export });
+    all.push(ImportedPath { exported: alias.or(last).unwrap_or_default(), names, is_export });
     at
 }
 
@@ -231,7 +231,7 @@ fn cycles(imports: &BTreeMap<String, BTreeSet<String>>) -> Vec<Vec<String>> {
 }
 
 #[test]
-fn paths_are_read_with_their_groups_and_names() {
+fn paths_parses_nested_imports() {
     let text = "pub(in crate::a) fn f() {}\npub use b::{C, d::{self, E as F}};\nuse super::g::H;\nlet i = crate::j::k(l::<m>);";
     let read: Vec<(String, String, bool)> =
         paths(text).map(|path| (path.names.join("::"), path.exported, path.is_export)).collect();
@@ -254,7 +254,7 @@ fn paths_are_read_with_their_groups_and_names() {
 }
 
 #[test]
-fn cycles_are_found_where_they_are() {
+fn cycles_finds_strongly_connected_modules() {
     let edges = [("a", vec!["b"]), ("b", vec!["c"]), ("c", vec!["a", "d"]), ("d", vec![])];
     let of = |(from, to): (&str, Vec<&str>)| (from.to_owned(), to.into_iter().map(str::to_owned).collect());
     assert_eq!(cycles(&edges.into_iter().map(of).collect()), [["a", "b", "c"]]);

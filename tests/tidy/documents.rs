@@ -35,7 +35,7 @@ impl Page {
         })
     }
 
-    fn complaint(&self, line: usize, what: &str) -> String {
+    fn problem_at(&self, line: usize, what: &str) -> String {
         let path = self.path.strip_prefix(root()).unwrap_or(&self.path);
         format!("{}:{line}: {what}", path.display())
     }
@@ -69,7 +69,7 @@ fn between<'a>(line: &'a str, from: &'a str, to: &'a str) -> impl Iterator<Item 
 }
 
 /// Returns the words in code marks: every second piece of a line.
-fn coded(line: &str) -> impl Iterator<Item = &str> {
+fn code_spans(line: &str) -> impl Iterator<Item = &str> {
     line.split('`').skip(1).step_by(2)
 }
 
@@ -93,13 +93,13 @@ fn parameters() -> Table {
 }
 
 /// Formats a value as in a page.
-fn written(value: &Value) -> String {
+fn format_value(value: &Value) -> String {
     match value {
         Value::String(text) => text.clone(),
-        Value::Array(values) => values.iter().map(written).collect::<Vec<_>>().join(", "),
+        Value::Array(values) => values.iter().map(format_value).collect::<Vec<_>>().join(", "),
         Value::Table(table) => table
             .iter()
-            .map(|(key, value)| format!("{key} {}", written(value)))
+            .map(|(key, value)| format!("{key} {}", format_value(value)))
             .collect::<Vec<_>>()
             .join(", "),
         Value::Integer(number) => number.to_string(),
@@ -118,7 +118,7 @@ fn value_of<'a>(parameters: &'a Table, key: &str) -> Option<&'a Value> {
 
 /// Returns a page with current values: the second cell of each row that begins with a parameter, and the tables after
 /// `<!-- table: list column … -->`.
-fn filled(page: &Page, parameters: &Table) -> Result<String, String> {
+fn fill_parameters(page: &Page, parameters: &Table) -> Result<String, String> {
     let mut text = String::new();
     let mut lines = page.text.lines().enumerate().peekable();
     let mut in_table = false;
@@ -130,8 +130,8 @@ fn filled(page: &Page, parameters: &Table) -> Result<String, String> {
             Some(row) if in_table && !starts && !is_rule(&row) => {
                 let key = row[0].trim_matches('`');
                 let value = value_of(parameters, key)
-                    .ok_or_else(|| page.complaint(at + 1, &format!("there is no parameter {key}")))?;
-                let value = written(value);
+                    .ok_or_else(|| page.problem_at(at + 1, &format!("there is no parameter {key}")))?;
+                let value = format_value(value);
                 let mut row: Vec<&str> = row;
                 row[1] = &value;
                 text += &format!("| {} |\n", row.join(" | "));
@@ -140,7 +140,7 @@ fn filled(page: &Page, parameters: &Table) -> Result<String, String> {
         }
         if let Some(wanted) = line.strip_prefix("<!-- table: ").and_then(|rest| rest.strip_suffix(" -->")) {
             while lines.next_if(|(_, line)| line.starts_with('|')).is_some() {}
-            text += &table(parameters, wanted).map_err(|problem| page.complaint(at + 1, &problem))?;
+            text += &table(parameters, wanted).map_err(|problem| page.problem_at(at + 1, &problem))?;
         }
     }
     Ok(text)
@@ -156,7 +156,7 @@ fn table(parameters: &Table, wanted: &str) -> Result<String, String> {
     let mut text = format!("| {} |\n|{}\n", columns.join(" | "), "---|".repeat(columns.len()));
     for entry in entries {
         let cell = |column: &&str| match entry.get(column) {
-            Some(value) => written(value),
+            Some(value) => format_value(value),
             None => "–".to_owned(),
         };
         text += &format!("| {} |\n", columns.iter().map(cell).collect::<Vec<_>>().join(" | "));
@@ -174,7 +174,7 @@ fn values_in_documents_are_those_of_the_parameters() {
     let parameters = parameters();
     let mut problems = Vec::new();
     for page in pages() {
-        let filled = match filled(&page, &parameters) {
+        let filled = match fill_parameters(&page, &parameters) {
             Ok(filled) => filled,
             Err(problem) => {
                 problems.push(problem);
@@ -190,7 +190,7 @@ fn values_in_documents_are_those_of_the_parameters() {
         }
         let changed = page.text.lines().zip(filled.lines()).position(|(is, must)| is != must).unwrap_or(0);
         let must = filled.lines().nth(changed).unwrap_or_default();
-        problems.push(page.complaint(changed + 1, &format!("must be: {must}")));
+        problems.push(page.problem_at(changed + 1, &format!("must be: {must}")));
     }
     assert!(problems.is_empty(), "{}", problems.join("\n"));
 }
@@ -210,7 +210,7 @@ fn every_parameter_is_explained_on_one_page() {
             let key = row[0].trim_matches('`');
             let key = key.split('.').take(2).collect::<Vec<_>>().join(".");
             if let Some(places) = keys.get_mut(&key) {
-                places.push(page.complaint(at, ""));
+                places.push(page.problem_at(at, ""));
             }
         }
     }
@@ -239,7 +239,7 @@ fn minutes_of_lessons_in_documents_are_those_of_the_lessons() {
 }
 
 #[test]
-fn links_lead_somewhere() {
+fn links_resolve() {
     let pages = pages();
     let mut problems = Vec::new();
     for page in &pages {
@@ -249,12 +249,12 @@ fn links_lead_somewhere() {
                 let (file, anchor) = target.split_once('#').unwrap_or((target, ""));
                 let path = if file.is_empty() { page.path.clone() } else { folder.join(file) };
                 let Ok(path) = path.canonicalize() else {
-                    problems.push(page.complaint(at, &format!("{target} is not there")));
+                    problems.push(page.problem_at(at, &format!("{target} is not there")));
                     continue;
                 };
                 let other = pages.iter().find(|other| other.path.canonicalize().is_ok_and(|own| own == path));
                 if !anchor.is_empty() && !other.is_some_and(|other| other.anchors().contains(anchor)) {
-                    problems.push(page.complaint(at, &format!("{target} has no such heading")));
+                    problems.push(page.problem_at(at, &format!("{target} has no such heading")));
                 }
             }
         }
@@ -273,12 +273,12 @@ fn is_path(word: &str) -> bool {
 }
 
 #[test]
-fn files_that_documents_and_comments_name_are_there() {
+fn named_files_exist() {
     let mut problems = Vec::new();
     for page in pages() {
         for (at, line) in page.prose() {
-            let missing = coded(line).filter(|word| is_path(word) && !root().join(word).exists());
-            problems.extend(missing.map(|word| page.complaint(at, &format!("{word} is not there"))));
+            let missing = code_spans(line).filter(|word| is_path(word) && !root().join(word).exists());
+            problems.extend(missing.map(|word| page.problem_at(at, &format!("{word} is not there"))));
         }
     }
     for folder in ["src", "tests"] {
@@ -291,7 +291,7 @@ fn files_that_documents_and_comments_name_are_there() {
                 let words = words.map(|word| word.trim_end_matches(['.', ':', '\'']));
                 let missing = words.filter(|word| word.starts_with("docs/"));
                 let missing = missing.filter(|word| !leads_to_a_heading(word));
-                problems.extend(missing.map(|word| page.complaint(at + 1, &format!("{word} is not there"))));
+                problems.extend(missing.map(|word| page.problem_at(at + 1, &format!("{word} is not there"))));
             }
         }
     }
@@ -306,7 +306,7 @@ fn leads_to_a_heading(word: &str) -> bool {
 }
 
 #[test]
-fn check_values_in_documents_are_those_of_the_tests() {
+fn check_values_match_the_tests() {
     let sources: Vec<String> = ["src", "tests"]
         .iter()
         .flat_map(|folder| files(&root().join(folder), "rs"))
@@ -329,13 +329,13 @@ fn check_values_in_documents_are_those_of_the_tests() {
             }
             let Some(result) = of_results else { continue };
             let name = row[row.len() - 1].trim_matches('`');
-            let bodies: Vec<&str> = sources.iter().filter_map(|source| body(source, name)).collect();
+            let bodies: Vec<&str> = sources.iter().filter_map(|source| function_body(source, name)).collect();
             if bodies.is_empty() {
-                problems.push(page.complaint(at, &format!("there is no test {name}")));
+                problems.push(page.problem_at(at, &format!("there is no test {name}")));
             }
-            for number in coded(row[result]) {
+            for number in code_spans(row[result]) {
                 if !bodies.iter().any(|body| body.contains(number)) {
-                    problems.push(page.complaint(at, &format!("{number} does not stand in {name}")));
+                    problems.push(page.problem_at(at, &format!("{number} does not stand in {name}")));
                 }
             }
         }
@@ -344,7 +344,7 @@ fn check_values_in_documents_are_those_of_the_tests() {
 }
 
 /// Returns the text of a function, from its name to the end of its block.
-fn body<'a>(source: &'a str, name: &str) -> Option<&'a str> {
+fn function_body<'a>(source: &'a str, name: &str) -> Option<&'a str> {
     let from = source.find(&format!("fn {name}("))?;
     let indent = source[..from].rfind('\n').map_or(0, |line| from - line - 1);
     let end = format!("\n{}}}", " ".repeat(indent - indent % 4));
@@ -366,7 +366,7 @@ fn every_mechanism_names_its_code() {
 
 /// Documents and comments only refer to what is in the repository, not to numbered chapters of other texts.
 #[test]
-fn nothing_refers_to_what_is_not_here() {
+fn nothing_refers_to_external_chapters() {
     let numbered = |line: &str| {
         let after =
             |(_, rest): (&str, &str)| rest.trim_start().starts_with(|sign: char| sign.is_ascii_digit());
@@ -377,7 +377,7 @@ fn nothing_refers_to_what_is_not_here() {
     let mut problems = Vec::new();
     for page in all.map(Page::read) {
         let lines = page.text.lines().enumerate().filter(|(_, line)| numbered(line));
-        problems.extend(lines.map(|(at, line)| page.complaint(at + 1, line)));
+        problems.extend(lines.map(|(at, line)| page.problem_at(at + 1, line)));
     }
     assert!(problems.is_empty(), "{}", problems.join("\n"));
 }

@@ -29,7 +29,7 @@ impl Source {
     }
 
     /// Returns the first folder or file below `src`.
-    fn house(&self) -> String {
+    fn unit_name(&self) -> String {
         let below = self.path.strip_prefix(root().join("src")).expect("below src");
         let first = below.components().next().expect("a name").as_os_str().to_string_lossy();
         first.trim_end_matches(".rs").to_owned()
@@ -40,7 +40,7 @@ impl Source {
     }
 
     /// Returns a complaint for every line of code that a rule forbids.
-    fn complaints(&self, forbidden: impl Fn(&str) -> Option<String>) -> Vec<String> {
+    fn rule_violations(&self, forbidden: impl Fn(&str) -> Option<String>) -> Vec<String> {
         let complaint = |(number, line): (usize, &str)| {
             forbidden(line).map(|why| format!("{}:{number}: {why}", self.path.display()))
         };
@@ -73,7 +73,7 @@ fn sources() -> Vec<Source> {
     files(&root().join("src"), "rs").into_iter().map(Source::read).filter(|file| !file.is_tests()).collect()
 }
 
-fn files_of_tests() -> Vec<Source> {
+fn test_sources() -> Vec<Source> {
     files(&root().join("tests"), "rs").into_iter().map(Source::read).collect()
 }
 
@@ -101,9 +101,9 @@ fn build_script_watches_every_folder_that_is_compiled_in() {
 
 /// The compiler reports unused private items, but not public items that no other package uses.
 #[test]
-fn what_is_public_is_used() {
+fn public_items_are_used() {
     let files = sources();
-    let stories = files_of_tests();
+    let stories = test_sources();
     let mut uses: BTreeMap<&str, usize> = BTreeMap::new();
     let lines = files.iter().chain(&stories).flat_map(Source::code);
     for word in
@@ -134,7 +134,7 @@ fn nothing_is_left_unfinished() {
     let words = ["todo!", "unimplemented!", "dbg!", "#[ignore", "FIXME", "XXX"];
     let complaint =
         |line: &str| words.iter().find(|word| line.contains(**word)).map(|word| (*word).to_owned());
-    let complaints: Vec<String> = sources().iter().flat_map(|file| file.complaints(complaint)).collect();
+    let complaints: Vec<String> = sources().iter().flat_map(|file| file.rule_violations(complaint)).collect();
     assert_none(&complaints);
 }
 
@@ -169,7 +169,7 @@ fn architecture_names_the_dependencies_of_each_crate() {
 }
 
 #[test]
-fn the_simulator_knows_no_clock_no_files_and_no_order_of_chance() {
+fn simulator_uses_no_clock_files_or_unordered_maps() {
     let words = [
         "HashMap",
         "HashSet",
@@ -187,8 +187,8 @@ fn the_simulator_knows_no_clock_no_files_and_no_order_of_chance() {
     let complaint =
         |line: &str| words.iter().find(|word| line.contains(**word)).map(|word| (*word).to_owned());
     let pure =
-        sources().into_iter().filter(|file| matches!(file.house().as_str(), "world" | "voice" | "tools"));
-    let complaints: Vec<String> = pure.flat_map(|file| file.complaints(complaint)).collect();
+        sources().into_iter().filter(|file| matches!(file.unit_name().as_str(), "world" | "voice" | "tools"));
+    let complaints: Vec<String> = pure.flat_map(|file| file.rule_violations(complaint)).collect();
     assert_none(&complaints);
 }
 
@@ -205,10 +205,10 @@ fn only_insight_imports_the_engine_of_sessions() {
     };
     let (insight, others): (Vec<Source>, Vec<Source>) = sources()
         .into_iter()
-        .filter(|file| !BELOW.contains(&file.house().as_str()))
-        .partition(|file| file.house() == "insight");
-    assert!(insight.iter().any(|file| !file.complaints(complaint).is_empty()), "imports are found");
-    assert_none(&others.iter().flat_map(|file| file.complaints(complaint)).collect::<Vec<String>>());
+        .filter(|file| !BELOW.contains(&file.unit_name().as_str()))
+        .partition(|file| file.unit_name() == "insight");
+    assert!(insight.iter().any(|file| !file.rule_violations(complaint).is_empty()), "imports are found");
+    assert_none(&others.iter().flat_map(|file| file.rule_violations(complaint)).collect::<Vec<String>>());
 }
 
 #[test]
@@ -218,16 +218,16 @@ fn only_the_command_line_prints() {
         prints.then(|| "it prints".to_owned())
     };
     let quiet = sources().into_iter().filter(|file| {
-        !matches!(file.house().as_str(), "cli" | "plain" | "main")
+        !matches!(file.unit_name().as_str(), "cli" | "plain" | "main")
             && !file.path.ends_with("build.rs")
             && !file.path.ends_with("tui/terminal.rs")
     });
-    let complaints: Vec<String> = quiet.flat_map(|file| file.complaints(complaint)).collect();
+    let complaints: Vec<String> = quiet.flat_map(|file| file.rule_violations(complaint)).collect();
     assert_none(&complaints);
 }
 
 #[test]
-fn every_shipped_table_can_be_read() {
+fn every_bundled_toml_file_parses() {
     for folder in ["configs", "assets"] {
         for path in files(&root().join(folder), "toml") {
             let text = fs::read_to_string(&path).expect("a file");

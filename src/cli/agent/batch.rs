@@ -8,15 +8,15 @@ use std::time::Duration;
 
 use clap::Args;
 
-use super::documents::of_run;
-use super::python::equip;
-use super::server::{AgentRun, Secrecy};
-use super::{asked, exit};
-use crate::cli::lab::{OutputOptions, stopped_by_signals};
+use super::documents::write_run_documents;
+use super::python::set_environment;
+use super::server::{AgentRun, Authentication};
+use super::{exit, send_request};
+use crate::cli::lab::{OutputOptions, stop_flag_on_signals};
 use crate::cli::new_run::NewRunOptions;
 use crate::cli::{Context, Failure};
-use crate::lab::results::{FinishedRun, Try, tries_exhibit};
-use crate::record::files::write_whole;
+use crate::lab::results::{AttemptResult, FinishedRun, attempts_report};
+use crate::record::files::write_atomically;
 use crate::record::trajectory::Trajectory;
 use crate::server::write_client;
 use crate::session::Session;
@@ -42,32 +42,32 @@ pub struct Options {
 }
 
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
-    let out = std::path::absolute(&options.out).map_err(|error| cannot_write(&options.out, &error))?;
+    let out = std::path::absolute(&options.out).map_err(|error| write_failure(&options.out, &error))?;
     let was_there = out.is_dir();
-    std::fs::create_dir_all(&out).map_err(|error| cannot_write(&out, &error))?;
-    if std::fs::read_dir(&out).map_err(|error| cannot_write(&out, &error))?.next().is_some() {
+    std::fs::create_dir_all(&out).map_err(|error| write_failure(&out, &error))?;
+    if std::fs::read_dir(&out).map_err(|error| write_failure(&out, &error))?.next().is_some() {
         return Err(Failure::usage(format!("{} is not empty: give a new folder with --out", out.display())));
     }
-    let stop = stopped_by_signals();
+    let stop = stop_flag_on_signals();
     let mut tries = Vec::new();
     for number in 1..=options.tries {
         let work = out.join(format!("try-{number}"));
-        let own = AgentRun::begin(&options.made_of, context).inspect_err(|_| {
+        let own = AgentRun::create(&options.made_of, context).inspect_err(|_| {
             // The output folder is removed if no try has started.
             if !was_there {
                 let _ = std::fs::remove_dir(&out);
             }
         })?;
-        of_run(&own, Some(&work))?;
+        write_run_documents(&own, Some(&work))?;
         write_client(&work.join("client"))?;
         eprintln!("try {number} of {}: run {} in {}", options.tries, own.id, work.display());
-        let played = play(options, number, &own, &work, &stop);
+        let played = play_until_over(options, number, &own, &work, &stop);
         // The server must stop in any case.
-        own.stop()?;
+        own.stop_server()?;
         let (attempts, exit_code) = played?;
-        tries.push(outcome(number, &own, attempts, exit_code)?);
-        let exhibit = tries_exhibit(format!("{} runs of: {}", options.tries, options.command), &tries);
-        write_whole(&out.join("results.json"), format!("{:#}\n", exhibit.as_json()).as_bytes())?;
+        tries.push(read_outcome(number, &own, attempts, exit_code)?);
+        let exhibit = attempts_report(format!("{} runs of: {}", options.tries, options.command), &tries);
+        write_atomically(&out.join("results.json"), format!("{:#}\n", exhibit.to_json()).as_bytes())?;
         if number == options.tries {
             return options.output.show(&exhibit);
         }
@@ -75,12 +75,12 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     Ok(())
 }
 
-fn cannot_write(path: &Path, error: &std::io::Error) -> Failure {
+fn write_failure(path: &Path, error: &std::io::Error) -> Failure {
     Failure::failed(format!("{}: {error}", path.display()))
 }
 
 /// Starts the command until the run is over or the restarts are used up. Returns the number of starts and the last exit code.
-fn play(
+fn play_until_over(
     options: &Options,
     number: u32,
     own: &AgentRun,
@@ -89,10 +89,10 @@ fn play(
 ) -> Result<(u32, Option<i32>), Failure> {
     let mut attempts = 0;
     loop {
-        let remote = own.serve(Secrecy::Open)?;
+        let remote = own.connect_or_start(Authentication::Unauthenticated)?;
         attempts += 1;
-        let mut command = shell(&options.command);
-        equip(&mut command, own, &remote, &work.join("client"))?;
+        let mut command = shell_command(&options.command);
+        set_environment(&mut command, own, &remote, &work.join("client"))?;
         command.env("NOVAMIND_TRY", number.to_string()).env("NOVAMIND_ATTEMPT", attempts.to_string());
         command.current_dir(work).stdin(Stdio::null());
         let log = work.join("output.txt");
@@ -100,14 +100,15 @@ fn play(
             .create(true)
             .append(true)
             .open(&log)
-            .map_err(|error| cannot_write(&log, &error))?;
-        command.stderr(file.try_clone().map_err(|error| cannot_write(&log, &error))?).stdout(file);
+            .map_err(|error| write_failure(&log, &error))?;
+        command.stderr(file.try_clone().map_err(|error| write_failure(&log, &error))?).stdout(file);
         let child =
             command.spawn().map_err(|error| Failure::failed(format!("cannot start a shell: {error}")))?;
-        let status = wait(child, stop)?;
+        let status = wait_for_exit(child, stop)?;
         // If the command stopped the server, another one continues the run.
-        let reply = asked(&own.serve(Secrecy::Open)?, "/game-status", None)?;
-        exit::check(&reply)?;
+        let reply =
+            send_request(&own.connect_or_start(Authentication::Unauthenticated)?, "/game-status", None)?;
+        exit::check_response(&reply)?;
         if !reply.body["ended"].is_null() || attempts > options.continued {
             return Ok((attempts, status.code()));
         }
@@ -115,7 +116,7 @@ fn play(
     }
 }
 
-fn wait(mut child: Child, stop: &AtomicBool) -> Result<ExitStatus, Failure> {
+fn wait_for_exit(mut child: Child, stop: &AtomicBool) -> Result<ExitStatus, Failure> {
     let failed = |error: std::io::Error| Failure::failed(format!("the command: {error}"));
     loop {
         if let Some(status) = child.try_wait().map_err(failed)? {
@@ -129,16 +130,21 @@ fn wait(mut child: Child, stop: &AtomicBool) -> Result<ExitStatus, Failure> {
     }
 }
 
-fn shell(command: &str) -> Command {
+fn shell_command(command: &str) -> Command {
     let (program, option) = if cfg!(windows) { ("cmd", "/C") } else { ("sh", "-c") };
     let mut shell = Command::new(program);
     shell.arg(option).arg(command);
     shell
 }
 
-fn outcome(number: u32, own: &AgentRun, attempts: u32, exit_code: Option<i32>) -> Result<Try, Failure> {
+fn read_outcome(
+    number: u32,
+    own: &AgentRun,
+    attempts: u32,
+    exit_code: Option<i32>,
+) -> Result<AttemptResult, Failure> {
     let session = Session::open_to_read(&own.folder, false)?;
     let trajectory = Trajectory::read(&own.folder.join("trajectory.jsonl"))?;
-    let result = session.ended().and_then(|_| FinishedRun::of(&session, &trajectory.lines));
-    Ok(Try { number, run: own.id.clone(), attempts, exit_code, day: session.day(), result })
+    let result = session.ended().and_then(|_| FinishedRun::from_session(&session, &trajectory.lines));
+    Ok(AttemptResult { number, run: own.id.clone(), starts: attempts, exit_code, day: session.day(), result })
 }

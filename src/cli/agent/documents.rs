@@ -4,37 +4,37 @@ use std::path::Path;
 
 use super::server::AgentRun;
 use crate::cli::{Context, Failure, print};
-use crate::server::{PageOf, page, write_documents};
+use crate::server::{PageContext, agent_page, write_documents};
 use crate::session::{Access, Session};
-use crate::tools::Numbers;
+use crate::tools::ParameterNumbers;
 
 /// Prints the page or writes it with the documents, for the named run or for a standard run.
-pub fn write(named: Option<&str>, out: Option<&Path>, context: &Context) -> Result<(), Failure> {
+pub fn print_or_write(named: Option<&str>, out: Option<&Path>, context: &Context) -> Result<(), Failure> {
     match named {
-        Some(_) => of_run(&AgentRun::find(named, context)?, out),
+        Some(_) => write_run_documents(&AgentRun::find(named, context)?, out),
         None => {
-            let numbers = Numbers::shipped();
+            let numbers = ParameterNumbers::bundled();
             let value = |key: &str| numbers.value(key).unwrap_or_default();
-            let of = PageOf {
+            let of = PageContext {
                 days: value("run.total_days") as u32,
                 cash: value("initial.initial_cash"),
                 numbers: &numbers,
             };
-            write_of(&of, out)
+            write_page(&of, out)
         }
     }
 }
 
 /// Writes the documents of a run.
-pub fn of_run(own: &AgentRun, out: Option<&Path>) -> Result<(), Failure> {
+pub fn write_run_documents(own: &AgentRun, out: Option<&Path>) -> Result<(), Failure> {
     let session = Session::open(&own.folder, Access::Read, false)?;
     let manifest = session.manifest();
-    write_of(&PageOf { days: manifest.days, cash: manifest.cash, numbers: &session.numbers() }, out)
+    write_page(&PageContext { days: manifest.days, cash: manifest.cash, numbers: &session.numbers() }, out)
 }
 
-fn write_of(of: &PageOf<'_>, out: Option<&Path>) -> Result<(), Failure> {
+fn write_page(of: &PageContext<'_>, out: Option<&Path>) -> Result<(), Failure> {
     match out {
-        None => print(&page(of)),
+        None => print(&agent_page(of)),
         Some(folder) => Ok(write_documents(folder, of)?),
     }
 }

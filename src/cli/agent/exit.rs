@@ -3,19 +3,19 @@
 use serde_json::Value;
 
 use crate::cli::Failure;
-use crate::server::Reply;
+use crate::server::ServerResponse;
 
 /// A call, a statement or a week was rejected; nothing changed.
-const REFUSED: u8 = 5;
+const REJECTED: u8 = 5;
 /// Rejected because the run is over.
-const OVER: u8 = 6;
+const RUN_OVER: u8 = 6;
 /// A week is being simulated, or the server has too many connections.
 const BUSY: u8 = 7;
 /// The server does not respond.
 const UNREACHABLE: u8 = 8;
 
 /// Returns the failure for a server that does not respond.
-pub fn unreachable(error: &str) -> Failure {
+pub fn unreachable_failure(error: &str) -> Failure {
     Failure::with_code(
         UNREACHABLE,
         format!(
@@ -29,7 +29,7 @@ pub fn unreachable(error: &str) -> Failure {
 ///
 /// # Errors
 /// The response is a rejection. The message has the code, the argument and the reason.
-pub fn check(reply: &Reply) -> Result<(), Failure> {
+pub fn check_response(reply: &ServerResponse) -> Result<(), Failure> {
     if reply.status == 200 && reply.body["success"] != Value::Bool(false) {
         return Ok(());
     }
@@ -38,9 +38,9 @@ pub fn check(reply: &Reply) -> Result<(), Failure> {
     let message = word("error").unwrap_or("the server gave no reason");
     let field = word("field").map(|field| format!(" ({field})")).unwrap_or_default();
     let exit = match (reply.status, code) {
-        (_, "run_over") => OVER,
+        (_, "run_over") => RUN_OVER,
         (409 | 503, _) => BUSY,
-        _ => REFUSED,
+        _ => REJECTED,
     };
     Err(Failure::with_code(exit, format!("{code}{field}: {message}")))
 }

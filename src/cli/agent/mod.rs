@@ -1,11 +1,11 @@
 //! `novamind agent`: plays a run with single shell commands (docs/interfaces/agents.md).
 
+mod arguments;
 mod batch;
 mod documents;
 mod exit;
 mod python;
 mod server;
-mod words;
 
 use std::path::PathBuf;
 
@@ -14,9 +14,9 @@ use serde_json::{Value, json};
 
 use super::new_run::NewRunOptions;
 use super::{Context, Failure, print};
-use crate::server::{Remote, Reply};
-use server::{AgentRun, Secrecy};
-use words::{called_with, next_week_of, text_of};
+use crate::server::{RemoteServer, ServerResponse};
+use arguments::{parse_call, parse_next_week, read_text};
+use server::{AgentRun, Authentication};
 
 #[derive(Debug, Args)]
 pub struct Options {
@@ -81,14 +81,14 @@ enum AgentCommand {
 
 impl Options {
     /// Passes `--code` to the called tool. Without a study it cannot be the code of an experimenter.
-    pub fn take_code(&mut self, code: String) {
+    pub fn restore_code_argument(&mut self, code: String) {
         if let AgentCommand::Call { arguments, .. } = &mut self.command {
             arguments.splice(0..0, ["--code".to_owned(), code]);
         }
     }
 
     /// Adds the request id to the body.
-    fn with_id(&self, mut body: Value) -> Value {
+    fn with_request_id(&self, mut body: Value) -> Value {
         if let Some(id) = &self.request_id {
             body["request_id"] = json!(id);
         }
@@ -99,45 +99,46 @@ impl Options {
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let named = options.run.as_deref();
     match &options.command {
-        AgentCommand::New(new) => begin(new, context),
-        AgentCommand::Status => answer(&connect(named, context)?.1, "/game-status", None),
-        AgentCommand::Dashboard => answer(&connect(named, context)?.1, "/dashboard", None),
+        AgentCommand::New(new) => create_run(new, context),
+        AgentCommand::Status => print_response(&connect(named, context)?.1, "/game-status", None),
+        AgentCommand::Dashboard => print_response(&connect(named, context)?.1, "/dashboard", None),
         AgentCommand::NextWeek { words, expected_day } => {
-            let mut filed = options.with_id(next_week_of(words)?);
+            let mut filed = options.with_request_id(parse_next_week(words)?);
             if let Some(day) = expected_day {
                 filed["expected_day"] = json!(day);
             }
-            answer(&connect(named, context)?.1, "/next-week", Some(&filed))
+            print_response(&connect(named, context)?.1, "/next-week", Some(&filed))
         }
         AgentCommand::Query { sql } => {
-            let asked = json!({ "sql": text_of(sql)? });
-            answer(&connect(named, context)?.1, "/query", Some(&asked))
+            let asked = json!({ "sql": read_text(sql)? });
+            print_response(&connect(named, context)?.1, "/query", Some(&asked))
         }
         AgentCommand::Call { tool, arguments } => {
-            let asked = options.with_id(json!({ "tool": tool, "args": called_with(tool, arguments)? }));
-            answer(&connect(named, context)?.1, "/call", Some(&asked))
+            let asked =
+                options.with_request_id(json!({ "tool": tool, "args": parse_call(tool, arguments)? }));
+            print_response(&connect(named, context)?.1, "/call", Some(&asked))
         }
         AgentCommand::Python { words } => {
             let (own, remote) = connect(named, context)?;
             python::run(words, &own, &remote)
         }
-        AgentCommand::Docs { out } => documents::write(named, out.as_deref(), context),
+        AgentCommand::Docs { out } => documents::print_or_write(named, out.as_deref(), context),
         AgentCommand::Stop => {
             let own = AgentRun::find(named, context)?;
-            let stopped = own.stop()?;
+            let stopped = own.stop_server()?;
             print(&format!("{}\n", json!({ "run": own.id, "stopped": stopped })))
         }
         AgentCommand::Batch(batch) => batch::run(batch, context),
     }
 }
 
-fn begin(new: &NewRunOptions, context: &Context) -> Result<(), Failure> {
-    let own = AgentRun::begin(new, context)?;
-    own.remember(context)?;
-    let remote = own.serve(Secrecy::Token)?;
+fn create_run(new: &NewRunOptions, context: &Context) -> Result<(), Failure> {
+    let own = AgentRun::create(new, context)?;
+    own.set_latest(context)?;
+    let remote = own.connect_or_start(Authentication::Token)?;
     let mut told = json!(remote.announcement);
     told["folder"] = json!(own.folder);
-    let status = asked(&remote, "/game-status", None)?.body;
+    let status = send_request(&remote, "/game-status", None)?.body;
     for field in ["day", "total_days", "cash"] {
         told[field] = status[field].clone();
     }
@@ -145,23 +146,23 @@ fn begin(new: &NewRunOptions, context: &Context) -> Result<(), Failure> {
 }
 
 /// Returns the run and a connection to its server, which is started if necessary.
-fn connect(named: Option<&str>, context: &Context) -> Result<(AgentRun, Remote), Failure> {
+fn connect(named: Option<&str>, context: &Context) -> Result<(AgentRun, RemoteServer), Failure> {
     let own = AgentRun::find(named, context)?;
-    let remote = own.serve(Secrecy::Token)?;
+    let remote = own.connect_or_start(Authentication::Token)?;
     Ok((own, remote))
 }
 
 /// Sends a request and prints the response.
-fn answer(remote: &Remote, path: &str, body: Option<&Value>) -> Result<(), Failure> {
-    let reply = asked(remote, path, body)?;
-    exit::check(&reply)?;
+fn print_response(remote: &RemoteServer, path: &str, body: Option<&Value>) -> Result<(), Failure> {
+    let reply = send_request(remote, path, body)?;
+    exit::check_response(&reply)?;
     print(&format!("{}\n", reply.body))
 }
 
-fn asked(remote: &Remote, path: &str, body: Option<&Value>) -> Result<Reply, Failure> {
+fn send_request(remote: &RemoteServer, path: &str, body: Option<&Value>) -> Result<ServerResponse, Failure> {
     let reply = match body {
         None => remote.get(path),
         Some(body) => remote.post(path, body),
     };
-    reply.map_err(|error| exit::unreachable(&error))
+    reply.map_err(|error| exit::unreachable_failure(&error))
 }

@@ -6,14 +6,14 @@ use std::process::Command;
 
 use super::server::AgentRun;
 use crate::cli::Failure;
-use crate::server::Remote;
+use crate::server::RemoteServer;
 
 /// Runs python3 and passes its exit code on.
-pub fn run(words: &[String], own: &AgentRun, remote: &Remote) -> Result<(), Failure> {
-    let client = own.client()?;
+pub fn run(words: &[String], own: &AgentRun, remote: &RemoteServer) -> Result<(), Failure> {
+    let client = own.write_client()?;
     let mut command = Command::new("python3");
     command.args(words);
-    equip(&mut command, own, remote, &client)?;
+    set_environment(&mut command, own, remote, &client)?;
     let status = command.status().map_err(|error| match error.kind() {
         std::io::ErrorKind::NotFound => Failure::failed(
             "python3 is not on the PATH: install Python 3.9 or newer, or use `novamind agent call`",
@@ -28,7 +28,12 @@ pub fn run(words: &[String], own: &AgentRun, remote: &Remote) -> Result<(), Fail
 }
 
 /// Sets the environment that a program needs to play the run: port, token, run id and Python package.
-pub fn equip(command: &mut Command, own: &AgentRun, remote: &Remote, client: &Path) -> Result<(), Failure> {
+pub fn set_environment(
+    command: &mut Command,
+    own: &AgentRun,
+    remote: &RemoteServer,
+    client: &Path,
+) -> Result<(), Failure> {
     let mut path = vec![client.to_owned()];
     if let Some(others) = std::env::var_os("PYTHONPATH") {
         path.extend(std::env::split_paths(&others));

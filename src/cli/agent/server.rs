@@ -10,25 +10,25 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use crate::cli::new_run::NewRunOptions;
-use crate::cli::which_run::begin;
+use crate::cli::run_selection::create_run;
 use crate::cli::{Context, Failure};
-use crate::record::files::write_whole;
-use crate::record::folder::lock::is_being_played;
+use crate::record::files::write_atomically;
+use crate::record::folder::lock::is_locked;
 use crate::record::folder::runs::{find_run_to_read, run_folder};
-use crate::server::{Remote, write_client};
+use crate::server::{RemoteServer, write_client};
 
 /// File in the folder of runs that names the last run that `agent new` created.
-const LATEST: &str = "agent-run.txt";
+const LATEST_RUN_FILE: &str = "agent-run.txt";
 /// Time limit for stopping a server, which first finishes the week that it simulates.
-const LAST_WEEK: Duration = Duration::from_secs(120);
+const STOP_DEADLINE: Duration = Duration::from_secs(120);
 
 /// Whether requests must carry a token.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Secrecy {
+pub enum Authentication {
     /// Requests need the token, which commands read from the run folder.
     Token,
     /// Requests need no token, for clients that do not support one.
-    Open,
+    Unauthenticated,
 }
 
 /// The run of an agent.
@@ -45,11 +45,11 @@ impl AgentRun {
     ///
     /// # Errors
     /// As `serve --new`.
-    pub fn begin(new: &NewRunOptions, context: &Context) -> Result<AgentRun, Failure> {
-        let mut session = begin(new, context)?;
+    pub fn create(new: &NewRunOptions, context: &Context) -> Result<AgentRun, Failure> {
+        let mut session = create_run(new, context)?;
         session.save()?;
         let folder = session.folder().map(Path::to_path_buf);
-        AgentRun::of(&folder.ok_or_else(|| Failure::failed("the run was not kept"))?)
+        AgentRun::from_folder(&folder.ok_or_else(|| Failure::failed("the run was not kept"))?)
     }
 
     /// Finds the named run, or the last one that `agent new` created in this folder of runs.
@@ -57,8 +57,9 @@ impl AgentRun {
     /// # Errors
     /// There is no such run, or it belongs to a study.
     pub fn find(named: Option<&str>, context: &Context) -> Result<AgentRun, Failure> {
-        let runs = context.runs()?;
-        let remembered = || std::fs::read_to_string(runs.join(LATEST)).ok().map(|id| id.trim().to_owned());
+        let runs = context.runs_folder()?;
+        let remembered =
+            || std::fs::read_to_string(runs.join(LATEST_RUN_FILE)).ok().map(|id| id.trim().to_owned());
         let id = named.map(str::to_owned).or_else(remembered).ok_or_else(|| {
             Failure::usage("there is no run of an agent here: create one with `novamind agent new`, or give one with --run or NOVAMIND_RUN")
         })?;
@@ -69,11 +70,11 @@ impl AgentRun {
             true => own,
             false => find_run_to_read(&runs, &id)?,
         };
-        context.check_play(&folder)?;
-        AgentRun::of(&folder)
+        context.check_play_allowed(&folder)?;
+        AgentRun::from_folder(&folder)
     }
 
-    fn of(folder: &Path) -> Result<AgentRun, Failure> {
+    fn from_folder(folder: &Path) -> Result<AgentRun, Failure> {
         let folder = std::path::absolute(folder)
             .map_err(|error| Failure::failed(format!("the working directory: {error}")))?;
         let id = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
@@ -84,19 +85,22 @@ impl AgentRun {
     ///
     /// # Errors
     /// The folder of runs cannot be written.
-    pub fn remember(&self, context: &Context) -> Result<(), Failure> {
-        Ok(write_whole(&context.runs()?.join(LATEST), format!("{}\n", self.id).as_bytes())?)
+    pub fn set_latest(&self, context: &Context) -> Result<(), Failure> {
+        Ok(write_atomically(
+            &context.runs_folder()?.join(LATEST_RUN_FILE),
+            format!("{}\n", self.id).as_bytes(),
+        )?)
     }
 
     /// Connects to the server that plays the run, and starts it if necessary.
     ///
     /// # Errors
     /// The server cannot be started: the run is in use elsewhere or damaged.
-    pub fn serve(&self, secrecy: Secrecy) -> Result<Remote, Failure> {
-        let _gate = self.gate()?;
-        match Remote::find(&self.folder, &self.id) {
+    pub fn connect_or_start(&self, secrecy: Authentication) -> Result<RemoteServer, Failure> {
+        let _gate = self.lock()?;
+        match RemoteServer::find(&self.folder, &self.id) {
             Some(remote) => Ok(remote),
-            None => self.start(secrecy),
+            None => self.start_server(secrecy),
         }
     }
 
@@ -104,14 +108,14 @@ impl AgentRun {
     ///
     /// # Errors
     /// The server does not stop in time.
-    pub fn stop(&self) -> Result<bool, Failure> {
-        let _gate = self.gate()?;
-        let Some(remote) = Remote::find(&self.folder, &self.id) else { return Ok(false) };
-        let reply = remote.shut_down().map_err(|error| super::exit::unreachable(&error))?;
-        super::exit::check(&reply)?;
+    pub fn stop_server(&self) -> Result<bool, Failure> {
+        let _gate = self.lock()?;
+        let Some(remote) = RemoteServer::find(&self.folder, &self.id) else { return Ok(false) };
+        let reply = remote.shut_down().map_err(|error| super::exit::unreachable_failure(&error))?;
+        super::exit::check_response(&reply)?;
         let asked = Instant::now();
-        while is_being_played(&self.folder) {
-            if asked.elapsed() > LAST_WEEK {
+        while is_locked(&self.folder) {
+            if asked.elapsed() > STOP_DEADLINE {
                 return Err(Failure::failed(format!(
                     "process {} did not stop in time",
                     remote.announcement.pid
@@ -126,22 +130,22 @@ impl AgentRun {
     ///
     /// # Errors
     /// The folder cannot be written.
-    pub fn client(&self) -> Result<PathBuf, Failure> {
-        let _gate = self.gate()?;
+    pub fn write_client(&self) -> Result<PathBuf, Failure> {
+        let _gate = self.lock()?;
         let client = self.folder.join("client");
         write_client(&client)?;
         Ok(client)
     }
 
     /// Takes the lock for finding, starting or stopping a server.
-    fn gate(&self) -> Result<File, Failure> {
+    fn lock(&self) -> Result<File, Failure> {
         let path = self.folder.join("server.lock");
         let open = File::options().create(true).truncate(false).write(true).open(&path);
         open.and_then(|file| file.lock().map(|()| file))
             .map_err(|error| Failure::failed(format!("cannot lock {}: {error}", path.display())))
     }
 
-    fn start(&self, secrecy: Secrecy) -> Result<Remote, Failure> {
+    fn start_server(&self, secrecy: Authentication) -> Result<RemoteServer, Failure> {
         let failed = |error: std::io::Error| Failure::failed(format!("cannot start a server: {error}"));
         let log = self.folder.join("server.log");
         let runs = self.folder.parent().unwrap_or(&self.folder);
@@ -149,7 +153,7 @@ impl AgentRun {
         command.arg("--runs-dir").arg(runs).args(["serve", "--run", &self.id]);
         // The folder of runs is already that of the participant.
         command.env_remove("NOVAMIND_PARTICIPANT").env_remove("NOVAMIND_RUNS");
-        if secrecy == Secrecy::Token {
+        if secrecy == Authentication::Token {
             let token = self.folder.join("server.token");
             // A process that was killed may have left it empty.
             if std::fs::metadata(&token).is_ok_and(|file| file.len() == 0) {
@@ -174,7 +178,7 @@ impl AgentRun {
             let code = status.code().and_then(|code| u8::try_from(code).ok()).filter(|code| *code > 0);
             return Err(Failure::with_code(code.unwrap_or(1), said));
         }
-        Remote::find(&self.folder, &self.id).ok_or_else(|| {
+        RemoteServer::find(&self.folder, &self.id).ok_or_else(|| {
             Failure::failed(format!("the server does not respond; its output is in {}", log.display()))
         })
     }

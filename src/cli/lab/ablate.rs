@@ -2,14 +2,14 @@
 
 use clap::Args;
 
-use super::experiments::{PlayOptions, conduct};
+use super::experiments::{PlayOptions, run_experiment};
 use super::output::OutputOptions;
-use crate::cli::run::{Seeds, parse_seeds};
+use crate::cli::run::{SeedRange, parse_seeds};
 use crate::cli::{Context, Failure};
 use crate::lab::Policy;
 use crate::lab::ablation::{
-    Axis, COPY, DRAIN, RivalSetting, SHORT_DAYS, ShortRun, ablation_exhibit, arms, shared_probe,
-    short_run_policies, targeted_probe,
+    AblationAxis, COPY_SETTINGS, CompetitorSetting, DRAIN_SETTINGS, SHORT_DAYS, ShortRun, ablation_report,
+    competitor_arms, shared_development_probe, short_run_policies, targeted_development_probe,
 };
 use crate::lab::experiment::{Experiment, ExperimentResults};
 
@@ -20,7 +20,7 @@ pub struct Options {
     policy: Option<String>,
     /// Seed, or a range including both ends
     #[arg(long, default_value = "1..24", value_name = "N|A..B", value_parser = parse_seeds)]
-    seeds: Seeds,
+    seeds: SeedRange,
     /// Day on which subscribers are compared, the last day of a week
     #[arg(long, default_value = "140", value_name = "N", value_parser = parse_week_end)]
     day: u32,
@@ -46,38 +46,43 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
             let own = Policy::find(name, &context.configuration)?;
             (own.clone(), own)
         }
-        None => (shared_probe()?, targeted_probe()?),
+        None => (shared_development_probe()?, targeted_development_probe()?),
     };
     let play =
-        |policy: &Policy, settings: &[RivalSetting], days: u32| -> Result<ExperimentResults, Failure> {
+        |policy: &Policy, settings: &[CompetitorSetting], days: u32| -> Result<ExperimentResults, Failure> {
             let seeds = options.seeds.first..=options.seeds.last;
-            conduct("ablate", &Experiment::of(arms(policy, settings, days), seeds), &options.play, context)
+            run_experiment(
+                "ablate",
+                &Experiment::new(competitor_arms(policy, settings, days), seeds),
+                &options.play,
+                context,
+            )
         };
-    let copy = play(&shared, &COPY, LONG_DAYS)?;
-    let drain = play(&targeted, &DRAIN, LONG_DAYS)?;
-    let few: Vec<RivalSetting> =
-        COPY.into_iter().filter(|own| ["off", "default", "hard"].contains(&own.name)).collect();
+    let copy = play(&shared, &COPY_SETTINGS, LONG_DAYS)?;
+    let drain = play(&targeted, &DRAIN_SETTINGS, LONG_DAYS)?;
+    let few: Vec<CompetitorSetting> =
+        COPY_SETTINGS.into_iter().filter(|own| ["off", "default", "hard"].contains(&own.name)).collect();
     let mut short = vec![(shared.name.clone(), play(&shared, &few, SHORT_DAYS)?)];
     for (name, policy) in short_run_policies()? {
         short.push((name.to_owned(), play(&policy, &few, SHORT_DAYS)?));
     }
     let axes = [
-        Axis {
+        AblationAxis {
             name: "copy",
             caption: format!("Copying of the shared bank, policy: {}", shared.name),
             policy: &shared.name,
-            settings: &COPY,
+            settings: &COPY_SETTINGS,
             results: &copy,
         },
-        Axis {
+        AblationAxis {
             name: "drain",
             caption: format!("Draining of the targeted bank, policy: {}", targeted.name),
             policy: &targeted.name,
-            settings: &DRAIN,
+            settings: &DRAIN_SETTINGS,
             results: &drain,
         },
     ];
     let short: Vec<ShortRun<'_>> =
         short.iter().map(|(name, results)| ShortRun { name, settings: &few, results }).collect();
-    options.output.show(&ablation_exhibit(&axes, &short, options.day))
+    options.output.show(&ablation_report(&axes, &short, options.day))
 }

@@ -2,23 +2,25 @@
 
 use clap::Args;
 
-use super::experiments::{PlayOptions, conduct, conduct_knowing};
+use super::experiments::{PlayOptions, run_experiment, run_experiment_with_known};
 use super::output::OutputOptions;
-use crate::cli::run::{Seeds, parse_seeds};
+use crate::cli::run::{SeedRange, parse_seeds};
 use crate::cli::{Context, Failure};
 use crate::lab::RunSpec;
-use crate::lab::baseline::{Grid, GridPoint, PAPER, baseline_exhibit, is_shared, leaders};
-use crate::lab::experiment::{Arm, Experiment, ExperimentResults, Prepared};
+use crate::lab::baseline::{
+    GridPoint, PAPER_GRID, PolicyGrid, baseline_report, is_shared_run, shared_run_leaders,
+};
+use crate::lab::experiment::{Arm, Experiment, ExperimentResults, PreparedExperiment};
 use crate::record::folder::configuration::DEFAULT_SCENARIO;
-use crate::report::comparable::PUBLISHED_DAYS;
+use crate::report::ranking_eligibility::PUBLISHED_DAYS;
 
 #[derive(Debug, Args)]
 pub struct Options {
     /// Seed, or a range including both ends
     #[arg(long, default_value = "1..24", value_name = "N|A..B", value_parser = parse_seeds)]
-    seeds: Seeds,
+    seeds: SeedRange,
     /// Another grid: the name of a bundled one, or the path of a file
-    #[arg(long, default_value = PAPER, value_name = "NAME|FILE")]
+    #[arg(long, default_value = PAPER_GRID, value_name = "NAME|FILE")]
     grid: String,
     /// Scenario [default: that of the grid, otherwise default]
     #[arg(long, value_name = "NAME")]
@@ -33,16 +35,16 @@ pub struct Options {
 }
 
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
-    let grid = Grid::find(&options.grid)?;
-    let results = played(&grid, options, context)?;
-    let is_of_the_paper = options.grid == PAPER
+    let grid = PolicyGrid::find(&options.grid)?;
+    let results = play_grid(&grid, options, context)?;
+    let is_of_the_paper = options.grid == PAPER_GRID
         && options.days.is_none_or(|days| days == PUBLISHED_DAYS)
         && options.scenario.as_deref().is_none_or(|name| name == DEFAULT_SCENARIO);
-    options.output.show(&baseline_exhibit(&grid, is_of_the_paper, &results))
+    options.output.show(&baseline_report(&grid, is_of_the_paper, &results))
 }
 
 /// Plays the leaders first, because most other configurations turn out to be identical to one of them.
-fn played(grid: &Grid, options: &Options, context: &Context) -> Result<ExperimentResults, Failure> {
+fn play_grid(grid: &PolicyGrid, options: &Options, context: &Context) -> Result<ExperimentResults, Failure> {
     let points = &grid.configurations;
     let seeds = options.seeds.first..=options.seeds.last;
     let arm = |own: &GridPoint| {
@@ -50,24 +52,24 @@ fn played(grid: &Grid, options: &Options, context: &Context) -> Result<Experimen
         arm.spec = RunSpec { scenario: options.scenario.clone(), days: options.days, ..arm.spec };
         arm
     };
-    let all = Experiment::of(points.iter().map(arm).collect(), seeds.clone());
-    let leaders = leaders(points);
+    let all = Experiment::new(points.iter().map(arm).collect(), seeds.clone());
+    let leaders = shared_run_leaders(points);
     let leading: Vec<usize> = (0..points.len()).filter(|at| leaders[*at] == *at).collect();
-    let first = Experiment::of(leading.iter().map(|at| arm(&points[*at])).collect(), seeds);
-    let known = conduct("baseline", &first, &options.play, context)?;
+    let first = Experiment::new(leading.iter().map(|at| arm(&points[*at])).collect(), seeds);
+    let known = run_experiment("baseline", &first, &options.play, context)?;
     let mut starts = Vec::new();
     for own in points {
         starts.push(start_cash(own, options, context)?);
     }
     // Results that were just computed are used even with --fresh.
     let play = PlayOptions { fresh: false, ..options.play.clone() };
-    conduct_knowing("baseline", &all, &play, context, |prepared: &mut Prepared<'_>| {
+    run_experiment_with_known("baseline", &all, &play, context, |prepared: &mut PreparedExperiment<'_>| {
         for (at, own) in points.iter().enumerate() {
             let leader = &points[leaders[at]];
             let runs = leading.iter().position(|place| *place == leaders[at]);
             for run in runs.into_iter().flat_map(|place| &known.by_arm[place]) {
-                if is_shared(&leader.policy, &own.policy, starts[at], run) {
-                    prepared.know(at, run);
+                if is_shared_run(&leader.policy, &own.policy, starts[at], run) {
+                    prepared.add_result(at, run);
                 }
             }
         }
@@ -79,6 +81,6 @@ fn start_cash(own: &GridPoint, options: &Options, context: &Context) -> Result<f
         return Ok(cash);
     }
     let named = options.scenario.as_deref().or(own.policy.start.scenario.as_deref());
-    let scenario = context.configuration.scenario(named.unwrap_or(DEFAULT_SCENARIO))?;
-    Ok(context.configuration.terms(&scenario, true)?.1)
+    let scenario = context.configuration.load_scenario(named.unwrap_or(DEFAULT_SCENARIO))?;
+    Ok(context.configuration.days_and_cash(&scenario, true)?.1)
 }

@@ -3,9 +3,9 @@
 use clap::Args;
 
 use super::output::OutputOptions;
-use super::read_runs::of_runs;
+use super::runs::map_runs;
 use crate::cli::{Context, Failure};
-use crate::lab::behaviour::{ObservedRun, exhibit_of};
+use crate::lab::behavior::{BehaviorRun, behavior_report};
 
 #[derive(Debug, Args)]
 pub struct Options {
@@ -18,8 +18,8 @@ pub struct Options {
 
 /// Runs the command. The runs record only that they were read.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
-    let observed = of_runs(&options.runs, "behaviour", context, |session, trajectory| {
-        ObservedRun::of(session, &trajectory.lines)
+    let observed = map_runs(&options.runs, "behaviour", context, |session, trajectory| {
+        BehaviorRun::from_session(session, &trajectory.lines)
     })?;
-    options.output.show(&exhibit_of(&observed))
+    options.output.show(&behavior_report(&observed))
 }

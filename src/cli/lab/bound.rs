@@ -5,7 +5,7 @@ use clap::Args;
 use super::output::OutputOptions;
 use super::world::WorldOptions;
 use crate::cli::{Context, Failure};
-use crate::lab::bound::{BoundAccount, Premises, bound_exhibit, sensitivity};
+use crate::lab::bound::{BoundAccount, BoundAssumptions, bound_report, sensitivity};
 
 #[derive(Debug, Args)]
 pub struct Options {
@@ -24,15 +24,15 @@ fn parse_slack(text: &str) -> Result<u8, String> {
 }
 
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
-    let (days, params) = options.world.terms(context)?;
-    let premises = Premises::of_the_paper(f64::from(options.slack));
+    let (days, params) = options.world.days_and_params(context)?;
+    let premises = BoundAssumptions::from_paper(f64::from(options.slack));
     if days != premises.run_days {
         return Err(Failure::usage(format!(
             "the bound is defined for runs of {} days, as published; these parameters have {days} days",
             premises.run_days
         )));
     }
-    let account = BoundAccount::of(premises, &params);
+    let account = BoundAccount::new(premises, &params);
     let slacks = sensitivity(&[1.0, 2.0, 3.0, 4.0], &params);
-    options.output.show(&bound_exhibit(&account, &slacks))
+    options.output.show(&bound_report(&account, &slacks))
 }

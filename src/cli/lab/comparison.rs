@@ -4,13 +4,13 @@ use clap::Args;
 use serde_json::json;
 
 use super::output::terminal_columns;
-use super::read_runs::of_runs;
-use crate::cli::runs::as_csv;
+use super::runs::map_runs;
+use crate::cli::runs::to_csv;
 use crate::cli::{Context, Failure, print};
-use crate::lab::comparison::{as_rows, as_text, beside};
-use crate::notation::printable;
+use crate::formatting::escape_control_characters;
+use crate::lab::comparison::{compare_runs, comparison_to_rows, comparison_to_text};
 use crate::report::Logbook;
-use crate::report::ranking::published;
+use crate::report::ranking::published_results;
 
 #[derive(Debug, Args)]
 pub struct Options {
@@ -33,18 +33,18 @@ const PAGE_WIDTH: usize = 160;
 
 /// Runs the command. Does not modify the runs.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
-    let compared = of_runs(&options.runs, "compare", context, |session, trajectory| {
-        Logbook::of(session, &trajectory.lines, &[])
+    let compared = map_runs(&options.runs, "compare", context, |session, trajectory| {
+        Logbook::new(session, &trajectory.lines, &[])
     })?;
-    let all = beside(&compared);
+    let all = compare_runs(&compared);
     if options.csv {
-        return print(&as_csv(&as_rows(&all))?);
+        return print(&to_csv(&comparison_to_rows(&all))?);
     }
     if !options.json {
         let width = options.width.map(usize::from).or_else(terminal_columns).unwrap_or(PAGE_WIDTH);
-        return print(&printable(&as_text(&all, width)));
+        return print(&escape_control_characters(&comparison_to_text(&all, width)));
     }
-    let agents = json!({ "source": published().source, "agents": published().agent });
+    let agents = json!({ "source": published_results().source, "agents": published_results().agent });
     let runs: Vec<_> = compared.iter().map(|logbook| json!({ "logbook": logbook })).collect();
     let object = json!({ "comparison": all, "runs": runs, "published": agents });
     print(&(serde_json::to_string_pretty(&object).unwrap_or_default() + "\n"))

@@ -3,16 +3,16 @@
 use clap::Args;
 
 use super::output::OutputOptions;
-use crate::cli::run::{Seeds, parse_seeds, progress_bar, thread_pool};
+use crate::cli::run::{SeedRange, parse_seeds, progress_bar, thread_pool};
 use crate::cli::{Context, Failure};
 use crate::lab::Policy;
-use crate::lab::consistency::{ConsistencySpec, PLAYS_OF_A_SEED, check_consistency, contrasting_policies};
+use crate::lab::consistency::{ConsistencySpec, PLAYS_PER_SEED, check_consistency, contrasting_policies};
 
 #[derive(Debug, Args)]
 pub struct Options {
     /// Seed, or a range including both ends: 1..4
     #[arg(long, default_value = "42", value_name = "N|A..B", value_parser = parse_seeds)]
-    seeds: Seeds,
+    seeds: SeedRange,
     /// A policy, by name or path; give two [default: two that differ in everything that is tested]
     #[arg(long, value_name = "NAME|FILE")]
     policy: Vec<String>,
@@ -37,12 +37,12 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         _ => return Err(Failure::usage("give --policy twice or not at all")),
     };
     let spec = |seeds| ConsistencySpec { seeds, scenario: options.scenario.clone(), until: options.until };
-    if let Some(obstacle) = spec(Vec::new()).obstacle(&policies) {
+    if let Some(obstacle) = spec(Vec::new()).precondition_problem(&policies) {
         return Err(Failure::usage(obstacle));
     }
-    options.output.refuse_graphs()?;
+    options.output.reject_graphs()?;
     let seeds: Vec<u64> = (options.seeds.first..=options.seeds.last).collect();
-    let progress = progress_bar(seeds.len() as u64 * PLAYS_OF_A_SEED, "runs");
+    let progress = progress_bar(seeds.len() as u64 * PLAYS_PER_SEED, "runs");
     let spec = spec(seeds);
     let on_played = || progress.inc(1);
     let check = thread_pool(options.jobs)?
@@ -53,7 +53,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
             "the two policies make the same decisions, which tests nothing: give two that differ",
         ));
     }
-    options.output.show(&check.exhibit())?;
+    options.output.show(&check.to_lab_report())?;
     match check.failures().count() {
         0 => Ok(()),
         1 => Err(Failure::failed("1 claim about common random draws is false")),

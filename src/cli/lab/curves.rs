@@ -5,7 +5,7 @@ use clap::Args;
 use super::output::OutputOptions;
 use super::world::WorldOptions;
 use crate::cli::{Context, Failure};
-use crate::lab::curves::{all_curves, curve_of};
+use crate::lab::curves::{all_curves_report, group_curve_report};
 use crate::world::identifiers::Group;
 
 #[derive(Debug, Args)]
@@ -21,10 +21,10 @@ pub struct Options {
 
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let params = options.world.params(context)?;
-    let Some(id) = &options.group else { return options.output.show(&all_curves(&params)) };
+    let Some(id) = &options.group else { return options.output.show(&all_curves_report(&params)) };
     let group = Group::parse(id).ok_or_else(|| {
         let all: Vec<&str> = Group::all().map(Group::id).collect();
         Failure::usage(format!("there is no group {id}; the groups are {}", all.join(", ")))
     })?;
-    options.output.show(&curve_of(group, &params))
+    options.output.show(&group_curve_report(group, &params))
 }

@@ -4,10 +4,10 @@ use clap::Args;
 use serde_json::json;
 
 use crate::cli::{Context, Failure, print};
-use crate::insight::{Inspect, open_to_look_inside};
-use crate::notation::printable;
+use crate::formatting::escape_control_characters;
+use crate::insight::{Inspect, open_for_inspection};
 use crate::record::folder::runs::find_run_to_read;
-use crate::report::xray::{difference_as_data, runs_in_words};
+use crate::report::inspection::{describe_run_difference, difference_to_json};
 use crate::session::Session;
 
 #[derive(Debug, Args)]
@@ -28,11 +28,11 @@ pub struct Options {
 
 /// Runs the command. The runs record only the inspection.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
-    let runs = context.runs()?;
+    let runs = context.runs_folder()?;
     let open = |name: &str| -> Result<Session, Failure> {
         let folder = find_run_to_read(&runs, name)?;
-        context.check_look(&folder)?;
-        Ok(open_to_look_inside(&folder, context.seal_key()?)?)
+        context.check_view_allowed(&folder)?;
+        Ok(open_for_inspection(&folder, context.seal_key()?)?)
     };
     let mut one = open(&options.one)?;
     if one.folder() == Some(&*find_run_to_read(&runs, &options.other)?) {
@@ -41,7 +41,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         ));
     }
     let mut other = open(&options.other)?;
-    let found = one.inspect().difference_to(&mut other, options.day);
+    let found = one.inspect().compare_with_run(&mut other, options.day);
     let found = found.map_err(|refusal| Failure::failed(refusal.message))?;
     let ids = [&one, &other].map(|run| run.manifest().id.clone());
     if options.json {
@@ -50,10 +50,10 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
             "last_day": found.last_day,
             "first_day": found.first_day,
             "day": found.difference.as_ref().map(|own| own.days.0),
-            "difference": found.difference.as_ref().map(difference_as_data),
+            "difference": found.difference.as_ref().map(difference_to_json),
         });
         return print(&(serde_json::to_string_pretty(&object).unwrap_or_default() + "\n"));
     }
-    let lines = runs_in_words(&found, (&ids[0], &ids[1]));
-    print(&printable(&(lines.join("\n") + "\n")))
+    let lines = describe_run_difference(&found, (&ids[0], &ids[1]));
+    print(&escape_control_characters(&(lines.join("\n") + "\n")))
 }

@@ -9,7 +9,8 @@ use clap::Args;
 use crate::cli::run::{progress_bar, thread_pool};
 use crate::cli::{Context, Failure};
 use crate::lab::experiment::{
-    Conduct, Experiment, ExperimentError, ExperimentResults, Prepared, ResultStore, RunResult,
+    Experiment, ExperimentContext, ExperimentError, ExperimentResults, PreparedExperiment, ResultStore,
+    RunResult,
 };
 
 /// Options of commands that play many runs.
@@ -27,65 +28,66 @@ pub struct PlayOptions {
 ///
 /// # Errors
 /// An arm cannot start, a run cannot be played, the results cannot be written, or the user stopped the experiment.
-pub fn conduct(
+pub fn run_experiment(
     command: &str,
     experiment: &Experiment,
     options: &PlayOptions,
     context: &Context,
 ) -> Result<ExperimentResults, Failure> {
-    conduct_knowing(command, experiment, options, context, |_| ())
+    run_experiment_with_known(command, experiment, options, context, |_| ())
 }
 
 /// Conducts an experiment after adding results that are already known.
 ///
 /// # Errors
-/// As [`conduct`].
-pub fn conduct_knowing(
+/// As [`run_experiment`].
+pub fn run_experiment_with_known(
     command: &str,
     experiment: &Experiment,
     options: &PlayOptions,
     context: &Context,
-    add_known: impl FnOnce(&mut Prepared<'_>),
+    add_known: impl FnOnce(&mut PreparedExperiment<'_>),
 ) -> Result<ExperimentResults, Failure> {
-    let path = context.laboratory()?.join(format!("{command}.jsonl"));
+    let path = context.laboratory_folder()?.join(format!("{command}.jsonl"));
     let all: Vec<usize> = (0..experiment.arms.len() * experiment.seeds.len()).collect();
-    let every = |prepared: Prepared<'_>, with: &Conduct<'_>| prepared.conduct(with);
-    with_store(&path, experiment, &all, (options, context), add_known, every)
+    let every = |prepared: PreparedExperiment<'_>, with: &ExperimentContext<'_>| prepared.run(with);
+    run_with_result_file(&path, experiment, &all, (options, context), add_known, every)
 }
 
 /// Conducts the numbered runs of an experiment, with results in a file.
 ///
 /// # Errors
-/// As [`conduct`].
-pub fn conduct_some(
+/// As [`run_experiment`].
+pub fn run_experiment_part(
     path: &Path,
     experiment: &Experiment,
     numbers: &[usize],
     options: &PlayOptions,
     context: &Context,
 ) -> Result<Vec<RunResult>, Failure> {
-    let some = |prepared: Prepared<'_>, with: &Conduct<'_>| prepared.conduct_some(numbers, with);
-    with_store(path, experiment, numbers, (options, context), |_| (), some)
+    let some =
+        |prepared: PreparedExperiment<'_>, with: &ExperimentContext<'_>| prepared.run_some(numbers, with);
+    run_with_result_file(path, experiment, numbers, (options, context), |_| (), some)
 }
 
-fn with_store<R>(
+fn run_with_result_file<R>(
     path: &Path,
     experiment: &Experiment,
     numbers: &[usize],
     (options, context): (&PlayOptions, &Context),
-    add_known: impl FnOnce(&mut Prepared<'_>),
-    conduct: impl FnOnce(Prepared<'_>, &Conduct<'_>) -> Result<R, ExperimentError>,
+    add_known: impl FnOnce(&mut PreparedExperiment<'_>),
+    conduct: impl FnOnce(PreparedExperiment<'_>, &ExperimentContext<'_>) -> Result<R, ExperimentError>,
 ) -> Result<R, Failure> {
     let pool = thread_pool(options.jobs)?;
     let store = ResultStore::open(path)
         .map_err(|error| Failure::from(ExperimentError::Store { path: path.to_owned(), error }))?;
     let mut prepared = experiment.prepare(&context.configuration, Some(&store), options.fresh)?;
     add_known(&mut prepared);
-    let left = prepared.left(numbers);
+    let left = prepared.remaining_runs(numbers);
     let progress = progress_bar(left as u64, "runs");
-    let stop = stopped_by_signals();
+    let stop = stop_flag_on_signals();
     let on_run = || progress.inc(1);
-    let with = Conduct {
+    let with = ExperimentContext {
         configuration: &context.configuration,
         store: Some(&store),
         pool: &pool,
@@ -98,7 +100,7 @@ fn with_store<R>(
 }
 
 /// Returns a flag that ctrl-c sets. A second ctrl-c ends the program at once.
-pub fn stopped_by_signals() -> Arc<AtomicBool> {
+pub fn stop_flag_on_signals() -> Arc<AtomicBool> {
     let stop = Arc::new(AtomicBool::new(false));
     #[cfg(unix)]
     for (signal, code) in [(signal_hook::consts::SIGINT, 130), (signal_hook::consts::SIGTERM, 143)] {

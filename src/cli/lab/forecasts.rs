@@ -6,17 +6,20 @@ use clap::Args;
 use rayon::prelude::*;
 
 use super::super::output_file::write_text;
-use super::super::run::{Seeds, parse_seeds, progress_bar, thread_pool};
+use super::super::run::{SeedRange, parse_seeds, progress_bar, thread_pool};
 use super::super::{Context, Failure, print};
-use crate::lab::{PlayedWeeks, Policy, STRONG, coverage, horizons, measure, play_weeks, policies_of};
-use crate::session::Bands;
+use crate::lab::{
+    PlayedWeeks, Policy, STRONG_POLICIES, band_coverage, forecast_horizons, measure_naive_bands, play_weeks,
+    policy_names,
+};
+use crate::session::ErrorBands;
 use crate::shipped;
 
 #[derive(Debug, Args)]
 pub struct Options {
     /// Seeds of each policy
     #[arg(long, default_value = "1..24", value_name = "A..B", value_parser = parse_seeds)]
-    seeds: Seeds,
+    seeds: SeedRange,
     /// Only this policy, by name or path; can be repeated [default: the bundled policies except the strong ones]
     #[arg(long, value_name = "NAME|FILE")]
     only: Vec<String>,
@@ -29,12 +32,12 @@ pub struct Options {
 }
 
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
-    let runs = played(options, context)?;
-    let horizons = horizons();
+    let runs = play_runs(options, context)?;
+    let horizons = forecast_horizons();
     let seeds = options.seeds.last + 1 - options.seeds.first;
-    let measured = options.write.as_ref().map(|_| measure(&runs, &horizons, seeds));
-    let bands = measured.as_ref().unwrap_or(Bands::shipped());
-    print(&table(&runs, &horizons, bands))?;
+    let measured = options.write.as_ref().map(|_| measure_naive_bands(&runs, &horizons, seeds));
+    let bands = measured.as_ref().unwrap_or(ErrorBands::bundled());
+    print(&coverage_table(&runs, &horizons, bands))?;
     if let (Some(path), Some(bands)) = (&options.write, &measured) {
         let text = toml::to_string(bands).map_err(|error| Failure::failed(error.to_string()))?;
         let head = "# Intervals of naive forecasts, in shares of what moves until then. `novamind lab forecasts --write` makes\n\
@@ -45,11 +48,11 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
 }
 
 /// Returns every run, in the order of policies and seeds.
-fn played(options: &Options, context: &Context) -> Result<Vec<PlayedWeeks>, Failure> {
+fn play_runs(options: &Options, context: &Context) -> Result<Vec<PlayedWeeks>, Failure> {
     let names: Vec<String> = match options.only.is_empty() {
         true => {
             let names = shipped::policies().into_iter().map(|(name, _)| name);
-            names.filter(|name| !STRONG.contains(name)).map(str::to_owned).collect()
+            names.filter(|name| !STRONG_POLICIES.contains(name)).map(str::to_owned).collect()
         }
         false => options.only.clone(),
     };
@@ -74,10 +77,10 @@ fn played(options: &Options, context: &Context) -> Result<Vec<PlayedWeeks>, Fail
 }
 
 /// Returns the coverage by policy and horizon.
-fn table(runs: &[PlayedWeeks], horizons: &[u32], bands: &Bands) -> String {
+fn coverage_table(runs: &[PlayedWeeks], horizons: &[u32], bands: &ErrorBands) -> String {
     let row = |name: &str, policy: Option<&str>| {
         let cells = horizons.iter().map(|horizon| {
-            let own = coverage(runs, policy, *horizon, bands);
+            let own = band_coverage(runs, policy, *horizon, bands);
             match own.forecasts {
                 0 => format!("{:>18}", "–"),
                 count => format!("{:>7.1} % of {:>5}", own.held * 100.0, count),
@@ -88,6 +91,6 @@ fn table(runs: &[PlayedWeeks], horizons: &[u32], bands: &Bands) -> String {
     let mut text = format!("{:<12}", "policy");
     horizons.iter().for_each(|days| text += &format!("{:>18}", format!("{days} days")));
     text.push('\n');
-    policies_of(runs).into_iter().for_each(|policy| text += &row(policy, Some(policy)));
+    policy_names(runs).into_iter().for_each(|policy| text += &row(policy, Some(policy)));
     text + &row("all", None)
 }

@@ -4,7 +4,7 @@ use clap::Args;
 
 use crate::cli::run::figure_rows;
 use crate::cli::{Context, Failure, print};
-use crate::insight::{Inspect, open_to_look_inside};
+use crate::insight::{Inspect, open_for_inspection};
 use crate::lab::Collector;
 use crate::record::folder::runs::find_run_to_read;
 
@@ -17,11 +17,11 @@ pub struct Options {
 
 /// Runs the command. The run records only the inspection.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
-    let folder = find_run_to_read(&context.runs()?, &options.run)?;
-    context.check_look(&folder)?;
-    let mut session = open_to_look_inside(&folder, context.seal_key()?)?;
+    let folder = find_run_to_read(&context.runs_folder()?, &options.run)?;
+    context.check_view_allowed(&folder)?;
+    let mut session = open_for_inspection(&folder, context.seal_key()?)?;
     let mut collector = Collector::new(None);
-    let told = session.inspect().tell_days_again(&mut |day| collector.day(day));
+    let told = session.inspect().replay_days(&mut |day| collector.add_day(day));
     told.map_err(|refusal| Failure::failed(refusal.message))?;
     let manifest = session.manifest();
     // A participant of a study must not learn the seed.

@@ -4,12 +4,12 @@ use clap::Args;
 use serde_json::json;
 
 use crate::cli::{Context, Failure, print};
-use crate::database::text::aligned;
+use crate::database::text::align_columns;
+use crate::formatting::dollars;
 use crate::lab::play_opponents;
-use crate::notation::dollars;
 use crate::record::folder::runs::find_run_to_read;
-use crate::record::trajectory::record::Ended;
-use crate::report::opponents::{Opponent, Opponents};
+use crate::record::trajectory::record::RunEndReason;
+use crate::report::opponents::{OpponentResult, OpponentResults};
 use crate::session::Session;
 
 #[derive(Debug, Args)]
@@ -24,8 +24,8 @@ pub struct Options {
 
 /// Runs the command. Does not modify the run.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
-    let folder = find_run_to_read(&context.runs()?, &options.run)?;
-    context.check_look(&folder)?;
+    let folder = find_run_to_read(&context.runs_folder()?, &options.run)?;
+    context.check_view_allowed(&folder)?;
     let found = play_opponents(&folder, &context.configuration, &|| true);
     let found = found.map_err(|refusal| Failure::failed(refusal.message))?;
     let opponents = found.ok_or_else(|| Failure::failed("stopped"))?;
@@ -39,18 +39,18 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         });
         return print(&format!("{object:#}\n"));
     }
-    print(&as_text(&opponents, &run))
+    print(&to_text(&opponents, &run))
 }
 
 /// Formats the policies and the run itself, the best first.
-fn as_text(opponents: &Opponents, run: &Session) -> String {
-    let policy = |own: &Opponent| (own.score(), own.policy.clone(), ended_in_words(own));
+fn to_text(opponents: &OpponentResults, run: &Session) -> String {
+    let policy = |own: &OpponentResult| (own.score(), own.policy.clone(), describe_opponent_end(own));
     let mut places: Vec<(f64, String, String)> = opponents.policies.iter().map(policy).collect();
     let (name, day) = (format!("this run, {}", run.manifest().id), run.day());
     // Cash on another day is not a score.
     let not_over = match run.score() {
         Some(score) => {
-            places.push((score, name, how_it_ended(run.ended() == Some(Ended::Bankruptcy), day)));
+            places.push((score, name, describe_end(run.ended() == Some(RunEndReason::Bankruptcy), day)));
             String::new()
         }
         None => {
@@ -62,17 +62,17 @@ fn as_text(opponents: &Opponents, run: &Session) -> String {
         |(score, name, ended): &(f64, String, String)| vec![name.clone(), dollars(*score), ended.clone()];
     let rows: Vec<Vec<String>> = places.iter().map(row).collect();
     let headers = ["policy", "score", "how it ended"].map(str::to_owned);
-    format!("{}\n\n{}{not_over}", opponents.in_words(), aligned(&headers, &rows))
+    format!("{}\n\n{}{not_over}", opponents.describe(), align_columns(&headers, &rows))
 }
 
-fn ended_in_words(own: &Opponent) -> String {
+fn describe_opponent_end(own: &OpponentResult) -> String {
     match &own.stopped {
         Some(why) => format!("stopped on day {}: {why}", own.day),
-        None => how_it_ended(own.is_bankrupt, own.day),
+        None => describe_end(own.is_bankrupt, own.day),
     }
 }
 
-fn how_it_ended(is_bankrupt: bool, day: u32) -> String {
+fn describe_end(is_bankrupt: bool, day: u32) -> String {
     let end = if is_bankrupt { "bankrupt" } else { "alive" };
     format!("{end} on day {day}")
 }

@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use crate::cli::output_file::write_text;
-use crate::cli::runs::as_csv;
+use crate::cli::runs::to_csv;
 use crate::cli::{Failure, print};
-use crate::lab::exhibit::{Exhibit, WIDTH};
+use crate::lab::lab_report::{DEFAULT_WIDTH, LabReport};
 
 /// Options that all commands of the laboratory share.
 #[derive(Debug, Clone, Args)]
@@ -32,7 +32,7 @@ pub struct OutputOptions {
 
 impl OutputOptions {
     /// Returns whether rows are printed, for commands that print rows unless JSON or a drawing is chosen.
-    pub fn is_of_rows(&self) -> bool {
+    pub fn wants_rows(&self) -> bool {
         !self.json && self.svg.is_none()
     }
 
@@ -40,7 +40,7 @@ impl OutputOptions {
     ///
     /// # Errors
     /// `--svg` is given.
-    pub fn refuse_graphs(&self) -> Result<(), Failure> {
+    pub fn reject_graphs(&self) -> Result<(), Failure> {
         match self.svg {
             Some(_) => Err(Failure::usage("this command has no graph: leave out --svg")),
             None => Ok(()),
@@ -48,7 +48,7 @@ impl OutputOptions {
     }
 
     /// Returns the file for the graphs, if one is given.
-    pub fn graphs(&self) -> Option<&Path> {
+    pub fn graph_file(&self) -> Option<&Path> {
         self.svg.as_deref()
     }
 
@@ -56,18 +56,18 @@ impl OutputOptions {
     ///
     /// # Errors
     /// There is no such table or no graph, or the file or standard output cannot be written.
-    pub fn show(&self, exhibit: &Exhibit) -> Result<(), Failure> {
+    pub fn show(&self, exhibit: &LabReport) -> Result<(), Failure> {
         if let Some(path) = &self.svg {
             let drawn = exhibit
-                .as_svg()
+                .to_svg()
                 .ok_or_else(|| Failure::usage("this command has no graph: leave out --svg"))?;
             write_text(path, &drawn)?;
         }
         if self.json {
-            return print(&(serde_json::to_string_pretty(&exhibit.as_json()).unwrap_or_default() + "\n"));
+            return print(&(serde_json::to_string_pretty(&exhibit.to_json()).unwrap_or_default() + "\n"));
         }
         if !self.csv {
-            return print(&exhibit.as_text(self.room()));
+            return print(&exhibit.to_text(self.text_width()));
         }
         let table = match &self.table {
             None => exhibit.tables.first(),
@@ -77,12 +77,13 @@ impl OutputOptions {
             let names: Vec<&str> = exhibit.tables.iter().map(|table| table.name.as_str()).collect();
             return Err(Failure::usage(format!("--table takes one of {}", names.join(", "))));
         };
-        print(&as_csv(&table.as_csv())?)
+        print(&to_csv(&table.to_csv_rows())?)
     }
 
-    fn room(&self) -> usize {
+    fn text_width(&self) -> usize {
         let asked = self.width.map(usize::from);
-        asked.unwrap_or_else(|| terminal_columns().map_or(WIDTH, |columns| columns.min(WIDTH)))
+        asked
+            .unwrap_or_else(|| terminal_columns().map_or(DEFAULT_WIDTH, |columns| columns.min(DEFAULT_WIDTH)))
     }
 }
 

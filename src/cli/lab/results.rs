@@ -8,27 +8,27 @@ use super::output::OutputOptions;
 use crate::cli::run::progress_bar;
 use crate::cli::{Context, Failure};
 use crate::lab::Policy;
-use crate::lab::results::{FinishedRun, IDLE_POLICY, ResultsBy, ResultsTable, idle_company};
+use crate::lab::results::{FinishedRun, IDLE_POLICY, ResultsGrouping, ResultsTable, play_idle_company};
 use crate::record::error::RunError;
 use crate::record::folder::configuration::Configuration;
 use crate::record::folder::runs::{RunSummary, all_run_folders, list_runs, run_folder};
 use crate::record::trajectory::Trajectory;
-use crate::record::trajectory::record::Ended;
-use crate::report::comparable::{Obstacle, RunTerms};
+use crate::record::trajectory::record::RunEndReason;
+use crate::report::ranking_eligibility::{RankingCriteria, RankingObstacle};
 use crate::session::Session;
 
 #[derive(Debug, Args)]
 pub struct Options {
     /// Group runs by participant or by policy
     #[arg(long, value_enum, default_value = "participant")]
-    by: Whom,
+    by: GroupBy,
     #[command(flatten)]
     output: OutputOptions,
 }
 
 /// The criterion by which runs are grouped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Whom {
+enum GroupBy {
     /// By participant; policies count under their names
     Participant,
     /// By policy; runs of people are left out
@@ -37,30 +37,30 @@ enum Whom {
 
 /// Runs the command. Does not modify the runs.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
-    let runs = context.runs()?;
+    let runs = context.runs_folder()?;
     // A participant with a separate folder sees only that folder.
     let folders = match context.participant {
         Some(_) => vec![runs],
         None => all_run_folders(&runs),
     };
     let finished = finished_runs(&folders)?;
-    let mut left_out: Vec<Vec<Obstacle>> = Vec::new();
+    let mut left_out: Vec<Vec<RankingObstacle>> = Vec::new();
     let mut comparable = Vec::new();
     for (folder, summary) in &finished {
-        let obstacles = RunTerms::of_summary(summary).obstacles();
+        let obstacles = RankingCriteria::from_summary(summary).obstacles();
         if obstacles.is_empty() { comparable.push((folder, summary)) } else { left_out.push(obstacles) }
     }
     let progress = progress_bar(comparable.len() as u64 + 1, "runs");
     let (mut results, mut closed, mut unreadable) = (Vec::new(), 0, Vec::new());
     for (folder, summary) in comparable {
-        match context.check_look(folder) {
+        match context.check_view_allowed(folder) {
             // A damaged run does not prevent the table of the others.
-            Ok(()) => match result_of(folder) {
+            Ok(()) => match read_result(folder) {
                 Ok(None) => {}
                 Ok(Some(result)) => {
                     // The list knows only the last weeks; someone may have played before the policy did.
                     let whole = RunSummary { policy: result.policy.clone(), ..summary.clone() };
-                    let obstacles = RunTerms::of_summary(&whole).obstacles();
+                    let obstacles = RankingCriteria::from_summary(&whole).obstacles();
                     if obstacles.is_empty() { results.push(result) } else { left_out.push(obstacles) }
                 }
                 Err(problem) => unreadable.push(problem.to_string()),
@@ -69,14 +69,14 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         }
         progress.inc(1);
     }
-    let shipped = Configuration::shipped();
-    let idle = idle_company(&Policy::find(IDLE_POLICY, &shipped)?, &shipped)?;
+    let shipped = Configuration::bundled();
+    let idle = play_idle_company(&Policy::find(IDLE_POLICY, &shipped)?, &shipped)?;
     progress.finish_and_clear();
     let by = match options.by {
-        Whom::Participant => ResultsBy::Participant,
-        Whom::Policy => ResultsBy::Policy,
+        GroupBy::Participant => ResultsGrouping::Participant,
+        GroupBy::Policy => ResultsGrouping::Policy,
     };
-    let mut exhibit = ResultsTable::of(&results, &left_out, &idle, by).exhibit();
+    let mut exhibit = ResultsTable::new(&results, &left_out, &idle, by).to_lab_report();
     if closed > 0 {
         exhibit.notes.push(format!("Left out because their study hides results: {closed}."));
     }
@@ -92,7 +92,10 @@ fn finished_runs(folders: &[PathBuf]) -> Result<Vec<(PathBuf, RunSummary)>, Fail
         let is_over = |run: &RunSummary| {
             run.problem.is_none()
                 && run.copy_of.is_none()
-                && matches!(run.ended, Some(Ended::Horizon | Ended::Bankruptcy | Ended::Lesson))
+                && matches!(
+                    run.ended,
+                    Some(RunEndReason::Horizon | RunEndReason::Bankruptcy | RunEndReason::Lesson)
+                )
         };
         let own = list_runs(folder)?.into_iter().filter(is_over);
         finished.extend(own.map(|run| (run_folder(folder, &run.id), run)));
@@ -100,8 +103,8 @@ fn finished_runs(folders: &[PathBuf]) -> Result<Vec<(PathBuf, RunSummary)>, Fail
     Ok(finished)
 }
 
-fn result_of(folder: &Path) -> Result<Option<FinishedRun>, RunError> {
+fn read_result(folder: &Path) -> Result<Option<FinishedRun>, RunError> {
     let session = Session::open_to_read(folder, false)?;
     let trajectory = Trajectory::read(&folder.join("trajectory.jsonl"))?;
-    Ok(FinishedRun::of(&session, &trajectory.lines))
+    Ok(FinishedRun::from_session(&session, &trajectory.lines))
 }

@@ -5,15 +5,16 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::experiments::{PlayOptions, conduct_some};
+use super::experiments::{PlayOptions, run_experiment_part};
 use super::output::OutputOptions;
 use crate::cli::output_file::{is_same_file, write_file};
-use crate::cli::runs::as_csv;
+use crate::cli::runs::to_csv;
 use crate::cli::{Context, Failure, print};
 use crate::lab::study::{
-    Shard, ShardHead, Shards, StudyPlan, equal_arms, head, parse_shard, played_alike, rows, size, summary,
+    Shard, ShardHead, ShardSet, StudyPlan, column_names, describe_size, equal_arm_warnings,
+    equal_outcome_warnings, parse_shard, rows, study_summary,
 };
-use crate::report::count;
+use crate::report::pluralize;
 
 #[derive(Debug, Args)]
 pub struct Options {
@@ -53,10 +54,15 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let plan = StudyPlan::read(&options.file, options.daily, &context.configuration)
         .map_err(|error| Failure::unreadable(error.to_string()))?;
     let runs = plan.experiment.arms.len() * plan.experiment.seeds.len();
-    check_places(options)?;
-    warn(&equal_arms(&plan, &context.configuration)?);
+    check_output_paths(options)?;
+    warn(&equal_arm_warnings(&plan, &context.configuration)?);
     if options.check {
-        return print(&format!("{}: {}, {}\n", plan.name, size(&plan), count(runs as u32, "run")));
+        return print(&format!(
+            "{}: {}, {}\n",
+            plan.name,
+            describe_size(&plan),
+            pluralize(runs as u32, "run")
+        ));
     }
     let digest = plan.digest(&context.configuration)?;
     let part = options.shard.unwrap_or(Shard { shard: 1, of: 1 });
@@ -65,29 +71,33 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         std::fs::create_dir_all(folder)
             .map_err(|error| Failure::failed(format!("{}: {error}", folder.display())))?;
     }
-    let numbers = part.numbers(runs);
-    let kept = kept_in(context, &plan, &digest, options.shard)?;
-    let results = conduct_some(&kept, &plan.experiment, &numbers, &options.play, context)?;
-    let mut text = as_csv(&[head(&plan)])?;
+    let numbers = part.run_numbers(runs);
+    let kept = results_file(context, &plan, &digest, options.shard)?;
+    let results = run_experiment_part(&kept, &plan.experiment, &numbers, &options.play, context)?;
+    let mut text = to_csv(&[column_names(&plan)])?;
     for (number, result) in numbers.iter().zip(&results) {
-        text += &as_csv(&rows(&plan, *number, result))?;
+        text += &to_csv(&rows(&plan, *number, result))?;
     }
     let kept = "the finished runs are saved, and the same command continues";
     match (&options.out, options.shard) {
-        (None, _) if options.output.is_of_rows() => {
-            warn(&played_alike(&plan, &results));
+        (None, _) if options.output.wants_rows() => {
+            warn(&equal_outcome_warnings(&plan, &results));
             print(&text)
         }
-        (None, _) => options.output.show(&summary(&plan, &results)),
+        (None, _) => options.output.show(&study_summary(&plan, &results)),
         (Some(file), None) => {
             write_file(file, Some(kept), |out| out.write_all(text.as_bytes()))?;
-            options.output.show(&summary(&plan, &results))
+            options.output.show(&study_summary(&plan, &results))
         }
         (Some(folder), Some(part)) => {
             let file = folder.join(ShardHead::file_name(&plan.name, part));
-            text = ShardHead::sealed(&plan.name, &digest, part, &text);
+            text = ShardHead::with_checksum(&plan.name, &digest, part, &text);
             write_file(&file, Some(kept), |out| out.write_all(text.as_bytes()))?;
-            print(&format!("shard {part}: {} in {}\n", count(numbers.len() as u32, "run"), file.display()))
+            print(&format!(
+                "shard {part}: {} in {}\n",
+                pluralize(numbers.len() as u32, "run"),
+                file.display()
+            ))
         }
     }
 }
@@ -97,8 +107,8 @@ fn warn(warnings: &[String]) {
 }
 
 /// Checks that no output replaces the study file or another output.
-fn check_places(options: &Options) -> Result<(), Failure> {
-    let graphs = options.output.graphs();
+fn check_output_paths(options: &Options) -> Result<(), Failure> {
+    let graphs = options.output.graph_file();
     for (name, place) in [("--out", options.out.as_deref()), ("--svg", graphs)] {
         if place.is_some_and(|place| is_same_file(place, &options.file)) {
             let problem = format!("{name} is the study file itself, which would be overwritten");
@@ -114,19 +124,23 @@ fn check_places(options: &Options) -> Result<(), Failure> {
 }
 
 /// Returns the file for results of a study or shard. Each program that may write at the same time has its own file.
-fn kept_in(
+fn results_file(
     context: &Context,
     plan: &StudyPlan,
     digest: &str,
     shard: Option<Shard>,
 ) -> Result<PathBuf, Failure> {
     let part = shard.map_or(String::new(), |own| format!(".{}-of-{}", own.shard, own.of));
-    Ok(context.laboratory()?.join("studies").join(format!("{}.{}{part}.jsonl", plan.name, &digest[..12])))
+    Ok(context.laboratory_folder()?.join("studies").join(format!(
+        "{}.{}{part}.jsonl",
+        plan.name,
+        &digest[..12]
+    )))
 }
 
 /// Runs `lab merge`.
-pub fn merge(options: &MergeOptions) -> Result<(), Failure> {
-    let shards = Shards::of(&options.shards).map_err(|error| Failure::failed(error.to_string()))?;
+pub fn merge_shards(options: &MergeOptions) -> Result<(), Failure> {
+    let shards = ShardSet::find(&options.shards).map_err(|error| Failure::failed(error.to_string()))?;
     match &options.out {
         Some(file) if shards.files().iter().any(|shard| is_same_file(shard, file)) => Err(Failure::usage(
             format!("{} is one of the shards, which would be overwritten", file.display()),
@@ -135,7 +149,7 @@ pub fn merge(options: &MergeOptions) -> Result<(), Failure> {
         None => {
             let mut out = BufWriter::new(io::stdout().lock());
             match shards.write(&mut out).and_then(|()| out.flush()) {
-                Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Err(Failure::quiet()),
+                Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Err(Failure::silent()),
                 Err(error) => Err(Failure::failed(error.to_string())),
                 Ok(()) => Ok(()),
             }

@@ -24,16 +24,16 @@ impl WorldOptions {
     /// # Errors
     /// There is no such scenario, or a parameter is invalid.
     pub fn params(&self, context: &Context) -> Result<Params, Failure> {
-        self.terms(context).map(|(_, params)| params)
+        self.days_and_params(context).map(|(_, params)| params)
     }
 
     /// Returns the last day of a run and the parameters.
     ///
     /// # Errors
-    /// As [`WorldOptions::params`].
-    pub fn terms(&self, context: &Context) -> Result<(u32, Params), Failure> {
-        let scenario = context.configuration.scenario(&self.scenario)?;
-        let params = context.configuration.parameters(&scenario, &self.set, true)?;
-        Ok((scenario.terms(&params).0, params))
+    /// As [`WorldOptions::load_params`].
+    pub fn days_and_params(&self, context: &Context) -> Result<(u32, Params), Failure> {
+        let scenario = context.configuration.load_scenario(&self.scenario)?;
+        let params = context.configuration.load_parameters(&scenario, &self.set, true)?;
+        Ok((scenario.days_and_cash_with(&params).0, params))
     }
 }

@@ -6,46 +6,46 @@ use std::time::Duration;
 use clap::Args;
 
 use super::super::output_file::write_text;
-use super::super::pictures::size;
+use super::super::pictures::parse_size;
 use super::super::{Context, Failure, print};
-use super::note_look;
+use super::record_view;
 use crate::console::app::Settings;
 use crate::console::headless::Headless;
-use crate::console::keys::Keys;
+use crate::console::keys::KeyBindings;
 use crate::console::themes;
 use crate::lab::play_opponents;
-use crate::session::Goal;
+use crate::session::SeekTarget;
 use crate::tui::asciicast::Asciicast;
 use crate::tui::glyphs::Glyphs;
-use crate::worker::request::Recorded;
+use crate::worker::request::RecordSource;
 
 /// Duration of the frame after an action and after a week, at speed 1.
-const AFTER_ACTION: Duration = Duration::from_millis(700);
-const AFTER_WEEK: Duration = Duration::from_millis(2500);
+const ACTION_FRAME_TIME: Duration = Duration::from_millis(700);
+const WEEK_FRAME_TIME: Duration = Duration::from_millis(2500);
 
 /// Options of a recording.
 #[derive(Debug, Args)]
 pub struct RecordingOptions {
     /// With --cast: speed factor from 0.1 to 100
-    #[arg(long, default_value_t = 1.0, value_name = "X", requires = "cast", value_parser = speed)]
+    #[arg(long, default_value_t = 1.0, value_name = "X", requires = "cast", value_parser = parse_speed)]
     speed: f64,
     /// With --cast: columns and rows of the window
-    #[arg(long, default_value = "120x40", requires = "cast", value_parser = size)]
+    #[arg(long, default_value = "120x40", requires = "cast", value_parser = parse_size)]
     size: (u16, u16),
     /// With --cast: theme
     #[arg(long, default_value = "dark", value_name = "NAME", requires = "cast")]
     theme: String,
 }
 
-fn speed(text: &str) -> Result<f64, String> {
+fn parse_speed(text: &str) -> Result<f64, String> {
     let speed = text.parse().ok().filter(|speed: &f64| (0.1..=100.0).contains(speed));
     speed.ok_or_else(|| "the speed must be from 0.1 to 100".to_owned())
 }
 
 /// Records the weeks of a replay to a file: one week, a range, or all.
-pub fn record(
+pub fn record_cast(
     file: &Path,
-    recorded: Recorded,
+    recorded: RecordSource,
     weeks: Option<(u32, Option<u32>)>,
     options: &RecordingOptions,
     context: &Context,
@@ -54,19 +54,19 @@ pub fn record(
         None => (1, u32::MAX),
         Some((first, last)) => (first.max(1), last.unwrap_or(first.max(1))),
     };
-    note_look(&recorded, &format!("cast {first}"), context)?;
+    record_view(&recorded, &format!("cast {first}"), context)?;
     let settings = Settings {
-        theme: themes::find(&options.theme, &context.configuration).map_err(Failure::usage)?,
-        keys: Keys::of_user(&context.configuration).map_err(Failure::usage)?,
+        theme: themes::find_theme(&options.theme, &context.configuration).map_err(Failure::usage)?,
+        keys: KeyBindings::with_user_file(&context.configuration).map_err(Failure::usage)?,
         glyphs: Glyphs::Braille,
         configuration: context.configuration.clone(),
-        runs: context.runs()?,
-        again: context.again(),
-        lists_everybody: false,
+        runs: context.runs_folder()?,
+        resume_command: context.resume_command(),
+        lists_all_participants: false,
         opponents: play_opponents,
     };
     let mut console = Headless::new(settings, options.size);
-    let recording = recording(&mut console, recorded, (first, last), options);
+    let recording = render_cast(&mut console, recorded, (first, last), options);
     console.finish();
     let (text, frames) = recording?;
     write_text(file, &text)?;
@@ -74,40 +74,44 @@ pub fn record(
 }
 
 /// Returns the recording and its number of frames.
-fn recording(
+fn render_cast(
     console: &mut Headless,
-    recorded: Recorded,
+    recorded: RecordSource,
     (first, last): (u32, u32),
     options: &RecordingOptions,
 ) -> Result<(String, usize), Failure> {
     let failed = |error: std::io::Error| Failure::failed(error.to_string());
     let title = match &recorded {
-        Recorded::Run(id) => format!("NovaMind run {id}"),
-        Recorded::File(path) => format!("NovaMind {}", path.display()),
+        RecordSource::Run(id) => format!("NovaMind run {id}"),
+        RecordSource::File(path) => format!("NovaMind {}", path.display()),
     };
-    console.replay(recorded, Goal::Week(first - 1), false).map_err(failed)?;
+    console.replay(recorded, SeekTarget::Week(first - 1), false).map_err(failed)?;
     let stays = |pause: Duration| pause.div_f64(options.speed);
     let mut cast = Asciicast::new(options.size, &title);
     let mut frames = 0;
     loop {
-        let place = console.place().ok_or_else(|| Failure::failed("there is nothing to replay"))?;
-        let (line, week, weeks, at_end) = (place.line, place.week, place.weeks, place.at_end);
+        let place =
+            console.playback_position().ok_or_else(|| Failure::failed("there is nothing to replay"))?;
+        let (line, week, weeks, at_end) = (place.line, place.week, place.weeks, place.is_at_end);
         if first > weeks {
             return Err(Failure::usage(format!(
                 "week {first} is not in the record, which has {weeks} weeks"
             )));
         }
         let is_over = at_end || week >= last;
-        let is_new_week = frames == 0 || place.chapter.done == 0;
+        let is_new_week = frames == 0 || place.chapter.applied_entries == 0;
         let frame = console.draw();
-        cast.show(&frame, stays(if is_over || is_new_week { AFTER_WEEK } else { AFTER_ACTION }))
-            .map_err(failed)?;
+        cast.add_frame(
+            &frame,
+            stays(if is_over || is_new_week { WEEK_FRAME_TIME } else { ACTION_FRAME_TIME }),
+        )
+        .map_err(failed)?;
         frames += 1;
         if is_over {
             return Ok((cast.finish(), frames));
         }
-        console.go(Goal::Lines(1)).map_err(failed)?;
-        if console.place().is_some_and(|place| place.line == line) {
+        console.seek(SeekTarget::Lines(1)).map_err(failed)?;
+        if console.playback_position().is_some_and(|place| place.line == line) {
             return Ok((cast.finish(), frames));
         }
     }
@@ -118,10 +122,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn speeds_are_numbers_that_make_sense() {
-        assert_eq!((speed("2"), speed("0.1")), (Ok(2.0), Ok(0.1)));
+    fn parse_speed_rejects_values_out_of_range() {
+        assert_eq!((parse_speed("2"), parse_speed("0.1")), (Ok(2.0), Ok(0.1)));
         for wrong in ["0", "-1", "nan", "inf", "fast", "101"] {
-            assert!(speed(wrong).is_err(), "{wrong}");
+            assert!(parse_speed(wrong).is_err(), "{wrong}");
         }
     }
 }

@@ -8,9 +8,9 @@ use serde_json::Value;
 use crate::cli::output_file::write_text;
 use crate::cli::run::progress_bar;
 use crate::cli::{Context, Failure, print};
-use crate::record::folder::derived::manifest_of;
+use crate::record::folder::manifest_check::read_manifest;
 use crate::report::transcript::{
-    Surroundings, Transcript, atif, inspect, inspect_file_name, plain_script, python_script,
+    AgentContext, Transcript, inspect_file_name, to_atif, to_inspect, to_plain_script, to_python_script,
 };
 
 /// Format of an exported run.
@@ -27,18 +27,23 @@ pub enum ExportFormat {
 }
 
 /// Writes the run of a folder in a format. Never replaces an existing file.
-pub fn write(folder: &Path, format: ExportFormat, out: &Path, context: &Context) -> Result<(), Failure> {
-    let manifest = manifest_of(folder)?;
+pub fn write_export(
+    folder: &Path,
+    format: ExportFormat,
+    out: &Path,
+    context: &Context,
+) -> Result<(), Failure> {
+    let manifest = read_manifest(folder)?;
     let (made, files) = match format {
         ExportFormat::Script => (Some(out), vec![out.join("play.txt"), out.join("play.py")]),
-        ExportFormat::Inspect if has_ending(out, "eval") => {
+        ExportFormat::Inspect if has_extension(out, "eval") => {
             return Err(Failure::usage(format!(
                 "{}: the log is written as JSON, but Inspect expects an archive in a file that ends in .eval: give a file that \
                  ends in .json, or a folder. Nothing was written",
                 out.display()
             )));
         }
-        ExportFormat::Inspect if !has_ending(out, "json") => {
+        ExportFormat::Inspect if !has_extension(out, "json") => {
             (Some(out), vec![out.join(inspect_file_name(&manifest))])
         }
         _ => (None, vec![out.to_owned()]),
@@ -53,9 +58,9 @@ pub fn write(folder: &Path, format: ExportFormat, out: &Path, context: &Context)
             manifest.id, lesson.name
         )));
     }
-    context.look(folder, "runs export", &format!("{format:?}").to_lowercase())?;
+    context.authorize_view(folder, "runs export", &format!("{format:?}").to_lowercase())?;
     let progress = progress_bar(u64::from(manifest.days), "days");
-    let run = Transcript::of(folder, &mut |day| progress.set_position(day.into()));
+    let run = Transcript::open(folder, &mut |day| progress.set_position(day.into()));
     progress.finish_and_clear();
     let run = run?;
     let json = |value: Value| serde_json::to_string_pretty(&value).unwrap_or_default() + "\n";
@@ -65,9 +70,9 @@ pub fn write(folder: &Path, format: ExportFormat, out: &Path, context: &Context)
     }
     let texts = match format {
         ExportFormat::Archive => return Ok(()),
-        ExportFormat::Script => vec![plain_script(&run), python_script(&run).unwrap_or_default()],
-        ExportFormat::Atif => vec![json(atif(&run, &surroundings(&run)))],
-        ExportFormat::Inspect => vec![json(inspect(&run, &surroundings(&run)))],
+        ExportFormat::Script => vec![to_plain_script(&run), to_python_script(&run).unwrap_or_default()],
+        ExportFormat::Atif => vec![json(to_atif(&run, &export_context(&run)))],
+        ExportFormat::Inspect => vec![json(to_inspect(&run, &export_context(&run)))],
     };
     let mut written: Vec<&PathBuf> = Vec::new();
     for (file, text) in files.iter().zip(&texts).filter(|(_, text)| !text.is_empty()) {
@@ -75,27 +80,33 @@ pub fn write(folder: &Path, format: ExportFormat, out: &Path, context: &Context)
         written.push(file);
     }
     let names: Vec<String> = written.iter().map(|file| file.display().to_string()).collect();
-    print(&format!("run {} to day {}: {}\n", run.manifest.id, run.last.0, names.join(", ")))?;
-    match (format, python_script(&run)) {
+    print(&format!("run {} to day {}: {}\n", run.manifest.id, run.last_day_and_cash.0, names.join(", ")))?;
+    match (format, to_python_script(&run)) {
         (ExportFormat::Script, Err(error)) => Err(Failure::failed(format!("{error}; play.txt is written"))),
         _ => Ok(()),
     }
 }
 
-fn has_ending(file: &Path, ending: &str) -> bool {
+fn has_extension(file: &Path, ending: &str) -> bool {
     file.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending))
 }
 
 /// Returns the page that the player of the run received.
 #[cfg(feature = "server")]
-fn surroundings(run: &Transcript) -> Surroundings {
-    let of =
-        crate::server::PageOf { days: run.manifest.days, cash: run.manifest.cash, numbers: &run.numbers };
-    Surroundings { page: crate::server::page(&of), tools: crate::server::functions(&run.numbers) }
+fn export_context(run: &Transcript) -> AgentContext {
+    let of = crate::server::PageContext {
+        days: run.manifest.days,
+        cash: run.manifest.cash,
+        numbers: &run.numbers,
+    };
+    AgentContext {
+        instructions: crate::server::agent_page(&of),
+        tools: crate::server::function_schemas(&run.numbers),
+    }
 }
 
 /// Returns only the list of tools, because the page is part of the server.
 #[cfg(not(feature = "server"))]
-fn surroundings(_: &Transcript) -> Surroundings {
-    Surroundings { page: crate::tools::catalogue::overview(), tools: Vec::new() }
+fn surroundings(_: &Transcript) -> AgentContext {
+    AgentContext { page: crate::tools::catalogue::list_by_module(), tools: Vec::new() }
 }

@@ -5,7 +5,7 @@ mod formats;
 mod transcript;
 mod transfer;
 
-pub use transfer::{as_csv, tidy_up_on_signals, write_tables};
+pub use transfer::{remove_partial_files_on_signals, to_csv, write_tables};
 
 use std::path::{Path, PathBuf};
 
@@ -13,15 +13,15 @@ use clap::{Args, Subcommand};
 use serde_json::{Value, json};
 
 use super::{Context, Failure, print};
-use crate::insight::{BranchOrigin, origin_of};
-use crate::notation::{dollars, printable};
-use crate::record::folder::derived::manifest_text;
+use crate::formatting::{dollars, escape_control_characters};
+use crate::insight::{BranchOrigin, branch_origin};
+use crate::record::folder::manifest_check::read_manifest_text;
 use crate::record::folder::runs::{
     RunSummary, all_run_folders, delete_run, find_run, find_run_to_read, list_runs,
 };
 use crate::record::trajectory::{Record, Trajectory};
-use crate::report::origin_in_words;
-use crate::session::{end_run, rescue};
+use crate::report::describe_origin;
+use crate::session::{abandon_run, recover};
 
 #[derive(Debug, Args)]
 pub struct Options {
@@ -86,27 +86,30 @@ enum RunsCommand {
 const SCHEMA: &str = include_str!("../../../assets/trajectory.schema.json");
 
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
-    let runs = context.runs()?;
+    let runs = context.runs_folder()?;
     // With a label, only the runs of that participant; without one, all runs.
     let folders = match context.participant {
         Some(_) => vec![runs.clone()],
         None => all_run_folders(&runs),
     };
     match &options.command {
-        None => list(&runs, &folders, options.participant.as_deref(), options.json),
-        Some(RunsCommand::List { participant }) => {
-            list(&runs, &folders, participant.as_deref().or(options.participant.as_deref()), options.json)
-        }
-        Some(RunsCommand::Show { run }) => show(&folders, run, options.json),
-        Some(RunsCommand::Path { run }) => print(&format!("{}\n", find_in(&folders, run)?.display())),
+        None => print_runs(&runs, &folders, options.participant.as_deref(), options.json),
+        Some(RunsCommand::List { participant }) => print_runs(
+            &runs,
+            &folders,
+            participant.as_deref().or(options.participant.as_deref()),
+            options.json,
+        ),
+        Some(RunsCommand::Show { run }) => print_run(&folders, run, options.json),
+        Some(RunsCommand::Path { run }) => print(&format!("{}\n", find_run_in(&folders, run)?.display())),
         Some(RunsCommand::End { run }) => {
-            let id = id_of(&find_run(&runs, run)?);
-            end_run(&runs, &id)?;
+            let id = run_id(&find_run(&runs, run)?);
+            abandon_run(&runs, &id)?;
             print(&format!("ended run {id}; you can still view it\n"))
         }
         Some(RunsCommand::Rescue { run }) => {
             let folder = find_run_to_read(&runs, run)?;
-            let (found, whole) = (rescue(&folder, &context.seal_key()?)?, id_of(&folder));
+            let (found, whole) = (recover(&folder, &context.seal_key()?)?, run_id(&folder));
             print(&format!(
                 "run {} contains lines 1 to {} of run {whole} and is on day {}, mode {}\n\
                  problem: {}\nrun {whole} is unchanged; `novamind play --run {}` continues\n",
@@ -119,7 +122,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
                 let message = format!("this permanently deletes {}; add --yes to confirm", folder.display());
                 return Err(Failure::usage(message));
             }
-            let id = id_of(&find_run(&runs, run)?);
+            let id = run_id(&find_run(&runs, run)?);
             delete_run(&runs, &id)?;
             print(&format!("deleted run {id}\n"))
         }
@@ -131,10 +134,10 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
 }
 
 /// Prints the summary of a run; as JSON with its score and the hash of its last recorded state.
-fn show(folders: &[PathBuf], run: &str, json: bool) -> Result<(), Failure> {
-    let folder = find_in(folders, run)?;
-    let text = manifest_text(&folder)?;
-    let id = id_of(&folder);
+fn print_run(folders: &[PathBuf], run: &str, json: bool) -> Result<(), Failure> {
+    let folder = find_run_in(folders, run)?;
+    let text = read_manifest_text(&folder)?;
+    let id = run_id(&folder);
     let summary = list_all(folders)?.into_iter().map(|(_, run)| run).find(|run| run.id == id);
     if json {
         let mut shown = serde_json::to_value(&summary).unwrap_or_default();
@@ -146,17 +149,18 @@ fn show(folders: &[PathBuf], run: &str, json: bool) -> Result<(), Failure> {
             _ => None,
         });
         shown["state_hash"] = json!(hashes.next());
-        shown["score"] = json!(trajectory.as_ref().and_then(|trajectory| match &trajectory.end()?.record {
-            Record::End(end) => end.score,
-            _ => None,
-        }));
+        shown["score"] =
+            json!(trajectory.as_ref().and_then(|trajectory| match &trajectory.end_line()?.record {
+                Record::End(end) => end.score,
+                _ => None,
+            }));
         return print(&(serde_json::to_string_pretty(&shown).unwrap_or_default() + "\n"));
     }
-    let origin = origin_of(&folder);
+    let origin = branch_origin(&folder);
     print(&format!(
         "{}\n{}",
-        summary.as_ref().map(|run| line(run, origin.as_ref())).unwrap_or_default(),
-        printable(&text)
+        summary.as_ref().map(|run| run_line(run, origin.as_ref())).unwrap_or_default(),
+        escape_control_characters(&text)
     ))
 }
 
@@ -171,21 +175,26 @@ pub(super) fn list_all(folders: &[PathBuf]) -> Result<Vec<(PathBuf, RunSummary)>
 }
 
 /// Returns the id of a run, which is the name of its folder.
-fn id_of(folder: &Path) -> String {
+fn run_id(folder: &Path) -> String {
     folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
 /// Finds the folder of a run in several folders of runs.
-pub(super) fn find_in(folders: &[PathBuf], run: &str) -> Result<PathBuf, Failure> {
+pub(super) fn find_run_in(folders: &[PathBuf], run: &str) -> Result<PathBuf, Failure> {
     let mut found = folders.iter().map(|folder| find_run_to_read(folder, run));
     let first = found.next().ok_or_else(|| Failure::usage("there is no folder of runs"))?;
     // The error for the first folder is the most useful one.
     first.or_else(|error| found.find_map(Result::ok).ok_or(error)).map_err(Failure::from)
 }
 
-fn list(runs: &Path, folders: &[PathBuf], participant: Option<&str>, json: bool) -> Result<(), Failure> {
+fn print_runs(
+    runs: &Path,
+    folders: &[PathBuf],
+    participant: Option<&str>,
+    json: bool,
+) -> Result<(), Failure> {
     let mut list: Vec<(RunSummary, Option<BranchOrigin>)> =
-        list_all(folders)?.into_iter().map(|(folder, run)| (run, origin_of(&folder))).collect();
+        list_all(folders)?.into_iter().map(|(folder, run)| (run, branch_origin(&folder))).collect();
     list.retain(|(run, _)| participant.is_none_or(|label| run.participant.as_deref() == Some(label)));
     if json {
         let listed: Vec<Value> = list
@@ -205,23 +214,29 @@ fn list(runs: &Path, folders: &[PathBuf], participant: Option<&str>, json: bool)
         None if list.is_empty() => {
             print(&format!("There are no runs in {} yet; `novamind` starts one.\n", runs.display()))
         }
-        _ => print(&list.iter().map(|(run, origin)| line(run, origin.as_ref())).collect::<String>()),
+        _ => print(&list.iter().map(|(run, origin)| run_line(run, origin.as_ref())).collect::<String>()),
     }
 }
 
-fn line(run: &RunSummary, origin: Option<&BranchOrigin>) -> String {
+fn run_line(run: &RunSummary, origin: Option<&BranchOrigin>) -> String {
     if let Some(problem) = &run.problem {
-        return format!("{}  cannot be read: {}\n", printable(&run.id), printable(problem));
+        return format!(
+            "{}  cannot be read: {}\n",
+            escape_control_characters(&run.id),
+            escape_control_characters(problem)
+        );
     }
     let state = run.ended.map_or("open", |ended| ended.id());
     let policy = run.policy.as_ref().map(|name| format!("policy {name}"));
     let who = run.participant.clone().or(policy);
-    let who = who.map(|who| format!("  {}", printable(&who))).unwrap_or_default();
-    let origin =
-        origin.map(|origin| format!("  {}", printable(&origin_in_words(origin)))).unwrap_or_default();
+    let who = who.map(|who| format!("  {}", escape_control_characters(&who))).unwrap_or_default();
+    let origin = origin
+        .map(|origin| format!("  {}", escape_control_characters(&describe_origin(origin))))
+        .unwrap_or_default();
     let served = if run.is_served { "  played by a program" } else { "" };
     let copy = run.copy_of.as_ref();
-    let copy = copy.map(|own| format!("  a copy of run {}", printable(own))).unwrap_or_default();
+    let copy =
+        copy.map(|own| format!("  a copy of run {}", escape_control_characters(own))).unwrap_or_default();
     format!(
         "{}  {}  {:<8}  {:<10}  day {:>3}/{}  {:>14}  seed {:<6} {}{who}{served}{origin}{copy}\n",
         run.id,

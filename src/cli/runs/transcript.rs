@@ -6,27 +6,27 @@ use crate::cli::new_run::NewRunOptions;
 use crate::cli::run::progress_bar;
 use crate::cli::{Context, Failure, print};
 use crate::record::mode::Mode;
-use crate::report::count;
+use crate::report::pluralize;
 use crate::server::ForeignTranscript;
 use crate::session::{NewRun, Session};
 
 /// Largest transcript in bytes; 500 days of an agent take a few megabytes.
-const LARGEST: u64 = 512 << 20;
+const MAX_TRANSCRIPT_BYTES: u64 = 512 << 20;
 /// Largest number of differing answers that are listed.
-const LISTED: usize = 10;
+const MAX_LISTED_MISMATCHES: usize = 10;
 
 /// Plays a transcript in a new run. The transcript supplies the settings that the options do not.
 pub fn import_transcript(file: &Path, made_of: &NewRunOptions, context: &Context) -> Result<(), Failure> {
     let named = |why: String| Failure::failed(format!("{}: {why}", file.display()));
     let length = std::fs::metadata(file).map_err(|error| named(error.to_string()))?.len();
-    if length > LARGEST {
-        return Err(named(format!("it has {length} bytes; a transcript has at most {LARGEST}")));
+    if length > MAX_TRANSCRIPT_BYTES {
+        return Err(named(format!("it has {length} bytes; a transcript has at most {MAX_TRANSCRIPT_BYTES}")));
     }
     let bytes = std::fs::read(file).map_err(|error| named(error.to_string()))?;
     let read = ForeignTranscript::read(&bytes).map_err(named)?;
-    let asked = made_of.played_by(read.player.as_deref().unwrap_or("transcript"));
+    let asked = made_of.with_participant(read.player.as_deref().unwrap_or("transcript"));
     let asked = asked.new_run(Mode::Sandbox, context)?;
-    let scenario = read.scenario.clone().filter(|_| !made_of.names_scenario());
+    let scenario = read.scenario.clone().filter(|_| !made_of.has_scenario());
     let new = NewRun {
         seed: asked.seed.or(read.seed),
         days: asked.days.or(read.days),
@@ -44,16 +44,16 @@ pub fn import_transcript(file: &Path, made_of: &NewRunOptions, context: &Context
     bar.finish_and_clear();
     session.save()?;
     let (run, day, hash) = (session.manifest().id.clone(), session.day(), session.state_hash().0);
-    print(&format!("run {run}: {} calls, day {day}, state {hash}\n", played.made))?;
-    for (place, tool, said) in played.otherwise.iter().take(LISTED) {
+    print(&format!("run {run}: {} calls, day {day}, state {hash}\n", played.call_count))?;
+    for (place, tool, said) in played.mismatches.iter().take(MAX_LISTED_MISMATCHES) {
         print(&format!("step {place}: the answer to {tool} differs from the transcript: {said}\n"))?;
     }
     if played.not_run > 0 {
-        let scripts = count(played.not_run as u32, "script");
+        let scripts = pluralize(played.not_run as u32, "script");
         print(&format!("{scripts} in Python not run: scripts of a transcript are never executed\n"))?;
     }
     let ends_otherwise = read.state_hash.as_ref().is_some_and(|own| *own != hash);
-    match played.otherwise.len() as u32 {
+    match played.mismatches.len() as u32 {
         0 if ends_otherwise => Err(Failure::failed(
             "every answer agrees with the transcript, but the final state differs: its program or its parameters \
              were different; the run is kept",
@@ -61,7 +61,7 @@ pub fn import_transcript(file: &Path, made_of: &NewRunOptions, context: &Context
         0 => Ok(()),
         calls => Err(Failure::failed(format!(
             "{} with an answer that differs from the transcript{}; the run is kept",
-            count(calls, "call"),
+            pluralize(calls, "call"),
             if ends_otherwise { ", and the final state differs" } else { "" }
         ))),
     }

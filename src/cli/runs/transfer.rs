@@ -8,23 +8,23 @@ use serde_json::{Value, json};
 use super::formats::{self, ExportFormat};
 #[cfg(feature = "server")]
 use super::transcript::import_transcript;
-use super::{find_in, list_all};
-#[cfg(feature = "server")]
-use crate::cli::for_shell;
+use super::{find_run_in, list_all};
 #[cfg(feature = "server")]
 use crate::cli::new_run::NewRunOptions;
 use crate::cli::output_file::write_text;
 use crate::cli::run::progress_bar;
+#[cfg(feature = "server")]
+use crate::cli::shell_quoted;
 use crate::cli::{Context, Failure, print};
-use crate::notation::csv_cell;
+use crate::formatting::escape_csv_cell;
 use crate::record::error::RunError;
-use crate::record::files::folder_of;
+use crate::record::files::parent_folder;
 use crate::record::folder::runs::RunSummary;
 use crate::report::Logbook;
-use crate::report::tables::{StudyTables, columns_table, headings};
-use crate::session::archive::close_workshops;
-use crate::session::{Export as Sealing, Imported, LabKey, LabPublicKey, Seal, SealKey, import_run};
-use novamind_study::{FoundVisit, VISITS, visits};
+use crate::report::tables::{StudyTables, column_descriptions, table_headings};
+use crate::session::archive::remove_temporary_folders;
+use crate::session::{Export as Sealing, ImportOutcome, LabKey, LabPublicKey, Seal, SealKey, import_run};
+use novamind_study::{FoundVisit, VISITS_FILE, read_visits};
 
 #[derive(Debug, Args)]
 pub struct Export {
@@ -74,19 +74,19 @@ type Keys = (Option<LabKey>, SealKey);
 impl Export {
     pub fn run(&self, folders: &[PathBuf], json: bool, context: &Context) -> Result<(), Failure> {
         if let (Some(run), true) = (&self.run, self.format != ExportFormat::Archive) {
-            return formats::write(&find_in(folders, run)?, self.format, &self.out, context);
+            return formats::write_export(&find_run_in(folders, run)?, self.format, &self.out, context);
         }
-        tidy_up_on_signals();
+        remove_partial_files_on_signals();
         // Checked before the run is simulated again.
         let keys = (context.lab_key(self.lab_key.as_deref())?, context.seal_key()?);
         match &self.run {
-            Some(run) => self.export_one(&find_in(folders, run)?, &keys, json),
+            Some(run) => self.export_one(&find_run_in(folders, run)?, &keys, json),
             None => self.export_all(folders, &keys, json),
         }
     }
 
     fn export_one(&self, folder: &Path, (key, seal_key): &Keys, json: bool) -> Result<(), Failure> {
-        let beside = folder_of(&self.out);
+        let beside = parent_folder(&self.out);
         if self.out.exists() {
             // Reported before the run is simulated again, not after it.
             let message = format!("{} already exists: choose another name, or remove it", self.out.display());
@@ -102,10 +102,13 @@ impl Export {
         let seal = export.write(&self.out, false, key.as_ref())?;
         let remarks = export.session().remarks();
         if json {
-            return print(&format!("{}\n", told(&seal, &self.out, export.session().day(), key.as_ref())));
+            return print(&format!(
+                "{}\n",
+                export_to_json(&seal, &self.out, export.session().day(), key.as_ref())
+            ));
         }
         let remarks: String = remarks.iter().map(|remark| format!("{remark}\n")).collect();
-        print(&format!("{remarks}{}", line(&seal, &self.out, export.session().day(), key.as_ref())))
+        print(&format!("{remarks}{}", export_line(&seal, &self.out, export.session().day(), key.as_ref())))
     }
 
     fn export_all(&self, folders: &[PathBuf], keys: &Keys, json: bool) -> Result<(), Failure> {
@@ -125,12 +128,13 @@ impl Export {
             progress.inc(1);
             match exported {
                 Ok((export, seal, archive)) => {
-                    let book = Logbook::of(export.session(), &export.trajectory().lines, export.afterwards());
-                    tables.add(&book, &export.trajectory().lines, export.afterwards());
+                    let book =
+                        Logbook::new(export.session(), &export.trajectory().lines, export.afterwards_lines());
+                    tables.add(&book, &export.trajectory().lines, export.afterwards_lines());
                     answers.push(if json {
-                        told(&seal, &archive, book.day, keys.0.as_ref()).to_string() + "\n"
+                        export_to_json(&seal, &archive, book.day, keys.0.as_ref()).to_string() + "\n"
                     } else {
-                        line(&seal, &archive, book.day, keys.0.as_ref())
+                        export_line(&seal, &archive, book.day, keys.0.as_ref())
                     });
                     good += 1;
                 }
@@ -149,7 +153,7 @@ impl Export {
             }
         }
         progress.finish_and_clear();
-        tables.add_visits(&visits_in(folders, label));
+        tables.add_visits(&find_visits(folders, label));
         write_tables(tables, &self.out)?;
         print(&answers.concat())?;
         if !json {
@@ -187,9 +191,9 @@ impl Export {
 }
 
 /// Returns the visit records in the folders of runs, of one label if given.
-fn visits_in(folders: &[PathBuf], label: Option<&str>) -> Vec<FoundVisit> {
+fn find_visits(folders: &[PathBuf], label: Option<&str>) -> Vec<FoundVisit> {
     let of_folder = |folder: &PathBuf| {
-        let lines = visits(&folder.join(VISITS)).into_iter();
+        let lines = read_visits(&folder.join(VISITS_FILE)).into_iter();
         let folder = folder.clone();
         lines.map(move |line| FoundVisit { line, folder: folder.clone() })
     };
@@ -201,13 +205,13 @@ fn visits_in(folders: &[PathBuf], label: Option<&str>) -> Vec<FoundVisit> {
 pub fn write_tables(tables: StudyTables, folder: &Path) -> Result<(), Failure> {
     for (name, rows) in tables.into_files() {
         let path = folder.join(format!("{name}.csv"));
-        write_text(&path, &as_csv(&rows)?)?;
+        write_text(&path, &to_csv(&rows)?)?;
     }
     Ok(())
 }
 
 /// Removes incomplete archives when a signal ends the program, so that no hidden data is left on the target medium.
-pub fn tidy_up_on_signals() {
+pub fn remove_partial_files_on_signals() {
     #[cfg(unix)]
     {
         use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
@@ -215,7 +219,7 @@ pub fn tidy_up_on_signals() {
         let Ok(mut signals) = signal_hook::iterator::Signals::new([SIGINT, SIGTERM, SIGHUP]) else { return };
         std::thread::spawn(move || {
             if let Some(signal) = signals.forever().next() {
-                close_workshops();
+                remove_temporary_folders();
                 std::process::exit(128 + signal);
             }
         });
@@ -223,12 +227,12 @@ pub fn tidy_up_on_signals() {
 }
 
 /// Formats rows as comma-separated values. Texts are escaped so that no program reads them as formulas or commands.
-pub fn as_csv(rows: &[Vec<String>]) -> Result<String, Failure> {
+pub fn to_csv(rows: &[Vec<String>]) -> Result<String, Failure> {
     let wrong = |error: String| Failure::failed(format!("cannot write the table as CSV: {error}"));
     let mut writer = csv::Writer::from_writer(Vec::new());
     for row in rows {
         writer
-            .write_record(row.iter().map(|cell| csv_cell(cell).into_owned()))
+            .write_record(row.iter().map(|cell| escape_csv_cell(cell).into_owned()))
             .map_err(|error| wrong(error.to_string()))?;
     }
     let bytes = writer.into_inner().map_err(|error| wrong(error.to_string()))?;
@@ -239,10 +243,10 @@ pub fn as_csv(rows: &[Vec<String>]) -> Result<String, Failure> {
 pub fn explain_columns(json: bool) -> Result<(), Failure> {
     if json {
         let all: serde_json::Map<String, Value> =
-            headings().into_iter().map(|(table, columns)| (table.to_owned(), json!(columns))).collect();
+            table_headings().into_iter().map(|(table, columns)| (table.to_owned(), json!(columns))).collect();
         return print(&(serde_json::to_string_pretty(&all).unwrap_or_default() + "\n"));
     }
-    print(&markdown_table(&columns_table()))
+    print(&markdown_table(&column_descriptions()))
 }
 
 /// Formats rows as an aligned Markdown table. The first row is the header.
@@ -258,9 +262,9 @@ fn markdown_table(rows: &[Vec<String>]) -> String {
     rows.iter().take(1).map(line).chain([line(&rule)]).chain(rows.iter().skip(1).map(line)).collect()
 }
 
-fn line(seal: &Seal, archive: &Path, day: u32, key: Option<&LabKey>) -> String {
-    let signed =
-        key.map_or(String::new(), |key| format!("  signed by the lab key {}\n", key.public().fingerprint()));
+fn export_line(seal: &Seal, archive: &Path, day: u32, key: Option<&LabKey>) -> String {
+    let signed = key
+        .map_or(String::new(), |key| format!("  signed by the lab key {}\n", key.public_key().fingerprint()));
     format!(
         "{}  day {day}, {} lines  {}\n  checksum {}\n{signed}",
         seal.run,
@@ -270,19 +274,19 @@ fn line(seal: &Seal, archive: &Path, day: u32, key: Option<&LabKey>) -> String {
     )
 }
 
-fn told(seal: &Seal, archive: &Path, day: u32, key: Option<&LabKey>) -> Value {
-    let signer = key.map(|key| key.public().fingerprint());
+fn export_to_json(seal: &Seal, archive: &Path, day: u32, key: Option<&LabKey>) -> Value {
+    let signer = key.map(|key| key.public_key().fingerprint());
     json!({ "run": seal.run, "day": day, "lines": seal.last_seq + 1, "file": archive, "checksum": seal.checksum, "signed_by": signer })
 }
 
 impl Import {
     /// Imports the archives. A failure does not prevent the import of the others.
     pub fn run(&self, runs: &Path, json: bool, context: &Context) -> Result<(), Failure> {
-        tidy_up_on_signals();
+        remove_partial_files_on_signals();
         #[cfg(feature = "server")]
         match &self.transcript {
             Some(file) => return import_transcript(file, &self.made_of, context),
-            None if self.made_of.ask_for_one() => {
+            None if self.made_of.is_specified() => {
                 return Err(Failure::usage(
                     "an archive contains the options of its run; options of a run need --transcript",
                 ));
@@ -295,12 +299,12 @@ impl Import {
             return Err(Failure::usage("--under needs exactly one archive"));
         }
         #[cfg(feature = "server")]
-        self.refuse_logs()?;
+        self.reject_transcripts()?;
         let mut failures: Vec<Failure> = Vec::new();
         for file in &self.files {
             match import_run(runs, file, self.under.as_deref()) {
                 Ok((seal, signer, imported)) => {
-                    print(&import_answer(&seal, signer.as_ref(), &imported, json, self.under.as_deref()))?;
+                    print(&describe_import(&seal, signer.as_ref(), &imported, json, self.under.as_deref()))?;
                 }
                 Err(error) => failures.push(error.into()),
             }
@@ -324,29 +328,31 @@ impl Import {
 #[cfg(feature = "server")]
 impl Import {
     /// Rejects files that need `--transcript`.
-    fn refuse_logs(&self) -> Result<(), Failure> {
+    fn reject_transcripts(&self) -> Result<(), Failure> {
         let is_log = |file: &&PathBuf| file.extension().is_some_and(|own| own == "eval" || own == "json");
         let Some(log) = self.files.iter().find(is_log) else { return Ok(()) };
         Err(Failure::usage(format!(
             "{} is not an archive of a run. To play the calls of a log or trajectory in a new run, use `novamind runs import --transcript {}`. \
              Nothing was imported",
             log.display(),
-            for_shell(log)
+            shell_quoted(log)
         )))
     }
 }
 
-fn import_answer(
+fn describe_import(
     seal: &Seal,
     signer: Option<&LabPublicKey>,
-    imported: &Imported,
+    imported: &ImportOutcome,
     json: bool,
     under: Option<&str>,
 ) -> String {
     let (new, remark) = match imported {
-        Imported::New(_) => (true, "imported; its database is built when you first open it"),
-        Imported::Same { other_memo: false } => (false, "already exists, line for line; nothing was changed"),
-        Imported::Same { other_memo: true } => {
+        ImportOutcome::New(_) => (true, "imported; its database is built when you first open it"),
+        ImportOutcome::AlreadyPresent { notes_differ: false } => {
+            (false, "already exists, line for line; nothing was changed")
+        }
+        ImportOutcome::AlreadyPresent { notes_differ: true } => {
             (false, "already exists, line for line, with other notes; nothing was changed")
         }
     };

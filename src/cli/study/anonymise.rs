@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use crate::cli::runs::as_csv;
+use crate::cli::runs::to_csv;
 use crate::cli::{Failure, print};
-use crate::report::anonymised::{Anonymiser, Anonymous, LINKS, NamedTable, Texts};
-use crate::report::count;
-use crate::report::tables::headings;
+use crate::report::anonymization::{AnonymizedTables, Anonymizer, LINK_COLUMNS, NamedTable, TextHandling};
+use crate::report::pluralize;
+use crate::report::tables::table_headings;
 
 #[derive(Debug, Args)]
 pub struct Options {
@@ -38,14 +38,16 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     if inside(&options.secret) {
         return Err(Failure::usage("the secret must not be in the output folder"));
     }
-    let tables =
-        headings().iter().map(|(name, _)| read(&options.folder, name)).collect::<Result<Vec<_>, _>>()?;
-    let secret = secret_of(&options.secret)?;
-    let texts = if options.mask { Texts::Masked } else { Texts::Dropped };
-    let mut anonymiser = Anonymiser::new(secret, texts, options.without.clone());
-    anonymiser.check_left_out().map_err(Failure::usage)?;
-    let Anonymous { tables: made, links, smallest_group } =
-        anonymiser.anonymise(&tables).map_err(Failure::unreadable)?;
+    let tables = table_headings()
+        .iter()
+        .map(|(name, _)| read_table(&options.folder, name))
+        .collect::<Result<Vec<_>, _>>()?;
+    let secret = read_or_create_secret(&options.secret)?;
+    let texts = if options.mask { TextHandling::Masked } else { TextHandling::Dropped };
+    let mut anonymiser = Anonymizer::new(secret, texts, options.without.clone());
+    anonymiser.check_omitted_columns().map_err(Failure::usage)?;
+    let AnonymizedTables { tables: made, links, smallest_group } =
+        anonymiser.anonymize(&tables).map_err(Failure::unreadable)?;
     let failed =
         |path: &Path, error: &std::io::Error| Failure::failed(format!("{}: {error}", path.display()));
     if options.out.exists() {
@@ -56,9 +58,9 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     std::fs::create_dir_all(&options.out).map_err(|error| failed(&options.out, &error))?;
     for (name, rows) in &made {
         let path = options.out.join(format!("{name}.csv"));
-        std::fs::write(&path, as_csv(rows)?).map_err(|error| failed(&path, &error))?;
+        std::fs::write(&path, to_csv(rows)?).map_err(|error| failed(&path, &error))?;
     }
-    let mut rows = vec![LINKS.map(str::to_owned).to_vec()];
+    let mut rows = vec![LINK_COLUMNS.map(str::to_owned).to_vec()];
     rows.extend(links.iter().map(|link| {
         let cells = [
             &link.participant,
@@ -70,10 +72,10 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         ];
         cells.map(Clone::clone).to_vec()
     }));
-    let text = as_csv(&rows)?;
+    let text = to_csv(&rows)?;
     // It identifies participants, as the secret does.
     let _ = std::fs::remove_file(&links_path);
-    own_file(&links_path)
+    create_private_file(&links_path)
         .and_then(|mut file| file.write_all(text.as_bytes()))
         .map_err(|error| failed(&links_path, &error))?;
     let told_apart = smallest_group.map_or(String::new(), |(size, values)| {
@@ -84,14 +86,14 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     });
     print(&format!(
         "the tables of {} without names are in {}; keep {} and {}\n{told_apart}",
-        count(links.len() as u32, "run"),
+        pluralize(links.len() as u32, "run"),
         options.out.display(),
         options.secret.display(),
         links_path.display()
     ))
 }
 
-fn read(folder: &Path, name: &str) -> Result<NamedTable, Failure> {
+fn read_table(folder: &Path, name: &str) -> Result<NamedTable, Failure> {
     let path = folder.join(format!("{name}.csv"));
     let wrong = |error: csv::Error| Failure::unreadable(format!("{}: {error}", path.display()));
     let mut reader = csv::ReaderBuilder::new().has_headers(false).from_path(&path).map_err(wrong)?;
@@ -100,7 +102,7 @@ fn read(folder: &Path, name: &str) -> Result<NamedTable, Failure> {
 }
 
 /// Reads the secret of a file, 64 hexadecimal digits, or creates it.
-fn secret_of(path: &Path) -> Result<[u8; 32], Failure> {
+fn read_or_create_secret(path: &Path) -> Result<[u8; 32], Failure> {
     let failed = |error: std::io::Error| Failure::failed(format!("{}: {error}", path.display()));
     match std::fs::read_to_string(path) {
         Ok(text) => {
@@ -115,7 +117,7 @@ fn secret_of(path: &Path) -> Result<[u8; 32], Failure> {
                 Failure::failed(format!("the system returned no random numbers ({error})"))
             })?;
             let text = format!("{}\n", blake3::Hash::from_bytes(secret).to_hex());
-            own_file(path).and_then(|mut file| file.write_all(text.as_bytes())).map_err(failed)?;
+            create_private_file(path).and_then(|mut file| file.write_all(text.as_bytes())).map_err(failed)?;
             Ok(secret)
         }
         Err(error) => Err(failed(error)),
@@ -123,7 +125,7 @@ fn secret_of(path: &Path) -> Result<[u8; 32], Failure> {
 }
 
 /// Creates a file that only its owner can read.
-fn own_file(path: &Path) -> std::io::Result<File> {
+fn create_private_file(path: &Path) -> std::io::Result<File> {
     let mut options = File::options();
     options.write(true).create_new(true);
     #[cfg(unix)]

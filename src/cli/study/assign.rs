@@ -6,7 +6,7 @@ use clap::Args;
 
 use crate::cli::{Failure, print};
 use crate::record::error::RunError;
-use crate::record::files::write_whole;
+use crate::record::files::write_atomically;
 use novamind_study::{ASSIGNMENT_FILE, Assignment, Protocol, STUDY_FILE};
 
 #[derive(Debug, Args)]
@@ -31,8 +31,8 @@ pub struct Options {
 pub fn run(options: &Options) -> Result<(), Failure> {
     let path = options.folder.join(STUDY_FILE);
     let text = std::fs::read_to_string(&path).map_err(RunError::io(&path))?;
-    let protocol = Protocol::read(&path.display().to_string(), &text).map_err(RunError::from)?;
-    let draw = drawn_with(options, &protocol)?;
+    let protocol = Protocol::parse(&path.display().to_string(), &text).map_err(RunError::from)?;
+    let draw = randomization_seed(options, &protocol)?;
     let target = options.folder.join(ASSIGNMENT_FILE);
     let (there, more) = match (options.add, Assignment::read(&options.folder)?) {
         (None, Some(_)) => {
@@ -46,11 +46,11 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         }
         (add, there) => (there, add.or(options.participants).unwrap_or_default()),
     };
-    let labels = labels(there.as_ref(), more, &options.prefix);
-    let (seeds, cells) = (protocol.seeds.of_block(), protocol.seeds.cells());
-    let made = Assignment::in_blocks(&labels, &seeds, &protocol.seeds.conditions, draw);
+    let labels = new_labels(there.as_ref(), more, &options.prefix);
+    let (seeds, cells) = (protocol.seeds.block_seeds(), protocol.seeds.cell_count());
+    let made = Assignment::randomize_in_blocks(&labels, &seeds, &protocol.seeds.conditions, draw);
     if let Some(there) = &there
-        && !made.places.starts_with(&there.places)
+        && !made.rows.starts_with(&there.rows)
     {
         return Err(Failure::failed(format!(
             "the rows of {} were not drawn with seed {draw} for this protocol: give the --draw that was used, or \
@@ -58,15 +58,15 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             target.display()
         )));
     }
-    let csv = made.as_csv();
+    let csv = made.to_csv();
     Assignment::parse(&target.display().to_string(), csv.as_bytes()).map_err(RunError::from)?;
     // The file is replaced atomically, because participants may start meanwhile.
-    write_whole(&target, csv.as_bytes())?;
+    write_atomically(&target, csv.as_bytes())?;
     print(&format!(
         "{}: {} participants in blocks of {cells}, drawn with {draw}\n{}{}",
         target.display(),
-        made.places.len(),
-        incomplete(made.places.len(), cells),
+        made.rows.len(),
+        incomplete_block_message(made.rows.len(), cells),
         if protocol.seeds.draw.is_none() && draw != 1 {
             format!(
                 "add draw = {draw} under [seeds] in {STUDY_FILE} before the first session, so that the protocol states it\n"
@@ -78,7 +78,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
 }
 
 /// Returns the seed of the randomization. The option cannot override the protocol.
-fn drawn_with(options: &Options, protocol: &Protocol) -> Result<u64, Failure> {
+fn randomization_seed(options: &Options, protocol: &Protocol) -> Result<u64, Failure> {
     match (options.draw, protocol.seeds.draw) {
         (Some(asked), Some(own)) if asked != own => Err(Failure::usage(format!(
             "{STUDY_FILE} sets draw = {own}: leave out --draw, or change it there"
@@ -88,9 +88,9 @@ fn drawn_with(options: &Options, protocol: &Protocol) -> Result<u64, Failure> {
 }
 
 /// Returns the existing labels and `more` new ones with consecutive numbers.
-fn labels(there: Option<&Assignment>, more: u32, prefix: &str) -> Vec<String> {
+fn new_labels(there: Option<&Assignment>, more: u32, prefix: &str) -> Vec<String> {
     let known: Vec<String> =
-        there.iter().flat_map(|own| own.places.iter().map(|place| place.label.clone())).collect();
+        there.iter().flat_map(|own| own.rows.iter().map(|place| place.label.clone())).collect();
     let numbers: Vec<&str> = known.iter().filter_map(|label| label.strip_prefix(prefix)).collect();
     let last = numbers.iter().filter_map(|number| number.parse::<u32>().ok()).max().unwrap_or(0);
     let digits = match numbers.first() {
@@ -102,7 +102,7 @@ fn labels(there: Option<&Assignment>, more: u32, prefix: &str) -> Vec<String> {
 }
 
 /// Returns a remark if the last block is incomplete.
-fn incomplete(places: usize, cells: usize) -> String {
+fn incomplete_block_message(places: usize, cells: usize) -> String {
     match places % cells {
         0 => String::new(),
         some => format!(

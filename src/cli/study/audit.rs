@@ -6,10 +6,10 @@ use clap::Args;
 
 use super::read_study;
 use crate::cli::{Context, Failure, print};
-use crate::database::{Cell, Rows};
-use crate::notation::printable;
-use crate::plain::table as aligned;
-use novamind_study::{Audit, AuditFinding, RunFacts, Study, audit};
+use crate::database::{Cell, QueryResult};
+use crate::formatting::escape_control_characters;
+use crate::plain::format_result;
+use novamind_study::{AuditFinding, AuditReport, RunFacts, Study, audit_study};
 
 #[derive(Debug, Args)]
 pub struct Options {
@@ -27,13 +27,13 @@ pub struct Options {
 /// Runs the command. Fails with exit code 1 if there are findings.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let study = read_study(&options.folder)?;
-    let machines = context.machines(&options.machines)?;
-    let audit = audit(&study, &machines)?;
+    let machines = context.machine_folders(&options.machines)?;
+    let audit = audit_study(&study, &machines)?;
     if options.json {
         print(&(serde_json::to_string_pretty(&audit).unwrap_or_default() + "\n"))?;
     } else {
         // Labels and records of others may contain control characters.
-        print(&printable(&in_words(&study, &audit)))?;
+        print(&escape_control_characters(&describe_audit(&study, &audit)))?;
     }
     match audit.findings.len() {
         0 => Ok(()),
@@ -42,15 +42,15 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     }
 }
 
-fn in_words(study: &Study, audit: &Audit) -> String {
+fn describe_audit(study: &Study, audit: &AuditReport) -> String {
     let mut text = format!("{} · protocol {}\n\n", study.protocol.name, &study.digest[..16]);
-    text += &aligned(&facts(&audit.runs));
+    text += &format_result(&facts_table(&audit.runs));
     text += &format!("\n\n{}\n\n", audit.visits);
     if audit.runs_of_other_studies > 0 {
         text += &format!("Runs of other studies, not examined: {}.\n\n", audit.runs_of_other_studies);
     }
     for finding in &audit.findings {
-        text += &told(finding);
+        text += &finding_line(finding);
     }
     if audit.findings.is_empty() {
         text += "No findings.\n";
@@ -58,7 +58,7 @@ fn in_words(study: &Study, audit: &Audit) -> String {
     text
 }
 
-fn told(finding: &AuditFinding) -> String {
+fn finding_line(finding: &AuditFinding) -> String {
     let who = finding.participant.as_deref().unwrap_or("?");
     let line = finding.line.map_or(String::new(), |line| format!(", line {line}"));
     let at = if finding.at.is_empty() { String::new() } else { format!(", {}", finding.at) };
@@ -70,7 +70,7 @@ fn told(finding: &AuditFinding) -> String {
 }
 
 /// Returns the runs as a table.
-fn facts(runs: &[RunFacts]) -> Rows {
+fn facts_table(runs: &[RunFacts]) -> QueryResult {
     let columns = [
         "participant",
         "run",
@@ -107,9 +107,9 @@ fn facts(runs: &[RunFacts]) -> Rows {
             Cell::Integer(own.longest_gap.round() as i64),
         ]
     };
-    Rows {
+    QueryResult {
         columns: columns.map(str::to_owned).to_vec(),
         rows: runs.iter().map(row).collect(),
-        ..Rows::default()
+        ..QueryResult::default()
     }
 }

@@ -6,43 +6,43 @@ use std::path::Path;
 
 use crate::cli::{Context, Failure, print};
 use crate::session::Machine;
-use novamind_study::{LAB_KEY_FILE, Moment, PracticeOffer, SEAL_KEY_FILE, Study};
+use novamind_study::{LAB_KEY_FILE, Occasion, PracticeOffer, SEAL_KEY_FILE, Study};
 
 /// Free bytes that a session of a large company needs with its database.
-const ROOM: u64 = 2 << 30;
+const MIN_FREE_BYTES: u64 = 2 << 30;
 /// Columns and rows of the smallest supported window.
-const WINDOW: (u16, u16) = (60, 16);
+const MIN_WINDOW_SIZE: (u16, u16) = (60, 16);
 
-struct Point {
+struct CheckItem {
     name: &'static str,
-    outcome: Outcome,
+    outcome: CheckOutcome,
 }
 
-enum Outcome {
+enum CheckOutcome {
     /// The point is in order.
-    Fits(String),
+    Passed(String),
     /// The experimenter should know it; it may be intended.
     Note(String),
     /// It must be fixed before a session starts.
-    Wrong(String),
+    Failed(String),
 }
 
-impl From<Result<String, String>> for Outcome {
-    fn from(result: Result<String, String>) -> Outcome {
-        result.map_or_else(Outcome::Wrong, Outcome::Fits)
+impl From<Result<String, String>> for CheckOutcome {
+    fn from(result: Result<String, String>) -> CheckOutcome {
+        result.map_or_else(CheckOutcome::Failed, CheckOutcome::Passed)
     }
 }
 
-impl Point {
-    fn new(name: &'static str, outcome: impl Into<Outcome>) -> Point {
-        Point { name, outcome: outcome.into() }
+impl CheckItem {
+    fn new(name: &'static str, outcome: impl Into<CheckOutcome>) -> CheckItem {
+        CheckItem { name, outcome: outcome.into() }
     }
 
     fn line(&self) -> String {
         let (verdict, words) = match &self.outcome {
-            Outcome::Fits(words) => ("ok   ", words),
-            Outcome::Note(words) => ("note ", words),
-            Outcome::Wrong(words) => ("WRONG", words),
+            CheckOutcome::Passed(words) => ("ok   ", words),
+            CheckOutcome::Note(words) => ("note ", words),
+            CheckOutcome::Failed(words) => ("WRONG", words),
         };
         format!("  {verdict} {:<11} {words}\n", self.name)
     }
@@ -50,25 +50,25 @@ impl Point {
 
 /// Checks a study and this machine.
 pub fn run(folder: &Path, context: &Context) -> Result<(), Failure> {
-    let study = Study::read(folder)?;
-    let runs = context.runs()?;
-    let mut text = described(&study);
+    let study = Study::load(folder)?;
+    let runs = context.runs_folder()?;
+    let mut text = describe_study(&study);
     let mut points = vec![
-        Point::new("version", Ok(format!("novamind {}", env!("CARGO_PKG_VERSION")))),
-        Point::new("world", world(&study, context)),
-        Point::new("clock", clock()),
-        Point::new("runs", writable(&runs).map(|()| runs.display().to_string())),
-        Point::new("disk", room(&runs)),
-        Point::new("window", window()),
-        Point::new("characters", characters()),
-        Point::new("machine", Ok(Machine::here().id)),
-        Point::new("keys", Ok(keys(folder).to_owned())),
+        CheckItem::new("version", Ok(format!("novamind {}", env!("CARGO_PKG_VERSION")))),
+        CheckItem::new("world", check_scenarios(&study, context)),
+        CheckItem::new("clock", check_clock()),
+        CheckItem::new("runs", check_writable(&runs).map(|()| runs.display().to_string())),
+        CheckItem::new("disk", check_free_space(&runs)),
+        CheckItem::new("window", check_window()),
+        CheckItem::new("characters", check_locale()),
+        CheckItem::new("machine", Ok(Machine::current().id)),
+        CheckItem::new("keys", Ok(describe_keys(folder).to_owned())),
     ];
     let removed = study.protocol.removed_settings().into_iter();
-    points.extend(removed.map(|words| Point::new("settings", Outcome::Note(words))));
-    points.extend(design::points(&study, &context.configuration));
-    let failed = points.iter().filter(|point| matches!(point.outcome, Outcome::Wrong(_))).count();
-    text.extend(points.iter().map(Point::line));
+    points.extend(removed.map(|words| CheckItem::new("settings", CheckOutcome::Note(words))));
+    points.extend(design::design_checks(&study, &context.configuration));
+    let failed = points.iter().filter(|point| matches!(point.outcome, CheckOutcome::Failed(_))).count();
+    text.extend(points.iter().map(CheckItem::line));
     print(&text)?;
     match failed {
         0 => Ok(()),
@@ -78,7 +78,7 @@ pub fn run(folder: &Path, context: &Context) -> Result<(), Failure> {
 }
 
 /// Describes the keys of the study. A damaged key has already failed the reading of the study.
-fn keys(folder: &Path) -> &'static str {
+fn describe_keys(folder: &Path) -> &'static str {
     let is_here = |file: &str| folder.join(file).exists();
     match (is_here(SEAL_KEY_FILE), is_here(LAB_KEY_FILE)) {
         (true, false) => "seal.key seals snapshots",
@@ -88,13 +88,11 @@ fn keys(folder: &Path) -> &'static str {
     }
 }
 
-fn described(study: &Study) -> String {
+fn describe_study(study: &Study) -> String {
     let questions: usize = study.questionnaires.iter().map(|own| own.questions.len()).sum();
-    let asked = |moment: Moment| study.questionnaires.iter().filter(|own| own.when == moment).count();
-    let places = study
-        .assignment
-        .as_ref()
-        .map_or("any label".to_owned(), |own| format!("{} labels", own.places.len()));
+    let asked = |moment: Occasion| study.questionnaires.iter().filter(|own| own.when == moment).count();
+    let places =
+        study.assignment.as_ref().map_or("any label".to_owned(), |own| format!("{} labels", own.rows.len()));
     let consent = if study.consent.is_some() { "required" } else { "not required: there is no consent.md" };
     format!(
         "{} · {}\n  digest {}\n  {places} · consent {consent}\n  {questions} questions: {} before, {} after weeks, {} at breaks, {} at \
@@ -102,22 +100,22 @@ fn described(study: &Study) -> String {
         study.protocol.name,
         study.protocol.title,
         study.digest,
-        asked(Moment::Before),
-        asked(Moment::Weeks),
-        asked(Moment::Break),
-        asked(Moment::End),
+        asked(Occasion::Before),
+        asked(Occasion::Weeks),
+        asked(Occasion::Break),
+        asked(Occasion::End),
     )
 }
 
 /// Checks that session and practice use bundled scenarios.
-fn world(study: &Study, context: &Context) -> Result<String, String> {
+fn check_scenarios(study: &Study, context: &Context) -> Result<String, String> {
     let mut names = vec![study.protocol.world.scenario.clone()];
     if study.protocol.practice.offer != PracticeOffer::None {
         names.push(study.protocol.practice.scenario.clone());
     }
     for name in &names {
-        let scenario = context.configuration.scenario(name).map_err(|error| error.to_string())?;
-        if !scenario.shipped {
+        let scenario = context.configuration.load_scenario(name).map_err(|error| error.to_string())?;
+        if !scenario.is_bundled {
             return Err(format!("{name} is your own file: sessions need a bundled scenario"));
         }
     }
@@ -127,7 +125,7 @@ fn world(study: &Study, context: &Context) -> Result<String, String> {
 }
 
 /// Checks that the wall clock runs evenly and is not earlier than the build of this program.
-fn clock() -> Result<String, String> {
+fn check_clock() -> Result<String, String> {
     let wall = || std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
     const BUILT_AFTER: u64 = 1_760_000_000;
     let (before, steady) = (wall(), std::time::Instant::now());
@@ -143,7 +141,7 @@ fn clock() -> Result<String, String> {
 }
 
 /// Checks that the folder of runs can be written. Creates it if it does not exist, as the first session does.
-fn writable(folder: &Path) -> Result<(), String> {
+fn check_writable(folder: &Path) -> Result<(), String> {
     std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     let probe = folder.join(format!(".novamind-check-{}", std::process::id()));
     let tried = std::fs::write(&probe, b"check").and_then(|()| std::fs::remove_file(&probe));
@@ -151,31 +149,32 @@ fn writable(folder: &Path) -> Result<(), String> {
 }
 
 /// Checks the free space by writing, because quotas may allow less than the file system reports.
-fn room(folder: &Path) -> Result<String, String> {
+fn check_free_space(folder: &Path) -> Result<String, String> {
     let said = std::process::Command::new("df").args(["-Pk".as_ref(), folder.as_os_str()]).output().ok();
     let text = said.map(|output| String::from_utf8_lossy(&output.stdout).into_owned()).unwrap_or_default();
     let free = text.lines().nth(1).and_then(|line| line.split_whitespace().nth(3)?.parse::<u64>().ok());
     match free.map(|kilobytes| kilobytes * 1024) {
         None => Ok("this system does not report free space".to_owned()),
-        Some(free) if free < ROOM => {
-            Err(format!("{} MB are free; a long session may need {}", free >> 20, ROOM >> 20))
+        Some(free) if free < MIN_FREE_BYTES => {
+            Err(format!("{} MB are free; a long session may need {}", free >> 20, MIN_FREE_BYTES >> 20))
         }
         Some(free) => Ok(format!("{} GB free", free >> 30)),
     }
 }
 
-fn window() -> Result<String, String> {
+fn check_window() -> Result<String, String> {
     match crossterm::terminal::size() {
-        Ok((columns, rows)) if columns < WINDOW.0 || rows < WINDOW.1 => {
-            Err(format!("{columns}×{rows}: at least {}×{} characters are required", WINDOW.0, WINDOW.1))
-        }
+        Ok((columns, rows)) if columns < MIN_WINDOW_SIZE.0 || rows < MIN_WINDOW_SIZE.1 => Err(format!(
+            "{columns}×{rows}: at least {}×{} characters are required",
+            MIN_WINDOW_SIZE.0, MIN_WINDOW_SIZE.1
+        )),
         Ok((columns, rows)) => Ok(format!("{columns}×{rows}")),
         Err(_) => Ok("no terminal here: run this check on the machines of participants".to_owned()),
     }
 }
 
 /// Checks that the locale uses UTF-8, and shows characters for inspection.
-fn characters() -> Result<String, String> {
+fn check_locale() -> Result<String, String> {
     let name = ["LC_ALL", "LC_CTYPE", "LANG"]
         .iter()
         .find_map(|name| std::env::var(name).ok().filter(|value| !value.is_empty()));

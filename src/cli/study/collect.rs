@@ -8,12 +8,12 @@ use serde_json::json;
 
 use super::read_study;
 use crate::cli::run::progress_bar;
-use crate::cli::runs::{tidy_up_on_signals, write_tables};
+use crate::cli::runs::{remove_partial_files_on_signals, write_tables};
 use crate::cli::{Context, Failure, print};
-use crate::notation::printable;
-use crate::report::collection::{Collected, Collecting, LabKeys, collect};
+use crate::formatting::escape_control_characters;
+use crate::report::collection::{CollectOptions, CollectionResult, LabKeys, collect};
 use crate::session::LabKey;
-use novamind_study::{CollectNote, lab_key_of, lab_public_key_of, seal_key_of};
+use novamind_study::{CollectNote, load_lab_key, load_lab_public_key, load_seal_key};
 
 #[derive(Debug, Args)]
 pub struct Options {
@@ -36,26 +36,28 @@ pub struct Options {
 
 /// Runs the command. Fails with exit code 1 if notes need attention.
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
-    tidy_up_on_signals();
+    remove_partial_files_on_signals();
     let study = options.protocol.as_deref().map(read_study).transpose()?;
     let labels = options.labels.as_deref().map(read_labels).transpose()?.unwrap_or_default();
     let lab = options.protocol.as_ref().or(context.study_folder.as_ref());
-    let own = lab.map(|folder| lab_key_of(folder)).transpose()?.flatten();
-    let public = lab.map(|folder| lab_public_key_of(folder)).transpose()?.flatten();
-    let seal = lab.map(|folder| seal_key_of(folder)).transpose()?;
-    let keys = LabKeys { own: own.as_ref(), public: public.as_ref(), seal: seal.as_ref() };
+    let own = lab.map(|folder| load_lab_key(folder)).transpose()?.flatten();
+    let public = lab.map(|folder| load_lab_public_key(folder)).transpose()?.flatten();
+    let seal = lab.map(|folder| load_seal_key(folder)).transpose()?;
+    let keys =
+        LabKeys { signing_key: own.as_ref(), verification_key: public.as_ref(), sealing_key: seal.as_ref() };
     let mut bar = None;
     let (sources, out) = (&options.sources, &options.out);
-    let what = Collecting { sources, out, study: study.as_ref(), labels: &labels, keys };
+    let what = CollectOptions { sources, output_folder: out, study: study.as_ref(), labels: &labels, keys };
     let collected = collect(what, &mut |done, all| {
         bar.get_or_insert_with(|| progress_bar(all as u64, "runs")).set_position(done as u64);
     })?;
     if let Some(bar) = bar {
         bar.finish_and_clear();
     }
-    let Collected { tables, runs, notes, visits } = collected;
+    let CollectionResult { tables, runs, notes, visits } = collected;
     write_tables(tables, &options.out)?;
-    let log: String = notes.iter().map(|note| format!("{}\n", printable(&note.to_string()))).collect();
+    let log: String =
+        notes.iter().map(|note| format!("{}\n", escape_control_characters(&note.to_string()))).collect();
     let path = options.out.join("collect.log");
     std::fs::write(&path, &log).map_err(|error| Failure::failed(format!("{}: {error}", path.display())))?;
     if options.json {
@@ -67,7 +69,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     } else {
         let signed = own
             .as_ref()
-            .map(LabKey::public)
+            .map(LabKey::public_key)
             .map_or(String::new(), |key| format!(" and signed by the lab key {}", key.fingerprint()));
         let one = if runs.len() == 1 { "run" } else { "runs" };
         print(&format!(

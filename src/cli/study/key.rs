@@ -7,7 +7,7 @@ use novamind_study::{LAB_KEY_FILE, LAB_PUBLIC_KEY_FILE, SEAL_KEY_FILE, Study, ma
 
 /// Creates the missing keys and explains them.
 pub fn run(folder: &Path) -> Result<(), Failure> {
-    Study::read(folder)?;
+    Study::load(folder)?;
     let (public, written) = make_keys(folder)?;
     let mut text: String = written.iter().map(|path| format!("wrote {}\n", path.display())).collect();
     if written.is_empty() {

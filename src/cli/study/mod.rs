@@ -71,7 +71,7 @@ enum StudyCommand {
 
 /// Reads a study, and prints warnings about removed settings to standard error.
 fn read_study(folder: &Path) -> Result<Study, Failure> {
-    let study = Study::read(folder)?;
+    let study = Study::load(folder)?;
     study.protocol.removed_settings().iter().for_each(|words| eprintln!("novamind: study.toml: {words}"));
     Ok(study)
 }
@@ -88,6 +88,6 @@ pub fn run(options: Options, context: &Context) -> Result<(), Failure> {
         StudyCommand::Watch(options) => watch::run(&options, context),
         StudyCommand::Protocol { folder } => protocol::run(&folder, context),
         StudyCommand::Code => code::run(),
-        StudyCommand::Start { folder, play } => play::lead(&folder, &play, context),
+        StudyCommand::Start { folder, play } => play::lead_participant(&folder, &play, context),
     }
 }

@@ -30,8 +30,8 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let name = options.name.clone().or_else(of_folder).unwrap_or_else(|| "study".to_owned());
     let plain = |letter: char| if letter.is_ascii_alphanumeric() { letter } else { '-' };
     let name: String = name.chars().map(plain).collect();
-    write(&TEMPLATE, folder, &name)?;
-    let study = Study::read(folder)?;
+    write_template(&TEMPLATE, folder, &name)?;
+    let study = Study::load(folder)?;
     print(&format!(
         "{}: edit {STUDY_FILE}, consent.md and questions/, then run\n\n    novamind study check {0}\n    novamind study assign {0} \
          --participants N\n    novamind --study {0}\n\nProtocol {}\n",
@@ -40,7 +40,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     ))
 }
 
-fn write(from: &Dir<'_>, to: &Path, name: &str) -> Result<(), Failure> {
+fn write_template(from: &Dir<'_>, to: &Path, name: &str) -> Result<(), Failure> {
     for file in from.files() {
         let path = to.join(file.path());
         let parent = path.parent().unwrap_or(to);
@@ -48,5 +48,5 @@ fn write(from: &Dir<'_>, to: &Path, name: &str) -> Result<(), Failure> {
         let text = file.contents_utf8().unwrap_or_default().replace("{name}", name);
         std::fs::write(&path, text).map_err(RunError::io(&path))?;
     }
-    from.dirs().try_for_each(|inner| write(inner, to, name))
+    from.dirs().try_for_each(|inner| write_template(inner, to, name))
 }

@@ -8,15 +8,15 @@ use clap::Args;
 
 use super::read_study;
 use crate::cli::{Context, Failure, print};
-use crate::database::{Cell, Rows};
-use crate::notation::printable;
-use crate::plain::table as aligned;
-use crate::record::clock::nanoseconds as nanoseconds_of;
+use crate::database::{Cell, QueryResult};
+use crate::formatting::escape_control_characters;
+use crate::plain::format_result;
+use crate::record::clock::parse_nanoseconds;
 use crate::record::folder::runs::participant_folder;
 use crate::session::week_of;
 use novamind_study::{
-    REMARKS, Remark, Sitting, SittingState, Study, VisitSummary, has_come, remarks, sittings, visits_of,
-    write_remark,
+    REMARKS_FILE, Remark, SessionState, SessionStatus, Study, VisitSummary, has_visited, read_remarks,
+    read_study_visits, session_statuses, write_remark,
 };
 
 #[derive(Debug, Args)]
@@ -39,43 +39,45 @@ pub struct Options {
 }
 
 /// Time between two refreshes.
-const BETWEEN_LOOKS: Duration = Duration::from_secs(2);
+const REFRESH_INTERVAL: Duration = Duration::from_secs(2);
 
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let study = read_study(&options.folder)?;
-    let machines = context.machines(&options.machines)?;
+    let machines = context.machine_folders(&options.machines)?;
     if let Some([label, text]) = options.note.as_deref() {
-        return note(&study, &machines, label, text);
+        return write_note(&study, &machines, label, text);
     }
-    let look = || -> Vec<Sitting> { machines.iter().flat_map(|runs| sittings(&study, runs)).collect() };
+    let look = || -> Vec<SessionStatus> {
+        machines.iter().flat_map(|runs| session_statuses(&study, runs)).collect()
+    };
     if options.json {
         let lines: Vec<String> =
             look().iter().map(|sitting| serde_json::to_string(sitting).unwrap_or_default() + "\n").collect();
         return print(&lines.concat());
     }
     if options.once || !std::io::stdout().is_terminal() {
-        return print(&printable(&shown(&study, &look(), &machines)));
+        return print(&escape_control_characters(&status_text(&study, &look(), &machines)));
     }
     loop {
         // Only the text is replaced, so that scrolling and ctrl-c work as usual.
         print(&format!(
             "\x1b[H\x1b[2J{}\nctrl-c stops watching\n",
-            printable(&shown(&study, &look(), &machines))
+            escape_control_characters(&status_text(&study, &look(), &machines))
         ))?;
-        std::thread::sleep(BETWEEN_LOOKS);
+        std::thread::sleep(REFRESH_INTERVAL);
     }
 }
 
 /// Records a note next to the runs of the label.
-fn note(study: &Study, machines: &[PathBuf], label: &str, text: &str) -> Result<(), Failure> {
+fn write_note(study: &Study, machines: &[PathBuf], label: &str, text: &str) -> Result<(), Failure> {
     participant_folder(Path::new(""), label).map_err(Failure::usage)?;
     let last_played = machines.iter().filter_map(|runs| {
-        let own = sittings(study, runs).into_iter().filter(|own| own.participant == label);
+        let own = session_statuses(study, runs).into_iter().filter(|own| own.participant == label);
         own.map(|own| own.quiet_seconds).min_by(f64::total_cmp).map(|quiet| (quiet, runs))
     });
     let with_runs = last_played.min_by(|one, other| one.0.total_cmp(&other.0)).map(|(_, runs)| runs);
-    let visited = |runs: &&PathBuf| has_come(study, runs, label);
-    let is_assigned = study.assignment.as_ref().is_some_and(|own| own.place(label).is_some());
+    let visited = |runs: &&PathBuf| has_visited(study, runs, label);
+    let is_assigned = study.assignment.as_ref().is_some_and(|own| own.row_for(label).is_some());
     let place = with_runs.or_else(|| machines.iter().find(visited));
     let place = place.or_else(|| machines.first().filter(|_| is_assigned)).ok_or_else(|| {
         Failure::usage(format!(
@@ -84,22 +86,22 @@ fn note(study: &Study, machines: &[PathBuf], label: &str, text: &str) -> Result<
         ))
     })?;
     write_remark(place, label, text)?;
-    print(&format!("recorded a note for {label} in {}\n", place.join(REMARKS).display()))
+    print(&format!("recorded a note for {label} in {}\n", place.join(REMARKS_FILE).display()))
 }
 
-fn shown(study: &Study, all: &[Sitting], machines: &[PathBuf]) -> String {
+fn status_text(study: &Study, all: &[SessionStatus], machines: &[PathBuf]) -> String {
     let running =
-        all.iter().filter(|own| !matches!(own.state, SittingState::Left | SittingState::Over)).count();
+        all.iter().filter(|own| !matches!(own.state, SessionState::Left | SessionState::Over)).count();
     let places =
-        study.assignment.as_ref().map_or(String::new(), |own| format!(" of {} assigned", own.places.len()));
+        study.assignment.as_ref().map_or(String::new(), |own| format!(" of {} assigned", own.rows.len()));
     let mut people: Vec<&str> = all.iter().map(|own| own.participant.as_str()).collect();
     people.dedup();
     let mut text =
         format!("{} · {running} running · {}{places} have begun\n\n", study.protocol.name, people.len());
-    text += &aligned(&table(all));
-    text += &format!("\n\n{}\n", visitors(study, all, machines));
-    let mut noted: Vec<Remark> = machines.iter().flat_map(|runs| remarks(runs)).collect();
-    noted.sort_by_key(|remark| nanoseconds_of(&remark.at));
+    text += &format_result(&status_table(all));
+    text += &format!("\n\n{}\n", visit_summary(study, all, machines));
+    let mut noted: Vec<Remark> = machines.iter().flat_map(|runs| read_remarks(runs)).collect();
+    noted.sort_by_key(|remark| parse_nanoseconds(&remark.at));
     for remark in noted {
         text += &format!("{} {}: {}\n", remark.at, remark.participant, remark.text);
     }
@@ -107,46 +109,46 @@ fn shown(study: &Study, all: &[Sitting], machines: &[PathBuf]) -> String {
 }
 
 /// Returns the visits, including those in which no run started.
-fn visitors(study: &Study, all: &[Sitting], machines: &[PathBuf]) -> VisitSummary {
+fn visit_summary(study: &Study, all: &[SessionStatus], machines: &[PathBuf]) -> VisitSummary {
     let with_runs = all.iter().map(|own| own.participant.as_str()).collect();
-    VisitSummary::of(&visits_of(study, machines), &with_runs)
+    VisitSummary::from_lines(&read_study_visits(study, machines), &with_runs)
 }
 
-fn table(all: &[Sitting]) -> Rows {
+fn status_table(all: &[SessionStatus]) -> QueryResult {
     let columns = ["participant", "run", "kind", "state", "week", "day", "of", "quiet", "problems"];
-    let row = |own: &Sitting| {
+    let row = |own: &SessionStatus| {
         vec![
             Cell::Text(own.participant.clone()),
             Cell::Text(own.run.clone()),
             Cell::Text(if own.practice { "practice" } else { "session" }.to_owned()),
-            Cell::Text(in_words(own.state).to_owned()),
+            Cell::Text(describe_state(own.state).to_owned()),
             Cell::Integer(i64::from(week_of(own.day))),
             Cell::Integer(i64::from(own.day)),
             Cell::Integer(i64::from(own.days)),
-            Cell::Text(quiet(own.quiet_seconds)),
+            Cell::Text(format_quiet_time(own.quiet_seconds)),
             Cell::Text(own.problems.join("; ")),
         ]
     };
-    Rows {
+    QueryResult {
         columns: columns.map(str::to_owned).to_vec(),
         rows: all.iter().map(row).collect(),
-        ..Rows::default()
+        ..QueryResult::default()
     }
 }
 
-fn in_words(state: SittingState) -> &'static str {
+fn describe_state(state: SessionState) -> &'static str {
     match state {
-        SittingState::Plays => "plays",
-        SittingState::Idle => "idle",
-        SittingState::Paused => "clock stopped",
-        SittingState::Left => "left",
-        SittingState::Stopped => "ended without leaving",
-        SittingState::Over => "over",
+        SessionState::Plays => "plays",
+        SessionState::Idle => "idle",
+        SessionState::Paused => "clock stopped",
+        SessionState::Left => "left",
+        SessionState::Stopped => "ended without leaving",
+        SessionState::Over => "over",
     }
 }
 
 /// Formats the time since the last line.
-fn quiet(seconds: f64) -> String {
+fn format_quiet_time(seconds: f64) -> String {
     match seconds as u64 {
         0..=59 => format!("{seconds:.0} s"),
         60..=3599 => format!("{:.0} min", seconds / 60.0),

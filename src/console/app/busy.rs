@@ -2,30 +2,30 @@
 
 use std::time::Instant;
 
-use super::DaysRun;
-use novamind_worker::request::SCRIPT_RUNS;
+use super::SimulationProgress;
+use novamind_worker::request::SCRIPT_STATUS;
 
 /// Work that the user may have to wait for.
 #[derive(Debug, Clone)]
-pub struct Busy {
+pub struct BusyState {
     /// Label of the work.
-    pub what: &'static str,
+    pub label: &'static str,
     /// Progress in days, for simulations and seeking.
-    pub days: Option<DaysRun>,
+    pub progress: Option<SimulationProgress>,
     /// When it started.
-    pub since: Instant,
+    pub started_at: Instant,
     /// The script is being stopped. The stop is repeated until it ends, because the script may only just be starting.
-    pub stops_script: bool,
+    pub is_stopping_script: bool,
 }
 
-impl Busy {
+impl BusyState {
     /// Returns the state of work that starts now.
-    pub fn with(what: &'static str) -> Busy {
-        Busy { what, days: None, since: Instant::now(), stops_script: false }
+    pub fn new(what: &'static str) -> BusyState {
+        BusyState { label: what, progress: None, started_at: Instant::now(), is_stopping_script: false }
     }
 
     /// Returns whether a script is running. Scripts can be stopped.
     pub fn is_script(&self) -> bool {
-        self.what == SCRIPT_RUNS
+        self.label == SCRIPT_STATUS
     }
 }

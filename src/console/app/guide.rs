@@ -2,47 +2,47 @@
 
 use super::{App, Layer, Stage};
 use crate::action::Action;
-use crate::context::{Look, ScreenId};
-use crate::dialogs::explain::Explain;
-use crate::dialogs::glossary::Glossary;
+use crate::context::{ScreenContext, ScreenId};
+use crate::dialogs::explanation::ExplainDialog;
+use crate::dialogs::glossary::GlossaryDialog;
 use crate::effect::Effect;
 use crate::screens::ScreenState;
+use crate::study_pages::StudyState;
 use crate::tour::{self, TourFacts};
-use crate::visit::VisitState;
 use novamind_glossary::Subject;
 use novamind_session::Access;
 use novamind_worker::request::Request;
 
 impl App {
     /// Explains the selected figure, or the screen if no figure is selected.
-    pub(super) fn explain(&mut self) {
+    pub(super) fn open_explanation(&mut self) {
         let figure = self.with_screen(|screen, look| screen.figure(look)).flatten();
         let Stage::Run(run) = &mut self.stage else { return };
         let numbers = run.company.numbers.clone();
         let dialog = match figure {
-            Some(figure) => Explain::figure(&figure, numbers),
-            None => Explain::screen(run.here, numbers),
+            Some(figure) => ExplainDialog::for_figure(&figure, numbers),
+            None => ExplainDialog::for_screen(run.screen, numbers),
         };
-        self.lay(Layer::Dialog(Box::new(dialog)));
+        self.push_layer(Layer::Dialog(Box::new(dialog)));
     }
 
-    pub(super) fn explain_subject(&mut self, subject: Subject) {
+    pub(super) fn open_subject(&mut self, subject: Subject) {
         let Stage::Run(run) = &mut self.stage else { return };
-        let explain = Explain::subject(subject, run.company.numbers.clone());
-        self.lay(Layer::Dialog(Box::new(explain)));
+        let explain = ExplainDialog::for_subject(subject, run.company.numbers.clone());
+        self.push_layer(Layer::Dialog(Box::new(explain)));
     }
 
-    pub(super) fn show_glossary(&mut self) {
+    pub(super) fn open_glossary(&mut self) {
         let Stage::Run(run) = &self.stage else { return };
-        let glossary = Glossary::new(run.company.numbers.clone());
-        self.lay(Layer::Dialog(Box::new(glossary)));
+        let glossary = GlossaryDialog::new(run.company.numbers.clone());
+        self.push_layer(Layer::Dialog(Box::new(glossary)));
     }
 
     pub(super) fn start_tour(&mut self) {
-        self.tour_planned = true;
+        self.starts_tour = true;
         let begun = match &self.stage {
-            Stage::Menu(menu) => menu.practice().map(str::to_owned),
-            Stage::Run(_) | Stage::Visit(_) => None,
+            Stage::Menu(menu) => menu.practice_run().map(str::to_owned),
+            Stage::Run(_) | Stage::Study(_) => None,
         };
         self.follow(vec![Effect::Request(match begun {
             Some(id) => Request::Open(id, Access::Write),
@@ -51,66 +51,68 @@ impl App {
     }
 
     /// Shows the tour, starting with the first step that is not done.
-    pub(super) fn show_tour(&mut self) {
-        let of_practice = self.visit.as_ref().is_some_and(VisitState::has_tour);
-        if self.leads_participant() && !of_practice {
-            return self.complain("this session has no tour");
+    pub(super) fn resume_tour(&mut self) {
+        let of_practice = self.study.as_ref().is_some_and(StudyState::has_tour);
+        if self.has_participant() && !of_practice {
+            return self.show_error("this session has no tour");
         }
         let Stage::Run(run) = &mut self.stage else { return };
         if run.company.is_baseline() && !of_practice {
-            return self.complain("baseline runs have no tour; Tour in the start menu opens a practice run");
+            return self
+                .show_error("baseline runs have no tour; Tour in the start menu opens a practice run");
         }
         // The steps are written for the practice run.
-        if run.company.seen.scenario != tour::scenario() {
-            return self.complain("the tour has its own run; open it with Tour in the start menu");
+        if run.company.observation.scenario != tour::scenario() {
+            return self.show_error("the tour has its own run; open it with Tour in the start menu");
         }
         run.tour.get_or_insert_default();
     }
 
-    pub(super) fn skip_step(&mut self) {
-        match self.tour() {
-            Some(tour) => tour.skip(),
-            None => self.complain("no tour is shown"),
+    pub(super) fn skip_tour_step(&mut self) {
+        match self.running_tour() {
+            Some(tour) => tour.skip_step(),
+            None => self.show_error("no tour is shown"),
         }
     }
 
     pub(super) fn close_tour(&mut self) {
         let Stage::Run(run) = &mut self.stage else { return };
         if run.tour.take().is_none() {
-            return self.complain("no tour is shown");
+            return self.show_error("no tour is shown");
         }
         let way = match self.keys.label(Action::Tour) {
             Some(key) => key,
             None => format!("{} tour", self.keys.label(Action::Palette).unwrap_or_default()),
         };
-        self.say(format!("tour closed; {way} resumes it"));
+        self.show_status(format!("tour closed; {way} resumes it"));
     }
 
-    fn tour(&mut self) -> Option<&mut tour::Tour> {
+    fn running_tour(&mut self) -> Option<&mut tour::Tour> {
         match &mut self.stage {
             Stage::Run(run) => run.tour.as_mut(),
-            Stage::Menu(_) | Stage::Visit(_) => None,
+            Stage::Menu(_) | Stage::Study(_) => None,
         }
     }
 
-    pub(super) fn settle_tour(&mut self) {
+    pub(super) fn advance_tour(&mut self) {
         let Stage::Run(run) = &mut self.stage else { return };
         let Some(tour) = &mut run.tour else { return };
-        let filing = matches!(self.layers.last(), Some(Layer::Filing)).then(|| run.filing.step_number());
-        let look = Look { company: &run.company, keys: &self.keys, page: self.page };
-        let group_open = run.here == ScreenId::Customers && run.screens.customers.open_here(&look).is_some();
+        let filing = matches!(self.layers.top(), Some(Layer::NextWeek)).then(|| run.next_week.step_number());
+        let look = ScreenContext { company: &run.company, keys: &self.keys, page_rows: self.page_rows };
+        let group_open =
+            run.screen == ScreenId::Customers && run.screens.customers.open_item_title(&look).is_some();
         let facts = TourFacts {
             company: &run.company,
-            here: run.here,
-            before: &run.before,
-            filing,
-            dialog: !self.layers.is_empty(),
-            group_open,
+            screen: run.screen,
+            back_history: &run.back_history,
+            next_week_step: filing,
+            has_dialog: !self.layers.is_empty(),
+            is_group_open: group_open,
         };
-        if !tour.settle(&facts) {
+        if !tour.skip_finished_steps(&facts) {
             run.tour = None;
-            let last = run.company.seen.last_day;
-            self.say(format!("tour completed; you can play on until day {last}"));
+            let last = run.company.observation.last_day;
+            self.show_status(format!("tour completed; you can play on until day {last}"));
         }
     }
 }

@@ -2,14 +2,14 @@
 
 use std::time::Duration;
 
-use crate::attention::ms;
+use crate::attention::millis;
 use crate::dialogs::Dialog;
 use novamind_record::trajectory::record::{DialogOutcome, DialogStep, DialogUse};
 
 /// A dialog over the screen.
 pub enum Layer {
     /// The next-week dialog; its drafts outlive it.
-    Filing,
+    NextWeek,
     /// Any other dialog.
     Dialog(Box<dyn Dialog>),
 }
@@ -22,8 +22,8 @@ pub struct Layers {
 
 struct OpenLayer {
     layer: Layer,
-    what: String,
-    since: Duration,
+    record_name: String,
+    opened_at: Duration,
     /// Steps that were entered, and when.
     steps: Vec<(&'static str, Duration)>,
 }
@@ -32,22 +32,22 @@ impl Layers {
     /// Opens a dialog on top.
     pub fn push(&mut self, layer: Layer, now: Duration) {
         let what = match &layer {
-            Layer::Filing => "next week".to_owned(),
-            Layer::Dialog(dialog) => dialog.what(),
+            Layer::NextWeek => "next week".to_owned(),
+            Layer::Dialog(dialog) => dialog.record_name(),
         };
-        self.open.push(OpenLayer { layer, what, since: now, steps: Vec::new() });
+        self.open.push(OpenLayer { layer, record_name: what, opened_at: now, steps: Vec::new() });
     }
 
     /// Closes the top dialog and returns how it was used.
     pub fn pop(&mut self, outcome: DialogOutcome, now: Duration) -> Option<DialogUse> {
-        let OpenLayer { what, since, steps, .. } = self.open.pop()?;
+        let OpenLayer { record_name: what, opened_at: since, steps, .. } = self.open.pop()?;
         let ends = steps.iter().skip(1).map(|(_, entered)| *entered).chain([now]);
         let step = |((step, entered), end): (&(&'static str, Duration), Duration)| DialogStep {
             step: (*step).to_owned(),
-            for_ms: ms(end.saturating_sub(*entered)),
+            for_ms: millis(end.saturating_sub(*entered)),
         };
         let steps = steps.iter().zip(ends).map(step).collect();
-        Some(DialogUse { what, outcome, for_ms: ms(now.saturating_sub(since)), steps })
+        Some(DialogUse { what, outcome, for_ms: millis(now.saturating_sub(since)), steps })
     }
 
     /// Records that the top dialog is at a step.
@@ -60,17 +60,17 @@ impl Layers {
     }
 
     /// Returns the recorded name of the dialog below the top one.
-    pub fn below(&self) -> Option<&str> {
-        self.open.iter().rev().nth(1).map(|below| below.what.as_str())
+    pub fn second_name(&self) -> Option<&str> {
+        self.open.iter().rev().nth(1).map(|below| below.record_name.as_str())
     }
 
     /// Returns the top dialog.
-    pub fn last(&self) -> Option<&Layer> {
+    pub fn top(&self) -> Option<&Layer> {
         self.open.last().map(|open| &open.layer)
     }
 
     /// Returns the top dialog mutably.
-    pub fn last_mut(&mut self) -> Option<&mut Layer> {
+    pub fn top_mut(&mut self) -> Option<&mut Layer> {
         self.open.last_mut().map(|open| &mut open.layer)
     }
 
@@ -95,10 +95,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn steps_are_told_in_the_order_in_which_they_were_entered() {
+    fn dialog_use_lists_steps_in_order() {
         let at = Duration::from_millis;
         let mut layers = Layers::default();
-        layers.push(Layer::Filing, at(100));
+        layers.push(Layer::NextWeek, at(100));
         for (step, now) in [("review", 100), ("review", 110), ("rationale", 150), ("review", 400)] {
             layers.enter_step(step, at(now));
         }

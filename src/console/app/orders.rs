@@ -1,31 +1,33 @@
 //! Converts effects into orders.
 
-use super::{App, Busy, Closing, DaysRun, Layer, Order, Stage};
+use super::{App, BusyState, ExitTarget, Layer, Order, SimulationProgress, Stage};
 use crate::context::ScreenId;
-use crate::dialogs::confirm::Confirm;
-use crate::dialogs::reader::Reader;
+use crate::dialogs::confirm::ConfirmDialog;
+use crate::dialogs::text_dialog::TextDialog;
 use crate::effect::Effect;
-use novamind_record::trajectory::record::DraftOutcome;
-use novamind_session::Goal;
+use novamind_record::trajectory::record::TextEditOutcome;
+use novamind_session::SeekTarget;
 use novamind_worker::Job;
-use novamind_worker::company::Company;
+use novamind_worker::company::DisplayedCompany;
 use novamind_worker::request::Request;
 
 /// Days per week, in which lessons count the weeks before their start.
 const DAYS_PER_WEEK: u32 = 7;
 
 /// Returns the days that a lesson simulates before it starts.
-fn days_of_start(request: &Request) -> Option<DaysRun> {
+fn days_of_start(request: &Request) -> Option<SimulationProgress> {
     let Request::Create(new) = request else { return None };
     let entry = new.lesson.as_ref()?;
     let weeks = entry.lesson.plan.parts.get(entry.part)?.start_weeks;
-    (weeks > 0).then(|| DaysRun::between(0, weeks * DAYS_PER_WEEK))
+    (weeks > 0).then(|| SimulationProgress::new(0, weeks * DAYS_PER_WEEK))
 }
 
 /// Returns the last day that a request simulates unless it stops earlier.
-fn last_day_of(request: &Request, company: &Company) -> u32 {
+fn last_day_of(request: &Request, company: &DisplayedCompany) -> u32 {
     match request {
-        Request::RunDays(days) => company.seen.day.saturating_add(*days).min(company.seen.last_day),
+        Request::RunDays(days) => {
+            company.observation.day.saturating_add(*days).min(company.observation.last_day)
+        }
         _ => company.next_decision_day,
     }
 }
@@ -38,8 +40,8 @@ impl App {
     }
 
     fn follow_one(&mut self, effect: Effect) {
-        if effect.changes_run() && self.is_replay() {
-            return self.complain_of_replay();
+        if effect.changes_run() && self.is_playback() {
+            return self.show_playback_error();
         }
         match effect {
             Effect::Request(request) => {
@@ -48,165 +50,173 @@ impl App {
             }
             Effect::Project(recorded) => {
                 self.is_projected = true;
-                self.request(Request::Replay { recorded, goal: Goal::Last, follow: true });
+                self.request(Request::Replay { recorded, goal: SeekTarget::Last, follow: true });
             }
             Effect::ReplayInside(recorded, goal) => {
-                self.opens_on = Some(ScreenId::Xray);
+                self.initial_screen = Some(ScreenId::Xray);
                 self.request(Request::Replay { recorded, goal, follow: false });
             }
-            Effect::Go(goal) => self.go(goal),
+            Effect::Go(goal) => self.seek(goal),
             Effect::Ask(ask) => self.orders.push(Order::Ask(ask, self.busy.is_some())),
-            Effect::SentText(place) => self.end_text(place, DraftOutcome::Sent),
+            Effect::SentText(place) => self.end_draft(place, TextEditOutcome::Sent),
             Effect::ShowCurve(group) => self.show_curve(group),
             Effect::ShowOpponents => self.show_opponents(),
-            Effect::OpenRun(id) => self.open_other(id),
+            Effect::OpenRun(id) => self.open_other_run(id),
             Effect::ConfirmWords(words) => {
                 let text = format!(
                     "{words}: the change is recorded, and the run will not be ranked. Set the parameter?"
                 );
-                self.lay(Layer::Dialog(Box::new(Confirm::new("set", text, vec![Effect::SendWords(words)]))));
+                self.push_layer(Layer::Dialog(Box::new(ConfirmDialog::new(
+                    "set",
+                    text,
+                    vec![Effect::SendWords(words)],
+                ))));
             }
             Effect::SendWords(_) if self.busy.is_some() => {
-                self.complain("days are running; nothing was set, try again when they are done");
+                self.show_error("days are running; nothing was set, try again when they are done");
             }
             Effect::SendWords(words) => {
                 if let Stage::Run(run) = &mut self.stage {
-                    let effects = run.screens.xray.send_words(&words);
+                    let effects = run.screens.xray.send_confirmed_command(&words);
                     self.follow(effects);
                 }
             }
             Effect::CancelQuery => self.orders.push(Order::CancelQuery),
             Effect::Read(reading) => {
                 if let Stage::Run(run) = &mut self.stage {
-                    run.asked.remove(&reading);
+                    run.requested_readings.remove(&reading);
                 }
-                self.load();
+                self.request_screen_data();
             }
             Effect::Copy(text) => {
-                self.say(format!("copied: {}", novamind_tui::canvas::fit(&text, 60)));
+                self.show_status(format!("copied: {}", novamind_tui::canvas::truncate_to_width(&text, 60)));
                 self.orders.push(Order::Copy(text));
             }
             Effect::ShowText(title, text) => {
-                self.lay(Layer::Dialog(Box::new(Reader::new(title, text))));
+                self.push_layer(Layer::Dialog(Box::new(TextDialog::new(title, text))));
             }
             Effect::Write(name, contents) => self.write(vec![(name.as_str(), contents)]),
-            Effect::Say(text) => self.say(text),
+            Effect::Say(text) => self.show_status(text),
             Effect::AskWhy(figure) => self.ask_why(figure),
             Effect::ShowRows(figure) => self.show_rows_of(figure),
             Effect::CloseDialogs => self.close_layers(),
-            Effect::Complain(text) => self.complain(text),
+            Effect::Complain(text) => self.show_error(text),
             Effect::BeginPath => {
                 if let Stage::Run(run) = &mut self.stage {
-                    run.forget_trail();
+                    run.clear_breadcrumbs();
                 }
             }
-            Effect::Show(screen) => self.lead_to(screen, |_| {}),
-            Effect::ShowTool(tool) => self.lead_to(ScreenId::Tools, |run| {
+            Effect::Show(screen) => self.open_linked_screen(screen, |_| {}),
+            Effect::ShowTool(tool) => self.open_linked_screen(ScreenId::Tools, |run| {
                 let company = run.company.clone();
-                run.screens.tools.show(tool, &company);
+                run.screens.tools.show_tool(tool, &company);
             }),
-            Effect::ShowCell(tool, of) => self.lead_to(ScreenId::Tools, |run| {
+            Effect::ShowCell(tool, of) => self.open_linked_screen(ScreenId::Tools, |run| {
                 let company = run.company.clone();
                 run.screens.tools.show_cell(tool, &of, &company);
             }),
             Effect::Prefill { tool, arguments } => {
                 let mut effects = Vec::new();
-                self.lead_to(ScreenId::Tools, |run| {
+                self.open_linked_screen(ScreenId::Tools, |run| {
                     let company = run.company.clone();
                     effects = run.screens.tools.prefill(tool, &arguments, &company);
                 });
                 // The screen that shows the call requests its preview.
                 self.follow(effects);
             }
-            Effect::ShowThread(number) => self.lead_to(ScreenId::Inbox, |run| {
+            Effect::ShowThread(number) => self.open_linked_screen(ScreenId::Inbox, |run| {
                 let company = run.company.clone();
-                run.screens.inbox.show(number, &company);
+                run.screens.inbox.show_thread(number, &company);
             }),
-            Effect::ShowGroup(screen, group) => self.lead_to(screen, |run| match screen {
-                ScreenId::Market => run.screens.market.show(group),
-                _ => run.screens.customers.show(group, &run.company),
+            Effect::ShowGroup(screen, group) => self.open_linked_screen(screen, |run| match screen {
+                ScreenId::Market => run.screens.market.show_group(group),
+                _ => run.screens.customers.show_group(group, &run.company),
             }),
-            Effect::EditSql(sql) => self.lead_to(ScreenId::Sql, |run| run.screens.sql.edit(&sql)),
+            Effect::EditSql(sql) => {
+                self.open_linked_screen(ScreenId::Sql, |run| run.screens.sql.set_statement(&sql))
+            }
             Effect::RunSql(sql) => {
                 let mut effects = Vec::new();
-                self.lead_to(ScreenId::Sql, |run| effects = run.screens.sql.edit_and_run(&sql));
+                self.open_linked_screen(ScreenId::Sql, |run| effects = run.screens.sql.edit_and_run(&sql));
                 self.follow(effects);
             }
             Effect::SaveQuery { name, title, sql } => self.save_query([name, title, sql]),
             Effect::ConfirmCall { tool, arguments, text } => {
-                let confirm = Confirm::new(tool.name(), text, vec![Effect::call(tool, arguments)]);
-                self.lay(Layer::Dialog(Box::new(confirm)));
+                let confirm = ConfirmDialog::new(tool.name(), text, vec![Effect::call(tool, arguments)]);
+                self.push_layer(Layer::Dialog(Box::new(confirm)));
             }
             Effect::ConfirmCalls { calls, text } => {
                 let calls = calls.into_iter().map(|(tool, arguments)| Effect::call(tool, arguments));
-                let confirm = Confirm::new("send by rules", text, calls.collect());
-                self.lay(Layer::Dialog(Box::new(confirm)));
+                let confirm = ConfirmDialog::new("send by rules", text, calls.collect());
+                self.push_layer(Layer::Dialog(Box::new(confirm)));
             }
-            Effect::Explain(subject) => self.explain_subject(subject),
-            Effect::TryStepAgain(step) => self.ask_to_try_again(step),
-            Effect::ShowDebrief => self.show_debrief(),
+            Effect::Explain(subject) => self.open_subject(subject),
+            Effect::TryStepAgain(step) => self.confirm_retry(step),
+            Effect::ShowDebrief => self.open_debrief(),
             Effect::StartTour => self.start_tour(),
-            Effect::Receive(study) => self.receive(study),
-            Effect::SettleOffer(restore) => self.settle_offer(restore),
+            Effect::Receive(study) => self.start_study(study),
+            Effect::SettleOffer(restore) => self.resolve_draft_offer(restore),
             Effect::StopClock(reason) => self.stop_clock(reason, false),
-            Effect::LeaveNow => self.leave(Closing::ToShell),
-            Effect::Do(action) => self.act(action),
+            Effect::LeaveNow => self.exit_run(ExitTarget::Shell),
+            Effect::Do(action) => self.handle_action(action),
         }
     }
 
     /// Sends a request to the session thread, unless it is rejected while a week runs.
     pub(super) fn request(&mut self, request: Request) {
-        if self.keeps_from_participant(&request) {
+        if self.reject_for_participant(&request) {
             return;
         }
-        self.note_request(&request);
-        if request.waits_for_week()
+        self.update_study_for_request(&request);
+        if request.is_rejected_during_week()
             && let Some(busy) = &self.busy
         {
             let what = if busy.is_script() { "a script is running" } else { "a week is running" };
-            return self.complain(format!("{what}; nothing was sent, try again when it is done"));
+            return self.show_error(format!("{what}; nothing was sent, try again when it is done"));
         }
         let leaves_run = matches!(request, Request::Open(..)) && matches!(self.stage, Stage::Run(_));
         if leaves_run || matches!(request, Request::Replay { .. }) {
-            self.put_down();
+            self.detach_from_run();
         }
-        if let Some(what) = request.busy_with() {
-            let is_advance = request.lets_time_pass();
+        if let Some(what) = request.busy_label() {
+            let is_advance = request.simulates_days();
             if self.busy.is_some() {
                 return if is_advance {
-                    self.complain("days are running already")
+                    self.show_error("days are running already")
                 };
             }
             if is_advance {
                 // The drafts and the view belong to the week that ends.
-                self.send_texts(&request);
-                self.close_view();
+                self.record_sent_drafts(&request);
+                self.record_view();
                 if let Stage::Run(run) = &mut self.stage {
-                    run.stop_looking();
+                    run.pause_view_timer();
                 }
             }
             let days = self
                 .run()
                 .filter(|_| is_advance)
-                .map(|run| DaysRun::between(run.company.seen.day, last_day_of(&request, &run.company)))
+                .map(|run| {
+                    SimulationProgress::new(run.company.observation.day, last_day_of(&request, &run.company))
+                })
                 .or_else(|| days_of_start(&request));
-            self.busy = Some(Busy { days, ..Busy::with(what) });
+            self.busy = Some(BusyState { progress: days, ..BusyState::new(what) });
         }
-        self.send_texts(&request);
-        if matches!(request, Request::WriteReport) {
-            self.say("writing the report …");
+        self.record_sent_drafts(&request);
+        if matches!(request, Request::RenderReportFiles) {
+            self.show_status("writing the report …");
         }
-        self.orders.push(Order::Job(Job::Do(request)));
+        self.orders.push(Order::Job(Job::Execute(request)));
     }
 
     fn save_query(&mut self, query: [String; 3]) {
-        if self.leads_participant() {
+        if self.has_participant() {
             // The query would be visible to the next participant.
-            return self.complain_of_visit();
+            return self.show_participant_error();
         }
         match self.configuration.folder {
             Some(_) => self.orders.push(Order::SaveQuery(self.configuration.clone(), query)),
-            None => self.complain("cannot save the query: there is no configuration folder"),
+            None => self.show_error("cannot save the query: there is no configuration folder"),
         }
     }
 
@@ -217,7 +227,7 @@ impl App {
                 let files = files.into_iter().map(|(name, contents)| (folder.join(name), contents));
                 self.orders.push(Order::Write(files.collect()));
             }
-            None => self.complain("cannot write files: this run is in memory and has no folder"),
+            None => self.show_error("cannot write files: this run is in memory and has no folder"),
         }
     }
 }

@@ -4,33 +4,38 @@
 use super::{App, Order, Run, Stage};
 use crate::context::ScreenId;
 use novamind_insight::HiddenValues;
-use novamind_session::REFUSED_LOOK;
-use novamind_worker::asking::Pending;
-use novamind_worker::company::Company;
-use novamind_worker::questions::HiddenValuesQuestion;
+use novamind_session::INSPECTION_REJECTED;
+use novamind_worker::company::DisplayedCompany;
+use novamind_worker::page_questions::HiddenValuesQuestion;
+use novamind_worker::question::Pending;
 use std::sync::Arc;
 
 /// Whether true values are shown, and which were requested.
 #[derive(Default)]
-pub struct Overlay {
+pub struct HiddenValuesOverlay {
     is_on: bool,
-    asked: Pending<HiddenValuesQuestion>,
-    seen: Option<Arc<HiddenValues>>,
+    requested_day: Pending<HiddenValuesQuestion>,
+    values: Option<Arc<HiddenValues>>,
 }
 
 impl Run {
     /// Returns the company with the true values of its day if they are shown.
-    fn with_hidden_values(&self, company: Arc<Company>) -> Arc<Company> {
-        let seen =
-            self.overlay.seen.as_ref().filter(|seen| self.overlay.is_on && seen.day == company.seen.day);
-        let hidden = seen.filter(|_| company.may_look_inside).cloned();
-        match hidden == company.hidden {
+    fn with_hidden_values(&self, company: Arc<DisplayedCompany>) -> Arc<DisplayedCompany> {
+        let seen = self
+            .overlay
+            .values
+            .as_ref()
+            .filter(|seen| self.overlay.is_on && seen.day == company.observation.day);
+        let hidden = seen.filter(|_| company.can_inspect).cloned();
+        match hidden == company.hidden_values {
             true => company,
-            false => Arc::new(Company { hidden, ..Company::clone(&company) }),
+            false => {
+                Arc::new(DisplayedCompany { hidden_values: hidden, ..DisplayedCompany::clone(&company) })
+            }
         }
     }
 
-    pub(super) fn take_company(&mut self, company: Arc<Company>) {
+    pub(super) fn set_company(&mut self, company: Arc<DisplayedCompany>) {
         self.company = self.with_hidden_values(company);
     }
 }
@@ -38,56 +43,55 @@ impl Run {
 impl App {
     pub(super) fn toggle_hidden_values(&mut self) {
         let Stage::Run(run) = &mut self.stage else { return };
-        if !run.company.may_look_inside {
-            return self.complain(REFUSED_LOOK);
+        if !run.company.can_inspect {
+            return self.show_error(INSPECTION_REJECTED);
         }
-        if !matches!(run.here, ScreenId::Customers | ScreenId::Market) {
-            return self.complain("true values are available on the Customers and Market screens");
+        if !matches!(run.screen, ScreenId::Customers | ScreenId::Market) {
+            return self.show_error("true values are available on the Customers and Market screens");
         }
-        if run.company.seen.day == 0 {
-            return self.complain("no day has run yet");
+        if run.company.observation.day == 0 {
+            return self.show_error("no day has run yet");
         }
         run.overlay.is_on = !run.overlay.is_on;
         if run.overlay.is_on {
-            return self.ask_hidden_values();
+            return self.request_hidden_values();
         }
-        self.show_hidden_values();
-        self.say("true values hidden");
+        self.apply_hidden_values();
+        self.show_status("true values hidden");
     }
 
     /// Requests the true values of the current day if they are shown and unknown.
-    pub(super) fn ask_hidden_values(&mut self) {
+    pub(super) fn request_hidden_values(&mut self) {
         let is_busy = self.busy.is_some();
         let Stage::Run(run) = &mut self.stage else { return };
-        let day = run.company.seen.day;
-        let is_here =
-            matches!(run.here, ScreenId::Customers | ScreenId::Market) && run.company.may_look_inside;
-        let is_known = run.overlay.seen.as_ref().is_some_and(|seen| seen.day == day);
-        let is_asked = run.overlay.asked.question().is_some_and(|asked| asked.day == day);
+        let day = run.company.observation.day;
+        let is_here = matches!(run.screen, ScreenId::Customers | ScreenId::Market) && run.company.can_inspect;
+        let is_known = run.overlay.values.as_ref().is_some_and(|seen| seen.day == day);
+        let is_asked = run.overlay.requested_day.question().is_some_and(|asked| asked.day == day);
         if !run.overlay.is_on || !is_here || is_busy || is_asked || day == 0 {
             return;
         }
         if is_known {
-            return self.show_hidden_values();
+            return self.apply_hidden_values();
         }
-        let ask = run.overlay.asked.ask(HiddenValuesQuestion { day });
+        let ask = run.overlay.requested_day.ask(HiddenValuesQuestion { day });
         self.orders.push(Order::Ask(ask, false));
     }
 
-    pub(super) fn take_hidden_values(&mut self) {
+    pub(super) fn set_hidden_values(&mut self) {
         let Stage::Run(run) = &mut self.stage else { return };
-        let Some((_, found)) = run.overlay.asked.try_take() else { return };
+        let Some((_, found)) = run.overlay.requested_day.try_take() else { return };
         match found {
-            Ok(seen) => run.overlay.seen = Some(seen),
+            Ok(seen) => run.overlay.values = Some(seen),
             Err(refusal) => {
                 run.overlay.is_on = false;
-                self.complain(refusal.message);
+                self.show_error(refusal.message);
             }
         }
-        self.show_hidden_values();
+        self.apply_hidden_values();
     }
 
-    fn show_hidden_values(&mut self) {
+    fn apply_hidden_values(&mut self) {
         let Stage::Run(run) = &mut self.stage else { return };
         let company = run.with_hidden_values(run.company.clone());
         if !Arc::ptr_eq(&company, &run.company) {

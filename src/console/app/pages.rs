@@ -5,29 +5,29 @@ use crate::action::Action;
 use crate::context::Figure;
 use crate::dialogs::Dialog;
 use crate::dialogs::branches::BranchesPage;
-use crate::dialogs::curve::CurvePage;
+use crate::dialogs::causes::CausesDialog;
+use crate::dialogs::curve::CurveDialog;
 use crate::dialogs::opponents::OpponentsPage;
-use crate::dialogs::rows::RowsBehind;
-use crate::dialogs::why::WhyBox;
+use crate::dialogs::source_rows::SourceRowsDialog;
 use crate::effect::Effect;
 use novamind_session::identifiers::Group;
 use novamind_session::week_of;
-use novamind_worker::asking::Ask;
+use novamind_worker::question::OutgoingQuestion;
 
 /// Weeks before the end of a finished run at which a what-if starts.
 const WEEKS_BEFORE_END: u32 = 12;
 
 impl App {
-    fn open_asking(&mut self, (page, ask): (impl Dialog + 'static, Ask)) {
-        self.open(page);
+    fn open_asking(&mut self, (page, ask): (impl Dialog + 'static, OutgoingQuestion)) {
+        self.open_dialog(page);
         self.follow(vec![Effect::Ask(ask)]);
     }
 
     /// Opens the participation curve of a group, by default of the first known one.
     pub(super) fn show_curve(&mut self, group: Option<Group>) {
-        let known = self.run().and_then(|run| run.company.seen.known_groups.first().copied());
+        let known = self.run().and_then(|run| run.company.observation.known_groups.first().copied());
         if let Some(group) = group.or(known) {
-            self.open_asking(CurvePage::new(group));
+            self.open_asking(CurveDialog::new(group));
         }
     }
 
@@ -39,9 +39,9 @@ impl App {
     /// and twelve weeks before the end of a finished run.
     pub(super) fn show_branches(&mut self) {
         let Some(run) = self.run() else { return };
-        let seen = &run.company.seen;
+        let seen = &run.company.observation;
         let last_week = week_of(seen.day.min(seen.last_day.saturating_sub(1)) + 1);
-        let back = match (run.company.is_running(), self.is_replay()) {
+        let back = match (run.company.is_running(), self.is_playback()) {
             (false, _) => WEEKS_BEFORE_END,
             (true, true) => 0,
             (true, false) => 1,
@@ -53,22 +53,23 @@ impl App {
     pub(super) fn show_rows_of(&mut self, Figure { title, sql, .. }: Figure) {
         let Some(sql) = sql else {
             let explain = self.keys.label(Action::Explain).unwrap_or_default();
-            return self.complain(format!("{title} has no source rows; press {explain} for an explanation"));
+            return self
+                .show_error(format!("{title} has no source rows; press {explain} for an explanation"));
         };
-        let here = self.run().map_or("", |run| run.here.action().entry().title);
-        self.note_opened("figure", title.clone());
-        self.open_asking(RowsBehind::new(format!("{here} › {title}"), sql));
+        let here = self.run().map_or("", |run| run.screen.action().entry().title);
+        self.record_opened_object("figure", title.clone());
+        self.open_asking(SourceRowsDialog::new(format!("{here} › {title}"), sql));
     }
 
     pub(super) fn ask_why(&mut self, figure: Figure) {
-        let Some((quantity, week)) = figure.why else {
+        let Some((quantity, week)) = figure.week_quantity else {
             let key = self.keys.label(Action::Why).unwrap_or_default();
-            return self.complain(format!(
+            return self.show_error(format!(
                 "{key} explains weekly cash, leads, sales, churn and service on Overview, Cash, Customers"
             ));
         };
-        self.note_opened("figure", figure.title.clone());
-        self.open_asking(WhyBox::new(figure, quantity, week));
+        self.record_opened_object("figure", figure.title.clone());
+        self.open_asking(CausesDialog::new(figure, quantity, week));
     }
 }
 
@@ -83,31 +84,31 @@ mod tests {
     use crate::app::Order;
     use crate::context::ScreenId;
     use crate::frame;
-    use crate::headless::event;
-    use crate::test_kit::{company, settings};
-    use novamind_database::Rows;
-    use novamind_tools::Refusal;
-    use novamind_worker::asking::Question;
-    use novamind_worker::message::{Message, News};
+    use crate::headless::key_event;
+    use crate::test_kit::{new_company, settings};
+    use novamind_database::QueryResult;
+    use novamind_tools::Rejection;
+    use novamind_worker::message::{Message, Response};
+    use novamind_worker::page_questions::CurveQuestion;
     use novamind_worker::queries::Query;
-    use novamind_worker::questions::CurveQuestion;
+    use novamind_worker::question::Question;
     use novamind_worker::readings::Reading;
 
     /// A console in a run without a worker: the test answers the questions.
     fn console() -> App {
         let mut app = App::new(settings("nowhere".as_ref()));
         app.window = (120, 40);
-        app.update(Message::News(News::Opened(company().into())));
+        app.handle_message(Message::Response(Response::Opened(new_company().into())));
         app.take_orders();
         app
     }
 
     fn key(app: &mut App, key: &str) {
-        app.update(Message::Input(event(key).expect("a key")));
+        app.handle_message(Message::Input(key_event(key).expect("a key")));
     }
 
     /// Returns the questions of a type since the last call.
-    fn asks<Q: Question>(app: &mut App) -> Vec<Ask> {
+    fn asks<Q: Question>(app: &mut App) -> Vec<OutgoingQuestion> {
         let ask = |order| match order {
             Order::Ask(ask, _) => ask.question::<Q>().is_some().then_some(ask),
             _ => None,
@@ -116,30 +117,34 @@ mod tests {
     }
 
     /// Answers a question, or drops its reply as a panicking thread does.
-    fn answer<Q: Question>(app: &mut App, ask: &Ask, answer: Option<Result<Q::Answer, Refusal>>) {
+    fn answer<Q: Question>(
+        app: &mut App,
+        ask: &OutgoingQuestion,
+        answer: Option<Result<Q::Answer, Rejection>>,
+    ) {
         let (sender, messages) = channel();
         let reply = ask.reply::<Q>(sender).expect("of this type");
         match answer {
             Some(answer) => reply.answer(answer),
             None => drop(reply),
         }
-        messages.into_iter().for_each(|message| app.update(message));
+        messages.into_iter().for_each(|message| app.handle_message(message));
     }
 
-    fn refused<T>(words: &str) -> Option<Result<T, Refusal>> {
-        Some(Err(Refusal::new("not_possible", words)))
+    fn refused<T>(words: &str) -> Option<Result<T, Rejection>> {
+        Some(Err(Rejection::new("not_possible", words)))
     }
 
     fn screen(app: &App) -> String {
         let mut buffer = Buffer::empty(Rect::new(0, 0, 120, 40));
-        frame::draw(app, &mut buffer);
+        frame::draw_frame(app, &mut buffer);
         buffer.content().iter().map(|cell| cell.symbol()).collect()
     }
 
     #[test]
     fn a_late_answer_to_an_earlier_question_is_not_shown_as_that_of_the_later_one() {
         let mut app = console();
-        app.start_with(Effect::ShowCurve(None));
+        app.start(Effect::ShowCurve(None));
         let first = asks::<CurveQuestion>(&mut app);
         key(&mut app, ".");
         let second = asks::<CurveQuestion>(&mut app);
@@ -152,10 +157,10 @@ mod tests {
     #[test]
     fn an_answer_for_a_page_that_is_gone_is_dropped() {
         let mut app = console();
-        app.start_with(Effect::ShowCurve(None));
+        app.start(Effect::ShowCurve(None));
         let ask = asks::<CurveQuestion>(&mut app);
         key(&mut app, "esc");
-        app.start_with(Effect::ShowCurve(None));
+        app.start(Effect::ShowCurve(None));
         answer::<CurveQuestion>(&mut app, &ask[0], refused("for the page before"));
         assert!(screen(&app).contains("asking 2000 leads"));
         key(&mut app, "esc");
@@ -167,11 +172,11 @@ mod tests {
     #[test]
     fn rows_of_the_run_as_it_was_before_are_dropped() {
         let mut app = console();
-        app.start_with(Effect::Show(ScreenId::Customers));
+        app.start(Effect::Show(ScreenId::Customers));
         let before = asks::<Reading>(&mut app);
-        app.update(Message::News(News::Changed(company().into())));
+        app.handle_message(Message::Response(Response::RunChanged(new_company().into())));
         let after = asks::<Reading>(&mut app);
-        let question = |ask: &Ask| ask.question::<Reading>().copied();
+        let question = |ask: &OutgoingQuestion| ask.question::<Reading>().copied();
         let again = after.iter().find(|ask| question(ask) == question(&before[0])).expect("asked again");
         answer::<Reading>(&mut app, &before[0], refused("of before"));
         assert!(!screen(&app).contains("of before"));
@@ -182,28 +187,28 @@ mod tests {
     #[test]
     fn a_page_whose_question_crashed_waits_no_longer() {
         let mut app = console();
-        app.start_with(Effect::ShowCurve(None));
+        app.start(Effect::ShowCurve(None));
         let ask = asks::<CurveQuestion>(&mut app);
         answer::<CurveQuestion>(&mut app, &ask[0], None);
         assert!(screen(&app).contains("not answered") && !screen(&app).contains("asking 2000 leads"));
         key(&mut app, "esc");
-        app.start_with(Effect::RunSql("SELECT 1".to_owned()));
+        app.start(Effect::RunSql("SELECT 1".to_owned()));
         let ask = asks::<Query>(&mut app);
         assert!(app.is_waiting());
         answer::<Query>(&mut app, &ask[0], None);
         assert!(!app.is_waiting() && screen(&app).contains("not answered"));
-        app.start_with(Effect::RunSql("SELECT 2".to_owned()));
+        app.start(Effect::RunSql("SELECT 2".to_owned()));
         let ask = asks::<Query>(&mut app);
-        answer::<Query>(&mut app, &ask[0], Some(Ok((Rows::default(), std::time::Duration::ZERO))));
+        answer::<Query>(&mut app, &ask[0], Some(Ok((QueryResult::default(), std::time::Duration::ZERO))));
         assert!(!app.is_waiting());
     }
 
     #[test]
     fn an_answer_is_kept_for_a_page_that_another_one_covers() {
         let mut app = console();
-        app.start_with(Effect::ShowCurve(None));
+        app.start(Effect::ShowCurve(None));
         let ask = asks::<CurveQuestion>(&mut app);
-        app.start_with(Effect::ShowText("over".to_owned(), "the curve".to_owned()));
+        app.start(Effect::ShowText("over".to_owned(), "the curve".to_owned()));
         answer::<CurveQuestion>(&mut app, &ask[0], refused("it came meanwhile"));
         key(&mut app, "esc");
         assert!(screen(&app).contains("it came meanwhile"));

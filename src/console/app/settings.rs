@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use crate::keys::Keys;
+use crate::keys::KeyBindings;
 use novamind_record::folder::configuration::Configuration;
-use novamind_report::opponents::PlayOpponents;
+use novamind_report::opponents::PlayOpponentsFn;
 use novamind_tui::glyphs::Glyphs;
 use novamind_tui::theme::Theme;
 
@@ -13,7 +13,7 @@ pub struct Settings {
     /// Colors.
     pub theme: Theme,
     /// Keys.
-    pub keys: Keys,
+    pub keys: KeyBindings,
     /// Characters that charts are drawn with.
     pub glyphs: Glyphs,
     /// Configuration of the user.
@@ -21,9 +21,9 @@ pub struct Settings {
     /// Folder of the runs.
     pub runs: PathBuf,
     /// The command that resumes the latest run.
-    pub again: String,
+    pub resume_command: String,
     /// Whether the start menu lists the runs of all participants.
-    pub lists_everybody: bool,
+    pub lists_all_participants: bool,
     /// Plays the opponents of a run.
-    pub opponents: PlayOpponents,
+    pub opponents: PlayOpponentsFn,
 }

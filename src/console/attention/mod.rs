@@ -5,5 +5,5 @@ mod stopwatch;
 mod typing;
 
 pub use presence::PresenceWatch;
-pub use stopwatch::{Stopwatch, ms};
-pub use typing::{BETWEEN_CELLS, Edit, Typing};
+pub use stopwatch::{Stopwatch, millis};
+pub use typing::{CELL_SEPARATOR, EditSource, TypingLog};

@@ -2,38 +2,42 @@
 
 use std::time::Duration;
 
-use novamind_record::clock::steady;
+use novamind_record::clock::monotonic_time;
 
 /// A stopwatch that can be paused. All recorded durations are measured with it.
 #[derive(Debug)]
 pub struct Stopwatch {
-    since: Duration,
+    started_at: Duration,
     /// Time that passed before `since`.
-    before: Duration,
+    elapsed_before: Duration,
     halted: bool,
 }
 
 impl Default for Stopwatch {
     fn default() -> Self {
-        Stopwatch { since: steady(), before: Duration::ZERO, halted: false }
+        Stopwatch { started_at: monotonic_time(), elapsed_before: Duration::ZERO, halted: false }
     }
 }
 
 impl Stopwatch {
     /// Returns the time that has passed while it was running.
-    pub fn now(&self) -> Duration {
-        if self.halted { self.before } else { self.before + steady().saturating_sub(self.since) }
+    pub fn elapsed(&self) -> Duration {
+        if self.halted {
+            self.elapsed_before
+        } else {
+            self.elapsed_before + monotonic_time().saturating_sub(self.started_at)
+        }
     }
 
     /// Pauses it.
     pub fn halt(&mut self) {
-        (self.before, self.halted) = (self.now(), true);
+        (self.elapsed_before, self.halted) = (self.elapsed(), true);
     }
 
     /// Resumes it.
-    pub fn run(&mut self) {
+    pub fn resume(&mut self) {
         if self.halted {
-            (self.since, self.halted) = (steady(), false);
+            (self.started_at, self.halted) = (monotonic_time(), false);
         }
     }
 
@@ -43,15 +47,15 @@ impl Stopwatch {
     }
 
     /// Advances it without waiting, for tests.
-    pub fn turn_on(&mut self, by: Duration) {
+    pub fn advance(&mut self, by: Duration) {
         if !self.halted {
-            self.before += by;
+            self.elapsed_before += by;
         }
     }
 }
 
 /// Converts a duration to whole milliseconds.
-pub fn ms(time: Duration) -> u64 {
+pub fn millis(time: Duration) -> u64 {
     u64::try_from(time.as_millis()).unwrap_or(u64::MAX)
 }
 
@@ -60,17 +64,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_time_passes_while_it_is_halted() {
+    fn halted_stopwatch_does_not_advance() {
         let mut watch = Stopwatch::default();
-        watch.turn_on(Duration::from_secs(5));
+        watch.advance(Duration::from_secs(5));
         watch.halt();
-        let stood = watch.now();
-        watch.turn_on(Duration::from_secs(100));
-        assert_eq!(watch.now(), stood);
-        watch.run();
-        watch.turn_on(Duration::from_secs(1));
+        let stood = watch.elapsed();
+        watch.advance(Duration::from_secs(100));
+        assert_eq!(watch.elapsed(), stood);
+        watch.resume();
+        watch.advance(Duration::from_secs(1));
         assert!(
-            watch.now() >= stood + Duration::from_secs(1) && watch.now() < stood + Duration::from_secs(60)
+            watch.elapsed() >= stood + Duration::from_secs(1)
+                && watch.elapsed() < stood + Duration::from_secs(60)
         );
     }
 }

@@ -3,18 +3,18 @@
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-use super::stopwatch::ms;
-use novamind_record::trajectory::record::{Draft, DraftOutcome};
+use super::stopwatch::millis;
+use novamind_record::trajectory::record::{TextEdit, TextEditOutcome};
 
 /// Separates the cells of a form in a combined text; not counted as a character.
-pub const BETWEEN_CELLS: &str = "\u{1f}";
+pub const CELL_SEPARATOR: &str = "\u{1f}";
 
 /// Minimum gap between two keys that counts as a pause.
-const PAUSE: Duration = Duration::from_secs(2);
+const MIN_PAUSE: Duration = Duration::from_secs(2);
 
 /// Source of a change of a text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Edit {
+pub enum EditSource {
     /// A key.
     Typed,
     /// The clipboard.
@@ -25,13 +25,13 @@ pub enum Edit {
 
 /// Statistics of the texts that are being edited, by place.
 #[derive(Debug, Default)]
-pub struct Typing {
-    texts: BTreeMap<String, Episode>,
+pub struct TypingLog {
+    texts: BTreeMap<String, EditEpisode>,
 }
 
 /// Statistics of one text, from its first change until it is sent or left.
 #[derive(Debug)]
-struct Episode {
+struct EditEpisode {
     text: String,
     typed: u64,
     deleted: u64,
@@ -41,15 +41,22 @@ struct Episode {
     last: Duration,
 }
 
-impl Typing {
+impl TypingLog {
     /// Records a change of a text.
-    pub fn change(&mut self, place: &str, before: &str, after: String, edit: Edit, now: Duration) {
-        if edit == Edit::Filled && !self.texts.contains_key(place) {
+    pub fn record_change(
+        &mut self,
+        place: &str,
+        before: &str,
+        after: String,
+        edit: EditSource,
+        now: Duration,
+    ) {
+        if edit == EditSource::Filled && !self.texts.contains_key(place) {
             // A text that only the program filled in is not a draft of the user.
             return;
         }
-        let (added, removed) = difference(before, &after);
-        let fresh = || Episode {
+        let (added, removed) = count_added_and_removed(before, &after);
+        let fresh = || EditEpisode {
             text: String::new(),
             typed: 0,
             deleted: 0,
@@ -59,20 +66,20 @@ impl Typing {
             last: now,
         };
         let own = self.texts.entry(place.to_owned()).or_insert_with(fresh);
-        own.pauses += u32::from(now.saturating_sub(own.last) > PAUSE);
+        own.pauses += u32::from(now.saturating_sub(own.last) > MIN_PAUSE);
         own.last = now;
         own.text = after;
         match edit {
-            Edit::Typed => (own.typed, own.deleted) = (own.typed + added, own.deleted + removed),
-            Edit::Pasted => (own.pasted, own.deleted) = (own.pasted + added, own.deleted + removed),
-            Edit::Filled => {}
+            EditSource::Typed => (own.typed, own.deleted) = (own.typed + added, own.deleted + removed),
+            EditSource::Pasted => (own.pasted, own.deleted) = (own.pasted + added, own.deleted + removed),
+            EditSource::Filled => {}
         }
     }
 
     /// Ends a draft and returns its statistics, or `None` if it was not edited. With `keep`, the text of a draft that
     /// was left is included.
-    pub fn end(&mut self, place: &str, outcome: DraftOutcome, keep: bool) -> Option<Draft> {
-        self.texts.remove(place).map(|episode| episode.told(place, outcome, keep))
+    pub fn finish(&mut self, place: &str, outcome: TextEditOutcome, keep: bool) -> Option<TextEdit> {
+        self.texts.remove(place).map(|episode| episode.into_draft(place, outcome, keep))
     }
 
     /// Returns the places of the texts that are being edited.
@@ -81,29 +88,29 @@ impl Typing {
     }
 }
 
-impl Episode {
-    fn told(self, place: &str, outcome: DraftOutcome, keep: bool) -> Draft {
-        Draft {
+impl EditEpisode {
+    fn into_draft(self, place: &str, outcome: TextEditOutcome, keep: bool) -> TextEdit {
+        TextEdit {
             place: place.to_owned(),
             outcome,
-            length: letters(&self.text).len() as u64,
+            length: chars_without_separators(&self.text).len() as u64,
             typed: self.typed,
             deleted: self.deleted,
             pasted: self.pasted,
             pauses: self.pauses,
-            for_ms: ms(self.last.saturating_sub(self.first)),
-            text: (keep && outcome == DraftOutcome::Left).then(|| self.text.replace(BETWEEN_CELLS, " ")),
+            for_ms: millis(self.last.saturating_sub(self.first)),
+            text: (keep && outcome == TextEditOutcome::Left).then(|| self.text.replace(CELL_SEPARATOR, " ")),
         }
     }
 }
 
-fn letters(text: &str) -> Vec<char> {
-    text.chars().filter(|letter| !BETWEEN_CELLS.contains(*letter)).collect()
+fn chars_without_separators(text: &str) -> Vec<char> {
+    text.chars().filter(|letter| !CELL_SEPARATOR.contains(*letter)).collect()
 }
 
 /// Counts the characters added and removed between two texts that differ in one place.
-fn difference(before: &str, after: &str) -> (u64, u64) {
-    let (old, new) = (letters(before), letters(after));
+fn count_added_and_removed(before: &str, after: &str) -> (u64, u64) {
+    let (old, new) = (chars_without_separators(before), chars_without_separators(after));
     let same = old.iter().zip(&new).take_while(|(own, other)| own == other).count();
     let (old, new) = (&old[same..], &new[same..]);
     let tail = old.iter().rev().zip(new.iter().rev()).take_while(|(own, other)| own == other).count();
@@ -115,25 +122,25 @@ mod tests {
     use super::*;
 
     #[test]
-    fn letters_are_counted_by_where_they_came_from() {
-        assert_eq!(difference("abc", "abXc"), (1, 0));
-        assert_eq!(difference("aa", "aaa"), (1, 0));
-        assert_eq!(difference("añ日", "a日"), (0, 1));
-        assert_eq!(difference("one two", "one four"), (4, 3));
+    fn letters_are_counted_by_edit_source() {
+        assert_eq!(count_added_and_removed("abc", "abXc"), (1, 0));
+        assert_eq!(count_added_and_removed("aa", "aaa"), (1, 0));
+        assert_eq!(count_added_and_removed("añ日", "a日"), (0, 1));
+        assert_eq!(count_added_and_removed("one two", "one four"), (4, 3));
         let at = Duration::from_secs;
-        let mut typing = Typing::default();
+        let mut typing = TypingLog::default();
         for (before, after, edit, now) in [
-            ("", "p", Edit::Typed, 10),
-            ("p", "pr", Edit::Typed, 11),
-            ("pr", "p", Edit::Typed, 14),
-            ("p", "pasted", Edit::Pasted, 15),
-            ("pasted", "pasted, filled", Edit::Filled, 16),
+            ("", "p", EditSource::Typed, 10),
+            ("p", "pr", EditSource::Typed, 11),
+            ("pr", "p", EditSource::Typed, 14),
+            ("p", "pasted", EditSource::Pasted, 15),
+            ("pasted", "pasted, filled", EditSource::Filled, 16),
         ] {
-            typing.change("sql", before, after.to_owned(), edit, at(now));
+            typing.record_change("sql", before, after.to_owned(), edit, at(now));
         }
-        let draft = typing.end("sql", DraftOutcome::Left, true).expect("it was edited");
+        let draft = typing.finish("sql", TextEditOutcome::Left, true).expect("it was edited");
         assert_eq!((draft.length, draft.typed, draft.deleted, draft.pasted), (14, 2, 1, 5));
         assert_eq!((draft.pauses, draft.for_ms, draft.text.as_deref()), (1, 6000, Some("pasted, filled")));
-        assert_eq!(typing.end("sql", DraftOutcome::Sent, true), None);
+        assert_eq!(typing.finish("sql", TextEditOutcome::Sent, true), None);
     }
 }

@@ -3,90 +3,90 @@
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
-use super::{Dialog, Outcome};
+use super::{Dialog, DialogResponse};
 use crate::action::{Action, Scope};
-use crate::context::Look;
+use crate::context::ScreenContext;
 use crate::effect::Effect;
-use novamind_tui::canvas::{Canvas, Click, centered};
-use novamind_tui::text::wrapped;
+use novamind_tui::canvas::{Canvas, Click, centered_rect};
+use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
 
 /// A confirmation.
-pub struct Confirm {
+pub struct ConfirmDialog {
     title: String,
     text: String,
     effects: Vec<Effect>,
     /// A third answer and its effects.
-    other: Option<(Action, Vec<Effect>)>,
+    alternative: Option<(Action, Vec<Effect>)>,
 }
 
-impl Confirm {
+impl ConfirmDialog {
     /// Asks whether to execute effects.
-    pub fn new(title: impl Into<String>, text: impl Into<String>, effects: Vec<Effect>) -> Confirm {
-        Confirm { title: title.into(), text: text.into(), effects, other: None }
+    pub fn new(title: impl Into<String>, text: impl Into<String>, effects: Vec<Effect>) -> ConfirmDialog {
+        ConfirmDialog { title: title.into(), text: text.into(), effects, alternative: None }
     }
 
     /// Adds a third answer, an action of lessons.
-    pub fn or(self, action: Action, effects: Vec<Effect>) -> Confirm {
-        Confirm { other: Some((action, effects)), ..self }
+    pub fn with_alternative(self, action: Action, effects: Vec<Effect>) -> ConfirmDialog {
+        ConfirmDialog { alternative: Some((action, effects)), ..self }
     }
 
-    fn answers(&self) -> Vec<Action> {
-        let other = self.other.iter().map(|(action, _)| *action);
+    fn answer_actions(&self) -> Vec<Action> {
+        let other = self.alternative.iter().map(|(action, _)| *action);
         std::iter::once(Action::Confirm).chain(other).chain([Action::Cancel]).collect()
     }
 }
 
-impl Dialog for Confirm {
-    fn what(&self) -> String {
+impl Dialog for ConfirmDialog {
+    fn record_name(&self) -> String {
         format!("confirm {}", self.title)
     }
 
     fn scopes(&self) -> Vec<Scope> {
-        match self.other {
+        match self.alternative {
             Some(_) => vec![Scope::Dialog, Scope::Lesson],
             None => vec![Scope::Dialog],
         }
     }
 
     fn hints(&self) -> Vec<Action> {
-        self.answers()
+        self.answer_actions()
     }
 
-    fn act(&mut self, action: Action, look: &Look<'_>) -> Outcome {
-        match (action, &mut self.other) {
-            (Action::Confirm, _) => Outcome::close_with(std::mem::take(&mut self.effects)),
+    fn handle_action(&mut self, action: Action, look: &ScreenContext<'_>) -> DialogResponse {
+        match (action, &mut self.alternative) {
+            (Action::Confirm, _) => DialogResponse::confirm_with(std::mem::take(&mut self.effects)),
             // Tells a user who mistook the key that nothing happened.
             (Action::Cancel, _) => {
                 let yes = look.keys.label(Action::Confirm).unwrap_or_default();
                 let said = format!("{}: cancelled; {yes} confirms", self.title);
-                Outcome::leave_with(vec![Effect::Say(said)])
+                DialogResponse::cancel_with(vec![Effect::Say(said)])
             }
             (action, Some((other, effects))) if action == *other => {
-                Outcome::close_with(std::mem::take(effects))
+                DialogResponse::confirm_with(std::mem::take(effects))
             }
-            _ => Outcome::stay(),
+            _ => DialogResponse::stay(),
         }
     }
 
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
-        let lines = wrapped(&self.text, 56);
-        let own = centered(area, 60, lines.len() as u16 + 4);
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+        let lines = wrap(&self.text, 56);
+        let own = centered_rect(area, 60, lines.len() as u16 + 4);
         canvas.clear(own, Role::Text);
-        let inside = canvas.pane(own, &self.title, "", true);
+        let inside = canvas.draw_pane_frame(own, &self.title, "", true);
         let shown: Vec<Line<'_>> =
             lines.iter().map(|line| Line::from(canvas.span(line.as_str(), Role::Text))).collect();
-        canvas.lines(Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside }, &shown);
+        canvas.draw_lines(Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside }, &shown);
         let row = Rect {
             y: inside.bottom().saturating_sub(1),
             height: 1,
             x: inside.x + 1,
             width: inside.width.saturating_sub(2),
         };
-        for (at, action) in self.answers().into_iter().enumerate() {
+        for (at, action) in self.answer_actions().into_iter().enumerate() {
             let place = Rect { x: row.x + at as u16 * 14, width: 12.min(row.width), ..row };
-            canvas.text(place.intersection(row), &look.hint(action), Role::Key);
-            canvas.click(place, Click::Do(action.into()));
+            canvas.draw_text(place.intersection(row), &look.hint(action), Role::Key);
+            canvas.register_click(place, Click::Command(action.into()));
         }
     }
 }

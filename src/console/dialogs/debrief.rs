@@ -4,126 +4,131 @@ use std::sync::Arc;
 
 use ratatui::layout::Rect;
 
-use super::lesson::begin_part;
-use super::{Dialog, Outcome};
+use super::lesson::start_part;
+use super::{Dialog, DialogResponse};
 use crate::action::{Action, Scope};
-use crate::context::Look;
+use crate::context::ScreenContext;
 use crate::effect::Effect;
-use crate::lesson::{draw_lines, step_to_try};
+use crate::lesson::{draw_lines, retry_step};
 use novamind_course::Debrief;
 use novamind_record::figures::FigureUnit;
-use novamind_report::debrief::{headline, in_words};
-use novamind_report::{count, debrief_as_html, debrief_as_markdown};
-use novamind_tools::Refusal;
-use novamind_tui::canvas::{Align, Canvas, centered};
-use novamind_tui::text::wrapped;
+use novamind_report::debrief::{debrief_paragraphs, headline};
+use novamind_report::{debrief_to_html, debrief_to_markdown, pluralize};
+use novamind_tools::Rejection;
+use novamind_tui::canvas::{Align, Canvas, centered_rect};
+use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::{Axis, Line, Scroll, Side, Unit, chart};
+use novamind_tui::widgets::{AxisUnit, Curve, ScrollState, XAxis, YAxis, draw_chart};
 
-const WIDEST: u16 = 160;
-const BESIDE: (u16, u16) = (104, 20);
+const MAX_PAGE_WIDTH: u16 = 160;
+const MIN_SIZE_FOR_SIDE_CURVES: (u16, u16) = (104, 20);
 
 /// The debrief page.
 #[derive(Default)]
 pub struct DebriefPage {
-    found: Option<Arc<Result<Debrief, Refusal>>>,
-    scroll: Scroll,
+    debrief: Option<Arc<Result<Debrief, Rejection>>>,
+    scroll: ScrollState,
 }
 
 impl DebriefPage {
     /// Opens the page, with a debrief that was already computed if there is one.
-    pub fn of(found: Option<Arc<Result<Debrief, Refusal>>>) -> DebriefPage {
-        DebriefPage { found, ..DebriefPage::default() }
+    pub fn new(found: Option<Arc<Result<Debrief, Rejection>>>) -> DebriefPage {
+        DebriefPage { debrief: found, ..DebriefPage::default() }
     }
 
-    fn debrief(&self) -> Option<&Debrief> {
-        self.found.as_ref()?.as_ref().as_ref().ok()
+    fn successful_debrief(&self) -> Option<&Debrief> {
+        self.debrief.as_ref()?.as_ref().as_ref().ok()
     }
 
-    fn written(&self) -> Outcome {
-        let Some(debrief) = self.debrief() else {
-            return Outcome::with(vec![Effect::Complain("the debrief is still being computed".to_owned())]);
+    fn write_debrief(&self) -> DialogResponse {
+        let Some(debrief) = self.successful_debrief() else {
+            return DialogResponse::stay_with(vec![Effect::Complain(
+                "the debrief is still being computed".to_owned(),
+            )]);
         };
         let files =
-            [("debrief.md", debrief_as_markdown(debrief)), ("debrief.html", debrief_as_html(debrief))];
-        Outcome::with(files.map(|(name, text)| Effect::Write(name.to_owned(), text.into_bytes())).to_vec())
+            [("debrief.md", debrief_to_markdown(debrief)), ("debrief.html", debrief_to_html(debrief))];
+        DialogResponse::stay_with(
+            files.map(|(name, text)| Effect::Write(name.to_owned(), text.into_bytes())).to_vec(),
+        )
     }
 }
 
-const KEYS: [Action; 6] = [
+const DEBRIEF_ACTIONS: [Action; 6] = [
     Action::ToMenu,
     Action::TryAgain,
     Action::NextPart,
     Action::Opponents,
-    Action::ReportOfRun,
+    Action::WriteRunReport,
     Action::StayInRun,
 ];
 
 impl Dialog for DebriefPage {
-    fn what(&self) -> String {
+    fn record_name(&self) -> String {
         "debrief".to_owned()
     }
 
     fn scopes(&self) -> Vec<Scope> {
-        vec![Scope::Final, Scope::List, Scope::Lesson]
+        vec![Scope::FinalPage, Scope::List, Scope::Lesson]
     }
 
     fn hints(&self) -> Vec<Action> {
-        KEYS.to_vec()
+        DEBRIEF_ACTIONS.to_vec()
     }
 
-    fn hints_here(&self, look: &Look<'_>) -> Vec<Action> {
+    fn hints_in_context(&self, look: &ScreenContext<'_>) -> Vec<Action> {
         let page = look.company.lesson.as_ref();
         let is_there = |action: &Action| match action {
             Action::NextPart => page.is_some_and(|page| page.next_part.is_some()),
             Action::Opponents => page.is_some_and(|page| page.has_opponents),
             _ => true,
         };
-        KEYS.into_iter().filter(is_there).collect()
+        DEBRIEF_ACTIONS.into_iter().filter(is_there).collect()
     }
 
-    fn act(&mut self, action: Action, look: &Look<'_>) -> Outcome {
+    fn handle_action(&mut self, action: Action, look: &ScreenContext<'_>) -> DialogResponse {
         let page = look.company.lesson.as_ref();
         match action {
-            Action::ToMenu => return Outcome::close_with(vec![Effect::Do(Action::LeaveRun)]),
-            Action::StayInRun | Action::Close => return Outcome::close(),
-            Action::ReportOfRun => return self.written(),
-            Action::Opponents => return Outcome::with(vec![Effect::ShowOpponents]),
+            Action::ToMenu => return DialogResponse::confirm_with(vec![Effect::Do(Action::LeaveRun)]),
+            Action::StayInRun | Action::Close => return DialogResponse::close(),
+            Action::WriteRunReport => return self.write_debrief(),
+            Action::Opponents => return DialogResponse::stay_with(vec![Effect::ShowOpponents]),
             Action::TryAgain => {
-                return Outcome::with(
-                    page.map(|page| Effect::TryStepAgain(step_to_try(page))).into_iter().collect(),
+                return DialogResponse::stay_with(
+                    page.map(|page| Effect::TryStepAgain(retry_step(page))).into_iter().collect(),
                 );
             }
             Action::NextPart => {
                 if let Some(part) = page.and_then(|page| page.next_part) {
-                    return begin_part(part);
+                    return start_part(part);
                 }
                 let text = "this was the last part of the lesson".to_owned();
-                return Outcome::with(vec![Effect::Complain(text)]);
+                return DialogResponse::stay_with(vec![Effect::Complain(text)]);
             }
             other => {
-                self.scroll.act(other, look.page as usize);
+                self.scroll.handle_action(other, look.page_rows as usize);
             }
         }
-        Outcome::stay()
+        DialogResponse::stay()
     }
 
-    fn take_debrief(&mut self, found: &Arc<Result<Debrief, Refusal>>) {
-        self.found = Some(found.clone());
+    fn set_debrief(&mut self, found: &Arc<Result<Debrief, Rejection>>) {
+        self.debrief = Some(found.clone());
     }
 
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
-        let own = centered(area, WIDEST.min(area.width), 50.min(area.height));
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+        let own = centered_rect(area, MAX_PAGE_WIDTH.min(area.width), 50.min(area.height));
         canvas.clear(own, Role::Text);
-        let inside = canvas.pane(own, "Debrief", "", true);
+        let inside = canvas.draw_pane_frame(own, "Debrief", "", true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
-        canvas.pane_keys(own, &look.hints(&self.hints_here(look)));
-        let debrief = match self.found.as_ref().map(|found| found.as_ref().as_ref()) {
-            None => return canvas.text(inside, "simulating the good and the bad play …", Role::Warning),
-            Some(Err(refusal)) => return canvas.text(inside, &refusal.message, Role::Bad),
+        canvas.draw_pane_keys(own, &look.hints(&self.hints_in_context(look)));
+        let debrief = match self.debrief.as_ref().map(|found| found.as_ref().as_ref()) {
+            None => return canvas.draw_text(inside, "simulating the good and the bad play …", Role::Warning),
+            Some(Err(refusal)) => return canvas.draw_text(inside, &refusal.message, Role::Bad),
             Some(Ok(debrief)) => debrief,
         };
-        let beside = inside.width >= BESIDE.0 && inside.height >= BESIDE.1;
+        let beside =
+            inside.width >= MIN_SIZE_FOR_SIDE_CURVES.0 && inside.height >= MIN_SIZE_FOR_SIDE_CURVES.1;
         let (words, curves) = if beside {
             let left = inside.width * 11 / 20;
             let right = Rect { x: inside.x + left + 2, width: inside.width - left - 2, ..inside };
@@ -136,27 +141,27 @@ impl Dialog for DebriefPage {
         draw_curves(canvas, curves, debrief);
         let lines = lines_of(debrief, words.width as usize);
         let last = lines.len().saturating_sub(words.height as usize);
-        let from = self.scroll.within(last);
-        canvas.page = words.height.max(1);
+        let from = self.scroll.clamped_first_row(last);
+        canvas.page_rows = words.height.max(1);
         draw_lines(canvas, words, &lines, from);
         if from < last {
             let key = look.keys.label(Action::Down).unwrap_or_default();
-            let more = format!(" {key}: {} more ", count((last - from) as u32, "line"));
+            let more = format!(" {key}: {} more ", pluralize((last - from) as u32, "line"));
             let above = Rect { x: own.x + 2, width: own.width.saturating_sub(4), height: 1, ..own };
-            canvas.aligned(above, &more, Role::Key, Align::Right);
+            canvas.draw_aligned(above, &more, Role::Key, Align::Right);
         }
     }
 }
 
 fn lines_of(debrief: &Debrief, width: usize) -> Vec<(String, Role)> {
     let said = headline(debrief);
-    let paragraphs = in_words(debrief).into_iter().enumerate().flat_map(|(at, text)| {
+    let paragraphs = debrief_paragraphs(debrief).into_iter().enumerate().flat_map(|(at, text)| {
         let role = match at {
             0 => Role::Title,
             _ if text == said => Role::Strong,
             _ => Role::Text,
         };
-        let lines = if text.is_empty() { vec![String::new()] } else { wrapped(&text, width) };
+        let lines = if text.is_empty() { vec![String::new()] } else { wrap(&text, width) };
         lines.into_iter().map(move |line| (line, role))
     });
     paragraphs.collect()
@@ -164,36 +169,43 @@ fn lines_of(debrief: &Debrief, width: usize) -> Vec<(String, Role)> {
 
 /// Draws the curves of the figure that decides the part.
 fn draw_curves(canvas: &mut Canvas<'_>, area: Rect, debrief: &Debrief) {
-    let Some(judged) = &debrief.judged_by else { return draw_cash(canvas, area, debrief) };
+    let Some(judged) = &debrief.judged_by else { return draw_cash_curves(canvas, area, debrief) };
     let curve = |values: &[(u32, f64)], role, name| {
         let decided = values.iter().filter(|(day, _)| *day >= debrief.first_day);
-        Line::through(decided.map(|(day, value)| (f64::from(*day), *value)).collect(), role).named(name)
+        Curve::from_points(decided.map(|(day, value)| (f64::from(*day), *value)).collect(), role)
+            .with_name(name)
     };
     let mut lines = Vec::new();
-    lines.extend(judged.bad.as_ref().map(|own| curve(own, Role::Series(1), "bad play")));
-    lines.extend(judged.good.as_ref().map(|own| curve(own, Role::Series(2), "good play")));
-    lines.push(curve(&judged.own, Role::Series(0), "you"));
+    lines.extend(judged.bad_play.as_ref().map(|own| curve(own, Role::Series(1), "bad play")));
+    lines.extend(judged.reference.as_ref().map(|own| curve(own, Role::Series(2), "good play")));
+    lines.push(curve(&judged.actual, Role::Series(0), "you"));
     let unit = match judged.figure.unit() {
-        FigureUnit::Dollars => Unit::Dollars,
-        _ => Unit::Number,
+        FigureUnit::Dollars => AxisUnit::Dollars,
+        _ => AxisUnit::Number,
     };
-    draw_days(canvas, area, &lines, unit);
+    draw_daily_curves(canvas, area, &lines, unit);
 }
 
-fn draw_days(canvas: &mut Canvas<'_>, area: Rect, lines: &[Line], unit: Unit) {
+fn draw_daily_curves(canvas: &mut Canvas<'_>, area: Rect, lines: &[Curve], unit: AxisUnit) {
     let write = |day: f64| format!("day {day:.0}");
-    chart(canvas, area, lines, &Axis { write: &write, holds: &[] }, &Side { unit, holds: &[] });
+    draw_chart(
+        canvas,
+        area,
+        lines,
+        &XAxis { format: &write, required_values: &[] },
+        &YAxis { unit, required_values: &[] },
+    );
 }
 
-fn draw_cash(canvas: &mut Canvas<'_>, area: Rect, debrief: &Debrief) {
+fn draw_cash_curves(canvas: &mut Canvas<'_>, area: Rect, debrief: &Debrief) {
     let from = debrief.first_day as usize;
     let curve = |cash: &[f64], role, name| {
         let points = cash.iter().enumerate().skip(from).map(|(day, cash)| (day as f64, *cash)).collect();
-        Line::through(points, role).named(name)
+        Curve::from_points(points, role).with_name(name)
     };
     let mut lines = Vec::new();
-    lines.extend(debrief.bad.as_ref().map(|own| curve(&own.cash_by_day, Role::Series(1), "bad play")));
-    lines.extend(debrief.good.as_ref().map(|own| curve(&own.cash_by_day, Role::Series(2), "good play")));
-    lines.push(curve(&debrief.own, Role::Series(0), "you"));
-    draw_days(canvas, area, &lines, Unit::Dollars);
+    lines.extend(debrief.bad_play.as_ref().map(|own| curve(&own.cash_by_day, Role::Series(1), "bad play")));
+    lines.extend(debrief.reference.as_ref().map(|own| curve(&own.cash_by_day, Role::Series(2), "good play")));
+    lines.push(curve(&debrief.cash_by_day, Role::Series(0), "you"));
+    draw_daily_curves(canvas, area, &lines, AxisUnit::Dollars);
 }

@@ -2,59 +2,62 @@
 
 use ratatui::layout::Rect;
 
-use super::{Dialog, Outcome};
+use super::{Dialog, DialogResponse};
 use crate::action::{ACTIONS, Action, Scope};
-use crate::context::{Look, PaneKeys, ScreenId};
-use crate::keys::Keys;
-use novamind_tui::canvas::{Canvas, centered};
+use crate::context::{PaneKeys, ScreenContext, ScreenId};
+use crate::keys::KeyBindings;
+use novamind_tui::canvas::{Canvas, centered_rect};
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::editor::EDITING;
-use novamind_tui::widgets::{Cell, Column, Table};
+use novamind_tui::widgets::editor::EDITING_KEYS;
+use novamind_tui::widgets::{Table, TableCell, TableColumn};
 
 /// The help dialog.
-pub struct Help {
+pub struct HelpDialog {
     title: String,
     table: Table,
 }
 
-struct Part {
+struct HelpSection {
     name: &'static str,
     scopes: Vec<Scope>,
     actions: Vec<Action>,
 }
 
 /// Actions that only lists support.
-const CHOOSES: [Action; 2] = [Action::Filter, Action::Sort];
+const FILTER_ACTIONS: [Action; 2] = [Action::Filter, Action::Sort];
 
-impl Help {
+impl HelpDialog {
     /// Lists the keys of a screen with these panes, the focused one first.
-    pub fn new(here: ScreenId, panes: &[PaneKeys], replay: bool, keys: &Keys) -> Help {
-        let mut table = table_of(parts(panes, replay), keys);
+    pub fn new(here: ScreenId, panes: &[PaneKeys], replay: bool, keys: &KeyBindings) -> HelpDialog {
+        let mut table = table_of(screen_sections(panes, replay), keys);
         if panes.first().is_some_and(|pane| pane.scopes.contains(&Scope::Editor)) {
-            let edits = EDITING.map(|(key, title, doc)| row_of("typing", (key, Role::Key), title, doc));
+            let edits = EDITING_KEYS.map(|(key, title, doc)| row_of("typing", (key, Role::Key), title, doc));
             table.set_rows(table.rows().iter().cloned().chain(edits).collect());
         }
         let screen = here.action().entry().title;
         let pane = panes.first().map(|pane| pane.title.as_str()).filter(|title| !title.is_empty());
         let title = pane.map_or_else(|| screen.to_owned(), |pane| format!("{screen} › {pane}"));
-        Help { title: format!("Keys: {title}"), table }
+        HelpDialog { title: format!("Keys: {title}"), table }
     }
 
     /// Lists the keys of a dialog, without those of screens.
-    pub fn of_dialog(dialog: &dyn Dialog, keys: &Keys) -> Help {
+    pub fn for_dialog(dialog: &dyn Dialog, keys: &KeyBindings) -> HelpDialog {
         let scopes = dialog.scopes();
         let hints = dialog.hints().into_iter();
-        let part = |name, actions| Part { name, scopes: scopes.clone(), actions };
+        let part = |name, actions| HelpSection { name, scopes: scopes.clone(), actions };
         let others = scopes.iter().filter(|scope| **scope != Scope::List);
-        let own = part("step", hints.chain(others.flat_map(|scope| of(*scope))).collect());
+        let own = part("step", hints.chain(others.flat_map(|scope| scope_actions(*scope))).collect());
         let lists = part(
             "lists",
-            of(Scope::List)
-                .filter(|action| scopes.contains(&Scope::List) && !CHOOSES.contains(action))
+            scope_actions(Scope::List)
+                .filter(|action| scopes.contains(&Scope::List) && !FILTER_ACTIONS.contains(action))
                 .collect(),
         );
         let step = dialog.step().map_or(String::new(), |step| format!(" › {step}"));
-        Help { title: format!("Keys: {}{step}", dialog.what()), table: table_of([own, lists], keys) }
+        HelpDialog {
+            title: format!("Keys: {}{step}", dialog.record_name()),
+            table: table_of([own, lists], keys),
+        }
     }
 
     #[cfg(test)]
@@ -64,19 +67,19 @@ impl Help {
 }
 
 /// Builds a row for each action that has a key.
-fn table_of(parts: impl IntoIterator<Item = Part>, keys: &Keys) -> Table {
+fn table_of(parts: impl IntoIterator<Item = HelpSection>, keys: &KeyBindings) -> Table {
     let columns = vec![
-        Column::words("where").at_most(8),
-        Column::words("keys").at_most(16),
-        Column::words("what").at_most(14),
-        Column::words("").at_most(90),
+        TableColumn::text("where").with_max_width(8),
+        TableColumn::text("keys").with_max_width(16),
+        TableColumn::text("what").with_max_width(14),
+        TableColumn::text("").with_max_width(90),
     ];
     let mut table = Table::new(columns);
     let mut listed: Vec<Action> = Vec::new();
     let mut rows = Vec::new();
     for part in parts {
         for action in part.actions {
-            let chords = keys.working(action, &part.scopes);
+            let chords = keys.working_keys(action, &part.scopes);
             let unbound = keys.label(action).is_none();
             if listed.contains(&action) || chords.is_empty() && !unbound {
                 continue;
@@ -89,101 +92,101 @@ fn table_of(parts: impl IntoIterator<Item = Part>, keys: &Keys) -> Table {
     table
 }
 
-fn row(part: &str, chords: &[String], action: Action) -> Vec<Cell> {
+fn row(part: &str, chords: &[String], action: Action) -> Vec<TableCell> {
     let entry = action.entry();
     let chords = chords.join(", ");
     let keys = if chords.is_empty() { ("palette", Role::Dim) } else { (chords.as_str(), Role::Key) };
     row_of(part, keys, entry.title, entry.doc)
 }
 
-fn row_of(part: &str, (keys, role): (&str, Role), title: &str, doc: &str) -> Vec<Cell> {
+fn row_of(part: &str, (keys, role): (&str, Role), title: &str, doc: &str) -> Vec<TableCell> {
     vec![
-        Cell::words(part).role(Role::Dim),
-        Cell::words(keys).role(role),
-        Cell::words(title),
-        Cell::words(doc).role(Role::Text),
+        TableCell::from_text(part).with_role(Role::Dim),
+        TableCell::from_text(keys).with_role(role),
+        TableCell::from_text(title),
+        TableCell::from_text(doc).with_role(Role::Text),
     ]
 }
 
 /// Orders the parts. List navigation is the same everywhere and comes late.
-fn parts(panes: &[PaneKeys], replay: bool) -> Vec<Part> {
+fn screen_sections(panes: &[PaneKeys], replay: bool) -> Vec<HelpSection> {
     let with_global = |scopes: &[Scope]| {
         let replayed = replay && !scopes.first().is_some_and(|scope| scope.is_text());
-        let first = replayed.then_some(Scope::Viewer);
+        let first = replayed.then_some(Scope::Playback);
         first.into_iter().chain(scopes.iter().copied()).chain([Scope::Global]).collect::<Vec<Scope>>()
     };
     let mut parts = Vec::new();
     for (at, pane) in panes.iter().enumerate() {
         let hints = pane.hints.iter().copied().filter(|action| action.entry().scope != Scope::Global);
         let scopes = pane.scopes.iter().filter(|scope| **scope != Scope::List);
-        parts.push(Part {
+        parts.push(HelpSection {
             name: if at == 0 { "pane" } else { "screen" },
             scopes: with_global(&pane.scopes),
-            actions: hints.chain(scopes.flat_map(|scope| of(*scope))).collect(),
+            actions: hints.chain(scopes.flat_map(|scope| scope_actions(*scope))).collect(),
         });
     }
     let own = panes.first().map_or(Vec::new(), |pane| with_global(&pane.scopes));
-    for (scope, name) in [(Scope::Viewer, "replay"), (Scope::List, "lists"), (Scope::Global, "always")] {
+    for (scope, name) in [(Scope::Playback, "replay"), (Scope::List, "lists"), (Scope::Global, "always")] {
         if own.contains(&scope) {
             // A form moves like a list but cannot be filtered or sorted.
-            let idle = |action: &Action| own.contains(&Scope::Form) && CHOOSES.contains(action);
-            let actions = of(scope).filter(|action| !idle(action)).collect();
-            parts.push(Part { name, scopes: own.clone(), actions });
+            let idle = |action: &Action| own.contains(&Scope::Form) && FILTER_ACTIONS.contains(action);
+            let actions = scope_actions(scope).filter(|action| !idle(action)).collect();
+            parts.push(HelpSection { name, scopes: own.clone(), actions });
         }
     }
     parts
 }
 
-fn of(scope: Scope) -> impl Iterator<Item = Action> {
+fn scope_actions(scope: Scope) -> impl Iterator<Item = Action> {
     ACTIONS.iter().filter(move |entry| entry.scope == scope).map(|entry| entry.action)
 }
 
-impl Dialog for Help {
-    fn what(&self) -> String {
+impl Dialog for HelpDialog {
+    fn record_name(&self) -> String {
         "keys".to_owned()
     }
 
     fn scopes(&self) -> Vec<Scope> {
-        if self.table.is_typing() { vec![Scope::Field] } else { vec![Scope::List, Scope::Dialog] }
+        if self.table.is_filter_open() { vec![Scope::Field] } else { vec![Scope::List, Scope::Dialog] }
     }
 
     fn hints(&self) -> Vec<Action> {
         vec![Action::Filter, Action::Close]
     }
 
-    fn act(&mut self, action: Action, look: &Look<'_>) -> Outcome {
-        if self.table.act(action, look.page) {
-            return Outcome::stay();
+    fn handle_action(&mut self, action: Action, look: &ScreenContext<'_>) -> DialogResponse {
+        if self.table.handle_action(action, look.page_rows) {
+            return DialogResponse::stay();
         }
         match action {
-            Action::Close | Action::Cancel => Outcome::close(),
-            _ => Outcome::stay(),
+            Action::Close | Action::Cancel => DialogResponse::close(),
+            _ => DialogResponse::stay(),
         }
     }
 
-    fn key(&mut self, key: &crossterm::event::KeyEvent, _: &Look<'_>) -> Outcome {
+    fn handle_key(&mut self, key: &crossterm::event::KeyEvent, _: &ScreenContext<'_>) -> DialogResponse {
         self.table.edit_filter(|field| {
-            field.key(key);
+            field.handle_key(key);
         });
-        Outcome::stay()
+        DialogResponse::stay()
     }
 
-    fn click(&mut self, row: usize, _: &Look<'_>) -> Outcome {
-        self.table.select_place(row);
-        Outcome::stay()
+    fn handle_click(&mut self, row: usize, _: &ScreenContext<'_>) -> DialogResponse {
+        self.table.select_visible_row(row);
+        DialogResponse::stay()
     }
 
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
-        let own = centered(area, area.width.saturating_sub(4).min(110), area.height.saturating_sub(2));
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+        let own = centered_rect(area, area.width.saturating_sub(4).min(110), area.height.saturating_sub(2));
         canvas.clear(own, Role::Text);
-        let inside = canvas.pane(own, &self.title, &self.table.note(), true);
+        let inside = canvas.draw_pane_frame(own, &self.title, &self.table.summary(), true);
         self.table.draw(
             canvas,
             Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside },
             true,
             0,
         );
-        canvas.pane_keys(own, &look.hints(&[Action::Filter, Action::Close]));
+        canvas.draw_pane_keys(own, &look.hints(&[Action::Filter, Action::Close]));
     }
 }
 
@@ -196,11 +199,11 @@ mod tests {
     }
 
     #[test]
-    fn the_focused_pane_comes_first_and_keys_that_mean_something_else_are_left_out() {
+    fn focused_pane_is_first_and_overridden_keys_are_omitted() {
         let form = pane("set_prices", &[Scope::Form, Scope::List], &[Action::EditCell, Action::Close]);
         let list = pane("Tools", &[Scope::List], &[Action::Open, Action::Filter]);
-        let keys = Keys::shipped();
-        let help = Help::new(ScreenId::Tools, &[form, list], false, &keys);
+        let keys = KeyBindings::bundled();
+        let help = HelpDialog::new(ScreenId::Tools, &[form, list], false, &keys);
         assert_eq!(help.title, "Keys: Tools › set_prices");
         let rows = help.rows();
         assert_eq!(rows[0][..3], ["pane", "enter, e", "edit"]);
@@ -222,14 +225,14 @@ mod tests {
         assert_eq!(titles.len(), rows.len(), "no action is listed twice");
         // A key that an inner scope uses is not listed for an outer one.
         let query = pane("Results", &[Scope::Result, Scope::List], &[]);
-        let rows = Help::new(ScreenId::Sql, &[query], false, &keys).rows();
+        let rows = HelpDialog::new(ScreenId::Sql, &[query], false, &keys).rows();
         assert!(rows.iter().all(|row| row[2] != "open"), "enter shows the full value here");
     }
 
     #[test]
-    fn a_replay_has_its_own_part() {
+    fn playback_has_its_own_section() {
         let list = pane("Decisions", &[Scope::List], &[Action::Open]);
-        let rows = Help::new(ScreenId::Journal, &[list], true, &Keys::shipped()).rows();
+        let rows = HelpDialog::new(ScreenId::Journal, &[list], true, &KeyBindings::bundled()).rows();
         let first = |name: &str| rows.iter().position(|row| row[0] == name).expect(name);
         assert!(first("pane") < first("replay") && first("replay") < first("always"));
     }

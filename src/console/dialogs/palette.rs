@@ -3,24 +3,24 @@
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
-use super::{Dialog, Outcome};
+use super::{Dialog, DialogResponse};
 use crate::action::{ACTIONS, Action, Scope};
-use crate::context::{Look, ScreenId};
+use crate::context::{ScreenContext, ScreenId};
 use crate::effect::Effect;
-use crate::keys::Keys;
-use crate::lesson::why_closed;
+use crate::keys::KeyBindings;
+use crate::lesson::closed_reason;
 use novamind_glossary::Subject;
-use novamind_record::folder::library::Library;
+use novamind_record::folder::query_library::QueryLibrary;
 use novamind_session::JournalEntry;
-use novamind_tools::{CATALOGUE, Kind, ToolId};
-use novamind_tui::canvas::{Align, Canvas, Click, centered, rows_of};
-use novamind_tui::fuzzy::{self, Found};
+use novamind_tools::{CATALOGUE, ToolId, ToolKind};
+use novamind_tui::canvas::{Align, Canvas, Click, centered_rect, row_rects};
+use novamind_tui::fuzzy::{self, FuzzyMatch};
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::Field;
-use novamind_tui::widgets::table::first_row;
-use novamind_worker::company::Company;
+use novamind_tui::widgets::TextField;
+use novamind_tui::widgets::table::first_visible_row;
+use novamind_worker::company::DisplayedCompany;
 
-const RECENT: usize = 5;
+const MAX_RECENT_TOOLS: usize = 5;
 
 struct PaletteEntry {
     kind: &'static str,
@@ -52,22 +52,22 @@ impl PaletteEntry {
     }
 
     /// Returns how well the typed text matches the name; less is better.
-    fn closeness(&self, typed: &str, in_title: bool) -> Closeness {
+    fn match_rank(&self, typed: &str, in_title: bool) -> MatchRank {
         let typed = typed.to_lowercase();
         let title = self.title.to_lowercase();
         let words = || title.split(|letter: char| !letter.is_alphanumeric());
         match () {
-            () if title.starts_with(&typed) => Closeness::Prefix,
-            () if words().any(|word| word.starts_with(&typed)) => Closeness::Word,
-            () if title.contains(&typed) => Closeness::Word,
-            () if self.synonyms().iter().any(|word| word.starts_with(&typed)) => Closeness::Word,
-            () if in_title => Closeness::Letters,
-            () => Closeness::Text,
+            () if title.starts_with(&typed) => MatchRank::Prefix,
+            () if words().any(|word| word.starts_with(&typed)) => MatchRank::Word,
+            () if title.contains(&typed) => MatchRank::Word,
+            () if self.synonyms().iter().any(|word| word.starts_with(&typed)) => MatchRank::Word,
+            () if in_title => MatchRank::Letters,
+            () => MatchRank::Text,
         }
     }
 
     /// Ranks actions before queries, and queries before texts.
-    fn order(&self) -> usize {
+    fn kind_rank(&self) -> usize {
         ["tool", "command", "group", "query", "table", "term"]
             .iter()
             .position(|kind| *kind == self.kind)
@@ -76,7 +76,7 @@ impl PaletteEntry {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Closeness {
+enum MatchRank {
     /// The name starts with the typed text.
     Prefix,
     /// A word or synonym starts with the typed text.
@@ -88,31 +88,31 @@ enum Closeness {
 }
 
 /// The command palette.
-pub struct Palette {
+pub struct CommandPalette {
     entries: Vec<PaletteEntry>,
     recent: Vec<ToolId>,
-    field: Field,
+    field: TextField,
     /// Matching entries, the best first, with the positions of matched letters.
-    found: Vec<Found>,
+    matches: Vec<FuzzyMatch>,
     selected: usize,
 }
 
-impl Palette {
+impl CommandPalette {
     /// Lists everything that can be chosen now.
-    pub fn new(keys: &Keys, company: &Company, library: &Library) -> Palette {
-        let mut palette = Palette {
+    pub fn new(keys: &KeyBindings, company: &DisplayedCompany, library: &QueryLibrary) -> CommandPalette {
+        let mut palette = CommandPalette {
             entries: entries(keys, company, library),
-            recent: recent(company),
-            field: Field::default(),
-            found: Vec::new(),
+            recent: recent_tools(company),
+            field: TextField::default(),
+            matches: Vec::new(),
             selected: 0,
         };
-        palette.find();
+        palette.update_matches();
         palette
     }
 
     /// Restricts the palette to participants of a study, and adds withdrawal.
-    pub fn of_participant(mut self, has_tour: bool) -> Palette {
+    pub fn for_participant(mut self, has_tour: bool) -> CommandPalette {
         let kept = |action: Action| match action {
             Action::LeaveRun | Action::WriteReport => false,
             Action::Tour | Action::TourSkip | Action::TourClose => has_tour,
@@ -128,26 +128,26 @@ impl Palette {
             keys: String::new(),
             effect: Effect::Do(Action::Withdraw),
         });
-        self.find();
+        self.update_matches();
         self
     }
 
-    fn find(&mut self) {
+    fn update_matches(&mut self) {
         let typed = self.field.text().trim();
         let all = self.entries.iter().map(|entry| (entry.title.as_str(), entry.doc.as_str()));
-        self.found = fuzzy::find(typed, all);
+        self.matches = fuzzy::find(typed, all);
         let coded = self
             .entries
             .iter()
             .position(|entry| !entry.code.is_empty() && entry.code.eq_ignore_ascii_case(typed));
-        if let Some(at) = coded.filter(|at| self.found.iter().all(|(found, _)| found != at)) {
-            self.found.push((at, Vec::new()));
+        if let Some(at) = coded.filter(|at| self.matches.iter().all(|(found, _)| found != at)) {
+            self.matches.push((at, Vec::new()));
         }
         let named = (0..self.entries.len())
-            .filter(|at| !typed.is_empty() && self.entries[*at].closeness(typed, false) == Closeness::Word)
-            .filter(|at| self.found.iter().all(|(found, _)| found != at));
-        let named: Vec<Found> = named.map(|at| (at, Vec::new())).collect();
-        self.found.extend(named);
+            .filter(|at| !typed.is_empty() && self.entries[*at].match_rank(typed, false) == MatchRank::Word)
+            .filter(|at| self.matches.iter().all(|(found, _)| found != at));
+        let named: Vec<FuzzyMatch> = named.map(|at| (at, Vec::new())).collect();
+        self.matches.extend(named);
         // An exact code ranks first. Tools, commands and screens whose names contain the typed text as a word rank
         // before queries and texts; scattered letters rank lower, words of a description last. Without input,
         // recently used tools come first.
@@ -156,58 +156,60 @@ impl Palette {
             true => self.recent.iter().position(|tool| tool.name() == entries[at].title),
             false => None,
         };
-        self.found.sort_by_cached_key(|(at, letters)| {
+        self.matches.sort_by_cached_key(|(at, letters)| {
             let entry = &entries[*at];
             if typed.is_empty() {
-                return (recent(*at).unwrap_or(usize::MAX), 0, Closeness::Prefix);
+                return (recent(*at).unwrap_or(usize::MAX), 0, MatchRank::Prefix);
             }
             if entry.code.eq_ignore_ascii_case(typed) {
-                return (0, 0, Closeness::Prefix);
+                return (0, 0, MatchRank::Prefix);
             }
-            let closeness = entry.closeness(typed, !letters.is_empty());
+            let closeness = entry.match_rank(typed, !letters.is_empty());
             // An exact name of a screen or a group ranks first.
-            let whole = entry.order() < 3 && entry.title.eq_ignore_ascii_case(typed);
+            let whole = entry.kind_rank() < 3 && entry.title.eq_ignore_ascii_case(typed);
             let tier = match closeness {
                 _ if whole => 1,
-                Closeness::Prefix | Closeness::Word => 2,
-                Closeness::Letters => 3,
-                Closeness::Text => 4,
+                MatchRank::Prefix | MatchRank::Word => 2,
+                MatchRank::Letters => 3,
+                MatchRank::Text => 4,
             };
-            (tier, entry.order(), closeness)
+            (tier, entry.kind_rank(), closeness)
         });
         self.selected = 0;
     }
 
-    fn choose(&self) -> Outcome {
-        match self.found.get(self.selected) {
-            Some((at, _)) => Outcome::close_with(vec![Effect::BeginPath, self.entries[*at].effect.clone()]),
-            None => Outcome::stay(),
+    fn run_selected(&self) -> DialogResponse {
+        match self.matches.get(self.selected) {
+            Some((at, _)) => {
+                DialogResponse::confirm_with(vec![Effect::BeginPath, self.entries[*at].effect.clone()])
+            }
+            None => DialogResponse::stay(),
         }
     }
 }
 
 /// Returns recently called tools, the newest first, without duplicates.
-fn recent(company: &Company) -> Vec<ToolId> {
+fn recent_tools(company: &DisplayedCompany) -> Vec<ToolId> {
     let mut tools = Vec::new();
     for entry in company.journal.iter().rev() {
         let JournalEntry::Call { tool, .. } = entry else { continue };
         if !tools.contains(tool) {
             tools.push(*tool);
         }
-        if tools.len() == RECENT {
+        if tools.len() == MAX_RECENT_TOOLS {
             break;
         }
     }
     tools
 }
 
-fn why_not(effect: &Effect, company: &Company) -> Option<&'static str> {
-    let acts = |tool: &ToolId| tool.spec().kind.acts();
+fn unavailable_reason(effect: &Effect, company: &DisplayedCompany) -> Option<&'static str> {
+    let acts = |tool: &ToolId| tool.spec().kind.changes_company();
     match effect {
-        Effect::Do(Action::NextWeek | Action::Undo | Action::Redo) if company.replayed => {
+        Effect::Do(Action::NextWeek | Action::Undo | Action::Redo) if company.is_playback => {
             Some("this is a replay")
         }
-        Effect::ShowTool(tool) if acts(tool) && company.replayed => Some("this is a replay"),
+        Effect::ShowTool(tool) if acts(tool) && company.is_playback => Some("this is a replay"),
         Effect::Do(Action::NextWeek | Action::Undo | Action::Redo) if !company.is_running() => {
             Some("the run has ended")
         }
@@ -217,19 +219,20 @@ fn why_not(effect: &Effect, company: &Company) -> Option<&'static str> {
     }
 }
 
-fn is_outside_lesson(effect: &Effect, company: &Company) -> bool {
+fn is_outside_lesson(effect: &Effect, company: &DisplayedCompany) -> bool {
     let screen = |action: Action| ScreenId::ALL.into_iter().find(|screen| screen.action() == action);
     match effect {
         Effect::ShowTool(tool) => !company.has_tool(*tool),
-        Effect::Do(action) => screen(*action).is_some_and(|screen| why_closed(screen, company).is_some()),
+        Effect::Do(action) => screen(*action).is_some_and(|screen| closed_reason(screen, company).is_some()),
         _ => false,
     }
 }
 
-fn entries(keys: &Keys, company: &Company, library: &Library) -> Vec<PaletteEntry> {
-    let everywhere = |scope: Scope| scope == Scope::Global || (scope == Scope::Viewer && company.replayed);
+fn entries(keys: &KeyBindings, company: &DisplayedCompany, library: &QueryLibrary) -> Vec<PaletteEntry> {
+    let everywhere =
+        |scope: Scope| scope == Scope::Global || (scope == Scope::Playback && company.is_playback);
     let hidden = |action: Action| match action {
-        Action::Xray | Action::Breakpoints | Action::HiddenValues => !company.may_look_inside,
+        Action::Xray | Action::Breakpoints | Action::HiddenValues => !company.can_inspect,
         Action::Lesson | Action::LessonPage => company.lesson.is_none(),
         _ => false,
     };
@@ -246,7 +249,7 @@ fn entries(keys: &Keys, company: &Company, library: &Library) -> Vec<PaletteEntr
             effect: Effect::Do(entry.action),
         })
         .collect();
-    let callable = CATALOGUE.iter().map(|tool| tool.spec()).filter(|spec| spec.kind != Kind::Time);
+    let callable = CATALOGUE.iter().map(|tool| tool.spec()).filter(|spec| spec.kind != ToolKind::Time);
     list.extend(callable.map(|spec| PaletteEntry {
         kind: "tool",
         code: spec.code,
@@ -255,7 +258,7 @@ fn entries(keys: &Keys, company: &Company, library: &Library) -> Vec<PaletteEntr
         keys: spec.code.to_owned(),
         effect: Effect::ShowTool(spec.id),
     }));
-    list.extend(company.seen.known_groups.iter().map(|group| PaletteEntry {
+    list.extend(company.observation.known_groups.iter().map(|group| PaletteEntry {
         kind: "group",
         code: "",
         title: group.id().to_owned(),
@@ -270,7 +273,7 @@ fn entries(keys: &Keys, company: &Company, library: &Library) -> Vec<PaletteEntr
         kind: "query",
         code: "",
         title: query.title.clone(),
-        doc: query.what.clone(),
+        doc: query.description.clone(),
         keys: String::new(),
         effect: Effect::RunSql(query.sql.clone()),
     }));
@@ -293,15 +296,15 @@ fn entries(keys: &Keys, company: &Company, library: &Library) -> Vec<PaletteEntr
     for entry in &mut list {
         if is_outside_lesson(&entry.effect, company) {
             entry.doc = format!("not in this lesson: {}", entry.doc);
-        } else if let Some(why) = why_not(&entry.effect, company) {
+        } else if let Some(why) = unavailable_reason(&entry.effect, company) {
             entry.doc = format!("not now, {why}: {}", entry.doc);
         }
     }
     list
 }
 
-impl Dialog for Palette {
-    fn what(&self) -> String {
+impl Dialog for CommandPalette {
+    fn record_name(&self) -> String {
         "palette".to_owned()
     }
 
@@ -313,59 +316,59 @@ impl Dialog for Palette {
         vec![Action::Commit, Action::Discard]
     }
 
-    fn act(&mut self, action: Action, _: &Look<'_>) -> Outcome {
-        let last = self.found.len().saturating_sub(1);
+    fn handle_action(&mut self, action: Action, _: &ScreenContext<'_>) -> DialogResponse {
+        let last = self.matches.len().saturating_sub(1);
         match action {
-            Action::Commit => return self.choose(),
-            Action::Discard => return Outcome::close(),
+            Action::Commit => return self.run_selected(),
+            Action::Discard => return DialogResponse::close(),
             Action::CommitDown | Action::CommitNext => self.selected = (self.selected + 1).min(last),
             Action::CommitPrevious => self.selected = self.selected.saturating_sub(1),
             _ => {}
         }
-        Outcome::stay()
+        DialogResponse::stay()
     }
 
-    fn key(&mut self, key: &KeyEvent, _: &Look<'_>) -> Outcome {
-        if self.field.key(key) {
-            self.find();
+    fn handle_key(&mut self, key: &KeyEvent, _: &ScreenContext<'_>) -> DialogResponse {
+        if self.field.handle_key(key) {
+            self.update_matches();
         }
-        Outcome::stay()
+        DialogResponse::stay()
     }
 
-    fn paste(&mut self, text: &str, _: &Look<'_>) -> Outcome {
+    fn paste(&mut self, text: &str, _: &ScreenContext<'_>) -> DialogResponse {
         self.field.insert(text);
-        self.find();
-        Outcome::stay()
+        self.update_matches();
+        DialogResponse::stay()
     }
 
-    fn click(&mut self, row: usize, _: &Look<'_>) -> Outcome {
-        self.selected = row.min(self.found.len().saturating_sub(1));
-        self.choose()
+    fn handle_click(&mut self, row: usize, _: &ScreenContext<'_>) -> DialogResponse {
+        self.selected = row.min(self.matches.len().saturating_sub(1));
+        self.run_selected()
     }
 
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, _: &Look<'_>) {
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, _: &ScreenContext<'_>) {
         let own =
-            centered(area, 120.min(area.width.saturating_sub(2)), 24.min(area.height.saturating_sub(2)));
+            centered_rect(area, 120.min(area.width.saturating_sub(2)), 24.min(area.height.saturating_sub(2)));
         canvas.clear(own, Role::Text);
-        let note = format!("{} of {}", self.found.len(), self.entries.len());
-        let inside = canvas.pane(own, "Palette", &note, true);
+        let note = format!("{} of {}", self.matches.len(), self.entries.len());
+        let inside = canvas.draw_pane_frame(own, "Palette", &note, true);
         let line = Rect { height: 1.min(inside.height), ..inside };
-        canvas.text(line, "›", Role::Key);
+        canvas.draw_text(line, "›", Role::Key);
         self.field.draw(canvas, Rect { x: line.x + 2, width: line.width.saturating_sub(2), ..line });
         let list = Rect { y: inside.y + 1, height: inside.height.saturating_sub(1), ..inside };
-        if self.found.is_empty() {
-            canvas.text(list, "no match", Role::Dim);
+        if self.matches.is_empty() {
+            canvas.draw_text(list, "no match", Role::Dim);
         }
-        let from = first_row(self.selected, list.height as usize, self.found.len());
-        for (row, (place, (at, letters))) in rows_of(list).zip(self.found.iter().enumerate().skip(from)) {
+        let from = first_visible_row(self.selected, list.height as usize, self.matches.len());
+        for (row, (place, (at, letters))) in row_rects(list).zip(self.matches.iter().enumerate().skip(from)) {
             self.draw_entry(canvas, row, *at, letters, place == self.selected);
-            canvas.click(row, Click::Row(0, place));
+            canvas.register_click(row, Click::Row(0, place));
         }
-        canvas.pane_keys(own, "type to search · up/down select · enter choose · esc close");
+        canvas.draw_pane_keys(own, "type to search · up/down select · enter choose · esc close");
     }
 }
 
-impl Palette {
+impl CommandPalette {
     fn draw_entry(&self, canvas: &mut Canvas<'_>, row: Rect, at: usize, letters: &[u32], selected: bool) {
         let entry = &self.entries[at];
         let role = |other| if selected { Role::Selection } else { other };
@@ -373,47 +376,49 @@ impl Palette {
             let style = canvas.style(Role::Selection);
             canvas.buffer.set_style(row.intersection(canvas.buffer.area), style);
         }
-        canvas.text(Rect { width: 8.min(row.width), ..row }, entry.kind, role(Role::Dim));
+        canvas.draw_text(Rect { width: 8.min(row.width), ..row }, entry.kind, role(Role::Dim));
         let titles = if row.width >= 100 { 36 } else { 24 };
         let title = Rect { x: row.x + 9, width: titles.min(row.width.saturating_sub(9)), ..row };
         fuzzy::draw_title(canvas, title, &entry.title, letters, [role(Role::Text), role(Role::Key)]);
         let doc = Rect { x: row.x + titles + 10, width: row.width.saturating_sub(titles + 20), ..row };
-        canvas.text(doc, &entry.doc, role(Role::Text));
+        canvas.draw_text(doc, &entry.doc, role(Role::Text));
         let keys = Rect { x: row.right().saturating_sub(9), width: 9.min(row.width), ..row };
-        canvas.aligned(keys, &entry.keys, role(Role::Key), Align::Right);
+        canvas.draw_aligned(keys, &entry.keys, role(Role::Key), Align::Right);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_kit::company;
+    use crate::test_kit::new_company;
 
     #[test]
-    fn a_code_finds_its_tool_before_anything_else() {
-        let mut palette = Palette::new(&Keys::shipped(), &company(), &Library::shipped());
-        for spec in CATALOGUE.iter().map(|tool| tool.spec()).filter(|spec| spec.kind != Kind::Time) {
+    fn tool_codes_rank_first() {
+        let mut palette =
+            CommandPalette::new(&KeyBindings::bundled(), &new_company(), &QueryLibrary::bundled());
+        for spec in CATALOGUE.iter().map(|tool| tool.spec()).filter(|spec| spec.kind != ToolKind::Time) {
             for typed in [spec.code.to_owned(), format!(" {} ", spec.code.to_lowercase())] {
-                palette.field = Field::of(typed);
-                palette.find();
-                let first = palette.found.first().map(|(at, _)| palette.entries[*at].title.as_str());
+                palette.field = TextField::with_text(typed);
+                palette.update_matches();
+                let first = palette.matches.first().map(|(at, _)| palette.entries[*at].title.as_str());
                 assert_eq!(first, Some(spec.name()));
             }
         }
-        palette.field = Field::of("sql");
-        palette.find();
-        let first = palette.found.first().map(|(at, _)| palette.entries[*at].title.as_str());
+        palette.field = TextField::with_text("sql");
+        palette.update_matches();
+        let first = palette.matches.first().map(|(at, _)| palette.entries[*at].title.as_str());
         assert_eq!(first, Some("SQL"), "a screen keeps its name");
     }
 
     #[test]
-    fn what_acts_stands_first_and_words_before_letters() {
-        let mut palette = Palette::new(&Keys::shipped(), &company(), &Library::shipped());
+    fn commands_rank_before_texts_and_words_before_letters() {
+        let mut palette =
+            CommandPalette::new(&KeyBindings::bundled(), &new_company(), &QueryLibrary::bundled());
         let mut found = |typed: &str| {
-            palette.field = Field::of(typed.to_owned());
-            palette.find();
-            let of = |(at, _): &Found| (palette.entries[*at].kind, palette.entries[*at].title.clone());
-            palette.found.iter().map(of).collect::<Vec<_>>()
+            palette.field = TextField::with_text(typed.to_owned());
+            palette.update_matches();
+            let of = |(at, _): &FuzzyMatch| (palette.entries[*at].kind, palette.entries[*at].title.clone());
+            palette.matches.iter().map(of).collect::<Vec<_>>()
         };
         for (typed, first) in [
             ("quota", "set_usage_quotas"),
@@ -435,18 +440,26 @@ mod tests {
     }
 
     #[test]
-    fn tools_used_last_stand_first_and_what_cannot_be_done_says_why() {
-        let mut session = crate::test_kit::session();
-        let fresh = Palette::new(&Keys::shipped(), &Company::of(&session), &Library::shipped());
+    fn recent_tools_are_first_and_unavailable_entries_show_a_reason() {
+        let mut session = crate::test_kit::new_session();
+        let fresh = CommandPalette::new(
+            &KeyBindings::bundled(),
+            &DisplayedCompany::from_session(&session),
+            &QueryLibrary::bundled(),
+        );
         let report = fresh.entries.iter().find(|entry| entry.title == "last week").expect("a command");
         assert!(report.doc.starts_with("not now, no week has run yet: "), "{}", report.doc);
         for (tool, arguments) in [("set_prices", r#"{"A": 12}"#), ("set_capacity_tier", r#"{"tier": 2}"#)] {
             let arguments = serde_json::from_str(arguments).expect("JSON");
             session.call(tool, &arguments, novamind_record::trajectory::record::Via::Form).expect(tool);
         }
-        let palette = Palette::new(&Keys::shipped(), &Company::of(&session), &Library::shipped());
+        let palette = CommandPalette::new(
+            &KeyBindings::bundled(),
+            &DisplayedCompany::from_session(&session),
+            &QueryLibrary::bundled(),
+        );
         let first: Vec<&str> =
-            palette.found.iter().take(2).map(|(at, _)| palette.entries[*at].title.as_str()).collect();
+            palette.matches.iter().take(2).map(|(at, _)| palette.entries[*at].title.as_str()).collect();
         assert_eq!(first, ["set_capacity_tier", "set_prices"]);
     }
 }

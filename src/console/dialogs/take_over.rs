@@ -2,39 +2,39 @@
 
 use ratatui::layout::Rect;
 
-use super::{Dialog, Outcome};
+use super::{Dialog, DialogResponse};
 use crate::action::{Action, Scope};
-use crate::context::Look;
+use crate::context::ScreenContext;
 use crate::effect::Effect;
 use novamind_record::mode::Mode;
-use novamind_tui::canvas::{Canvas, Click, centered, rows_of};
-use novamind_tui::text::wrapped;
+use novamind_tui::canvas::{Canvas, Click, centered_rect, row_rects};
+use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
 use novamind_worker::request::Request;
 
 /// A branch is never a baseline.
-const MODES: [Mode; 2] = [Mode::Sandbox, Mode::Debug];
+const BRANCH_MODES: [Mode; 2] = [Mode::Sandbox, Mode::Debug];
 
 /// The dialog.
-pub struct TakeOver {
+pub struct TakeOverDialog {
     day: u32,
     week: u32,
     selected: usize,
 }
 
-impl TakeOver {
+impl TakeOverDialog {
     /// Opens it for a branch at a day before a week.
-    pub fn new(day: u32, week: u32) -> TakeOver {
-        TakeOver { day, week, selected: 0 }
+    pub fn new(day: u32, week: u32) -> TakeOverDialog {
+        TakeOverDialog { day, week, selected: 0 }
     }
 
-    fn take(&self) -> Outcome {
-        Outcome::close_with(vec![Effect::Request(Request::TakeOver(MODES[self.selected]))])
+    fn confirm_branch(&self) -> DialogResponse {
+        DialogResponse::confirm_with(vec![Effect::Request(Request::TakeOver(BRANCH_MODES[self.selected]))])
     }
 }
 
-impl Dialog for TakeOver {
-    fn what(&self) -> String {
+impl Dialog for TakeOverDialog {
+    fn record_name(&self) -> String {
         "take over".to_owned()
     }
 
@@ -46,71 +46,71 @@ impl Dialog for TakeOver {
         vec![Action::Open, Action::Close]
     }
 
-    fn act(&mut self, action: Action, _: &Look<'_>) -> Outcome {
+    fn handle_action(&mut self, action: Action, _: &ScreenContext<'_>) -> DialogResponse {
         match action {
-            Action::Open | Action::Confirm => return self.take(),
-            Action::Close | Action::Cancel => return Outcome::close(),
-            Action::Down | Action::Last => self.selected = (self.selected + 1).min(MODES.len() - 1),
+            Action::Open | Action::Confirm => return self.confirm_branch(),
+            Action::Close | Action::Cancel => return DialogResponse::close(),
+            Action::Down | Action::Last => self.selected = (self.selected + 1).min(BRANCH_MODES.len() - 1),
             Action::Up | Action::First => self.selected = self.selected.saturating_sub(1),
             _ => {}
         }
-        Outcome::stay()
+        DialogResponse::stay()
     }
 
-    fn click(&mut self, row: usize, _: &Look<'_>) -> Outcome {
+    fn handle_click(&mut self, row: usize, _: &ScreenContext<'_>) -> DialogResponse {
         let again = self.selected == row;
-        self.selected = row.min(MODES.len() - 1);
-        if again { self.take() } else { Outcome::stay() }
+        self.selected = row.min(BRANCH_MODES.len() - 1);
+        if again { self.confirm_branch() } else { DialogResponse::stay() }
     }
 
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
         let text = format!(
             "A new run starts here, on day {} before week {}, with everything done so far. The recorded run does not change.",
             self.day, self.week
         );
-        let lines = wrapped(&text, 72);
-        let own = centered(area, 78, lines.len() as u16 + MODES.len() as u16 + 4);
+        let lines = wrap(&text, 72);
+        let own = centered_rect(area, 78, lines.len() as u16 + BRANCH_MODES.len() as u16 + 4);
         canvas.clear(own, Role::Text);
-        let inside = canvas.pane(own, "Take over", "", true);
+        let inside = canvas.draw_pane_frame(own, "Take over", "", true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
-        for (row, line) in rows_of(inside).zip(&lines) {
-            canvas.text(row, line, Role::Text);
+        for (row, line) in row_rects(inside).zip(&lines) {
+            canvas.draw_text(row, line, Role::Text);
         }
         let used = (lines.len() as u16 + 1).min(inside.height);
         let list = Rect { y: inside.y + used, height: inside.height - used, ..inside };
-        for (at, (row, mode)) in rows_of(list).zip(MODES).enumerate() {
+        for (at, (row, mode)) in row_rects(list).zip(BRANCH_MODES).enumerate() {
             let here = at == self.selected;
             let role = if here { Role::Selection } else { Role::Text };
             if here {
                 canvas.clear(row, Role::Selection);
             }
             let mark = if here { "›" } else { " " };
-            canvas.text(row, &format!("{mark} {:<8} {}", mode.id(), mode.purpose()), role);
-            canvas.click(row, Click::Row(0, at));
+            canvas.draw_text(row, &format!("{mark} {:<8} {}", mode.id(), mode.purpose()), role);
+            canvas.register_click(row, Click::Row(0, at));
         }
         let key = look.keys.label(Action::Open).unwrap_or_default();
-        canvas.pane_keys(own, &format!("{key} start · {}", look.hint(Action::Close)));
+        canvas.draw_pane_keys(own, &format!("{key} start · {}", look.hint(Action::Close)));
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_kit::{company, dialog_picture, in_dialog};
+    use crate::test_kit::{dialog_action, dialog_text, new_company};
 
     #[test]
-    fn the_mode_is_chosen_and_nothing_happens_without_a_yes() {
-        let company = company();
-        let mut dialog = TakeOver::new(84, 13);
-        let picture = dialog_picture(&dialog, &company, 80, 24);
+    fn mode_is_chosen_and_confirmation_is_required() {
+        let company = new_company();
+        let mut dialog = TakeOverDialog::new(84, 13);
+        let picture = dialog_text(&dialog, &company, 80, 24);
         assert!(picture.contains("on day 84 before week 13") && picture.contains("› sandbox"), "{picture}");
-        assert!(in_dialog(&mut dialog, Action::Close, &company).effects.is_empty());
-        let first = in_dialog(&mut dialog, Action::Open, &company);
+        assert!(dialog_action(&mut dialog, Action::Close, &company).effects.is_empty());
+        let first = dialog_action(&mut dialog, Action::Open, &company);
         assert!(
-            matches!(first.effects[..], [Effect::Request(Request::TakeOver(Mode::Sandbox))]) && first.close
+            matches!(first.effects[..], [Effect::Request(Request::TakeOver(Mode::Sandbox))]) && first.closes
         );
-        in_dialog(&mut dialog, Action::Down, &company);
-        let second = in_dialog(&mut dialog, Action::Confirm, &company);
+        dialog_action(&mut dialog, Action::Down, &company);
+        let second = dialog_action(&mut dialog, Action::Confirm, &company);
         assert!(matches!(second.effects[..], [Effect::Request(Request::TakeOver(Mode::Debug))]));
     }
 }

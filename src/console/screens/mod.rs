@@ -8,11 +8,11 @@ use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
 use super::action::{Action, Scope};
-use super::context::{Figure, Look, PaneKeys, ScreenId};
+use super::context::{Figure, PaneKeys, ScreenContext, ScreenId};
 use super::effect::Effect;
-use novamind_database::Rows;
+use novamind_database::QueryResult;
 use novamind_tui::canvas::Canvas;
-use novamind_worker::message::News;
+use novamind_worker::message::Response;
 use novamind_worker::readings::Reading;
 
 /// Declares the module of each screen and the struct that holds all screens.
@@ -71,37 +71,37 @@ pub trait ScreenState {
     }
 
     /// Stores the result of a reading.
-    fn take(&mut self, _: Reading, _: &Rows, _: &Look<'_>) {}
+    fn apply_rows(&mut self, _: Reading, _: &QueryResult, _: &ScreenContext<'_>) {}
 
     /// Called when the screen becomes visible, or when the company changes while it is. Returns requests to
     /// the run.
-    fn ask_run(&mut self, _: &Look<'_>) -> Vec<Effect> {
+    fn request_data(&mut self, _: &ScreenContext<'_>) -> Vec<Effect> {
         Vec::new()
     }
 
     /// Called after the company has changed.
-    fn renew(&mut self, _: &Look<'_>) {}
+    fn on_company_change(&mut self, _: &ScreenContext<'_>) {}
 
     /// Handles news that concern the screen and returns the effects that follow.
-    fn hear(&mut self, _: &News, _: &Look<'_>) -> Vec<Effect> {
+    fn handle_response(&mut self, _: &Response, _: &ScreenContext<'_>) -> Vec<Effect> {
         Vec::new()
     }
 
     /// Collects answers that have arrived for the screen and returns the effects that follow.
-    fn take_answers(&mut self, _: &Look<'_>) -> Vec<Effect> {
+    fn take_answers(&mut self, _: &ScreenContext<'_>) -> Vec<Effect> {
         Vec::new()
     }
 
     /// Called when the screen becomes visible and when the user leaves it.
-    fn looked_at(&mut self) {}
+    fn mark_seen(&mut self) {}
 
     /// Returns the number of unread items, for the badge.
-    fn unseen(&self) -> usize {
+    fn unseen_count(&self) -> usize {
         0
     }
 
     /// Returns the name of the detail that is open next to a list or in its place: a group or a tool.
-    fn open_here(&self, _: &Look<'_>) -> Option<String> {
+    fn open_item_title(&self, _: &ScreenContext<'_>) -> Option<String> {
         None
     }
 
@@ -111,68 +111,68 @@ pub trait ScreenState {
     }
 
     /// Returns the number of levels that esc closes on this screen, without those that every pane has.
-    fn opened(&self) -> usize {
+    fn own_escape_depth(&self) -> usize {
         0
     }
 
     /// Returns the kind and name of the open object, as the record stores them.
-    fn open_object(&self, _: &Look<'_>) -> Option<(&'static str, String)> {
+    fn open_object(&self, _: &ScreenContext<'_>) -> Option<(&'static str, String)> {
         None
     }
 
     /// Returns the name of the text field being edited, as the record stores it, and its contents.
-    fn edited(&self) -> Option<(String, String)> {
+    fn edited_text(&self) -> Option<(String, String)> {
         None
     }
 
     /// Returns whether unsent text would be lost if the program ended.
-    fn holds_unsent_text(&self) -> bool {
+    fn has_unsent_text(&self) -> bool {
         false
     }
 }
 
-/// A screen's behavior and appearance. Screens made of panes implement it through [`panes::Paned`].
+/// A screen's behavior and appearance. Screens made of panes implement it through [`pane_count::PaneScreen`].
 pub trait Screen: ScreenState {
     /// Returns the scopes of the focused pane, innermost first; the caller adds the global scope. If the
     /// first is a text scope, keys type characters.
     fn scopes(&self) -> Vec<Scope>;
 
     /// Returns whether a digit starts a number at the focus instead of switching screens.
-    fn takes_numbers(&self) -> bool;
+    fn accepts_digits(&self) -> bool;
 
     /// Returns the actions for the footer.
     fn hints(&self) -> Vec<Action>;
 
     /// Returns the keys of all panes, those of the focused pane first.
-    fn pane_keys(&self, look: &Look<'_>) -> Vec<PaneKeys>;
+    fn pane_keys(&self, look: &ScreenContext<'_>) -> Vec<PaneKeys>;
 
     /// Returns the number of panes that can take the focus.
-    fn panes(&self) -> usize;
+    fn pane_count(&self) -> usize;
 
     /// Returns the index of the focused pane.
-    fn focus(&self) -> usize;
+    fn focused_index(&self) -> usize;
 
     /// Moves the focus to a pane.
     fn set_focus(&mut self, pane: usize);
 
     /// Returns the number of levels that esc closes on this screen.
-    fn depth(&self) -> usize;
+    fn escape_depth(&self) -> usize;
 
     /// Returns the selected figure.
-    fn figure(&self, look: &Look<'_>) -> Option<Figure>;
+    fn figure(&self, look: &ScreenContext<'_>) -> Option<Figure>;
 
     /// Runs an action of one of its scopes.
-    fn act(&mut self, action: Action, look: &Look<'_>) -> Vec<Effect>;
+    fn handle_action(&mut self, action: Action, look: &ScreenContext<'_>) -> Vec<Effect>;
 
     /// Handles a key typed into a text field.
-    fn key(&mut self, key: &KeyEvent, look: &Look<'_>) -> Vec<Effect>;
+    fn handle_key(&mut self, key: &KeyEvent, look: &ScreenContext<'_>) -> Vec<Effect>;
 
     /// Handles pasted text.
-    fn paste(&mut self, text: &str, look: &Look<'_>) -> Vec<Effect>;
+    fn paste(&mut self, text: &str, look: &ScreenContext<'_>) -> Vec<Effect>;
 
     /// Handles a click on a row. Clicking the selected row opens it.
-    fn click(&mut self, pane: usize, row: usize, look: &Look<'_>) -> Vec<Effect>;
+    fn handle_click(&mut self, pane: usize, row: usize, look: &ScreenContext<'_>) -> Vec<Effect>;
 
     /// Draws the screen.
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>);
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>);
 }

@@ -8,14 +8,14 @@ use ratatui::layout::Rect;
 
 use super::{Screen, ScreenState};
 use crate::action::{Action, Scope};
-use crate::context::{Figure, Look, PaneKeys};
+use crate::context::{Figure, PaneKeys, ScreenContext};
 use crate::effect::Effect;
 use novamind_tui::canvas::{Canvas, Click};
-use novamind_tui::widgets::{Field, Table};
+use novamind_tui::widgets::{Table, TextField};
 
 /// Texts in the border of a pane.
 #[derive(Default)]
-pub struct Border {
+pub struct PaneBorder {
     /// Title, at the left.
     pub title: String,
     /// Status, at the right.
@@ -23,18 +23,18 @@ pub struct Border {
     /// Keys that work in the pane, shown in the lower border while it has the focus.
     pub keys: String,
     /// Shows the keys even without the focus: they work from every pane or describe what the pane offers.
-    pub keys_always: bool,
+    pub shows_keys_always: bool,
 }
 
 /// Where and how a pane is drawn.
 #[derive(Debug, Clone, Copy)]
-pub struct Seat {
+pub struct PanePlacement {
     /// Its area, or the area inside its border.
     pub area: Rect,
     /// Whether it has the focus.
     pub focused: bool,
     /// Index on the screen, for clicks on its rows.
-    pub number: usize,
+    pub index: usize,
 }
 
 /// A pane of a screen `S`.
@@ -52,13 +52,13 @@ pub trait Pane<S> {
     /// Returns the scopes while it has the focus, innermost first.
     fn scopes(&self, screen: &S) -> Vec<Scope> {
         match self.table(screen) {
-            Some(table) if table.is_typing() => vec![Scope::Field, Scope::List],
+            Some(table) if table.is_filter_open() => vec![Scope::Field, Scope::List],
             _ => vec![Scope::List],
         }
     }
 
     /// Returns whether a digit starts a number here instead of switching screens.
-    fn takes_numbers(&self, _: &S) -> bool {
+    fn accepts_digits(&self, _: &S) -> bool {
         false
     }
 
@@ -68,216 +68,234 @@ pub trait Pane<S> {
     }
 
     /// Returns the selected figure.
-    fn figure(&self, _: &S, _: &Look<'_>) -> Option<Figure> {
+    fn figure(&self, _: &S, _: &ScreenContext<'_>) -> Option<Figure> {
         None
     }
 
     /// Runs an action.
-    fn act(&self, screen: &mut S, action: Action, look: &Look<'_>) -> Vec<Effect> {
+    fn handle_action(&self, screen: &mut S, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
         if let Some(table) = self.table_mut(screen) {
-            table.act(action, look.page);
+            table.handle_action(action, look.page_rows);
         }
         Vec::new()
     }
 
     /// Handles a key typed into a text field.
-    fn key(&self, screen: &mut S, key: &KeyEvent, _: &Look<'_>) -> Vec<Effect> {
-        self.filter(screen, &mut |field| {
-            field.key(key);
+    fn handle_key(&self, screen: &mut S, key: &KeyEvent, _: &ScreenContext<'_>) -> Vec<Effect> {
+        self.edit_filter(screen, &mut |field| {
+            field.handle_key(key);
         });
         Vec::new()
     }
 
     /// Handles pasted text.
-    fn paste(&self, screen: &mut S, text: &str, _: &Look<'_>) -> Vec<Effect> {
-        self.filter(screen, &mut |field| field.insert(text));
+    fn paste(&self, screen: &mut S, text: &str, _: &ScreenContext<'_>) -> Vec<Effect> {
+        self.edit_filter(screen, &mut |field| field.insert(text));
         Vec::new()
     }
 
     /// Edits the filter.
-    fn filter(&self, screen: &mut S, edit: &mut dyn FnMut(&mut Field)) {
+    fn edit_filter(&self, screen: &mut S, edit: &mut dyn FnMut(&mut TextField)) {
         if let Some(table) = self.table_mut(screen) {
             table.edit_filter(edit);
         }
     }
 
     /// Handles a click on a row; a second click on the same row opens it.
-    fn click(&self, screen: &mut S, row: usize, look: &Look<'_>) -> Vec<Effect> {
+    fn handle_click(&self, screen: &mut S, row: usize, look: &ScreenContext<'_>) -> Vec<Effect> {
         let Some(table) = self.table_mut(screen) else { return Vec::new() };
         let before = table.selected();
-        table.select_place(row);
-        if before == table.selected() { self.act(screen, Action::Open, look) } else { Vec::new() }
+        table.select_visible_row(row);
+        if before == table.selected() { self.handle_action(screen, Action::Open, look) } else { Vec::new() }
     }
 
     /// Returns the texts of its border for an area.
-    fn border(&self, _: &S, _: Rect, _: &Look<'_>) -> Border {
-        Border::default()
+    fn border(&self, _: &S, _: Rect, _: &ScreenContext<'_>) -> PaneBorder {
+        PaneBorder::default()
     }
 
     /// Draws the inside of the pane.
-    fn draw(&self, screen: &S, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>);
+    fn draw(&self, screen: &S, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>);
 
     /// Draws the pane with its border. Panes with more than one box override this.
-    fn show(&self, screen: &S, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+    fn draw_with_border(
+        &self,
+        screen: &S,
+        canvas: &mut Canvas<'_>,
+        seat: PanePlacement,
+        look: &ScreenContext<'_>,
+    ) {
         draw_framed(self, screen, canvas, seat, look);
     }
 }
 
 /// An area wide enough for complete titles.
-const USUAL: Rect = Rect { x: 0, y: 0, width: 120, height: 40 };
+const TYPICAL_AREA: Rect = Rect { x: 0, y: 0, width: 120, height: 40 };
 
 /// Draws the border and the inside of a pane.
 pub fn draw_framed<S>(
     pane: &(impl Pane<S> + ?Sized),
     screen: &S,
     canvas: &mut Canvas<'_>,
-    seat: Seat,
-    look: &Look<'_>,
+    seat: PanePlacement,
+    look: &ScreenContext<'_>,
 ) {
     let border = pane.border(screen, seat.area, look);
-    let inside = canvas.pane(seat.area, &border.title, &border.note, seat.focused);
-    if (seat.focused || border.keys_always) && !border.keys.is_empty() {
-        canvas.pane_keys(seat.area, &border.keys);
+    let inside = canvas.draw_pane_frame(seat.area, &border.title, &border.note, seat.focused);
+    if (seat.focused || border.shows_keys_always) && !border.keys.is_empty() {
+        canvas.draw_pane_keys(seat.area, &border.keys);
     }
-    pane.draw(screen, canvas, Seat { area: inside, ..seat }, look);
+    pane.draw(screen, canvas, PanePlacement { area: inside, ..seat }, look);
 }
 
 /// A screen made of panes.
-pub trait Paned: ScreenState + Sized + 'static {
+pub trait PaneScreen: ScreenState + Sized + 'static {
     /// Identifiers of its panes.
-    type Name: Copy + PartialEq + 'static;
+    type PaneId: Copy + PartialEq + 'static;
 
     /// Returns the panes that can take the focus now, in tab order.
-    fn panes(&self) -> &'static [Self::Name];
+    fn panes(&self) -> &'static [Self::PaneId];
 
     /// Returns the pane with this identifier.
-    fn pane(name: Self::Name) -> &'static dyn Pane<Self>;
+    fn pane(name: Self::PaneId) -> &'static dyn Pane<Self>;
 
     /// Returns the focused pane.
-    fn focused(&self) -> Self::Name;
+    fn focused_pane(&self) -> Self::PaneId;
 
     /// Moves the focus to a pane.
-    fn focus_on(&mut self, name: Self::Name);
+    fn set_focused_pane(&mut self, name: Self::PaneId);
 
     /// Returns the overlay that temporarily covers the panes and takes every key. Clicks on its rows use the
     /// number of panes as index.
-    fn over(&self) -> Option<&'static dyn Pane<Self>> {
+    fn overlay(&self) -> Option<&'static dyn Pane<Self>> {
         None
     }
 
     /// Runs an action that does not depend on the focused pane; returns `None` if it does.
-    fn act_anywhere(&mut self, _: Action, _: &Look<'_>) -> Option<Vec<Effect>> {
+    fn handle_screen_action(&mut self, _: Action, _: &ScreenContext<'_>) -> Option<Vec<Effect>> {
         None
     }
 
     /// Lays out the panes and draws each with [`draw_pane`].
-    fn arrange(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>);
+    fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>);
 }
 
 /// Draws a pane and makes it clickable.
-pub fn draw_pane<S: Paned>(screen: &S, name: S::Name, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+pub fn draw_pane<S: PaneScreen>(
+    screen: &S,
+    name: S::PaneId,
+    canvas: &mut Canvas<'_>,
+    area: Rect,
+    look: &ScreenContext<'_>,
+) {
     if area.is_empty() {
         return;
     }
-    let number = number_of(screen, name);
-    canvas.click(area, Click::Pane(number));
-    let seat = Seat { area, focused: screen.focused() == name, number };
-    S::pane(name).show(screen, canvas, seat, look);
+    let number = pane_index(screen, name);
+    canvas.register_click(area, Click::Pane(number));
+    let seat = PanePlacement { area, focused: screen.focused_pane() == name, index: number };
+    S::pane(name).draw_with_border(screen, canvas, seat, look);
 }
 
-fn number_of<S: Paned>(screen: &S, name: S::Name) -> usize {
+fn pane_index<S: PaneScreen>(screen: &S, name: S::PaneId) -> usize {
     screen.panes().iter().position(|own| *own == name).unwrap_or(0)
 }
 
-fn focused<S: Paned>(screen: &S) -> &'static dyn Pane<S> {
-    screen.over().unwrap_or_else(|| S::pane(screen.focused()))
+fn active_pane<S: PaneScreen>(screen: &S) -> &'static dyn Pane<S> {
+    screen.overlay().unwrap_or_else(|| S::pane(screen.focused_pane()))
 }
 
-impl<S: Paned> Screen for S {
+impl<S: PaneScreen> Screen for S {
     fn scopes(&self) -> Vec<Scope> {
-        focused(self).scopes(self)
+        active_pane(self).scopes(self)
     }
 
-    fn takes_numbers(&self) -> bool {
-        focused(self).takes_numbers(self)
+    fn accepts_digits(&self) -> bool {
+        active_pane(self).accepts_digits(self)
     }
 
     fn hints(&self) -> Vec<Action> {
-        focused(self).hints(self)
+        active_pane(self).hints(self)
     }
 
-    fn pane_keys(&self, look: &Look<'_>) -> Vec<PaneKeys> {
+    fn pane_keys(&self, look: &ScreenContext<'_>) -> Vec<PaneKeys> {
         let keys = |pane: &'static dyn Pane<S>| PaneKeys {
-            title: pane.border(self, USUAL, look).title,
+            title: pane.border(self, TYPICAL_AREA, look).title,
             scopes: pane.scopes(self),
             hints: pane.hints(self),
         };
-        if let Some(over) = self.over() {
+        if let Some(over) = self.overlay() {
             return vec![keys(over)];
         }
-        let own = self.focused();
-        let others = Paned::panes(self).iter().filter(|name| **name != own).map(|name| keys(S::pane(*name)));
+        let own = self.focused_pane();
+        let others =
+            PaneScreen::panes(self).iter().filter(|name| **name != own).map(|name| keys(S::pane(*name)));
         std::iter::once(keys(S::pane(own))).chain(others).collect()
     }
 
-    fn panes(&self) -> usize {
-        Paned::panes(self).len()
+    fn pane_count(&self) -> usize {
+        PaneScreen::panes(self).len()
     }
 
-    fn focus(&self) -> usize {
-        number_of(self, self.focused())
+    fn focused_index(&self) -> usize {
+        pane_index(self, self.focused_pane())
     }
 
     fn set_focus(&mut self, pane: usize) {
-        if let Some(name) = Paned::panes(self).get(pane) {
-            self.focus_on(*name);
+        if let Some(name) = PaneScreen::panes(self).get(pane) {
+            self.set_focused_pane(*name);
         }
     }
 
-    fn depth(&self) -> usize {
-        let filtered = focused(self).table(self).is_some_and(Table::is_filtered);
-        usize::from(self.over().is_some()) + usize::from(filtered) + self.opened()
+    fn escape_depth(&self) -> usize {
+        let filtered = active_pane(self).table(self).is_some_and(Table::is_filtered);
+        usize::from(self.overlay().is_some()) + usize::from(filtered) + self.own_escape_depth()
     }
 
-    fn figure(&self, look: &Look<'_>) -> Option<Figure> {
-        focused(self).figure(self, look)
+    fn figure(&self, look: &ScreenContext<'_>) -> Option<Figure> {
+        active_pane(self).figure(self, look)
     }
 
-    fn act(&mut self, action: Action, look: &Look<'_>) -> Vec<Effect> {
-        if let Some(over) = self.over() {
-            return over.act(self, action, look);
+    fn handle_action(&mut self, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+        if let Some(over) = self.overlay() {
+            return over.handle_action(self, action, look);
         }
-        match self.act_anywhere(action, look) {
+        match self.handle_screen_action(action, look) {
             Some(effects) => effects,
-            None => focused(self).act(self, action, look),
+            None => active_pane(self).handle_action(self, action, look),
         }
     }
 
-    fn key(&mut self, key: &KeyEvent, look: &Look<'_>) -> Vec<Effect> {
-        focused(self).key(self, key, look)
+    fn handle_key(&mut self, key: &KeyEvent, look: &ScreenContext<'_>) -> Vec<Effect> {
+        active_pane(self).handle_key(self, key, look)
     }
 
-    fn paste(&mut self, text: &str, look: &Look<'_>) -> Vec<Effect> {
-        focused(self).paste(self, text, look)
+    fn paste(&mut self, text: &str, look: &ScreenContext<'_>) -> Vec<Effect> {
+        active_pane(self).paste(self, text, look)
     }
 
-    fn click(&mut self, pane: usize, row: usize, look: &Look<'_>) -> Vec<Effect> {
+    fn handle_click(&mut self, pane: usize, row: usize, look: &ScreenContext<'_>) -> Vec<Effect> {
         // Panes below the overlay are visible but not clickable.
-        if self.over().is_some() && pane < Screen::panes(self) {
+        if self.overlay().is_some() && pane < Screen::pane_count(self) {
             return Vec::new();
         }
         self.set_focus(pane);
-        focused(self).click(self, row, look)
+        active_pane(self).handle_click(self, row, look)
     }
 
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
         if canvas.zoomed {
-            draw_pane(self, self.focused(), canvas, area, look);
+            draw_pane(self, self.focused_pane(), canvas, area, look);
         } else {
-            self.arrange(canvas, area, look);
+            self.draw_panes(canvas, area, look);
         }
-        if let Some(over) = self.over() {
-            over.draw(self, canvas, Seat { area, focused: true, number: Screen::panes(self) }, look);
+        if let Some(over) = self.overlay() {
+            over.draw(
+                self,
+                canvas,
+                PanePlacement { area, focused: true, index: Screen::pane_count(self) },
+                look,
+            );
         }
     }
 }

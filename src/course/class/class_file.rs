@@ -5,18 +5,18 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::handed_run::HandedPast;
-use super::handout::{ENDING, HANDOUT_FORMAT, HandedOut, Handout};
+use super::handout::{HANDOUT_EXTENSION, HANDOUT_FORMAT, Handout, HandoutContent};
+use super::handout_run::HandoutRun;
 use novamind_record::clock::now;
 use novamind_record::error::RunError;
-use novamind_record::files::{create_folder, write_whole};
+use novamind_record::files::{create_folder, write_atomically};
 use novamind_record::lesson::Lesson;
 use novamind_record::stamp::HandoutStamp;
-use novamind_session::new_id;
+use novamind_session::new_run_id;
 
 const CLASS_FILE: &str = "class.toml";
 
-const MOST_STUDENTS: u32 = 999;
+const MAX_STUDENTS: u32 = 999;
 
 /// A class: the lesson or run that was handed out, and its students.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -33,7 +33,7 @@ pub struct Class {
     /// The lesson, if a lesson was handed out.
     pub lesson: Option<ClassLesson>,
     /// The run, if a run was handed out.
-    pub run: Option<ClassPast>,
+    pub run: Option<ClassSourceRun>,
     /// The students.
     #[serde(rename = "student")]
     pub students: Vec<ClassStudent>,
@@ -52,7 +52,7 @@ pub struct ClassLesson {
 /// The run that every student continues.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct ClassPast {
+pub struct ClassSourceRun {
     /// Name of the run.
     pub run: String,
     /// Its last day.
@@ -73,7 +73,7 @@ pub struct ClassStudent {
 
 /// The content of a new class.
 #[derive(Debug, Clone, PartialEq)]
-pub enum ToHandOut {
+pub enum HandoutSource {
     /// A lesson.
     Lesson(Arc<Lesson>),
     /// The run in a folder, up to the end of its last week.
@@ -86,51 +86,51 @@ impl Class {
     /// # Errors
     /// Returns an error if the folder already contains a class or cannot be written, if `students` is not from 1 to 999, or if
     /// the run cannot be handed out.
-    pub fn create(folder: &Path, what: &ToHandOut, students: u32) -> Result<Class, RunError> {
-        if !(1..=MOST_STUDENTS).contains(&students) {
-            let message = format!("a class needs 1 to {MOST_STUDENTS} students, not {students}");
-            return Err(RunError::NotPossible(message));
+    pub fn create(folder: &Path, what: &HandoutSource, students: u32) -> Result<Class, RunError> {
+        if !(1..=MAX_STUDENTS).contains(&students) {
+            let message = format!("a class needs 1 to {MAX_STUDENTS} students, not {students}");
+            return Err(RunError::InvalidRequest(message));
         }
         if folder.join(CLASS_FILE).exists() {
             let message = format!(
                 "{} already contains a class; choose another folder. Nothing was changed",
                 folder.display()
             );
-            return Err(RunError::Exists(message));
+            return Err(RunError::AlreadyExists(message));
         }
         let past = match what {
-            ToHandOut::Lesson(_) => None,
-            ToHandOut::Run(run) => Some(HandedPast::of(run)?),
+            HandoutSource::Lesson(_) => None,
+            HandoutSource::Run(run) => Some(HandoutRun::from_folder(run)?),
         };
         create_folder(folder)?;
         let mut class = Class {
             format: HANDOUT_FORMAT,
             program: env!("CARGO_PKG_VERSION").to_owned(),
-            class: new_id(),
+            class: new_run_id(),
             created: now(),
             lesson: None,
-            run: past.as_ref().map(|past| ClassPast { run: past.run().to_owned(), day: past.day }),
+            run: past.as_ref().map(|past| ClassSourceRun { run: past.run_id().to_owned(), day: past.day }),
             students: Vec::new(),
         };
-        if let ToHandOut::Lesson(lesson) = what {
+        if let HandoutSource::Lesson(lesson) = what {
             class.lesson = Some(ClassLesson { name: lesson.name.clone(), digest: lesson.digest.clone() });
-            lesson.keep_with(folder)?;
+            lesson.write_to_run(folder)?;
         }
         let width = students.to_string().len().max(2);
         for number in 1..=students {
             let label = format!("S{number:0width$}");
-            let stamp = HandoutStamp { class: class.class.clone(), run: new_id() };
+            let stamp = HandoutStamp { class: class.class.clone(), run: new_run_id() };
             let content = match (what, &past) {
-                (_, Some(past)) => HandedOut::Run(past.handed_to(&label, &stamp, folder)?),
-                (ToHandOut::Lesson(lesson), None) => HandedOut::Lesson(lesson.clone()),
-                (ToHandOut::Run(_), None) => continue,
+                (_, Some(past)) => HandoutContent::Run(past.branch_files(&label, &stamp, folder)?),
+                (HandoutSource::Lesson(lesson), None) => HandoutContent::Lesson(lesson.clone()),
+                (HandoutSource::Run(_), None) => continue,
             };
             let run = stamp.run.clone();
             let seal = Handout { label: label.clone(), stamp, content }.write(folder)?;
             class.students.push(ClassStudent { label, run, seal });
         }
         let text = toml::to_string(&class).expect("a class contains plain values");
-        write_whole(&folder.join(CLASS_FILE), text.as_bytes())?;
+        write_atomically(&folder.join(CLASS_FILE), text.as_bytes())?;
         Ok(class)
     }
 
@@ -142,7 +142,7 @@ impl Class {
         let path = folder.join(CLASS_FILE);
         let text = match std::fs::read_to_string(&path) {
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-                return Err(RunError::NotPossible(format!(
+                return Err(RunError::InvalidRequest(format!(
                     "{} contains no class. Create one: `novamind class new LESSON --out {}`",
                     folder.display(),
                     folder.display()
@@ -153,7 +153,7 @@ impl Class {
         let class: Class = toml::from_str(&text).map_err(|error| RunError::Damaged {
             line: error.span().map_or(1, |span| text[..span.start].matches('\n').count() + 1),
             problem: error.message().to_owned(),
-            safe: "Handouts and runs were not changed; restore class.toml from a copy".to_owned(),
+            remedy: "Handouts and runs were not changed; restore class.toml from a copy".to_owned(),
             path,
         })?;
         Ok(class)
@@ -163,9 +163,9 @@ impl Class {
     ///
     /// # Errors
     /// Returns an error if its files are missing or invalid, or if they differ from the lesson that was handed out.
-    pub fn lesson_kept(&self, folder: &Path) -> Result<Option<Arc<Lesson>>, RunError> {
+    pub fn stored_lesson(&self, folder: &Path) -> Result<Option<Arc<Lesson>>, RunError> {
         let Some(own) = &self.lesson else { return Ok(None) };
-        let lesson = Lesson::of_run(folder, &own.name)?;
+        let lesson = Lesson::from_run(folder, &own.name)?;
         if lesson.digest == own.digest {
             return Ok(Some(Arc::new(lesson)));
         }
@@ -173,7 +173,7 @@ impl Class {
             path: folder.join("lesson.toml"),
             line: 1,
             problem: format!("the lesson differs from the one that was handed out, {}", own.name),
-            safe: "Nothing was changed; restore lesson.toml and lesson.md from a copy".to_owned(),
+            remedy: "Nothing was changed; restore lesson.toml and lesson.md from a copy".to_owned(),
         })
     }
 
@@ -185,8 +185,8 @@ impl Class {
     /// Returns the labels of handouts in the folder that differ from those that were handed out. Missing files are not listed.
     pub(super) fn altered_handouts(&self, folder: &Path) -> Vec<String> {
         let is_altered = |student: &&ClassStudent| {
-            let path = folder.join(format!("{}{ENDING}", student.label));
-            path.exists() && Handout::seal_of(&path).as_ref() != Some(&student.seal)
+            let path = folder.join(format!("{}{HANDOUT_EXTENSION}", student.label));
+            path.exists() && Handout::read_seal(&path).as_ref() != Some(&student.seal)
         };
         self.students.iter().filter(is_altered).map(|student| student.label.clone()).collect()
     }

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::class_file::Class;
-use super::collecting::ClassCollection;
+use super::collection::ClassCollection;
 use novamind_record::error::RunError;
 use novamind_record::lesson::Lesson;
 
@@ -26,7 +26,7 @@ impl CollectedClass {
     /// Returns an error if the folder contains no class or no collection, or if a file is damaged.
     pub fn read(folder: &Path) -> Result<CollectedClass, RunError> {
         let class = Class::read(folder)?;
-        let lesson = class.lesson_kept(folder)?;
+        let lesson = class.stored_lesson(folder)?;
         Ok(CollectedClass { class, lesson, collection: ClassCollection::read(folder)? })
     }
 }

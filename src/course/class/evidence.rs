@@ -8,10 +8,10 @@ use serde::{Deserialize, Serialize};
 
 use novamind_record::error::RunError;
 use novamind_record::figures::WeekFigure;
-use novamind_record::lesson::{GuessForm, Lesson, LessonStanding, Measurement};
+use novamind_record::lesson::{GuessForm, Lesson, LessonProgress, Measurement};
 use novamind_record::trajectory::record::{Activity, LessonEvent, LessonNote};
 use novamind_record::trajectory::{Line, Record};
-use novamind_session::{Integrity, SealKey, Session, measure, read_recorded, setting_values};
+use novamind_session::{Integrity, SealKey, Session, measure, read_origin, setting_values};
 
 /// The results of a run of a class.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -64,10 +64,10 @@ pub struct GoalEvidence {
 ///
 /// # Errors
 /// Returns the first event that does not match, or an error if the run is missing or has another version.
-pub(super) fn examine(folder: &Path, lesson: Option<&Arc<Lesson>>) -> Result<Evidence, RunError> {
-    let (origin, trajectory) = read_recorded(folder)?;
+pub(super) fn examine_record(folder: &Path, lesson: Option<&Arc<Lesson>>) -> Result<Evidence, RunError> {
+    let (origin, trajectory) = read_origin(folder)?;
     let manifest = &origin.manifest;
-    Integrity::of(folder, manifest, &SealKey::default()).check(&origin.path, &trajectory)?;
+    Integrity::read(folder, manifest, &SealKey::default()).check(&origin.path, &trajectory)?;
     let stamp = manifest.lesson.as_ref();
     // This lesson's goals cannot be measured in a run of another lesson.
     let lesson = lesson.filter(|lesson| stamp.is_some_and(|stamp| stamp.digest == lesson.digest));
@@ -77,28 +77,29 @@ pub(super) fn examine(folder: &Path, lesson: Option<&Arc<Lesson>>) -> Result<Evi
             "its first event names a part that the lesson does not have; it has {}",
             lesson.plan.parts.len()
         );
-        return Err(RunError::NotPossible(message));
+        return Err(RunError::InvalidRequest(message));
     }
-    let standing = lesson.map(|lesson| LessonStanding::of(lesson.clone(), part, &trajectory.lines));
-    let asks = lesson.is_some_and(|lesson| lesson.asks_database());
-    let mut replay = Replay { standing, decisions: BTreeMap::new(), weeks: 0 };
-    let session = origin
-        .replay(&trajectory.lines, asks, &mut |session, line| replay.look(session, &origin.path, line))?;
-    Ok(Evidence { is_over: trajectory.end().is_some(), ..replay.evidence(&session, manifest.seed) })
+    let standing = lesson.map(|lesson| LessonProgress::from_lines(lesson.clone(), part, &trajectory.lines));
+    let asks = lesson.is_some_and(|lesson| lesson.needs_database());
+    let mut replay = EvidenceReplay { standing, decisions: BTreeMap::new(), weeks: 0 };
+    let session = origin.replay(&trajectory.lines, asks, &mut |session, line| {
+        replay.observe_line(session, &origin.path, line)
+    })?;
+    Ok(Evidence { is_over: trajectory.end_line().is_some(), ..replay.into_evidence(&session, manifest.seed) })
 }
 
 /// State of a re-simulation.
-struct Replay {
-    standing: Option<LessonStanding>,
+struct EvidenceReplay {
+    standing: Option<LessonProgress>,
     decisions: BTreeMap<String, f64>,
     /// Weeks in which the student decided.
     weeks: u32,
 }
 
-impl Replay {
-    fn look(&mut self, session: &mut Session, path: &Path, line: &Line) -> Result<(), RunError> {
+impl EvidenceReplay {
+    fn observe_line(&mut self, session: &mut Session, path: &Path, line: &Line) -> Result<(), RunError> {
         let days = session.params().run.days_per_week;
-        let start = self.standing.as_ref().map_or(0, |own| own.own_part().start_weeks) * days;
+        let start = self.standing.as_ref().map_or(0, |own| own.current_part().start_weeks) * days;
         if line.closes_days() && session.day() > start {
             self.weeks += 1;
             for (setting, value) in setting_values(session.settings()) {
@@ -106,19 +107,19 @@ impl Replay {
             }
         }
         let Record::Activity(Activity::Lesson(note)) = &line.record else { return Ok(()) };
-        match self.differs(session, note) {
+        match self.note_mismatch(session, note) {
             None => Ok(()),
             Some(problem) => Err(RunError::Damaged {
                 path: path.to_owned(),
                 line: line.seq as usize + 1,
                 problem,
-                safe: "The files were not changed; ask for the run again".to_owned(),
+                remedy: "The files were not changed; ask for the run again".to_owned(),
             }),
         }
     }
 
     /// Describes how the recorded result of a goal or a guess differs from the re-simulation. Returns `None` if they match.
-    fn differs(&self, session: &mut Session, note: &LessonNote) -> Option<String> {
+    fn note_mismatch(&self, session: &mut Session, note: &LessonNote) -> Option<String> {
         let standing = self.standing.clone()?;
         let step = (note.step as usize).checked_sub(1)?;
         let own = standing.step(step)?;
@@ -128,7 +129,7 @@ impl Replay {
             (LessonEvent::Outcome, Some(GuessForm::Number { outcome, .. })) => outcome.clone(),
             _ => return None,
         };
-        let from = standing.own_part().weeks_of(step).0 * session.params().run.days_per_week;
+        let from = standing.current_part().step_weeks(step).0 * session.params().run.days_per_week;
         let measured = measure(&measurement, session, from).ok().flatten();
         let is_same = match (measured, note.value) {
             (Some(one), Some(other)) => (one - other).abs() <= 1e-9 * one.abs().max(1.0),
@@ -145,23 +146,23 @@ impl Replay {
         })
     }
 
-    fn evidence(self, session: &Session, seed: u64) -> Evidence {
-        let Replay { standing, decisions, weeks } = self;
+    fn into_evidence(self, session: &Session, seed: u64) -> Evidence {
+        let EvidenceReplay { standing, decisions, weeks } = self;
         let means = decisions.into_iter().map(|(name, sum)| (name, sum / f64::from(weeks.max(1))));
         // An unlimited quota is infinite.
         let decisions = means.filter(|(_, mean)| mean.is_finite()).collect();
-        Evidence { decisions, ..evidence_of(session, standing.as_ref(), seed) }
+        Evidence { decisions, ..session_evidence(session, standing.as_ref(), seed) }
     }
 }
 
 /// Returns the results of a session that was played or re-simulated.
-pub(super) fn evidence_of(session: &Session, standing: Option<&LessonStanding>, seed: u64) -> Evidence {
-    let steps = standing.map_or(0, |own| own.own_part().steps.len());
+pub(super) fn session_evidence(session: &Session, standing: Option<&LessonProgress>, seed: u64) -> Evidence {
+    let steps = standing.map_or(0, |own| own.current_part().steps.len());
     let numbers: BTreeSet<usize> = (0..steps).collect();
-    let of_step = |step: &usize| standing.map(|own| step_of(own, *step)).unwrap_or_default();
-    let tries = numbers.iter().filter_map(|step| standing.map(|own| own.tries(*step))).max();
-    let hints = numbers.iter().filter_map(|step| standing.map(|own| own.hints(*step) as u32)).sum();
-    let pitfalls = standing.map(|own| own.pitfalls().into_iter().map(str::to_owned).collect());
+    let of_step = |step: &usize| standing.map(|own| step_evidence(own, *step)).unwrap_or_default();
+    let tries = numbers.iter().filter_map(|step| standing.map(|own| own.attempt(*step))).max();
+    let hints = numbers.iter().filter_map(|step| standing.map(|own| own.hint_count(*step) as u32)).sum();
+    let pitfalls = standing.map(|own| own.met_pitfalls().into_iter().map(str::to_owned).collect());
     let opening = session.cash_by_day().first().map(|cash| (0, *cash));
     let weeks = session.weeks().iter().map(|week| (week.day, week.cash));
     Evidence {
@@ -175,23 +176,24 @@ pub(super) fn evidence_of(session: &Session, standing: Option<&LessonStanding>, 
         pitfalls: pitfalls.unwrap_or_default(),
         cash: opening.into_iter().chain(weeks).collect(),
         decisions: BTreeMap::new(),
-        figures: figures_of(session),
+        figures: last_week_figures(session),
     }
 }
 
-fn step_of(standing: &LessonStanding, step: usize) -> StepEvidence {
+fn step_evidence(standing: &LessonProgress, step: usize) -> StepEvidence {
     let goal = |note: &&LessonNote| GoalEvidence { value: note.value, met: note.met == Some(true) };
     StepEvidence {
         guess: standing.guess(step),
         outcome: standing.outcome(step).and_then(|note| note.value),
-        goals: standing.goals(step).iter().map(goal).collect(),
+        goals: standing.goal_results(step).iter().map(goal).collect(),
     }
 }
 
-fn figures_of(session: &Session) -> BTreeMap<String, f64> {
+fn last_week_figures(session: &Session) -> BTreeMap<String, f64> {
     let Some(last) = session.weeks().last() else { return BTreeMap::new() };
-    let measured =
-        WeekFigure::ALL.iter().filter_map(|figure| Some((figure.name().to_owned(), figure.of_week(last)?)));
+    let measured = WeekFigure::ALL
+        .iter()
+        .filter_map(|figure| Some((figure.name().to_owned(), figure.company_value(last)?)));
     let all = measured.chain([("cash".to_owned(), last.cash)]);
     all.filter(|(_, value)| value.is_finite()).collect()
 }
@@ -224,7 +226,7 @@ pub enum RunVerdict {
     /// The events do not match the re-simulation.
     Altered,
     /// Several valid records of the run contradict each other.
-    Twice,
+    Conflicting,
     /// The run used another lesson, or another version of it.
     OtherLesson,
     /// The run started from another student's handout, or from a past that was not handed out.
@@ -235,12 +237,12 @@ pub enum RunVerdict {
 
 impl RunVerdict {
     /// Returns the name that tables use.
-    pub fn id(self) -> &'static str {
+    pub fn label(self) -> &'static str {
         match self {
             RunVerdict::Finished => "finished",
             RunVerdict::NotFinished => "not finished",
             RunVerdict::Altered => "altered",
-            RunVerdict::Twice => "twice",
+            RunVerdict::Conflicting => "twice",
             RunVerdict::OtherLesson => "other lesson",
             RunVerdict::OtherHandout => "other hand-out",
             RunVerdict::Unknown => "unknown",

@@ -27,7 +27,7 @@ pub enum ClassFinding {
         problem: String,
     },
     /// Records of one run that contradict each other.
-    Twice {
+    Conflicting {
         /// Label.
         label: String,
         /// Run.
@@ -85,7 +85,7 @@ impl ClassFinding {
         match self {
             ClassFinding::Unreadable { label, .. } | ClassFinding::Unknown { label, .. } => label.as_deref(),
             ClassFinding::Altered { label, .. }
-            | ClassFinding::Twice { label, .. }
+            | ClassFinding::Conflicting { label, .. }
             | ClassFinding::OtherLesson { label, .. }
             | ClassFinding::OtherHandout { label, .. }
             | ClassFinding::Missing { label }

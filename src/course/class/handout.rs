@@ -6,20 +6,20 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use novamind_record::error::RunError;
-use novamind_record::files::{create_folder, write_whole};
+use novamind_record::files::{create_folder, write_atomically};
 use novamind_record::folder::configuration::Configuration;
-use novamind_record::folder::derived::Derived;
 use novamind_record::folder::manifest::Manifest;
+use novamind_record::folder::manifest_check::ManifestCheck;
 use novamind_record::folder::runs::{list_runs, participant_folder};
 use novamind_record::lesson::Lesson;
 use novamind_record::mode::Mode;
 use novamind_record::stamp::{HandoutEntry, HandoutStamp};
-use novamind_session::{LessonEntry, NewRun, Session, Storage, is_run_name};
+use novamind_session::{LessonEntry, NewRun, Session, Storage, is_run_id};
 use novamind_world::params::ParameterSource;
 
 pub(super) const HANDOUT_FORMAT: u32 = 1;
 
-pub(super) const ENDING: &str = ".nm";
+pub(super) const HANDOUT_EXTENSION: &str = ".nm";
 
 /// The file from which one student starts.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,22 +29,22 @@ pub struct Handout {
     /// The class, and the run that the handout creates.
     pub stamp: HandoutStamp,
     /// The lesson or run.
-    pub content: HandedOut,
+    pub content: HandoutContent,
 }
 
 /// The content of a handout.
 #[derive(Debug, Clone, PartialEq)]
-pub enum HandedOut {
+pub enum HandoutContent {
     /// A lesson, starting with its first part.
     Lesson(Arc<Lesson>),
     /// The files of a run with a past.
-    Run(HandedRun),
+    Run(HandoutRunFiles),
 }
 
 /// The files of a run with a past.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct HandedRun {
+pub struct HandoutRunFiles {
     /// `run.toml`.
     pub manifest: String,
     /// `trajectory.jsonl`.
@@ -61,26 +61,26 @@ struct HandoutFile {
     run: String,
     /// Hash of the file with this field empty.
     seal: String,
-    lesson: Option<HandedLesson>,
-    past: Option<HandedRun>,
+    lesson: Option<HandoutLesson>,
+    past: Option<HandoutRunFiles>,
 }
 
 #[derive(Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct HandedLesson {
+struct HandoutLesson {
     name: String,
     plan: String,
     texts: String,
 }
 
 impl HandoutFile {
-    fn text(&self) -> String {
+    fn to_toml(&self) -> String {
         toml::to_string(self).expect("a handout contains plain values")
     }
 
-    fn sealed(self) -> HandoutFile {
+    fn with_seal(self) -> HandoutFile {
         let bare = HandoutFile { seal: String::new(), ..self.clone() };
-        HandoutFile { seal: blake3::hash(bare.text().as_bytes()).to_hex().to_string(), ..self }
+        HandoutFile { seal: blake3::hash(bare.to_toml().as_bytes()).to_hex().to_string(), ..self }
     }
 }
 
@@ -91,7 +91,7 @@ impl Handout {
     /// Returns an error if the file cannot be read, was altered after it was handed out, or has a later format.
     pub fn read(path: &Path) -> Result<Handout, RunError> {
         let refused = |problem: &str| {
-            RunError::NotPossible(format!(
+            RunError::InvalidRequest(format!(
                 "{}: {problem}. No run was created or changed. Ask for the handout again, or copy it again without opening it \
                  in an editor",
                 path.display()
@@ -110,11 +110,11 @@ impl Handout {
             true => refused(altered),
             false => refused("this is not a handout of a class"),
         })?;
-        if file.clone().sealed().text() != text {
+        if file.clone().with_seal().to_toml() != text {
             return Err(refused(altered));
         }
-        if !is_run_name(&file.run)
-            || !is_run_name(&file.class)
+        if !is_run_id(&file.run)
+            || !is_run_id(&file.class)
             || participant_folder(Path::new(""), &file.label).is_err()
         {
             return Err(refused("its label, its class or the name of its run is invalid"));
@@ -123,9 +123,9 @@ impl Handout {
         let content = match (file.lesson, file.past) {
             (Some(own), None) => {
                 let source = ParameterSource { name: path.display().to_string(), text: own.plan };
-                HandedOut::Lesson(Arc::new(Lesson::of_texts(&own.name, source, own.texts)?))
+                HandoutContent::Lesson(Arc::new(Lesson::from_texts(&own.name, source, own.texts)?))
             }
-            (None, Some(past)) => HandedOut::Run(past),
+            (None, Some(past)) => HandoutContent::Run(past),
             _ => return Err(refused("it must contain either a lesson or a run")),
         };
         Ok(Handout { label: file.label, stamp, content })
@@ -137,12 +137,12 @@ impl Handout {
     /// Returns an error if the folder cannot be written.
     pub(super) fn write(&self, folder: &Path) -> Result<String, RunError> {
         let (lesson, past) = match &self.content {
-            HandedOut::Lesson(lesson) => {
+            HandoutContent::Lesson(lesson) => {
                 let (plan, texts) = lesson.sources();
                 let (plan, texts) = (plan.to_owned(), texts.to_owned());
-                (Some(HandedLesson { name: lesson.name.clone(), plan, texts }), None)
+                (Some(HandoutLesson { name: lesson.name.clone(), plan, texts }), None)
             }
-            HandedOut::Run(past) => (None, Some(past.clone())),
+            HandoutContent::Run(past) => (None, Some(past.clone())),
         };
         let file = HandoutFile {
             format: HANDOUT_FORMAT,
@@ -154,13 +154,16 @@ impl Handout {
             lesson,
             past,
         };
-        let file = file.sealed();
-        write_whole(&folder.join(format!("{}{ENDING}", self.label)), file.text().as_bytes())?;
+        let file = file.with_seal();
+        write_atomically(
+            &folder.join(format!("{}{HANDOUT_EXTENSION}", self.label)),
+            file.to_toml().as_bytes(),
+        )?;
         Ok(file.seal)
     }
 
     /// Returns the seal of a file, or `None` if the file is not a valid handout.
-    pub(super) fn seal_of(path: &Path) -> Option<String> {
+    pub(super) fn read_seal(path: &Path) -> Option<String> {
         Handout::read(path).ok()?;
         toml::from_str::<HandoutFile>(&std::fs::read_to_string(path).ok()?).ok().map(|file| file.seal)
     }
@@ -170,58 +173,59 @@ impl Handout {
     ///
     /// # Errors
     /// Returns an error if a run of this name exists that did not start from this handout, or if the run cannot be created.
-    pub fn place(&self, base: &Path) -> Result<String, RunError> {
-        let runs = participant_folder(base, &self.label).map_err(RunError::NotPossible)?;
-        if let Some(run) = self.newest(&runs)? {
+    pub fn ensure_run(&self, base: &Path) -> Result<String, RunError> {
+        let runs = participant_folder(base, &self.label).map_err(RunError::InvalidRequest)?;
+        if let Some(run) = self.latest_run(&runs)? {
             return Ok(run);
         }
         let folder = runs.join(&self.stamp.run);
         // A program that ended before the first event leaves a folder without these files, which can be reused.
         if ["run.toml", "trajectory.jsonl"].iter().any(|file| folder.join(file).exists()) {
-            return Err(RunError::Exists(format!(
+            return Err(RunError::AlreadyExists(format!(
                 "{} exists but does not belong to this handout. Nothing was changed. Move the folder away and open the handout \
                  again",
                 folder.display()
             )));
         }
         match &self.content {
-            HandedOut::Lesson(lesson) => self.begin_lesson(lesson, runs)?,
-            HandedOut::Run(past) => self.begin_run(past, &folder)?,
+            HandoutContent::Lesson(lesson) => self.start_lesson(lesson, runs)?,
+            HandoutContent::Run(past) => self.write_run_files(past, &folder)?,
         }
         Ok(self.stamp.run.clone())
     }
 
-    fn newest(&self, runs: &Path) -> Result<Option<String>, RunError> {
+    fn latest_run(&self, runs: &Path) -> Result<Option<String>, RunError> {
         let is_own = |id: &str| {
-            Derived::of(&runs.join(id)).is_ok_and(|own| own.manifest.handout.as_ref() == Some(&self.stamp))
+            ManifestCheck::read(&runs.join(id))
+                .is_ok_and(|own| own.manifest.handout.as_ref() == Some(&self.stamp))
         };
         let own: Vec<_> = list_runs(runs)?.into_iter().filter(|run| is_own(&run.id)).collect();
         let open = own.iter().find(|run| run.ended.is_none() && run.problem.is_none());
         Ok(open.or(own.first()).map(|run| run.id.clone()))
     }
 
-    fn begin_lesson(&self, lesson: &Arc<Lesson>, runs: PathBuf) -> Result<(), RunError> {
+    fn start_lesson(&self, lesson: &Arc<Lesson>, runs: PathBuf) -> Result<(), RunError> {
         let new = NewRun {
             mode: Mode::Lesson,
             participant: Some(self.label.clone()),
             lesson: Some(LessonEntry { lesson: lesson.clone(), part: 0, is_judged: true }),
-            handout: Some(HandoutEntry::of_first_run(self.stamp.clone())),
+            handout: Some(HandoutEntry::for_first_run(self.stamp.clone())),
             storage: Storage::Runs(runs),
             ..NewRun::default()
         };
-        Session::create(new, &Configuration::shipped()).map(|_| ())
+        Session::create(new, &Configuration::bundled()).map(|_| ())
     }
 
-    fn begin_run(&self, past: &HandedRun, folder: &Path) -> Result<(), RunError> {
+    fn write_run_files(&self, past: &HandoutRunFiles, folder: &Path) -> Result<(), RunError> {
         create_folder(folder)?;
-        let written = write_whole(&folder.join("run.toml"), past.manifest.as_bytes())
-            .and_then(|()| write_whole(&folder.join("trajectory.jsonl"), past.trajectory.as_bytes()))
+        let written = write_atomically(&folder.join("run.toml"), past.manifest.as_bytes())
+            .and_then(|()| write_atomically(&folder.join("trajectory.jsonl"), past.trajectory.as_bytes()))
             .and_then(|()| Manifest::read(folder))
             .and_then(|manifest| match manifest.handout.as_ref() == Some(&self.stamp) {
                 true => Ok(()),
-                false => {
-                    Err(RunError::NotPossible("the run of the handout belongs to another handout".to_owned()))
-                }
+                false => Err(RunError::InvalidRequest(
+                    "the run of the handout belongs to another handout".to_owned(),
+                )),
             });
         if written.is_err() {
             let _ = std::fs::remove_dir_all(folder);

@@ -6,9 +6,9 @@
 
 pub(crate) mod class_file;
 pub(crate) mod collected_class;
-pub(crate) mod collecting;
+pub(crate) mod collection;
 pub(crate) mod evidence;
 pub(crate) mod finding;
-pub(crate) mod handed_run;
 pub(crate) mod handout;
+pub(crate) mod handout_run;
 pub(crate) mod reference;

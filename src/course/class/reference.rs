@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::evidence::{ClassRun, Evidence, RunVerdict, evidence_of};
+use super::evidence::{ClassRun, Evidence, RunVerdict, session_evidence};
 use novamind_record::error::RunError;
 use novamind_record::lesson::{GoalBound, Lesson, LessonPart};
-use novamind_session::{AnswersCompanies, PartPlay, play_part};
+use novamind_session::{PartPlay, RuleEvaluator, play_part};
 
 /// The reference play of a part on a seed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -21,34 +21,34 @@ pub struct ClassReference {
 ///
 /// # Errors
 /// Returns an error if a part cannot start or a call is rejected.
-pub(super) fn references(
+pub(super) fn play_references(
     lesson: &Arc<Lesson>,
     runs: &[ClassRun],
-    answers: AnswersCompanies,
+    answers: RuleEvaluator,
 ) -> Result<Vec<ClassReference>, RunError> {
     let counted =
         runs.iter().filter(|run| matches!(run.verdict, RunVerdict::Finished | RunVerdict::NotFinished));
     let wanted: BTreeSet<(u32, u64)> = counted.map(|run| (run.evidence.part, run.evidence.seed)).collect();
-    wanted.into_iter().map(|(part, seed)| reference(lesson, part, seed, answers)).collect()
+    wanted.into_iter().map(|(part, seed)| play_reference(lesson, part, seed, answers)).collect()
 }
 
-fn reference(
+fn play_reference(
     lesson: &Arc<Lesson>,
     part: u32,
     seed: u64,
-    answers: AnswersCompanies,
+    answers: RuleEvaluator,
 ) -> Result<ClassReference, RunError> {
     let play = PartPlay {
         lesson,
         part: (part as usize).saturating_sub(1),
         seed: Some(seed),
-        plays: &lesson.plan.good.plays,
+        scheduled_calls: &lesson.plan.good.plays,
         weeks: None,
         is_judged: true,
-        asks_database: lesson.asks_database(),
+        needs_database: lesson.needs_database(),
     };
     let session = play_part(&play, answers)?;
-    Ok(ClassReference { evidence: evidence_of(&session, session.lesson(), seed) })
+    Ok(ClassReference { evidence: session_evidence(&session, session.lesson(), seed) })
 }
 
 /// Returns step and goal by which a part is ranked: the last goal of the last step with goals. Both are counted from 0.
@@ -59,7 +59,7 @@ pub fn ranked_goal(part: &LessonPart) -> Option<(usize, usize)> {
 
 /// Returns a value as a share of the reference play's value; higher is better. The ratio is inverted if the bound is a maximum.
 /// Returns `None` if the denominator or the reference value is not positive.
-pub fn share_of_good(bound: Option<GoalBound>, value: f64, good: f64) -> Option<f64> {
+pub fn share_of_reference(bound: Option<GoalBound>, value: f64, good: f64) -> Option<f64> {
     let (of, all) = if matches!(bound, Some(GoalBound::AtMost(_))) { (good, value) } else { (value, good) };
     (all > 0.0 && good > 0.0).then(|| of / all)
 }
@@ -69,11 +69,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn more_is_better_and_nothing_is_a_share_of_nothing() {
-        assert_eq!(share_of_good(Some(GoalBound::AtLeast(1.0)), 3.0, 4.0), Some(0.75));
-        assert_eq!(share_of_good(Some(GoalBound::AtMost(1.0)), 8.0, 4.0), Some(0.5));
-        assert_eq!(share_of_good(None, -2.0, 4.0), Some(-0.5));
-        assert_eq!(share_of_good(None, 2.0, 0.0), None);
-        assert_eq!(share_of_good(Some(GoalBound::AtMost(1.0)), 0.0, 4.0), None);
+    fn share_of_reference_follows_the_goal_direction() {
+        assert_eq!(share_of_reference(Some(GoalBound::AtLeast(1.0)), 3.0, 4.0), Some(0.75));
+        assert_eq!(share_of_reference(Some(GoalBound::AtMost(1.0)), 8.0, 4.0), Some(0.5));
+        assert_eq!(share_of_reference(None, -2.0, 4.0), Some(-0.5));
+        assert_eq!(share_of_reference(None, 2.0, 0.0), None);
+        assert_eq!(share_of_reference(Some(GoalBound::AtMost(1.0)), 0.0, 4.0), None);
     }
 }

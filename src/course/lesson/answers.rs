@@ -1,19 +1,19 @@
 //! Actions of a student in a step besides playing: answering the question and taking hints.
 
-use novamind_record::lesson::{LessonStanding, Measurement};
+use novamind_record::lesson::{LessonProgress, Measurement};
 use novamind_record::trajectory::record::{LessonEvent, LessonNote};
 use novamind_session::{Session, lesson_step, measure};
-use novamind_tools::Refusal;
+use novamind_tools::Rejection;
 
 /// Answers the open question of the current step. `value` is a number, or the number of a choice counted from 1.
 ///
 /// # Errors
 /// `no_question` if no question is open, `guess_not_possible` if `value` is not finite or not the number of a choice, `run_over`,
-/// `not_saved`.
-pub fn guess_in_lesson(session: &mut Session, value: f64) -> Result<(), Refusal> {
+/// `not_saved_rejection`.
+pub fn submit_guess(session: &mut Session, value: f64) -> Result<(), Rejection> {
     let awaits = |step: &usize| session.lesson().is_some_and(|standing| standing.awaits_guess(*step));
     let Some(step) = lesson_step(session).filter(awaits) else {
-        return Err(Refusal::new("no_question", "the lesson has no open question"));
+        return Err(Rejection::new("no_question", "the lesson has no open question"));
     };
     let choices = session.lesson().and_then(|standing| standing.choices(step)).map(<[String]>::len);
     let fits = choices.is_none_or(|count| value.fract() == 0.0 && (1.0..=count as f64).contains(&value));
@@ -22,30 +22,30 @@ pub fn guess_in_lesson(session: &mut Session, value: f64) -> Result<(), Refusal>
             Some(count) => format!("choose a number from 1 to {count}"),
             None => "enter a number".to_owned(),
         };
-        return Err(Refusal::at("guess", "guess_not_possible", message));
+        return Err(Rejection::for_field("guess", "guess_not_possible", message));
     }
-    let about = LessonNote::about(LessonEvent::Guess, step as u32 + 1);
-    session.note_lesson(LessonNote { value: Some(value), ..about })
+    let about = LessonNote::new(LessonEvent::Guess, step as u32 + 1);
+    session.record_lesson_event(LessonNote { value: Some(value), ..about })
 }
 
 /// Returns the next hint of the step and records that it was taken.
 ///
 /// # Errors
-/// `no_hint` if the step has no further hint, `not_saved`.
-pub fn take_hint(session: &mut Session) -> Result<String, Refusal> {
+/// `no_hint` if the step has no further hint, `not_saved_rejection`.
+pub fn take_hint(session: &mut Session) -> Result<String, Rejection> {
     let Some((step, given, text)) = next_hint(session) else {
-        return Err(Refusal::new("no_hint", "this step has no further hint"));
+        return Err(Rejection::new("no_hint", "this step has no further hint"));
     };
-    let about = LessonNote::about(LessonEvent::Hint, step as u32 + 1);
-    session.note_lesson(LessonNote { number: Some(given as u32 + 1), ..about })?;
+    let about = LessonNote::new(LessonEvent::Hint, step as u32 + 1);
+    session.record_lesson_event(LessonNote { number: Some(given as u32 + 1), ..about })?;
     Ok(text)
 }
 
 /// Returns the step, the number of hints taken in it, and the next hint.
 fn next_hint(session: &Session) -> Option<(usize, usize, String)> {
     let (standing, step) = (session.lesson()?, lesson_step(session)?);
-    let given = standing.hints(step);
-    Some((step, given, standing.lesson.filled(standing.step(step)?.hints.get(given)?)))
+    let given = standing.hint_count(step);
+    Some((step, given, standing.lesson.fill_figures(standing.step(step)?.hints.get(given)?)))
 }
 
 /// Returns the value of a measurement over all weeks in which the student could decide, up to the current one.
@@ -53,7 +53,7 @@ fn next_hint(session: &Session) -> Option<(usize, usize, String)> {
 /// # Errors
 /// Returns an error if the statement is rejected or does not return one number.
 pub fn measure_over_part(measurement: &Measurement, session: &mut Session) -> Result<Option<f64>, String> {
-    let own_part = session.lesson().map(LessonStanding::own_part);
+    let own_part = session.lesson().map(LessonProgress::current_part);
     let from_week = own_part.map_or(0, |part| part.start_weeks);
     let from_day = from_week * session.params().run.days_per_week;
     measure(measurement, session, from_day)

@@ -7,32 +7,32 @@ use serde::{Serialize, Serializer};
 
 use std::thread;
 
-use super::decisions::{PartedDecision, WeekDecisions, parted};
-use super::page::{GoalPage, LessonQuestion, pitfalls, question};
+use super::decisions::{DifferentDecision, WeekDecisions, different_decisions};
+use super::status::{GoalStatus, LessonQuestion, step_question, triggered_pitfalls};
 
 use novamind_record::figures::{WeekFigure, WeekFigures};
 use novamind_record::lesson::{
-    LessonCall, LessonGoal, LessonStanding, NumberSource, Over, ReferencePlay, ScheduledCalls,
+    LessonCall, LessonGoal, LessonProgress, NumberSource, ReferencePlay, ScheduledCalls, WeekAggregation,
 };
-use novamind_record::trajectory::record::Ended;
+use novamind_record::trajectory::record::RunEndReason;
 use novamind_session::{
-    AnswersCompanies, CompanyNames, JournalEntry, PartPlay, Session, lesson_step, play_part_watched,
+    EnterpriseNames, JournalEntry, PartPlay, RuleEvaluator, Session, lesson_step, play_part_with_hooks,
 };
-use novamind_tools::{Refusal, ToolId, highest_named};
+use novamind_tools::{Rejection, ToolId, highest_customer};
 use novamind_world::params::Params;
 
 /// A finished part of a lesson, from which the debrief is computed.
 #[derive(Debug, Clone)]
 pub struct PlayedPart {
-    standing: LessonStanding,
+    standing: LessonProgress,
     run: String,
     participant: Option<String>,
     seed: u64,
     cash_by_day: Vec<f64>,
     weeks: Vec<WeekFigures>,
     days_per_week: u32,
-    ended: Option<Ended>,
-    own: Vec<ScheduledCalls>,
+    ended: Option<RunEndReason>,
+    calls: Vec<ScheduledCalls>,
 }
 
 /// The results of a part, with the reference play and the bad play on the same seed.
@@ -51,15 +51,15 @@ pub struct Debrief {
     /// Seed of the run.
     pub seed: u64,
     /// How the run ended.
-    pub ended: Option<Ended>,
+    pub ended: Option<RunEndReason>,
     /// First day on which the student decided.
     pub first_day: u32,
     /// Cash at the end of each day in dollars, from day 0.
-    pub own: Vec<f64>,
+    pub cash_by_day: Vec<f64>,
     /// The reference play; `None` if it cannot be played.
-    pub good: Option<ReferenceCurve>,
+    pub reference: Option<ReferenceCurve>,
     /// The bad play; `None` if it cannot be played.
-    pub bad: Option<ReferenceCurve>,
+    pub bad_play: Option<ReferenceCurve>,
     /// The figure by which the part is judged, if it is not cash.
     pub judged_by: Option<JudgedFigure>,
     /// First difference between the student's decisions and the reference play.
@@ -74,8 +74,8 @@ pub struct Debrief {
 
 impl Debrief {
     /// Returns the names of enterprises, which depend only on the seed.
-    pub fn company_names(&self) -> CompanyNames {
-        CompanyNames::new(self.seed, &Params::shipped().personas.email)
+    pub fn company_names(&self) -> EnterpriseNames {
+        EnterpriseNames::new(self.seed, &Params::bundled().personas.email)
     }
 }
 
@@ -94,24 +94,24 @@ pub struct JudgedFigure {
     /// The figure.
     pub figure: WeekFigure,
     /// The student's play.
-    pub own: Vec<(u32, f64)>,
+    pub actual: Vec<(u32, f64)>,
     /// The reference play; `None` if it cannot be played.
-    pub good: Option<Vec<(u32, f64)>>,
+    pub reference: Option<Vec<(u32, f64)>>,
     /// The bad play; `None` if it cannot be played.
-    pub bad: Option<Vec<(u32, f64)>>,
+    pub bad_play: Option<Vec<(u32, f64)>>,
 }
 
 /// The comparison of the student's decisions with the reference play.
 #[derive(Debug, Clone, PartialEq)]
 pub enum DecisionComparison {
     /// The decisions differ.
-    Parted(FirstDifference),
+    Different(FirstDifference),
     /// The decisions are the same in every week.
     Same,
     /// The part requires no decision.
-    Nothing,
+    NoDecisions,
     /// One of the plays cannot be re-simulated, or the student's play has a different result.
-    Unknown,
+    NotComparable,
 }
 
 /// The first week in which the decisions differ from the reference play.
@@ -122,7 +122,7 @@ pub struct FirstDifference {
     /// First day of the week.
     pub day: u32,
     /// The decisions that differ.
-    pub decisions: Vec<PartedDecision>,
+    pub decisions: Vec<DifferentDecision>,
     /// Effect of these decisions of the reference play in the student's run.
     pub effect: DecisionEffect,
 }
@@ -131,26 +131,26 @@ pub struct FirstDifference {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum DecisionEffect {
     /// The decisions were simulated.
-    Simulated(PartingEffect),
+    Simulated(ReferenceEffect),
     /// The decisions are rejected in the student's run.
-    Refused,
+    Rejected,
     /// Later calls name customers, which would have different numbers.
-    OtherCustomers,
+    DifferentCustomers,
 }
 
 impl DecisionEffect {
     /// Returns the effect, or `None` if it was not simulated.
-    pub fn simulated(self) -> Option<PartingEffect> {
+    pub fn as_simulated(self) -> Option<ReferenceEffect> {
         match self {
             DecisionEffect::Simulated(effect) => Some(effect),
-            DecisionEffect::Refused | DecisionEffect::OtherCustomers => None,
+            DecisionEffect::Rejected | DecisionEffect::DifferentCustomers => None,
         }
     }
 }
 
 /// The result of the run with the decisions of the reference play in one week and all other decisions unchanged.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct PartingEffect {
+pub struct ReferenceEffect {
     /// Last day of both simulations.
     pub day: u32,
     /// Cash of the run, dollars.
@@ -170,22 +170,25 @@ pub struct DebriefStep {
     /// Number of tries.
     pub tries: u32,
     /// Number of hints taken, and of all hints.
-    #[serde(serialize_with = "used_of")]
+    #[serde(serialize_with = "serialize_hint_usage")]
     pub hints: (usize, usize),
     /// The question with guess and outcome.
     pub question: Option<LessonQuestion>,
     /// The goals of the step.
-    pub goals: Vec<GoalPage>,
+    pub goals: Vec<GoalStatus>,
 }
 
-fn used_of<S: Serializer>((used, of): &(usize, usize), serializer: S) -> Result<S::Ok, S::Error> {
+fn serialize_hint_usage<S: Serializer>(
+    (used, of): &(usize, usize),
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
     serde_json::json!({ "used": used, "of": of }).serialize(serializer)
 }
 
 /// Returns the student's calls by week, without those of the start and of the lesson itself.
-fn own_calls(session: &Session, standing: &LessonStanding) -> Vec<ScheduledCalls> {
-    let part = standing.own_part();
-    let of_lesson = |tool: ToolId| part.moves_capacity() && tool == ToolId::SetCapacityTier;
+fn student_calls(session: &Session, standing: &LessonProgress) -> Vec<ScheduledCalls> {
+    let part = standing.current_part();
+    let of_lesson = |tool: ToolId| part.has_automatic_capacity() && tool == ToolId::SetCapacityTier;
     let starts = part.start.iter().flat_map(|own| &own.calls);
     let starts = starts.filter(|call| !matches!(call, LessonCall::Tool(tool, _) if of_lesson(*tool))).count();
     let days = session.params().run.days_per_week;
@@ -204,12 +207,12 @@ fn own_calls(session: &Session, standing: &LessonStanding) -> Vec<ScheduledCalls
 }
 
 /// Returns a figure at the end of each week that has a value.
-fn by_day(figure: WeekFigure, weeks: &[WeekFigures]) -> Vec<(u32, f64)> {
-    weeks.iter().filter_map(|week| Some((week.day, figure.of_week(week)?))).collect()
+fn figure_by_day(figure: WeekFigure, weeks: &[WeekFigures]) -> Vec<(u32, f64)> {
+    weeks.iter().filter_map(|week| Some((week.day, figure.company_value(week)?))).collect()
 }
 
 /// A simulated play of the part.
-struct Played {
+struct PlayResult {
     cash_by_day: Vec<f64>,
     figures: Vec<WeekFigures>,
     weeks: Vec<WeekDecisions>,
@@ -220,15 +223,15 @@ impl PlayedPart {
     ///
     /// # Errors
     /// `not_in_a_lesson`, `lesson_not_over`.
-    pub fn of(session: &Session) -> Result<PlayedPart, Refusal> {
+    pub fn from_session(session: &Session) -> Result<PlayedPart, Rejection> {
         let Some(standing) = session.lesson() else {
             let message = "this run does not belong to a lesson; novamind lesson list shows all lessons";
-            return Err(Refusal::new("not_in_a_lesson", message));
+            return Err(Rejection::new("not_in_a_lesson", message));
         };
         if lesson_step(session).is_some() {
             let message =
                 "the debrief is available when this part of the lesson has ended; lesson shows the task";
-            return Err(Refusal::new("lesson_not_over", message));
+            return Err(Rejection::new("lesson_not_over", message));
         }
         let manifest = session.manifest();
         Ok(PlayedPart {
@@ -240,38 +243,43 @@ impl PlayedPart {
             weeks: session.weeks().to_vec(),
             days_per_week: session.params().run.days_per_week,
             ended: session.ended(),
-            own: own_calls(session, standing),
+            calls: student_calls(session, standing),
         })
     }
 
     /// Computes the debrief. Simulates the part up to four times in memory; `answers` answers enterprises in plays that use rules.
-    pub fn debrief(&self, answers: AnswersCompanies) -> Debrief {
+    pub fn debrief(&self, answers: RuleEvaluator) -> Debrief {
         let plan = &self.standing.lesson.plan;
         let [good, bad, own] = thread::scope(|scope| {
-            let plays = [&plan.good.plays, &plan.bad.plays, &self.own];
-            let begun = plays.map(|calls| scope.spawn(move || self.play(calls, answers)));
+            let plays = [&plan.good.plays, &plan.bad.plays, &self.calls];
+            let begun = plays.map(|calls| scope.spawn(move || self.simulate_calls(calls, answers)));
             begun.map(|play| play.join().ok().flatten())
         });
-        let (part, decides) = (self.standing.part, plan.good.plays_in(self.standing.part));
+        let (part, decides) = (self.standing.part, plan.good.has_calls_in(self.standing.part));
         let both = good.as_ref().zip(own.as_ref());
         let comparison = match both {
-            _ if !decides => DecisionComparison::Nothing,
-            Some((good, own)) => self.compared(good, own, answers),
-            None => DecisionComparison::Unknown,
+            _ if !decides => DecisionComparison::NoDecisions,
+            Some((good, own)) => self.compare_decisions(good, own, answers),
+            None => DecisionComparison::NotComparable,
         };
         let judged_by = self.judged_by().map(|figure| {
-            let of = |played: &Option<Played>| {
-                played.as_ref().filter(|_| decides).map(|own| by_day(figure, &own.figures))
+            let of = |played: &Option<PlayResult>| {
+                played.as_ref().filter(|_| decides).map(|own| figure_by_day(figure, &own.figures))
             };
-            JudgedFigure { figure, own: by_day(figure, &self.weeks), good: of(&good), bad: of(&bad) }
+            JudgedFigure {
+                figure,
+                actual: figure_by_day(figure, &self.weeks),
+                reference: of(&good),
+                bad_play: of(&bad),
+            }
         });
         let is_last = self.standing.part + 1 == plan.parts.len();
-        let curve = |played: Option<Played>, play: &ReferencePlay| {
+        let curve = |played: Option<PlayResult>, play: &ReferencePlay| {
             let text = is_last.then(|| play.text_of(part).to_owned());
             let played = played.filter(|_| decides);
             played.map(|own| ReferenceCurve { text, cash_by_day: own.cash_by_day })
         };
-        let part = self.standing.own_part();
+        let part = self.standing.current_part();
         Debrief {
             title: plan.title.clone(),
             learning_goal: plan.learning_goal.clone(),
@@ -281,90 +289,95 @@ impl PlayedPart {
             seed: self.seed,
             ended: self.ended,
             first_day: part.start_weeks * self.days_per_week,
-            own: self.cash_by_day.clone(),
-            good: curve(good, &plan.good),
-            bad: curve(bad, &plan.bad),
+            cash_by_day: self.cash_by_day.clone(),
+            reference: curve(good, &plan.good),
+            bad_play: curve(bad, &plan.bad),
             judged_by,
             comparison,
             steps: self.steps(),
-            pitfalls: pitfalls(&self.standing),
-            text: is_last.then(|| self.standing.lesson.filled(&self.standing.lesson.debrief)),
+            pitfalls: triggered_pitfalls(&self.standing),
+            text: is_last.then(|| self.standing.lesson.fill_figures(&self.standing.lesson.debrief)),
         }
     }
 
     /// Returns the figure of the first goal of the last step with goals, if it is a figure of the last week other than cash.
     fn judged_by(&self) -> Option<WeekFigure> {
-        let steps = &self.standing.own_part().steps;
+        let steps = &self.standing.current_part().steps;
         let goal = steps.iter().rev().find_map(|step| step.goals.first())?;
-        match (&goal.measurement.source, goal.measurement.over) {
-            (NumberSource::Figure(figure), Over::End) => Some(*figure),
+        match (&goal.measurement.source, goal.measurement.aggregation) {
+            (NumberSource::Figure(figure), WeekAggregation::Last) => Some(*figure),
             _ => None,
         }
     }
 
-    fn play(&self, calls: &[ScheduledCalls], answers: AnswersCompanies) -> Option<Played> {
+    fn simulate_calls(&self, calls: &[ScheduledCalls], answers: RuleEvaluator) -> Option<PlayResult> {
         let play = PartPlay {
             lesson: &self.standing.lesson,
             part: self.standing.part,
             seed: Some(self.seed),
-            plays: calls,
+            scheduled_calls: calls,
             weeks: Some((self.cash_by_day.len() as u32).saturating_sub(1).div_ceil(self.days_per_week)),
             is_judged: false,
-            asks_database: false,
+            needs_database: false,
         };
         let mut weeks = Vec::new();
-        let mut watch = |session: &Session| weeks.push(WeekDecisions::of(session));
-        let played = play_part_watched(&play, answers, &mut watch, &mut |_, _| Ok(())).ok()?;
+        let mut watch = |session: &Session| weeks.push(WeekDecisions::from_session(session));
+        let played = play_part_with_hooks(&play, answers, &mut watch, &mut |_, _| Ok(())).ok()?;
         let (cash_by_day, figures) = (played.cash_by_day().to_vec(), played.weeks().to_vec());
-        Some(Played { cash_by_day, figures, weeks })
+        Some(PlayResult { cash_by_day, figures, weeks })
     }
 
     /// Compares the student's decisions with those of the reference play.
-    fn compared(&self, good: &Played, own: &Played, answers: AnswersCompanies) -> DecisionComparison {
+    fn compare_decisions(
+        &self,
+        good: &PlayResult,
+        own: &PlayResult,
+        answers: RuleEvaluator,
+    ) -> DecisionComparison {
         if own.cash_by_day != self.cash_by_day {
-            return DecisionComparison::Unknown;
+            return DecisionComparison::NotComparable;
         }
         let both = own.weeks.iter().zip(&good.weeks);
-        let mut parts = both.map(|(own, good)| parted(own, good)).enumerate();
+        let mut parts = both.map(|(own, good)| different_decisions(own, good)).enumerate();
         let Some((at, decisions)) = parts.find(|(_, parted)| !parted.is_empty()) else {
             return DecisionComparison::Same;
         };
-        let before = self.standing.own_part().start_weeks + at as u32;
-        let with = self.with_decisions(before, &decisions, &good.weeks[at]);
+        let before = self.standing.current_part().start_weeks + at as u32;
+        let with = self.calls_with_decisions(before, &decisions, &good.weeks[at]);
         let effect = match self.names_customers_after(before) {
-            true => DecisionEffect::OtherCustomers,
+            true => DecisionEffect::DifferentCustomers,
             false => self
-                .play(&with, answers)
-                .and_then(|played| self.effect_of(&played))
-                .map_or(DecisionEffect::Refused, DecisionEffect::Simulated),
+                .simulate_calls(&with, answers)
+                .and_then(|played| self.measure_effect(&played))
+                .map_or(DecisionEffect::Rejected, DecisionEffect::Simulated),
         };
         let day = before * self.days_per_week;
-        DecisionComparison::Parted(FirstDifference { week: before + 1, day, decisions, effect })
+        DecisionComparison::Different(FirstDifference { week: before + 1, day, decisions, effect })
     }
 
     /// Whether calls of later weeks name customers, whose numbers depend on earlier decisions.
     fn names_customers_after(&self, week: u32) -> bool {
-        let later = self.own.iter().filter(|own| own.week > week).flat_map(|own| &own.calls);
+        let later = self.calls.iter().filter(|own| own.week > week).flat_map(|own| &own.calls);
         later.into_iter().any(|call| match call {
-            LessonCall::Tool(tool, args) => highest_named(*tool, args).is_some(),
+            LessonCall::Tool(tool, args) => highest_customer(*tool, args).is_some(),
             _ => false,
         })
     }
 
-    fn effect_of(&self, played: &Played) -> Option<PartingEffect> {
+    fn measure_effect(&self, played: &PlayResult) -> Option<ReferenceEffect> {
         let (own, with) = (*self.cash_by_day.last()?, *played.cash_by_day.last()?);
         let judged = self.judged_by().and_then(|figure| {
-            let last = |weeks: &[WeekFigures]| figure.of_week(weeks.last()?);
+            let last = |weeks: &[WeekFigures]| figure.company_value(weeks.last()?);
             last(&self.weeks).zip(last(&played.figures))
         });
-        Some(PartingEffect { day: played.cash_by_day.len() as u32 - 1, own, with, judged })
+        Some(ReferenceEffect { day: played.cash_by_day.len() as u32 - 1, own, with, judged })
     }
 
     /// Returns the student's calls, with the differing calls of one week replaced by those of the reference play.
-    fn with_decisions(
+    fn calls_with_decisions(
         &self,
         week: u32,
-        decisions: &[PartedDecision],
+        decisions: &[DifferentDecision],
         good: &WeekDecisions,
     ) -> Vec<ScheduledCalls> {
         let differs = |tool: &ToolId| decisions.iter().any(|decision| decision.tool == *tool);
@@ -372,8 +385,9 @@ impl PlayedPart {
             let call = own.calls.first();
             own.week == week && matches!(call, Some(LessonCall::Tool(tool, _)) if differs(tool))
         };
-        let mut calls: Vec<ScheduledCalls> = self.own.iter().filter(|own| !is_other(own)).cloned().collect();
-        let made = good.calls_of(&differs).into_iter().map(|(tool, args)| LessonCall::Tool(tool, args));
+        let mut calls: Vec<ScheduledCalls> =
+            self.calls.iter().filter(|own| !is_other(own)).cloned().collect();
+        let made = good.calls_for(&differs).into_iter().map(|(tool, args)| LessonCall::Tool(tool, args));
         calls.push(ScheduledCalls {
             part: self.standing.part,
             week,
@@ -386,21 +400,21 @@ impl PlayedPart {
 
     fn steps(&self) -> Vec<DebriefStep> {
         let standing = &self.standing;
-        let begun = (0..standing.own_part().steps.len()).filter(|step| standing.has_begun(*step));
-        begun.filter_map(|step| result_of_step(standing, step)).collect()
+        let begun = (0..standing.current_part().steps.len()).filter(|step| standing.has_started(*step));
+        begun.filter_map(|step| step_result(standing, step)).collect()
     }
 }
 
 /// Returns the question, the goals and the results of a step, or `None` if the step does not exist.
-pub(super) fn result_of_step(standing: &LessonStanding, step: usize) -> Option<DebriefStep> {
+pub(super) fn step_result(standing: &LessonProgress, step: usize) -> Option<DebriefStep> {
     let own = standing.step(step)?;
-    let judged = standing.goals(step);
-    let page = |(at, goal): (usize, &LessonGoal)| GoalPage::of(standing, goal, judged.get(at).copied());
+    let judged = standing.goal_results(step);
+    let page = |(at, goal): (usize, &LessonGoal)| GoalStatus::new(standing, goal, judged.get(at).copied());
     Some(DebriefStep {
         title: own.title.clone(),
-        tries: standing.tries(step),
-        hints: (standing.hints(step), own.hints.len()),
-        question: question(standing, step),
+        tries: standing.attempt(step),
+        hints: (standing.hint_count(step), own.hints.len()),
+        question: step_question(standing, step),
         goals: own.goals.iter().enumerate().map(page).collect(),
     })
 }

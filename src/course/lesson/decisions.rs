@@ -6,7 +6,7 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 
 use novamind_session::{JournalEntry, Session};
-use novamind_tools::{Kind, ToolId};
+use novamind_tools::{ToolId, ToolKind};
 
 /// The settings in force in a week, and the one-time actions at its start.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,27 +14,27 @@ pub(super) struct WeekDecisions {
     /// Settings in force, by the tool that sets them.
     settings: BTreeMap<ToolId, Map<String, Value>>,
     /// One-time actions in order: tool and arguments.
-    deeds: Vec<(ToolId, Value)>,
+    actions: Vec<(ToolId, Value)>,
 }
 
 /// A tool whose decisions differ from the reference play.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct PartedDecision {
+pub struct DifferentDecision {
     /// The tool.
     pub tool: ToolId,
     /// The difference.
     #[serde(flatten)]
-    pub difference: DecisionContrast,
+    pub difference: DecisionDifference,
 }
 
 /// The difference between two plays in the decisions of one tool.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
-pub enum DecisionContrast {
+pub enum DecisionDifference {
     /// The settings differ.
     Settings {
         /// The settings that differ.
-        settings: Vec<SettingContrast>,
+        settings: Vec<SettingDifference>,
     },
     /// The calls differ.
     Calls {
@@ -47,7 +47,7 @@ pub enum DecisionContrast {
 
 /// A setting that differs between two plays.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct SettingContrast {
+pub struct SettingDifference {
     /// Name.
     pub name: String,
     /// Value in the student's play, or null.
@@ -58,66 +58,69 @@ pub struct SettingContrast {
 
 impl WeekDecisions {
     /// Returns the decisions in force when the week starts.
-    pub(super) fn of(session: &Session) -> WeekDecisions {
+    pub(super) fn from_session(session: &Session) -> WeekDecisions {
         let setting = |tool: ToolId| {
             let current = tool.tool().current(session.settings());
-            (tool.spec().kind == Kind::Setting && !current.is_empty()).then_some((tool, current))
+            (tool.spec().kind == ToolKind::Setting && !current.is_empty()).then_some((tool, current))
         };
         let settings: BTreeMap<ToolId, Map<String, Value>> = ToolId::all().filter_map(setting).collect();
         let today = session.day();
         let deeds = session.journal().iter().filter_map(|entry| match entry {
             JournalEntry::Call { day, tool, args, .. }
-                if *day == today && tool.spec().kind.acts() && !settings.contains_key(tool) =>
+                if *day == today && tool.spec().kind.changes_company() && !settings.contains_key(tool) =>
             {
                 Some((*tool, args.clone()))
             }
             _ => None,
         });
         let deeds = deeds.collect();
-        WeekDecisions { settings, deeds }
+        WeekDecisions { settings, actions: deeds }
     }
 
-    fn deeds_of(&self, tool: ToolId) -> Vec<Value> {
-        self.deeds.iter().filter(|(own, _)| *own == tool).map(|(_, args)| args.clone()).collect()
+    fn actions_of(&self, tool: ToolId) -> Vec<Value> {
+        self.actions.iter().filter(|(own, _)| *own == tool).map(|(_, args)| args.clone()).collect()
     }
 
     /// Returns calls that reproduce the decisions of the selected tools.
-    pub(super) fn calls_of(&self, tools: &dyn Fn(&ToolId) -> bool) -> Vec<(ToolId, Value)> {
+    pub(super) fn calls_for(&self, tools: &dyn Fn(&ToolId) -> bool) -> Vec<(ToolId, Value)> {
         let settings = self.settings.iter().map(|(tool, args)| (*tool, Value::Object(args.clone())));
-        settings.chain(self.deeds.iter().cloned()).filter(|(tool, _)| tools(tool)).collect()
+        settings.chain(self.actions.iter().cloned()).filter(|(tool, _)| tools(tool)).collect()
     }
 }
 
 /// Returns the tools whose decisions differ from the reference play.
-pub(super) fn parted(own: &WeekDecisions, good: &WeekDecisions) -> Vec<PartedDecision> {
+pub(super) fn different_decisions(own: &WeekDecisions, good: &WeekDecisions) -> Vec<DifferentDecision> {
     let settings = own.settings.iter().filter_map(|(tool, settings)| {
         let other = good.settings.get(tool)?;
-        let (own, good) = (leaves(settings), leaves(other));
+        let (own, good) = (flatten_arguments(settings), flatten_arguments(other));
         let names: BTreeSet<&String> = own.keys().chain(good.keys()).collect();
         let value =
             |of: &BTreeMap<String, Value>, name: &String| of.get(name).cloned().unwrap_or(Value::Null);
-        let settings: Vec<SettingContrast> = names
+        let settings: Vec<SettingDifference> = names
             .into_iter()
-            .map(|name| SettingContrast {
+            .map(|name| SettingDifference {
                 name: name.clone(),
                 own: value(&own, name),
                 good: value(&good, name),
             })
-            .filter(|setting| !is_same(&setting.own, &setting.good))
+            .filter(|setting| !is_same_value(&setting.own, &setting.good))
             .collect();
-        (!settings.is_empty())
-            .then_some(PartedDecision { tool: *tool, difference: DecisionContrast::Settings { settings } })
+        (!settings.is_empty()).then_some(DifferentDecision {
+            tool: *tool,
+            difference: DecisionDifference::Settings { settings },
+        })
     });
-    let done: BTreeSet<ToolId> = own.deeds.iter().chain(&good.deeds).map(|(tool, _)| *tool).collect();
+    let done: BTreeSet<ToolId> = own.actions.iter().chain(&good.actions).map(|(tool, _)| *tool).collect();
     let deeds = done.into_iter().filter_map(|tool| {
-        let (own, good) = (own.deeds_of(tool), good.deeds_of(tool));
-        (own != good).then_some(PartedDecision { tool, difference: DecisionContrast::Calls { own, good } })
+        let (own, good) = (own.actions_of(tool), good.actions_of(tool));
+        (own != good)
+            .then_some(DifferentDecision { tool, difference: DecisionDifference::Calls { own, good } })
     });
     settings.chain(deeds).collect()
 }
 
 /// Whether two values are equal: 12 equals 12.0, and null equals zero.
-fn is_same(one: &Value, other: &Value) -> bool {
+fn is_same_value(one: &Value, other: &Value) -> bool {
     let number = |value: &Value| if value.is_null() { Some(0.0) } else { value.as_f64() };
     match (number(one), number(other)) {
         (Some(one), Some(other)) => one.total_cmp(&other).is_eq(),
@@ -126,15 +129,17 @@ fn is_same(one: &Value, other: &Value) -> bool {
 }
 
 /// Flattens nested arguments; the keys are their paths, such as `content_marketing S1`.
-fn leaves(arguments: &Map<String, Value>) -> BTreeMap<String, Value> {
+fn flatten_arguments(arguments: &Map<String, Value>) -> BTreeMap<String, Value> {
     let mut found = BTreeMap::new();
     for (name, value) in arguments {
         match value {
-            Value::Object(inner) => found.extend(leaves(inner).into_iter().map(|(deeper, value)| {
-                // The name of a single outer argument adds no information.
-                let path = if arguments.len() == 1 { deeper } else { format!("{name} {deeper}") };
-                (path, value)
-            })),
+            Value::Object(inner) => {
+                found.extend(flatten_arguments(inner).into_iter().map(|(deeper, value)| {
+                    // The name of a single outer argument adds no information.
+                    let path = if arguments.len() == 1 { deeper } else { format!("{name} {deeper}") };
+                    (path, value)
+                }))
+            }
             value => {
                 found.insert(name.clone(), value.clone());
             }
@@ -149,30 +154,32 @@ mod tests {
 
     use super::*;
 
-    fn decided(prices: &Value, deeds: &[(ToolId, Value)]) -> WeekDecisions {
+    fn week_decisions(prices: &Value, deeds: &[(ToolId, Value)]) -> WeekDecisions {
         let settings = prices.as_object().cloned().unwrap_or_default();
-        WeekDecisions { settings: [(ToolId::SetPrices, settings)].into(), deeds: deeds.to_vec() }
+        WeekDecisions { settings: [(ToolId::SetPrices, settings)].into(), actions: deeds.to_vec() }
     }
 
     #[test]
-    fn plays_part_where_other_settings_hold_or_other_things_are_done() {
-        let own = decided(&json!({"A": 12, "B": 20}), &[]);
-        assert!(parted(&own, &decided(&json!({"A": 12.0, "B": 20}), &[])).is_empty());
-        let other =
-            decided(&json!({"A": 12, "B": 30}), &[(ToolId::RejectEnterpriseDeal, json!({"deal_id": 4}))]);
-        let found = parted(&own, &other);
-        let b = SettingContrast { name: "B".to_owned(), own: json!(20), good: json!(30) };
-        assert_eq!(found[0].difference, DecisionContrast::Settings { settings: vec![b] });
-        let calls = DecisionContrast::Calls { own: Vec::new(), good: vec![json!({"deal_id": 4})] };
+    fn different_settings_and_calls_are_found() {
+        let own = week_decisions(&json!({"A": 12, "B": 20}), &[]);
+        assert!(different_decisions(&own, &week_decisions(&json!({"A": 12.0, "B": 20}), &[])).is_empty());
+        let other = week_decisions(
+            &json!({"A": 12, "B": 30}),
+            &[(ToolId::RejectEnterpriseDeal, json!({"deal_id": 4}))],
+        );
+        let found = different_decisions(&own, &other);
+        let b = SettingDifference { name: "B".to_owned(), own: json!(20), good: json!(30) };
+        assert_eq!(found[0].difference, DecisionDifference::Settings { settings: vec![b] });
+        let calls = DecisionDifference::Calls { own: Vec::new(), good: vec![json!({"deal_id": 4})] };
         assert_eq!(found[1].difference, calls);
-        let made = other.calls_of(&|tool| *tool == ToolId::SetPrices);
+        let made = other.calls_for(&|tool| *tool == ToolId::SetPrices);
         assert_eq!(made, [(ToolId::SetPrices, json!({"A": 12, "B": 30}))]);
     }
 
     #[test]
-    fn nested_arguments_have_the_names_that_lead_to_them() {
+    fn flattened_arguments_are_named_by_their_path() {
         let spend = json!({"targeted_spend": {"linkedin": {"S1": 5.0}, "search": {"S2": 1.0}}});
-        let found = leaves(spend.as_object().expect("an object"));
+        let found = flatten_arguments(spend.as_object().expect("an object"));
         let names: Vec<&str> = found.keys().map(String::as_str).collect();
         assert_eq!(names, ["linkedin S1", "search S2"]);
     }

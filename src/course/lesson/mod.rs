@@ -3,5 +3,5 @@
 pub(crate) mod answers;
 pub(crate) mod debrief;
 pub(crate) mod decisions;
-pub(crate) mod page;
 pub(crate) mod runs;
+pub(crate) mod status;

@@ -6,31 +6,31 @@ use novamind_record::mode::Mode;
 use novamind_record::stamp::HandoutEntry;
 use novamind_record::trajectory::Trajectory;
 use novamind_record::trajectory::record::{LessonEvent, LessonNote};
-use novamind_session::{LessonEntry, NewRun, Session, Storage, branch_of_lesson};
-use novamind_tools::Refusal;
+use novamind_session::{LessonEntry, NewRun, Session, Storage, create_lesson_branch};
+use novamind_tools::Rejection;
 
 /// Retries a step, counted from 0, from its beginning. Returns a separate run that counts the tries.
 ///
 /// # Errors
-/// `not_in_a_lesson`, `step_unknown` for a step that has not started, `not_saved`.
-pub fn try_step_again(session: &Session, step: usize) -> Result<Session, Refusal> {
+/// `not_in_a_lesson`, `step_unknown` for a step that has not started, `not_saved_rejection`.
+pub fn retry_step(session: &Session, step: usize) -> Result<Session, Rejection> {
     let Some(standing) = session.lesson() else {
-        return Err(Refusal::new("not_in_a_lesson", "this run does not belong to a lesson"));
+        return Err(Rejection::new("not_in_a_lesson", "this run does not belong to a lesson"));
     };
-    if !standing.has_begun(step) {
-        let message = format!("choose a step from 1 to {}", standing.last_begun() + 1);
-        return Err(Refusal::at("step", "step_unknown", message));
+    if !standing.has_started(step) {
+        let message = format!("choose a step from 1 to {}", standing.last_started_step() + 1);
+        return Err(Rejection::for_field("step", "step_unknown", message));
     }
     let Some(folder) = session.folder() else {
-        return Err(Refusal::new("not_saved", "a run in memory cannot be retried"));
+        return Err(Rejection::new("not_saved", "a run in memory cannot be retried"));
     };
-    let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).map_err(not_saved)?;
-    let begun = standing.own_part().weeks_of(step).0 * session.params().run.days_per_week;
-    let mut again = branch_of_lesson(folder, session.manifest(), &trajectory, begun)?;
+    let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).map_err(not_saved_rejection)?;
+    let begun = standing.current_part().step_weeks(step).0 * session.params().run.days_per_week;
+    let mut again = create_lesson_branch(folder, session.manifest(), &trajectory, begun)?;
     // The first guess counts: the student has seen the outcome.
     if let Some(value) = standing.guess(step) {
-        let about = LessonNote::about(LessonEvent::Guess, step as u32 + 1);
-        again.note_lesson(LessonNote { value: Some(value), ..about })?;
+        let about = LessonNote::new(LessonEvent::Guess, step as u32 + 1);
+        again.record_lesson_event(LessonNote { value: Some(value), ..about })?;
     }
     Ok(again)
 }
@@ -38,30 +38,30 @@ pub fn try_step_again(session: &Session, step: usize) -> Result<Session, Refusal
 /// Starts another part of the run's lesson, counted from 0, in the same folder of runs.
 ///
 /// # Errors
-/// `not_in_a_lesson`, `part_unknown`, `not_saved`.
-pub fn begin_part(session: &Session, part: usize) -> Result<Session, Refusal> {
+/// `not_in_a_lesson`, `part_unknown`, `not_saved_rejection`.
+pub fn start_part(session: &Session, part: usize) -> Result<Session, Rejection> {
     let Some(standing) = session.lesson() else {
-        return Err(Refusal::new("not_in_a_lesson", "this run does not belong to a lesson"));
+        return Err(Rejection::new("not_in_a_lesson", "this run does not belong to a lesson"));
     };
     let parts = standing.lesson.plan.parts.len();
     if part >= parts {
-        return Err(Refusal::at("part", "part_unknown", format!("choose a part from 1 to {parts}")));
+        return Err(Rejection::for_field("part", "part_unknown", format!("choose a part from 1 to {parts}")));
     }
     let Some(runs) = session.folder().and_then(|folder| folder.parent()) else {
-        return Err(Refusal::new("not_saved", "a run in memory has no other parts"));
+        return Err(Rejection::new("not_saved", "a run in memory has no other parts"));
     };
     let manifest = session.manifest();
     let new = NewRun {
         mode: Mode::Lesson,
         participant: manifest.participant.clone(),
         lesson: Some(LessonEntry { lesson: standing.lesson.clone(), part, is_judged: true }),
-        handout: manifest.handout.clone().map(HandoutEntry::of_later_run),
+        handout: manifest.handout.clone().map(HandoutEntry::for_later_run),
         storage: Storage::Runs(runs.to_owned()),
         ..NewRun::default()
     };
-    Session::create(new, &Configuration::shipped()).map_err(not_saved)
+    Session::create(new, &Configuration::bundled()).map_err(not_saved_rejection)
 }
 
-fn not_saved(error: RunError) -> Refusal {
-    Refusal::new("not_saved", error.to_string())
+fn not_saved_rejection(error: RunError) -> Rejection {
+    Rejection::new("not_saved", error.to_string())
 }

@@ -19,21 +19,21 @@ pub(super) struct IssueWriter {
     /// First day whose clock is not written yet.
     clock_from: usize,
     /// First issue and day of each day with new issues.
-    firsts: Vec<(u32, u32)>,
+    first_issues: Vec<(u32, u32)>,
     /// Runs of changed days.
     touched: BTreeMap<u32, Vec<IssueRun>>,
 }
 
 impl IssueWriter {
     /// Returns a writer that continues a store.
-    pub fn continuing(store: &BlockStore) -> IssueWriter {
+    pub fn from_store(store: &BlockStore) -> IssueWriter {
         let clock = store.issue_clock.to_vec();
-        let first = |day: &Arc<PackedDay>| Some((day.open::<IssueRun>(0)?.first, day.day));
+        let first = |day: &Arc<PackedDay>| Some((day.unpack_run::<IssueRun>(0)?.first, day.day));
         IssueWriter {
             days: store.issues.clone(),
             clock_from: clock.len(),
             clock,
-            firsts: store.issues.iter().filter_map(first).collect(),
+            first_issues: store.issues.iter().filter_map(first).collect(),
             touched: BTreeMap::new(),
         }
     }
@@ -46,22 +46,22 @@ impl IssueWriter {
             return;
         }
         for &issue in &facts.issues_resolved {
-            self.solve(issue, facts.day);
+            self.mark_solved(issue, facts.day);
         }
         let before = self.clock.last().copied().unwrap_or(0);
         self.clock.resize(facts.day as usize, before);
         self.clock.push(before + u32::from(facts.issues_aged));
         if let Some(first) = facts.issues_opened.first() {
-            self.firsts.push((first.issue, facts.day));
-            self.touched.insert(facts.day, IssueRun::runs_of(&facts.issues_opened));
+            self.first_issues.push((first.issue, facts.day));
+            self.touched.insert(facts.day, IssueRun::runs_from_opened(&facts.issues_opened));
         }
     }
 
-    fn solve(&mut self, issue: u32, day: u32) {
-        let opened = self.firsts.partition_point(|(first, _)| *first <= issue).checked_sub(1);
-        let Some((_, opened)) = opened.map(|at| self.firsts[at]) else { return };
+    fn mark_solved(&mut self, issue: u32, day: u32) {
+        let opened = self.first_issues.partition_point(|(first, _)| *first <= issue).checked_sub(1);
+        let Some((_, opened)) = opened.map(|at| self.first_issues[at]) else { return };
         let days = &self.days;
-        let runs = self.touched.entry(opened).or_insert_with(|| unpacked(days, opened));
+        let runs = self.touched.entry(opened).or_insert_with(|| unpack_day(days, opened));
         let Some(run) = runs.partition_point(|run| run.first <= issue).checked_sub(1) else { return };
         let first = runs[run].first;
         if let Some(solved) = runs[run].solved.get_mut((issue - first) as usize) {
@@ -73,7 +73,7 @@ impl IssueWriter {
     pub fn flush(&self, transaction: &Transaction<'_>) -> rusqlite::Result<()> {
         let mut write = transaction.prepare_cached("INSERT OR REPLACE INTO issue_blocks VALUES (?1, ?2)")?;
         for (day, runs) in &self.touched {
-            write.execute(params![day, PackedDay::pack(*day, runs).bytes()])?;
+            write.execute(params![day, PackedDay::pack(*day, runs).as_bytes()])?;
         }
         let mut write = transaction.prepare_cached("INSERT OR REPLACE INTO issue_clock VALUES (?1, ?2)")?;
         for (day, aged) in (0u32..).zip(&self.clock).skip(self.clock_from) {
@@ -104,7 +104,7 @@ impl IssueWriter {
     }
 }
 
-fn unpacked(days: &[Arc<PackedDay>], day: u32) -> Vec<IssueRun> {
+fn unpack_day(days: &[Arc<PackedDay>], day: u32) -> Vec<IssueRun> {
     let Ok(at) = days.binary_search_by_key(&day, |own| own.day) else { return Vec::new() };
-    (0..days[at].len()).filter_map(|run| days[at].open(run)).collect()
+    (0..days[at].run_count()).filter_map(|run| days[at].unpack_run(run)).collect()
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use rusqlite::{Transaction, params};
 
-use crate::ledger::{LedgerDay, Movements};
+use crate::ledger::{LeadsAndPayments, LedgerDay};
 use crate::packing::PackedRows;
 use novamind_world::events::{Category, Facts, LedgerNote};
 use novamind_world::params::Params;
@@ -22,13 +22,13 @@ pub(super) struct LedgerWriter {
 
 impl LedgerWriter {
     /// Returns a writer that continues a ledger.
-    pub fn continuing(params: Arc<Params>, days: Arc<Vec<Arc<LedgerDay>>>) -> LedgerWriter {
+    pub fn from_days(params: Arc<Params>, days: Arc<Vec<Arc<LedgerDay>>>) -> LedgerWriter {
         let next = days.last().map_or(1, |day| day.first() + day.len());
         LedgerWriter { params, days, touched: BTreeMap::new(), next }
     }
 
     /// Uses other parameters from now on.
-    pub fn go_on_with(&mut self, params: Arc<Params>) {
+    pub fn set_params(&mut self, params: Arc<Params>) {
         self.params = params;
     }
 
@@ -40,17 +40,18 @@ impl LedgerWriter {
         let (next, lead_cost) = (self.next, -self.params.leads.lead_acquisition_cost);
         // Only the newest day can already exist.
         let begun = self.days.last().filter(|last| last.day() == facts.day);
-        let anew =
-            || begun.map_or_else(|| LedgerDay::of(facts.day, next, lead_cost), |last| LedgerDay::clone(last));
+        let anew = || {
+            begun.map_or_else(|| LedgerDay::new(facts.day, next, lead_cost), |last| LedgerDay::clone(last))
+        };
         let day = self.touched.entry(facts.day).or_insert_with(anew);
         let before = day.len();
         if !facts.arrivals.is_empty() || !facts.payments.is_empty() {
             let leads = facts.arrivals.iter().map(|arrival| arrival.customer).collect();
             let payments = facts.payments.iter().map(|payment| (payment.customer, payment.amount)).collect();
-            day.set(&Movements { leads, payments });
+            day.set_leads_and_payments(&LeadsAndPayments { leads, payments });
         }
         for entry in &facts.ledger {
-            day.push(entry.category, entry.amount, note(&self.params, entry.category, entry.note));
+            day.push(entry.category, entry.amount, entry_note(&self.params, entry.category, entry.note));
         }
         self.next += day.len() - before;
     }
@@ -59,7 +60,7 @@ impl LedgerWriter {
     pub fn flush(&self, transaction: &Transaction<'_>) -> rusqlite::Result<()> {
         let mut write = transaction.prepare_cached("INSERT OR REPLACE INTO ledger_blocks VALUES (?1, ?2)")?;
         for day in self.touched.values() {
-            write.execute(params![day.day(), day.bytes()])?;
+            write.execute(params![day.day(), day.to_bytes()])?;
         }
         Ok(())
     }
@@ -76,7 +77,7 @@ impl LedgerWriter {
     }
 }
 
-fn note(params: &Params, category: Category, note: LedgerNote) -> String {
+fn entry_note(params: &Params, category: Category, note: LedgerNote) -> String {
     match (category, note) {
         (_, LedgerNote::Subscribers(count)) => format!("In-app ad revenue ({count} subscribers)"),
         (_, LedgerNote::Project(tier, number)) => {

@@ -1,28 +1,28 @@
 //! Conversion of facts to rows in the writer thread.
 
-mod create;
-mod direct;
+mod bulk_insert;
+mod inserts;
 mod issues;
 mod ledger;
-mod many;
 mod notices;
 mod posts;
+mod profile_words;
+mod schema;
 mod threads;
-mod words;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use rusqlite::{Transaction, params};
 
-pub(super) use create::{LAYOUT, create};
+pub(super) use schema::{LAYOUT_VERSION, create_tables};
 
 use super::blocks::{AdsRun, SharedStore};
 use super::packing::PackedDay;
+use bulk_insert::or_null;
+pub(super) use bulk_insert::{NULL, Value, insert_rows, integer, real, text};
 use issues::IssueWriter;
 use ledger::LedgerWriter;
-use many::or_nothing;
-pub(super) use many::{NOTHING, Value, insert_rows, real, text, whole};
 use notices::NoticeWriter;
 use novamind_world::customers::persona::PersonaPicks;
 use novamind_world::events::{
@@ -30,11 +30,11 @@ use novamind_world::events::{
 };
 use novamind_world::identifiers::Plan;
 use novamind_world::params::Params;
-use words::WordWriter;
+use profile_words::ProfileWordWriter;
 
 /// The facts of a day or a call with their texts.
 #[derive(Debug, Clone, Default)]
-pub struct Entry {
+pub struct ProjectionEntry {
     /// Facts.
     pub facts: Arc<Facts>,
     /// Text of each notice of the facts.
@@ -104,14 +104,14 @@ pub(super) struct RowWriter {
     new_subscriptions: BTreeMap<u32, SubscriptionRow>,
     deals: BTreeMap<u32, DealRow>,
     changed_terms: BTreeMap<u32, TermsChanged>,
-    endings: BTreeMap<u32, SubscriptionEnded>,
+    ended_subscriptions: BTreeMap<u32, SubscriptionEnded>,
     new_usage: Vec<Arc<PackedDay>>,
     new_ads: Vec<Arc<PackedDay>>,
     keep_usage_from: Option<u32>,
     notices: NoticeWriter,
     issues: IssueWriter,
     ledger: LedgerWriter,
-    words: WordWriter,
+    words: ProfileWordWriter,
 }
 
 impl RowWriter {
@@ -123,29 +123,29 @@ impl RowWriter {
             new_subscriptions: BTreeMap::new(),
             deals: BTreeMap::new(),
             changed_terms: BTreeMap::new(),
-            endings: BTreeMap::new(),
+            ended_subscriptions: BTreeMap::new(),
             new_usage: Vec::new(),
             new_ads: Vec::new(),
             keep_usage_from: None,
-            notices: NoticeWriter::continuing(kept.inbox.clone()),
-            issues: IssueWriter::continuing(&kept),
-            ledger: LedgerWriter::continuing(params.clone(), kept.ledger.clone()),
-            words: WordWriter::default(),
+            notices: NoticeWriter::from_inbox(kept.inbox.clone()),
+            issues: IssueWriter::from_store(&kept),
+            ledger: LedgerWriter::from_days(params.clone(), kept.ledger.clone()),
+            words: ProfileWordWriter::default(),
             params,
         }
     }
 
     /// Writes an entry. Rows that can change before the commit are held back.
-    pub fn write(&mut self, transaction: &Transaction<'_>, entry: &Entry) -> rusqlite::Result<()> {
+    pub fn write(&mut self, transaction: &Transaction<'_>, entry: &ProjectionEntry) -> rusqlite::Result<()> {
         if let Some(params) = &entry.params {
             self.params = params.clone();
-            self.ledger.go_on_with(params.clone());
+            self.ledger.set_params(params.clone());
         }
         let facts = &entry.facts;
         self.words.write(transaction, facts, &self.params)?;
-        self.usage(transaction, facts)?;
-        direct::service(transaction, facts)?;
-        direct::research(transaction, facts)?;
+        self.write_usage(transaction, facts)?;
+        inserts::insert_service(transaction, facts)?;
+        inserts::insert_research(transaction, facts)?;
         for (reading, words) in facts.readings.iter().zip(&entry.readings) {
             transaction
                 .prepare_cached(
@@ -161,30 +161,30 @@ impl RowWriter {
                 ])?;
         }
         self.issues.write(facts);
-        self.departures(facts);
-        threads::turns(transaction, entry)?;
-        self.deals(transaction, facts)?;
-        direct::channel_leads(transaction, facts)?;
-        self.arrivals(transaction, entry)?;
+        self.record_cancellations(facts);
+        threads::insert_turns(transaction, entry)?;
+        self.write_deals(transaction, facts)?;
+        inserts::insert_channel_leads(transaction, facts)?;
+        self.write_leads(transaction, entry)?;
         self.ledger.write(facts);
-        self.ads(transaction, facts)?;
-        posts::posts(transaction, facts, &entry.posts)?;
-        posts::rewordings(transaction, &entry.rewordings)?;
-        posts::own_posts(transaction, facts)?;
+        self.write_ads(transaction, facts)?;
+        posts::insert_posts(transaction, facts, &entry.posts)?;
+        posts::update_post_texts(transaction, &entry.rewordings)?;
+        posts::insert_player_posts(transaction, facts)?;
         self.notices.write(entry);
-        direct::settings(transaction, entry)?;
-        direct::forecasts(transaction, &entry.forecasts)?;
-        direct::discovery(transaction, facts)
+        inserts::insert_settings(transaction, entry)?;
+        inserts::insert_forecasts(transaction, &entry.forecasts)?;
+        inserts::insert_discovery(transaction, facts)
     }
 
-    fn usage(&mut self, transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
+    fn write_usage(&mut self, transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
         if facts.service.is_none() {
             return Ok(());
         }
         let day = PackedDay::pack(facts.day, &facts.usage);
         transaction
             .prepare_cached("INSERT OR REPLACE INTO usage_blocks VALUES (?1, ?2)")?
-            .execute(params![day.day, day.bytes()])?;
+            .execute(params![day.day, day.as_bytes()])?;
         self.new_usage.push(Arc::new(day));
         let operations = &self.params.operations;
         if facts.day.is_multiple_of(operations.daily_usage_prune_every_days) {
@@ -195,32 +195,32 @@ impl RowWriter {
         Ok(())
     }
 
-    fn ads(&mut self, transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
+    fn write_ads(&mut self, transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
         if facts.ads_revenue.is_empty() {
             return Ok(());
         }
-        let day = PackedDay::pack(facts.day, &AdsRun::runs_of(&facts.ads_revenue));
+        let day = PackedDay::pack(facts.day, &AdsRun::runs_from_rows(&facts.ads_revenue));
         transaction
             .prepare_cached("INSERT OR REPLACE INTO ads_blocks VALUES (?1, ?2)")?
-            .execute(params![day.day, day.bytes()])?;
+            .execute(params![day.day, day.as_bytes()])?;
         self.new_ads.push(Arc::new(day));
         Ok(())
     }
 
-    fn departures(&mut self, facts: &Facts) {
+    fn record_cancellations(&mut self, facts: &Facts) {
         for ending in &facts.endings {
             match self.new_subscriptions.get_mut(&ending.customer) {
                 Some(row) => (row.end_day, row.status) = (Some(ending.day), ending.status),
                 None => {
-                    self.endings.insert(ending.customer, *ending);
+                    self.ended_subscriptions.insert(ending.customer, *ending);
                 }
             }
         }
     }
 
     /// Collects deals. Their terms arrive as changed terms.
-    fn deals(&mut self, transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
-        threads::contract_starts(transaction, facts)?;
+    fn write_deals(&mut self, transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
+        threads::update_contract_starts(transaction, facts)?;
         for deal in &facts.deals {
             let Some(contract_end_day) = deal.contract_end_day else { continue };
             let activated = deal.activated.then_some(facts.day);
@@ -241,26 +241,30 @@ impl RowWriter {
         Ok(())
     }
 
-    fn arrivals(&mut self, transaction: &Transaction<'_>, entry: &Entry) -> rusqlite::Result<()> {
+    fn write_leads(
+        &mut self,
+        transaction: &Transaction<'_>,
+        entry: &ProjectionEntry,
+    ) -> rusqlite::Result<()> {
         let facts = &entry.facts;
         let rows = facts.arrivals.iter().map(|arrival| {
             let company = arrival.group.is_enterprise();
             [
-                whole(arrival.customer),
+                integer(arrival.customer),
                 text(arrival.group.id()),
-                whole(facts.day),
-                whole(arrival.source as u8),
-                whole(packed_persona(company, arrival.persona)),
-                whole(self.usage_label(arrival)),
-                whole(self.budget_label(arrival)),
-                or_nothing(company.then_some(arrival.seats), whole),
-                or_nothing(entry.addresses.get(&arrival.customer), |address| text(address)),
-                NOTHING,
+                integer(facts.day),
+                integer(arrival.source as u8),
+                integer(pack_persona(company, arrival.persona)),
+                integer(self.usage_label(arrival)),
+                integer(self.budget_label(arrival)),
+                or_null(company.then_some(arrival.seats), integer),
+                or_null(entry.addresses.get(&arrival.customer), |address| text(address)),
+                NULL,
             ]
         });
         insert_rows(transaction, "INSERT INTO customer_rows VALUES", rows)?;
         for opened in &facts.openings {
-            self.new_subscriptions.insert(opened.customer, opened_row(opened, facts.day));
+            self.new_subscriptions.insert(opened.customer, subscription_row(opened, facts.day));
         }
         for change in &facts.changes {
             match self.new_subscriptions.get_mut(&change.customer) {
@@ -302,18 +306,18 @@ impl RowWriter {
         let period = self.params.billing.billing_period_days;
         let rows = std::mem::take(&mut self.new_subscriptions).into_iter().map(|(customer, row)| {
             [
-                whole(customer),
-                whole(row.subscription),
+                integer(customer),
+                integer(row.subscription),
                 text(row.plan),
                 real(row.listed_price),
                 real(row.promotion),
-                whole(row.start_day),
-                or_nothing(row.end_day, whole),
-                whole(row.status as u8),
-                whole(row.opened_day % period),
-                whole(row.seats),
-                or_nothing(row.contract_end_day, whole),
-                whole(row.billed_once),
+                integer(row.start_day),
+                or_null(row.end_day, integer),
+                integer(row.status as u8),
+                integer(row.opened_day % period),
+                integer(row.seats),
+                or_null(row.contract_end_day, integer),
+                integer(row.billed_once),
             ]
         });
         insert_rows(transaction, "INSERT INTO subscription_rows VALUES", rows)?;
@@ -341,7 +345,7 @@ impl RowWriter {
         }
         let mut end = transaction
             .prepare_cached("UPDATE subscription_rows SET end_day = ?2, state = ?3 WHERE customer_id = ?1")?;
-        for (customer, ending) in std::mem::take(&mut self.endings) {
+        for (customer, ending) in std::mem::take(&mut self.ended_subscriptions) {
             end.execute(params![customer, ending.day, ending.status as u8])?;
         }
         Ok(())
@@ -373,7 +377,7 @@ impl RowWriter {
     }
 }
 
-fn opened_row(opened: &SubscriptionOpened, day: u32) -> SubscriptionRow {
+fn subscription_row(opened: &SubscriptionOpened, day: u32) -> SubscriptionRow {
     SubscriptionRow {
         subscription: opened.subscription,
         plan: opened.plan.map_or("pending", Plan::id),
@@ -390,7 +394,7 @@ fn opened_row(opened: &SubscriptionOpened, day: u32) -> SubscriptionRow {
 }
 
 /// Packs one byte per axis, in the order of the `words` table. Enterprises and individuals use different axes.
-fn packed_persona(company: bool, picks: PersonaPicks) -> i64 {
+fn pack_persona(company: bool, picks: PersonaPicks) -> i64 {
     let [a, b, c, d, e, f, g] = picks.0;
     // industry, role, experience, work style, technical skill, size, decision, concern
     let axes = if company { [a, b, 0, e, c, d, f, g] } else { [a, b, c, d, e, 0, 0, 0] };

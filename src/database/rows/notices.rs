@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use rusqlite::{Transaction, params};
 
-use super::Entry;
-use crate::notices::{Inbox, LEAD_LOST, NoticeDay, RepeatedLoss, type_of};
+use super::ProjectionEntry;
+use crate::notices::{Inbox, LEAD_LOST, NoticeDay, RepeatedLoss, type_index};
 use crate::packing::PackedRows;
 use novamind_world::events::{Facts, LossCause};
 
@@ -15,7 +15,7 @@ pub(super) struct NoticeWriter {
     /// Committed inbox.
     inbox: Inbox,
     /// Whether the loss of a customer is reported every day, by customer number.
-    repeated: Vec<bool>,
+    is_loss_repeated: Vec<bool>,
     /// Changed days.
     days: BTreeMap<u32, NoticeDay>,
     /// Number of the next notice.
@@ -25,46 +25,51 @@ pub(super) struct NoticeWriter {
 
 impl NoticeWriter {
     /// Returns a writer that continues an inbox.
-    pub fn continuing(inbox: Inbox) -> NoticeWriter {
+    pub fn from_inbox(inbox: Inbox) -> NoticeWriter {
         let next = inbox.days.last().map_or(1, |day| day.first + day.len());
-        let mut writer =
-            NoticeWriter { inbox, repeated: Vec::new(), days: BTreeMap::new(), next, new_losses: Vec::new() };
+        let mut writer = NoticeWriter {
+            inbox,
+            is_loss_repeated: Vec::new(),
+            days: BTreeMap::new(),
+            next,
+            new_losses: Vec::new(),
+        };
         for loss in writer.inbox.losses.clone().iter() {
-            writer.is_new(loss.customer);
+            writer.is_new_loss(loss.customer);
         }
         writer
     }
 
     /// Adds the notices of an entry.
-    pub fn write(&mut self, entry: &Entry) {
+    pub fn write(&mut self, entry: &ProjectionEntry) {
         let facts = &entry.facts;
         let is_day = facts.service.is_some();
         if facts.notices.is_empty() && !is_day {
             return;
         }
-        let repeats = self.repeats(facts);
-        let day = self.day(facts.day);
+        let repeats = self.count_repeats(facts);
+        let day = self.notice_day(facts.day);
         let before = day.len();
         for (notice, words) in facts.notices.iter().zip(&entry.notices) {
-            match (RepeatedLoss::of(notice), repeats) {
-                (None, _) => day.push(type_of(notice), words),
+            match (RepeatedLoss::from_notice(notice), repeats) {
+                (None, _) => day.push(type_index(notice), words),
                 (Some(_), Some(_)) => {}
-                (Some(loss), None) => day.push(LEAD_LOST, &loss.words()),
+                (Some(loss), None) => day.push(LEAD_LOST, &loss.text()),
             }
         }
         if is_day {
-            day.repeat(repeats.unwrap_or(0));
+            day.set_repeats(repeats.unwrap_or(0));
         }
         let added = day.len() - before;
         self.next += added;
     }
 
     /// Returns the number of losses that a day repeats, if it repeats all of them, and stores the new ones.
-    fn repeats(&mut self, facts: &Facts) -> Option<u32> {
+    fn count_repeats(&mut self, facts: &Facts) -> Option<u32> {
         let mut today = 0;
-        for loss in facts.notices.iter().filter_map(RepeatedLoss::of) {
+        for loss in facts.notices.iter().filter_map(RepeatedLoss::from_notice) {
             today += 1;
-            if self.is_new(loss.customer) {
+            if self.is_new_loss(loss.customer) {
                 self.new_losses.push(loss);
             }
         }
@@ -73,18 +78,18 @@ impl NoticeWriter {
     }
 
     /// Returns whether a customer has no repeated loss yet, and marks it.
-    fn is_new(&mut self, customer: u32) -> bool {
+    fn is_new_loss(&mut self, customer: u32) -> bool {
         let at = customer as usize;
-        if self.repeated.len() <= at {
-            self.repeated.resize(at + 1, false);
+        if self.is_loss_repeated.len() <= at {
+            self.is_loss_repeated.resize(at + 1, false);
         }
-        !std::mem::replace(&mut self.repeated[at], true)
+        !std::mem::replace(&mut self.is_loss_repeated[at], true)
     }
 
     /// Returns the day with this number. Only the newest one can already exist.
-    fn day(&mut self, day: u32) -> &mut NoticeDay {
+    fn notice_day(&mut self, day: u32) -> &mut NoticeDay {
         let begun = self.inbox.days.last().filter(|last| last.day == day);
-        let anew = || begun.map_or_else(|| NoticeDay::of(day, self.next), |last| NoticeDay::clone(last));
+        let anew = || begun.map_or_else(|| NoticeDay::new(day, self.next), |last| NoticeDay::clone(last));
         self.days.entry(day).or_insert_with(anew)
     }
 
@@ -92,7 +97,7 @@ impl NoticeWriter {
     pub fn flush(&self, transaction: &Transaction<'_>) -> rusqlite::Result<()> {
         let mut write = transaction.prepare_cached("INSERT OR REPLACE INTO notice_blocks VALUES (?1, ?2)")?;
         for day in self.days.values().filter(|day| day.len() > 0) {
-            write.execute(params![day.day, day.bytes()])?;
+            write.execute(params![day.day, day.to_bytes()])?;
         }
         let mut write = transaction.prepare_cached(
             "INSERT INTO repeated_losses (customer_id, message_day, cause) VALUES (?1, ?2, ?3)",

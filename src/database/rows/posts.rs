@@ -2,15 +2,19 @@
 
 use rusqlite::{Transaction, params};
 
-use novamind_world::events::{Facts, Matter};
+use novamind_world::events::{Facts, PostSubject};
 
 /// Writes posts of other authors with their texts.
-pub(super) fn posts(transaction: &Transaction<'_>, facts: &Facts, words: &[String]) -> rusqlite::Result<()> {
+pub(super) fn insert_posts(
+    transaction: &Transaction<'_>,
+    facts: &Facts,
+    words: &[String],
+) -> rusqlite::Result<()> {
     let mut insert =
         transaction.prepare_cached("INSERT OR REPLACE INTO social_media_posts VALUES (?1, ?2, ?3, ?4)")?;
     for (post, words) in facts.posts.iter().zip(words) {
         let answered = match post.matter {
-            Matter::Comment { own_post, .. } => Some(own_post),
+            PostSubject::Comment { own_post, .. } => Some(own_post),
             _ => None,
         };
         insert.execute(params![post.post, facts.day, words, answered])?;
@@ -19,7 +23,7 @@ pub(super) fn posts(transaction: &Transaction<'_>, facts: &Facts, words: &[Strin
 }
 
 /// Writes new texts of posts of other authors.
-pub(super) fn rewordings(
+pub(super) fn update_post_texts(
     transaction: &Transaction<'_>,
     rewordings: &[(u32, String)],
 ) -> rusqlite::Result<()> {
@@ -35,7 +39,7 @@ pub(super) fn rewordings(
 }
 
 /// Writes posts of the player, and later their views and comments.
-pub(super) fn own_posts(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
+pub(super) fn insert_player_posts(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
     let mut insert = transaction.prepare_cached(
         "INSERT OR REPLACE INTO agent_social_media_posts (agent_post_id, day, content, reply_to_post_id) \
          VALUES (?1, ?2, ?3, ?4)",

@@ -2,12 +2,12 @@
 
 use rusqlite::{Transaction, params};
 
-use super::Entry;
-use novamind_base::notation::point_number;
+use super::ProjectionEntry;
+use novamind_base::formatting::decimal_literal;
 use novamind_world::events::{Facts, Offering, Sender, ThreadTurn, TurnContent};
 
 /// Writes the turns of an entry with their texts.
-pub(super) fn turns(transaction: &Transaction<'_>, entry: &Entry) -> rusqlite::Result<()> {
+pub(super) fn insert_turns(transaction: &Transaction<'_>, entry: &ProjectionEntry) -> rusqlite::Result<()> {
     let mut insert = transaction.prepare_cached(
         "INSERT INTO enterprise_turns VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13)",
     )?;
@@ -34,7 +34,7 @@ pub(super) fn turns(transaction: &Transaction<'_>, entry: &Entry) -> rusqlite::R
 }
 
 /// Writes the day of each deal to the row of its customer.
-pub(super) fn contract_starts(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
+pub(super) fn update_contract_starts(transaction: &Transaction<'_>, facts: &Facts) -> rusqlite::Result<()> {
     let mut update = transaction
         .prepare_cached("UPDATE customer_rows SET contract_start_day = ?2 WHERE customer_id = ?1")?;
     for deal in &facts.deals {
@@ -60,7 +60,7 @@ fn offer_json(content: &TurnContent) -> String {
                 format!(
                     "{{\"plan\": \"{}\", \"price_per_seat\": {}, \"contract_months\": 1}}",
                     offering.plan,
-                    point_number(offering.price)
+                    decimal_literal(offering.price)
                 )
             };
             format!("[{}]", offerings.iter().map(one).collect::<Vec<_>>().join(", "))
@@ -68,7 +68,7 @@ fn offer_json(content: &TurnContent) -> String {
         TurnContent::Counter { asked: offering, .. } | TurnContent::Acceptance(offering)
             if offering.price != 0.0 =>
         {
-            format!("{{\"price\": {}}}", point_number(offering.price))
+            format!("{{\"price\": {}}}", decimal_literal(offering.price))
         }
         _ => "{}".to_owned(),
     }
@@ -80,7 +80,7 @@ mod tests {
     use novamind_world::identifiers::Plan;
 
     #[test]
-    fn offers_are_json_with_blanks_and_prices_with_decimal_points() {
+    fn offer_json_is_spaced_with_decimal_points() {
         let offering = |plan, price| Offering { plan, price };
         for (content, json) in [
             (

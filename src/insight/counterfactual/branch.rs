@@ -5,17 +5,17 @@ use std::sync::{Arc, OnceLock};
 
 use serde_json::{Value, json};
 
-use super::companies::{CallHere, in_other_numbers};
-use super::edits::{AddedCall, AddedSetting, Edits, FollowedUsage, Redrawn};
-use super::kept_state::KeptState;
-use super::script::{Move, PastCall, PastDays, has_replies};
-use novamind_record::figures::{MeasuredGroup, WeekFigures};
+use super::customer_renumbering::{RenumberedCall, with_branch_number_note};
+use super::edits::{AddedCall, AddedSetting, Edits, Redraw, UsageBasedCapacity};
+use super::memory_snapshot::MemorySnapshot;
+use super::recorded_steps::{RecordedCall, RecordedDays, RecordedStep, has_replies};
+use novamind_record::figures::{GroupFigures, WeekFigures};
 use novamind_session::GroupWeek;
 use novamind_session::engine::{
-    ParameterChange, RunDatabase, Simulation, StateHash, Taken, count_groups, measured_group, not_allowed,
-    value_of_json,
+    ParameterChange, RunDatabase, Simulation, StateHash, UpdatedParams, count_day, json_to_value,
+    measure_group, parameter_not_allowed,
 };
-use novamind_tools::{Arguments, Numbers, Refusal, ToolId, View, bounds};
+use novamind_tools::{Arguments, ParameterNumbers, Rejection, ToolContext, ToolId, limits};
 use novamind_world::command::Command;
 use novamind_world::events::{DayFigures, LedgerEntry};
 use novamind_world::identifiers::ByGroup;
@@ -31,27 +31,27 @@ pub(crate) struct BranchOutcome {
     /// Mean satisfaction of individual subscribers at the end of each of these weeks; NaN without subscribers.
     pub satisfaction: Vec<f64>,
     /// Figures of every group in each of these weeks.
-    pub groups: Vec<ByGroup<MeasuredGroup>>,
+    pub groups: Vec<ByGroup<GroupFigures>>,
     /// Day and hash of every state that the recorded steps name, if hashes are requested.
     #[cfg_attr(not(test), expect(dead_code, reason = "tests compare states"))]
     pub states: Vec<(u32, StateHash)>,
     /// Calls that the branch rejects.
-    pub refused: Vec<RefusedCall>,
+    pub rejected: Vec<RejectedCall>,
     /// Parameter changes that are invalid in the branch and therefore omitted: day, key, reason.
-    pub unfit: Vec<(u32, String, Refusal)>,
+    pub rejected_parameters: Vec<(u32, String, Rejection)>,
     /// Calls that the run rejected and the branch would accept; they are not made.
-    pub possible: Vec<PastCall>,
+    pub newly_accepted: Vec<RecordedCall>,
     /// Calls that adjusted the capacity to usage.
-    pub followed: Vec<AddedCall>,
+    pub capacity_calls: Vec<AddedCall>,
     /// The reason if the simulation ended early because a day had too many leads.
-    pub crowded: Option<Refusal>,
+    pub lead_overflow: Option<Rejection>,
     /// Final state.
-    pub end: KeptState,
+    pub final_state: MemorySnapshot,
 }
 
 /// A call that is rejected in a re-simulation.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct RefusedCall {
+pub(crate) struct RejectedCall {
     /// Line in the run; `None` for an added call.
     pub seq: Option<u64>,
     /// Decision day.
@@ -59,46 +59,46 @@ pub(crate) struct RefusedCall {
     /// Tool.
     pub tool: ToolId,
     /// Reason.
-    pub refusal: Refusal,
+    pub rejection: Rejection,
 }
 
 /// Re-simulates the days after a state with edits of the recorded steps. Days after the last step keep the current settings.
 /// `progress` is called once per simulated day. Returns `None` if it stops the simulation.
-pub(crate) fn counterfactual(
-    start: &KeptState,
-    moves: &[Move],
+pub(crate) fn simulate_branch(
+    start: &MemorySnapshot,
+    moves: &[RecordedStep],
     edits: &Edits,
     until: u32,
     progress: &mut dyn FnMut(u32) -> ControlFlow<()>,
 ) -> Option<BranchOutcome> {
-    let mut branch = OpenBranch::of(start, moves, edits, false);
+    let mut branch = BranchSimulation::new(start, moves, edits, false);
     branch.advance(until, progress)?;
-    Some(branch.outcome())
+    Some(branch.into_outcome())
 }
 
-/// Re-simulates days like [`counterfactual`] and computes the hash of every state that the recorded steps name.
+/// Re-simulates days like [`simulate_branch`] and computes the hash of every state that the recorded steps name.
 #[cfg(test)]
-pub(crate) fn counterfactual_with_hashes(
-    start: &KeptState,
-    moves: &[Move],
+pub(crate) fn simulate_branch_with_hashes(
+    start: &MemorySnapshot,
+    moves: &[RecordedStep],
     edits: &Edits,
     until: u32,
 ) -> Option<BranchOutcome> {
-    let mut branch = OpenBranch::of(start, moves, edits, true);
+    let mut branch = BranchSimulation::new(start, moves, edits, true);
     branch.advance(until, &mut |_| ControlFlow::Continue(()))?;
-    Some(branch.outcome())
+    Some(branch.into_outcome())
 }
 
 /// Returns the first day up to `until` at whose end two edits of the same steps have different states, or an inner `None` if there is
 /// none. Returns an outer `None` if `progress`, called once per simulated day, stops the simulation.
-pub(crate) fn first_difference(
-    start: &KeptState,
-    moves: &[Move],
+pub(crate) fn first_different_day(
+    start: &MemorySnapshot,
+    moves: &[RecordedStep],
     (one, other): (&Edits, &Edits),
     until: u32,
     progress: &mut dyn FnMut(u32) -> ControlFlow<()>,
 ) -> Option<Option<u32>> {
-    let mut both = [one, other].map(|edits| OpenBranch::of(start, moves, edits, false));
+    let mut both = [one, other].map(|edits| BranchSimulation::new(start, moves, edits, false));
     for day in start.world.day + 1..=until {
         for branch in &mut both {
             branch.advance(day, progress)?;
@@ -112,9 +112,9 @@ pub(crate) fn first_difference(
 }
 
 /// A re-simulation in progress.
-struct OpenBranch<'a> {
+struct BranchSimulation<'a> {
     edits: &'a Edits,
-    moves: &'a [Move],
+    remaining_steps: &'a [RecordedStep],
     simulation: Simulation,
     /// Discards all output.
     projection: RunDatabase,
@@ -124,188 +124,195 @@ struct OpenBranch<'a> {
     /// Cash at the start of the week.
     cash_before: f64,
     /// Ledger entries of calls since the last day.
-    called: Vec<LedgerEntry>,
+    call_entries: Vec<LedgerEntry>,
     /// Whether posts are worded and facts are hashed.
-    told: bool,
+    processes_text: bool,
     /// Whether this is still to be done for the last day.
-    left_to_tell: bool,
-    numbers: OnceLock<Arc<Numbers>>,
+    has_unprocessed_text: bool,
+    numbers: OnceLock<Arc<ParameterNumbers>>,
     weeks: Vec<WeekFigures>,
     days: Vec<DayFigures>,
     satisfaction: Vec<f64>,
-    groups: Vec<ByGroup<MeasuredGroup>>,
+    groups: Vec<ByGroup<GroupFigures>>,
     states: Vec<(u32, StateHash)>,
-    refused: Vec<RefusedCall>,
-    unfit: Vec<(u32, String, Refusal)>,
-    possible: Vec<PastCall>,
-    followed: Vec<AddedCall>,
+    rejected: Vec<RejectedCall>,
+    rejected_parameters: Vec<(u32, String, Rejection)>,
+    newly_accepted: Vec<RecordedCall>,
+    capacity_calls: Vec<AddedCall>,
     /// Reason why no further day is simulated.
-    crowded: Option<Refusal>,
+    lead_overflow: Option<Rejection>,
 }
 
-impl<'a> OpenBranch<'a> {
-    fn of(start: &KeptState, moves: &'a [Move], edits: &'a Edits, hashed: bool) -> OpenBranch<'a> {
+impl<'a> BranchSimulation<'a> {
+    fn new(
+        start: &MemorySnapshot,
+        moves: &'a [RecordedStep],
+        edits: &'a Edits,
+        hashed: bool,
+    ) -> BranchSimulation<'a> {
         let told = hashed || has_replies(moves);
         let params = edits.params.as_ref().unwrap_or(&start.params).clone();
         let feed = if told { start.feed.clone() } else { Default::default() };
-        let overrides = start.overrides.over(&params, &edits.dropped);
+        let overrides = start.overrides.rebased_on(&params, &edits.dropped_lines);
         let given = (start.streams.clone(), start.names.clone());
-        let simulation = Simulation::at((params, overrides), given, start.world.clone(), feed);
-        let mut branch = OpenBranch {
+        let simulation = Simulation::from_parts((params, overrides), given, start.world.clone(), feed);
+        let mut branch = BranchSimulation {
             edits,
-            moves,
+            remaining_steps: moves,
             cash_before: simulation.world.finance.cash,
             simulation,
             projection: RunDatabase::default(),
             week: WeekFigures::default(),
             group_week: ByGroup::default(),
-            called: Vec::new(),
-            told,
-            left_to_tell: false,
+            call_entries: Vec::new(),
+            processes_text: told,
+            has_unprocessed_text: false,
             numbers: OnceLock::new(),
             weeks: Vec::new(),
             days: Vec::new(),
             satisfaction: Vec::new(),
             groups: Vec::new(),
             states: Vec::new(),
-            refused: Vec::new(),
-            unfit: Vec::new(),
-            possible: Vec::new(),
-            followed: Vec::new(),
-            crowded: None,
+            rejected: Vec::new(),
+            rejected_parameters: Vec::new(),
+            newly_accepted: Vec::new(),
+            capacity_calls: Vec::new(),
+            lead_overflow: None,
         };
-        branch.open();
+        branch.apply_initial_calls();
         branch
     }
 
     /// Makes the calls that precede all steps.
-    fn open(&mut self) {
-        for (tool, args) in &self.edits.opening {
-            self.try_new(*tool, args);
+    fn apply_initial_calls(&mut self) {
+        for (tool, args) in &self.edits.initial_calls {
+            self.apply_added_call(*tool, args);
         }
     }
 
     /// Executes steps and simulates days up to the end of a day.
     fn advance(&mut self, until: u32, progress: &mut dyn FnMut(u32) -> ControlFlow<()>) -> Option<()> {
-        while let [step, rest @ ..] = self.moves
+        while let [step, rest @ ..] = self.remaining_steps
             && !self.is_over()
         {
             match step {
                 // Decisions on the last day belong to the next day.
-                Move::Call(call) if call.day >= until => break,
-                Move::Parameter(setting) if setting.day >= until => break,
-                Move::Call(call) => self.make(call),
-                Move::Parameter(setting) if self.edits.dropped.contains(&setting.change.seq) => {}
-                Move::Parameter(setting) => self.set(setting.change.clone()),
-                Move::Days(days) => {
-                    self.simulation.take_scores(&days.scores);
-                    self.run_days(days.until.min(until), progress)?;
+                RecordedStep::Call(call) if call.day >= until => break,
+                RecordedStep::Parameter(setting) if setting.day >= until => break,
+                RecordedStep::Call(call) => self.replay_call(call),
+                RecordedStep::Parameter(setting)
+                    if self.edits.dropped_lines.contains(&setting.change.seq) => {}
+                RecordedStep::Parameter(setting) => self.apply_parameter_change(setting.change.clone()),
+                RecordedStep::Days(days) => {
+                    self.simulation.add_scores(&days.scores);
+                    self.simulate_days(days.until.min(until), progress)?;
                     if days.until > until {
                         break;
                     }
-                    self.close(days);
+                    self.record_state_hash(days);
                 }
             }
-            self.moves = rest;
+            self.remaining_steps = rest;
         }
-        self.run_days(until, progress)
+        self.simulate_days(until, progress)
     }
 
     /// Makes a recorded call with its edits.
-    fn make(&mut self, call: &PastCall) {
-        if self.edits.dropped.contains(&call.seq) {
+    fn replay_call(&mut self, call: &RecordedCall) {
+        if self.edits.dropped_lines.contains(&call.seq) {
             return;
         }
-        let changed = self.edits.changed.get(&call.seq);
+        let changed = self.edits.changed_arguments.get(&call.seq);
         if !call.accepted && changed.is_none() {
-            let here = self.here(call.tool, &call.args);
-            if here.args.is_some_and(|args| self.plan(call.tool, &args, true).is_ok()) {
-                self.possible.push(call.clone());
+            let here = self.renumber_call(call.tool, &call.args);
+            if here.args.is_some_and(|args| self.plan_call(call.tool, &args, true).is_ok()) {
+                self.newly_accepted.push(call.clone());
             }
             return;
         }
-        self.call(Some(call.seq), call.tool, changed.unwrap_or(&call.args), changed.is_some());
+        self.apply_call(Some(call.seq), call.tool, changed.unwrap_or(&call.args), changed.is_some());
     }
 
-    fn try_new(&mut self, tool: ToolId, args: &Value) {
-        self.call(None, tool, args, true);
+    fn apply_added_call(&mut self, tool: ToolId, args: &Value) {
+        self.apply_call(None, tool, args, true);
     }
 
     /// Returns a call with the customer numbers of the branch.
-    fn here(&self, tool: ToolId, args: &Value) -> CallHere {
-        match &self.edits.meant {
-            None => CallHere { args: Some(args.clone()), absent: Vec::new() },
-            Some(meant) => CallHere::of(tool, args, meant, &self.simulation.world.customers.numbers),
+    fn renumber_call(&self, tool: ToolId, args: &Value) -> RenumberedCall {
+        match &self.edits.recorded_numbers {
+            None => RenumberedCall { args: Some(args.clone()), missing_customers: Vec::new() },
+            Some(meant) => RenumberedCall::new(tool, args, meant, &self.simulation.world.customers.numbers),
         }
     }
 
     /// Plans a call. Only added calls are checked against argument bounds, because recorded ones were accepted before.
-    fn plan(&self, tool: ToolId, args: &Value, is_new: bool) -> Result<Command, Refusal> {
+    fn plan_call(&self, tool: ToolId, args: &Value, is_new: bool) -> Result<Command, Rejection> {
         let Simulation { world, params, feed, .. } = &self.simulation;
-        let numbers = || self.numbers.get_or_init(|| Numbers::of(params).into()).clone();
+        let numbers = || self.numbers.get_or_init(|| ParameterNumbers::for_params(params).into()).clone();
         let tool = tool.tool();
-        let given = Arguments::of(tool.spec(), args, numbers)?;
+        let given = Arguments::parse(tool.spec(), args, numbers)?;
         if is_new {
-            bounds::hold(tool.spec(), &given)?;
+            limits::check_arguments(tool.spec(), &given)?;
         }
-        let planned = tool.plan(&View::new(world, params).with_posts(&feed.posts), &given)?;
+        let planned = tool.plan(&ToolContext::new(world, params).with_posts(&feed.posts), &given)?;
         Ok(planned.command)
     }
 
     /// Makes a call and records its rejections.
-    fn call(&mut self, seq: Option<u64>, tool: ToolId, args: &Value, is_new: bool) {
-        let CallHere { args: here, absent } = self.here(tool, args);
+    fn apply_call(&mut self, seq: Option<u64>, tool: ToolId, args: &Value, is_new: bool) {
+        let RenumberedCall { args: here, missing_customers: absent } = self.renumber_call(tool, args);
         let is_renumbered = here.as_ref().is_some_and(|here| here != args);
-        let refusal = here.and_then(|here| self.carry_out(tool, &here, is_new).err());
-        let refusal = refusal.map(|refusal| if is_renumbered { in_other_numbers(refusal) } else { refusal });
+        let refusal = here.and_then(|here| self.execute_call(tool, &here, is_new).err());
+        let refusal =
+            refusal.map(|refusal| if is_renumbered { with_branch_number_note(refusal) } else { refusal });
         let day = self.simulation.world.day;
         let refused = absent.into_iter().chain(refusal);
-        self.refused.extend(refused.map(|refusal| RefusedCall { seq, day, tool, refusal }));
+        self.rejected.extend(refused.map(|refusal| RejectedCall { seq, day, tool, rejection: refusal }));
     }
 
-    fn carry_out(&mut self, tool: ToolId, args: &Value, is_new: bool) -> Result<(), Refusal> {
-        let command = self.plan(tool, args, is_new)?;
+    fn execute_call(&mut self, tool: ToolId, args: &Value, is_new: bool) -> Result<(), Rejection> {
+        let command = self.plan_call(tool, args, is_new)?;
         let resolved = self.simulation.resolve(command);
-        if resolved.only_reads() {
+        if resolved.is_read_only() {
             return Ok(());
         }
-        self.simulation.apply(resolved, self.projection.entries());
-        self.called.extend_from_slice(&self.simulation.facts.ledger);
-        if self.told {
-            self.simulation.follow_call(self.projection.entries(), Vec::new(), None);
+        self.simulation.apply_command(resolved, self.projection.entry_writer());
+        self.call_entries.extend_from_slice(&self.simulation.facts.ledger);
+        if self.processes_text {
+            self.simulation.process_call(self.projection.entry_writer(), Vec::new(), None);
         }
         Ok(())
     }
 
     /// Sets a parameter. Omits a value that is invalid in the branch, including one for a later day.
-    fn set(&mut self, change: ParameterChange) {
+    fn apply_parameter_change(&mut self, change: ParameterChange) {
         let (day, key) = (self.simulation.world.day, change.key.clone());
-        match self.simulation.overrides.take(&self.simulation.params, change) {
-            Ok(Taken { now, .. }) => {
-                self.simulation.use_params(now, self.projection.entries());
+        match self.simulation.overrides.add_change(&self.simulation.params, change) {
+            Ok(UpdatedParams { current: now, .. }) => {
+                self.simulation.set_params(now, self.projection.entry_writer());
                 self.numbers = OnceLock::new();
             }
-            Err(unfit) => self.unfit.push((day, key, not_allowed(unfit))),
+            Err(unfit) => self.rejected_parameters.push((day, key, parameter_not_allowed(unfit))),
         }
     }
 
     /// Sets an added parameter.
-    fn set_anew(&mut self, setting: &AddedSetting) {
-        let value = value_of_json(&setting.value);
+    fn apply_added_setting(&mut self, setting: &AddedSetting) {
+        let value = json_to_value(&setting.value);
         // No event sets it, so it needs a number that no event has.
         let change =
             |value| ParameterChange { seq: u64::MAX, key: setting.key.clone(), value, from_day: None };
-        value.map(change).into_iter().for_each(|change| self.set(change));
+        value.map(change).into_iter().for_each(|change| self.apply_parameter_change(change));
     }
 
-    fn run_days(&mut self, until: u32, progress: &mut dyn FnMut(u32) -> ControlFlow<()>) -> Option<()> {
+    fn simulate_days(&mut self, until: u32, progress: &mut dyn FnMut(u32) -> ControlFlow<()>) -> Option<()> {
         while self.simulation.world.day < until && !self.is_over() {
-            self.follow_edits();
-            self.crowded = self.simulation.refuse_crowded_day().err();
-            if self.crowded.is_some() {
+            self.apply_edits_of_day();
+            self.lead_overflow = self.simulation.check_lead_capacity().err();
+            if self.lead_overflow.is_some() {
                 break;
             }
-            self.run_day();
+            self.simulate_day();
             if progress(self.simulation.world.day).is_break() {
                 return None;
             }
@@ -314,105 +321,110 @@ impl<'a> OpenBranch<'a> {
     }
 
     fn is_over(&self) -> bool {
-        self.crowded.is_some() || self.simulation.world.is_over(&self.simulation.params)
+        self.lead_overflow.is_some() || self.simulation.world.is_over(&self.simulation.params)
     }
 
     /// Applies the edits of this day: parameters, calls, capacity that follows usage, and redrawn random draws.
-    fn follow_edits(&mut self) {
+    fn apply_edits_of_day(&mut self) {
         let (day, edits) = (self.simulation.world.day, self.edits);
-        edits.set.iter().filter(|setting| setting.day == day).for_each(|setting| self.set_anew(setting));
-        for AddedCall { tool, args, .. } in edits.added.iter().filter(|added| added.day == day) {
-            self.try_new(*tool, args);
+        edits
+            .added_settings
+            .iter()
+            .filter(|setting| setting.day == day)
+            .for_each(|setting| self.apply_added_setting(setting));
+        for AddedCall { tool, args, .. } in edits.added_calls.iter().filter(|added| added.day == day) {
+            self.apply_added_call(*tool, args);
         }
-        if let Some(FollowedUsage { rule, from }) = edits.capacity
+        if let Some(UsageBasedCapacity { rule, from_day: from }) = edits.capacity_rule
             && self.week.days_run == 0
             && day >= from
         {
             let now = self.simulation.world.settings.core.capacity_tier;
             let before = self.weeks.last().or(edits.week_before.as_ref());
-            let tier = rule.tier(now, before, &self.simulation.params);
+            let tier = rule.next_tier(now, before, &self.simulation.params);
             if tier != now {
                 let args = json!({ "tier": tier });
-                self.try_new(ToolId::SetCapacityTier, &args);
-                self.followed.push(AddedCall { day, tool: ToolId::SetCapacityTier, args });
+                self.apply_added_call(ToolId::SetCapacityTier, &args);
+                self.capacity_calls.push(AddedCall { day, tool: ToolId::SetCapacityTier, args });
             }
         }
-        if let Some(Redrawn { after, salt }) = edits.redrawn
+        if let Some(Redraw { after_day: after, salt }) = edits.redraw
             && day == after
         {
-            self.simulation.streams = self.simulation.streams.redrawn(salt, after);
+            self.simulation.streams = self.simulation.streams.redrawn_after(salt, after);
         }
     }
 
-    fn run_day(&mut self) {
-        let day_before = self.left_to_tell.then(Vec::new);
+    fn simulate_day(&mut self) {
+        let day_before = self.has_unprocessed_text.then(Vec::new);
         let params = self.simulation.params.clone();
-        let figures = self.simulation.simulate_day(&self.edits.held, self.projection.entries(), day_before);
+        let figures =
+            self.simulation.simulate_day(&self.edits.held_inputs, self.projection.entry_writer(), day_before);
         if !Arc::ptr_eq(&params, &self.simulation.params) {
             self.numbers = OnceLock::new();
         }
-        self.left_to_tell = self.told;
-        self.simulation.judge_own_posts(self.projection.entries());
+        self.has_unprocessed_text = self.processes_text;
+        self.simulation.judge_own_posts(self.projection.entry_writer());
         let Simulation { facts, params, world, .. } = &self.simulation;
-        self.week.count(&figures, facts, &self.called, params);
-        count_groups(&mut self.group_week, &figures, facts, world);
-        self.called.clear();
+        self.week.add_simulated_day(&figures, facts, &self.call_entries, params);
+        count_day(&mut self.group_week, &figures, facts, world);
+        self.call_entries.clear();
         self.days.push(figures);
         let days_per_week = params.run.days_per_week;
         if world.day == week_end(world.day, days_per_week, world.total_days) || world.is_over(params) {
-            self.settle();
+            self.finish_week();
         }
     }
 
-    fn settle(&mut self) {
+    fn finish_week(&mut self) {
         let cash = self.simulation.world.finance.cash;
         self.week.cash_change = cash - self.cash_before;
         self.week.open_issues = self.simulation.open_issues();
         self.weeks.push(std::mem::take(&mut self.week));
         let (world, counted) = (&self.simulation.world, std::mem::take(&mut self.group_week));
         self.satisfaction.push(mean_satisfaction(world));
-        self.groups.push(ByGroup::from_fn(|group| measured_group(group, &counted[group], world)));
+        self.groups.push(ByGroup::from_fn(|group| measure_group(group, &counted[group], world)));
         self.cash_before = cash;
     }
 
-    fn close(&mut self, days: &PastDays) {
-        if !self.told {
+    fn record_state_hash(&mut self, days: &RecordedDays) {
+        if !self.processes_text {
             return;
         }
-        let left = std::mem::take(&mut self.left_to_tell).then(Vec::new);
-        let state = self.simulation.end_days(self.projection.entries(), left);
+        let left = std::mem::take(&mut self.has_unprocessed_text).then(Vec::new);
+        let state = self.simulation.finish_days(self.projection.entry_writer(), left);
         self.states.push((days.until, state));
-        self.simulation.close_facts();
+        self.simulation.close_facts_chain();
     }
 
-    fn outcome(self) -> BranchOutcome {
-        let OpenBranch {
+    fn into_outcome(self) -> BranchOutcome {
+        let BranchSimulation {
             simulation,
             weeks,
             days,
             satisfaction,
             groups,
             states,
-            refused,
-            unfit,
-            possible,
-            followed,
-            crowded,
+            rejected: refused,
+            rejected_parameters: unfit,
+            newly_accepted: possible,
+            capacity_calls: followed,
+            lead_overflow: crowded,
             ..
         } = self;
-        let end = KeptState::of(simulation);
+        let end = MemorySnapshot::from_simulation(simulation);
         BranchOutcome {
             weeks,
             days,
             satisfaction,
             groups,
             states,
-            refused,
-            unfit,
-            possible,
-            followed,
-            crowded,
-            end,
+            rejected: refused,
+            rejected_parameters: unfit,
+            newly_accepted: possible,
+            capacity_calls: followed,
+            lead_overflow: crowded,
+            final_state: end,
         }
     }
 }

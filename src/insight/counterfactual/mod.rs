@@ -1,17 +1,17 @@
 //! Counterfactuals: re-simulates days of a run in memory with edits and the same random draws.
 //!
 //! Random streams are keyed by their purpose, so an edit does not change the draws of other mechanisms. A re-simulation needs no
-//! database, trajectory or notices. Its input is a [`KeptState`](kept_state::KeptState) of the run, the [`Move`](script::Move)s that
+//! database, trajectory or notices. Its input is a [`MemorySnapshot`](kept_state::KeptState) of the run, the [`RecordedStep`](script::Move)s that
 //! follow it, and [`Edits`](edits::Edits); its output are figures.
 
+pub(crate) mod analysis_cache;
 pub(crate) mod branch;
-pub(crate) mod companies;
+pub(crate) mod customer_renumbering;
 pub(crate) mod edits;
-pub(crate) mod kept_state;
-pub(crate) mod last_read;
-pub(crate) mod one_each;
-pub(crate) mod past;
-pub(crate) mod script;
+pub(crate) mod memory_snapshot;
+pub(crate) mod parallel_map;
+pub(crate) mod recorded_run;
+pub(crate) mod recorded_steps;
 #[cfg(test)]
 pub(crate) mod test_kit;
 #[cfg(test)]

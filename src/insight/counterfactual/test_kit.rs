@@ -13,7 +13,7 @@ use novamind_session::{NewRun, Session, Storage};
 pub(crate) const WEEKS: u32 = 7;
 
 /// Plays several weeks of a company with customers, then one week after a change.
-pub(crate) fn played(runs: &Path, mode: Mode, seed: u64, change: Option<(&str, Value)>) -> Session {
+pub(crate) fn play_weeks(runs: &Path, mode: Mode, seed: u64, change: Option<(&str, Value)>) -> Session {
     let new = NewRun {
         seed: Some(seed),
         days: Some(120),
@@ -24,7 +24,7 @@ pub(crate) fn played(runs: &Path, mode: Mode, seed: u64, change: Option<(&str, V
         sync_calls: false,
         ..NewRun::default()
     };
-    let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+    let mut session = Session::create(new, &Configuration::bundled()).expect("a run");
     for (tool, arguments) in [
         ("set_prices", json!({"A": 12, "B": 25, "C": 55})),
         ("set_model_tiers", json!({"A": 2, "B": 3, "C": 4})),

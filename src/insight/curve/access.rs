@@ -2,31 +2,34 @@
 
 use std::sync::Arc;
 
-use super::assumed::{Reading, market_of};
-use super::explorer::{CurveBasis, CurveExplorer, OnOffer, PlanPoint};
-use novamind_session::{Look, Session};
-use novamind_tools::Refusal;
+use super::assumed::{EstimateReading, assumed_params};
+use super::explorer::{CurrentOffer, CurveBasis, CurveExplorer, PlanPoint};
+use novamind_session::{InspectionPermit, Session};
+use novamind_tools::Rejection;
 use novamind_world::customers::drift::Expectation;
 use novamind_world::identifiers::{ByPlan, Group, Plan};
 use novamind_world::retention::renewal::ongoing_discount;
 
 /// A number that no customer has, which excludes discounts of single customers.
-const NOBODY: u32 = 0;
+const NO_CUSTOMER: u32 = 0;
 
 /// A permitted and recorded inspection of the traits of a group. The true curve requires one.
 #[derive(Debug)]
-pub struct CurveLook {
+pub struct CurveInspection {
     group: Group,
-    look: Look,
+    inspection: InspectionPermit,
 }
 
-impl CurveLook {
+impl CurveInspection {
     /// Records an inspection of the curve of a group on a day.
     ///
     /// # Errors
     /// `not_in_this_mode`, `not_saved`.
-    pub fn begin(run: &mut Session, group: Group, day: u32) -> Result<CurveLook, Refusal> {
-        Ok(CurveLook { group, look: Look::begin_at(run, "curve", group.id(), day)? })
+    pub fn record(run: &mut Session, group: Group, day: u32) -> Result<CurveInspection, Rejection> {
+        Ok(CurveInspection {
+            group,
+            inspection: InspectionPermit::start_at_current_state(run, "curve", group.id(), day)?,
+        })
     }
 }
 
@@ -36,33 +39,36 @@ impl CurveExplorer {
     ///
     /// # Errors
     /// `group_not_discovered`, `guess_first`, `not_saved`.
-    pub fn of(run: &mut Session, group: Group) -> Result<CurveExplorer, Refusal> {
-        if !run.may_look_inside() {
-            return CurveExplorer::estimated(run, group);
+    pub fn open(run: &mut Session, group: Group) -> Result<CurveExplorer, Rejection> {
+        if !run.can_inspect() {
+            return CurveExplorer::from_estimates(run, group);
         }
-        let look = CurveLook::begin(run, group, run.day())?;
-        Ok(CurveExplorer::true_at(run, &look))
+        let look = CurveInspection::record(run, group, run.day())?;
+        Ok(CurveExplorer::from_true_values(run, &look))
     }
 
     /// Returns the explorer of the true traits of a group at the current moment of the run.
-    pub fn true_at(run: &Session, CurveLook { group, look }: &CurveLook) -> CurveExplorer {
-        let inside = look.inside(run);
+    pub fn from_true_values(
+        run: &Session,
+        CurveInspection { group, inspection: look }: &CurveInspection,
+    ) -> CurveExplorer {
+        let inside = look.hidden_state(run);
         let (world, params) = (inside.world(), inside.params());
         let market = (world.market.drift.expectation(*group), params.clone());
         let product = world.product.quality(*group, params);
         let tiers = &world.settings.core.tiers;
         let quality = ByPlan::from_fn(|plan| product * params.model(tiers[plan]).quality_multiplier);
         let basis = CurveBasis::Truth { day: run.day() };
-        CurveExplorer::drawn(*group, basis, on_offer(run, *group, &quality), vec![market])
+        CurveExplorer::from_markets(*group, basis, current_offer(run, *group, &quality), vec![market])
     }
 
     /// Returns the explorer of the estimates of market studies. In a lesson it requires the guess, because it would reveal the answer.
     ///
     /// # Errors
     /// `group_not_discovered`, `guess_first`.
-    pub fn estimated(run: &Session, group: Group) -> Result<CurveExplorer, Refusal> {
+    pub fn from_estimates(run: &Session, group: Group) -> Result<CurveExplorer, Rejection> {
         if let Some(lesson) = run.lesson() {
-            lesson.refuse_before_guess(run.day() / run.params().run.days_per_week)?;
+            lesson.check_guess_submitted(run.day() / run.params().run.days_per_week)?;
         }
         let all = run.company().estimates();
         let delivered = run.company().delivered_quality();
@@ -72,27 +78,31 @@ impl CurveExplorer {
             let known: Vec<&str> = all.iter().map(|own| own.group.id()).collect();
             let message =
                 format!("group {group} is not known yet; the known groups are {}", known.join(", "));
-            return Err(Refusal::at("group", "group_not_discovered", message));
+            return Err(Rejection::for_field("group", "group_not_discovered", message));
         };
         // Drift since the study is unknown.
-        let market = |reading| (Expectation::default(), Arc::new(market_of(own, reading, run.params())));
-        let markets = [Reading::Likely, Reading::Strict, Reading::Generous].map(market).into();
-        let basis = CurveBasis::Estimates { level: own.level, noise: own.noise, as_of: own.as_of };
-        Ok(CurveExplorer::drawn(group, basis, on_offer(run, group, &quality), markets))
+        let market = |reading| (Expectation::default(), Arc::new(assumed_params(own, reading, run.params())));
+        let markets =
+            [EstimateReading::Likely, EstimateReading::Strict, EstimateReading::Generous].map(market).into();
+        let basis =
+            CurveBasis::Estimates { level: own.level, noise: own.max_relative_error, as_of: own.as_of };
+        Ok(CurveExplorer::from_markets(group, basis, current_offer(run, group, &quality), markets))
     }
 }
 
 /// Returns current prices, qualities, quotas and discounts, all of which the player can see elsewhere.
-fn on_offer(run: &Session, group: Group, quality: &ByPlan<f64>) -> OnOffer {
+fn current_offer(run: &Session, group: Group, quality: &ByPlan<f64>) -> CurrentOffer {
     let (settings, params) = (run.settings(), run.params());
     let promotion = if group.is_enterprise() { 0.0 } else { settings.lead_promotion.sum(group, None) };
-    OnOffer {
+    CurrentOffer {
         plans: ByPlan::from_fn(|plan: Plan| PlanPoint {
-            list: settings.core.prices[plan],
+            list_price: settings.core.prices[plan],
             quality: quality[plan],
             quota: settings.core.quotas[plan].units(),
         }),
-        promotion,
-        ongoing: ByPlan::from_fn(|plan| ongoing_discount(NOBODY, group, plan, settings, params)),
+        discount: promotion,
+        ongoing_discounts: ByPlan::from_fn(|plan| {
+            ongoing_discount(NO_CUSTOMER, group, plan, settings, params)
+        }),
     }
 }

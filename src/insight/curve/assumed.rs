@@ -5,21 +5,21 @@ use novamind_session::Estimates;
 use novamind_world::params::Params;
 
 /// Standard deviation of budgets, as a share of the mean.
-const BUDGET_SPREAD: f64 = 0.4;
+const BUDGET_STD_SHARE: f64 = 0.4;
 /// Standard deviation of the quality floor.
-const FLOOR_SPREAD: f64 = 0.07;
+const QUALITY_FLOOR_STD: f64 = 0.07;
 /// Difference between the quality floor and the required quality at the budget.
-const RISE: f64 = 0.5;
+const QUALITY_RISE_TO_BUDGET: f64 = 0.5;
 /// Standard deviation of that difference.
-const RISE_SPREAD: f64 = 0.08;
+const QUALITY_RISE_STD: f64 = 0.08;
 /// Standard deviation of usage, as a share of the mean.
-const USAGE_SPREAD: f64 = 0.4;
+const USAGE_STD_SHARE: f64 = 0.4;
 /// Multiple of the estimate that replaces the upper limit if an error of 100 % or more leaves none.
-const ENDLESS: f64 = 10.0;
+const UNBOUNDED_FACTOR: f64 = 10.0;
 
 /// A group that is consistent with the estimates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Reading {
+pub(super) enum EstimateReading {
     /// The estimates are exact.
     Likely,
     /// Budgets are as small, and floors and usage as large, as the error allows.
@@ -30,32 +30,36 @@ pub(super) enum Reading {
 
 /// Returns parameters of a market in which the group matches its estimates. Everything else has bundled values, except the curve forms
 /// of the run's scenario, which players can see.
-pub(super) fn market_of(own: &Estimates, reading: Reading, run: &Params) -> Params {
+pub(super) fn assumed_params(own: &Estimates, reading: EstimateReading, run: &Params) -> Params {
     let end = |value: f64, is_most: bool| {
-        let (least, most) = own.range(value);
+        let (least, most) = own.true_range(value);
         match is_most {
             true if most.is_finite() => most,
-            true => ENDLESS * value,
+            true => UNBOUNDED_FACTOR * value,
             false => least,
         }
     };
     let (budget, floor, usage) = match reading {
-        Reading::Likely => (own.budget, own.floor, own.usage),
-        Reading::Strict => (end(own.budget, false), end(own.floor, true), end(own.usage, true)),
-        Reading::Generous => (end(own.budget, true), end(own.floor, false), end(own.usage, false)),
+        EstimateReading::Likely => (own.budget, own.required_quality, own.usage),
+        EstimateReading::Strict => {
+            (end(own.budget, false), end(own.required_quality, true), end(own.usage, true))
+        }
+        EstimateReading::Generous => {
+            (end(own.budget, true), end(own.required_quality, false), end(own.usage, false))
+        }
     };
-    let mut params = Params::shipped();
+    let mut params = Params::bundled();
     params.fidelity = run.fidelity;
     let widened = params.customer_generation.c_max_std_multiplier;
     let group = &mut params.group[own.group.index()];
     group.c_max_mean = budget;
-    group.c_max_std = BUDGET_SPREAD * budget / widened;
+    group.c_max_std = BUDGET_STD_SHARE * budget / widened;
     group.q_min_mean = floor;
-    group.q_min_std = FLOOR_SPREAD;
-    group.q_range_mean = RISE;
-    group.q_range_std = RISE_SPREAD;
+    group.q_min_std = QUALITY_FLOOR_STD;
+    group.q_range_mean = QUALITY_RISE_TO_BUDGET;
+    group.q_range_std = QUALITY_RISE_STD;
     group.usage_demand_mean = usage;
-    group.usage_demand_std = USAGE_SPREAD * usage;
+    group.usage_demand_std = USAGE_STD_SHARE * usage;
     if group.seat_count_min.is_some() {
         let seats = |count: f64| count.max(1.0) as u32;
         group.seat_count_min = Some(seats(own.seats.0));

@@ -9,6 +9,6 @@ const EXAMPLE: Curve =
 
 /// Returns pairs of price and required quality for a customer with a budget of 50 dollars, at prices from 0 to the budget.
 pub fn example_curve() -> Vec<(f64, f64)> {
-    let params = Params::shipped();
+    let params = Params::bundled();
     (0..=50).map(f64::from).map(|price| (price, required_quality(price, &EXAMPLE, &params))).collect()
 }

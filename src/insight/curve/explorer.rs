@@ -5,19 +5,19 @@ use serde::Serialize;
 use std::fmt;
 use std::sync::Arc;
 
-use novamind_world::customers::choice::Offer;
+use novamind_world::customers::choice::PlanOffer;
 use novamind_world::customers::drift::Expectation;
 use novamind_world::identifiers::{ByPlan, Group, Plan};
-use novamind_world::market::lead_sample::{FirstChoices, LeadSample};
+use novamind_world::market::lead_sample::{LeadChoices, LeadSample};
 use novamind_world::params::Params;
 use novamind_world::random::Streams;
 
 /// Number of simulated leads.
-pub const SAMPLED_LEADS: u32 = 2000;
+pub const LEAD_SAMPLE_SIZE: u32 = 2000;
 /// Seed of these leads: the same in every run, and different from that of its customers.
-const SEED_OF_SAMPLE: u64 = 0x5EED;
-const STEPS: usize = 60;
-const SHARES: [f64; 3] = [0.1, 0.5, 0.9];
+const SAMPLE_SEED: u64 = 0x5EED;
+const PRICE_STEPS: usize = 60;
+const CURVE_QUANTILES: [f64; 3] = [0.1, 0.5, 0.9];
 
 /// The source of the curve.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -43,7 +43,7 @@ pub enum CurveBasis {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanPoint {
     /// List price, dollars a month; for enterprises per seat.
-    pub list: f64,
+    pub list_price: f64,
     /// Delivered quality.
     pub quality: f64,
     /// Quota, units a day; infinite without a quota.
@@ -56,18 +56,18 @@ pub struct CurvePoint {
     /// Price, dollars a month; for enterprises per seat.
     pub price: f64,
     /// Quality that a tenth of the leads requires at most.
-    pub tenth: f64,
+    pub p10: f64,
     /// Quality that half of the leads require at most.
     pub median: f64,
     /// Quality that nine tenths of the leads require at most.
-    pub ninetieth: f64,
+    pub p90: f64,
     /// Minimum and maximum median of the groups that match the estimates; both equal the median for true traits.
-    pub median_between: (f64, f64),
+    pub median_range: (f64, f64),
 }
 
 /// A figure, with its range over the groups that match the estimates.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Expected {
+pub struct ExpectedRange {
     /// Value if the estimates are exact.
     pub likely: f64,
     /// Minimum.
@@ -80,11 +80,11 @@ pub struct Expected {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CurveOutcome {
     /// Share of leads that sign up; for enterprises, that ask for an offer.
-    pub conversion: Expected,
+    pub conversion: ExpectedRange,
     /// Dollars per lead in the first bill; `None` for enterprises, which negotiate prices.
-    pub revenue_per_lead: Option<Expected>,
+    pub revenue_per_lead: Option<ExpectedRange>,
     /// Share of leads that choose each plan if the estimates are exact; `None` for enterprises.
-    pub takers: Option<ByPlan<f64>>,
+    pub plan_shares: Option<ByPlan<f64>>,
 }
 
 /// Leads of one market, with the parameters of their decisions.
@@ -102,9 +102,9 @@ pub struct CurveExplorer {
     /// The current plans.
     pub plans: ByPlan<PlanPoint>,
     /// Discount for leads of every channel, dollars a month; not for enterprises.
-    pub promotion: f64,
+    pub discount: f64,
     /// Discount for subscribers, which reduces the first bill, dollars a month.
-    pub ongoing: ByPlan<f64>,
+    pub ongoing_discounts: ByPlan<f64>,
     /// Points of the curve, by ascending price from 0.
     pub points: Vec<CurvePoint>,
     /// The market, and both ends of the range that matches the estimates.
@@ -119,111 +119,123 @@ impl fmt::Debug for CurveExplorer {
 
 impl Market {
     fn draw(group: Group, expectation: Expectation, params: Arc<Params>) -> Market {
-        let streams = Streams::new(SEED_OF_SAMPLE);
-        let sample = LeadSample::draw(group, SAMPLED_LEADS, expectation, &params, &streams);
+        let streams = Streams::new(SAMPLE_SEED);
+        let sample = LeadSample::draw(group, LEAD_SAMPLE_SIZE, expectation, &params, &streams);
         Market { sample, params }
     }
 }
 
-pub(super) struct OnOffer {
+pub(super) struct CurrentOffer {
     pub(super) plans: ByPlan<PlanPoint>,
-    pub(super) promotion: f64,
-    pub(super) ongoing: ByPlan<f64>,
+    pub(super) discount: f64,
+    pub(super) ongoing_discounts: ByPlan<f64>,
 }
 
 impl CurveExplorer {
     /// Creates the explorer of a group in several markets: the likely one first, then the ends of the range.
-    pub(super) fn drawn(
+    pub(super) fn from_markets(
         group: Group,
         basis: CurveBasis,
-        on_offer: OnOffer,
+        on_offer: CurrentOffer,
         markets: Vec<(Expectation, Arc<Params>)>,
     ) -> CurveExplorer {
-        let OnOffer { plans, promotion, ongoing } = on_offer;
+        let CurrentOffer { plans, discount: promotion, ongoing_discounts: ongoing } = on_offer;
         let markets: Vec<Market> = markets
             .into_iter()
             .map(|(expectation, params)| Market::draw(group, expectation, params))
             .collect();
-        let mut explorer =
-            CurveExplorer { group, basis, plans, promotion, ongoing, points: Vec::new(), markets };
-        let most = explorer.greatest_price();
-        let price = |step: usize| most * step as f64 / STEPS as f64;
-        explorer.points = (0..=STEPS).map(|step| explorer.point(price(step))).collect();
+        let mut explorer = CurveExplorer {
+            group,
+            basis,
+            plans,
+            discount: promotion,
+            ongoing_discounts: ongoing,
+            points: Vec::new(),
+            markets,
+        };
+        let most = explorer.max_price();
+        let price = |step: usize| most * step as f64 / PRICE_STEPS as f64;
+        explorer.points = (0..=PRICE_STEPS).map(|step| explorer.point(price(step))).collect();
         explorer
     }
 
     /// Returns the highest price of the curve, dollars a month. Nearly all budgets and all plan prices are below it.
-    fn greatest_price(&self) -> f64 {
-        let budget = self.markets[0].sample.budget(0.9);
-        let plans = self.plans.iter().map(|own| 1.2 * own.list);
+    fn max_price(&self) -> f64 {
+        let budget = self.markets[0].sample.budget_quantile(0.9);
+        let plans = self.plans.iter().map(|own| 1.2 * own.list_price);
         let most = plans.fold(budget, f64::max);
         (most / 10.0).ceil().max(1.0) * 10.0
     }
 
     fn point(&self, price: f64) -> CurvePoint {
-        let required = |market: &Market, share: &[f64]| market.sample.required(price, share, &market.params);
-        let own = required(&self.markets[0], &SHARES);
+        let required = |market: &Market, share: &[f64]| {
+            market.sample.required_quality_quantiles(price, share, &market.params)
+        };
+        let own = required(&self.markets[0], &CURVE_QUANTILES);
         let medians: Vec<f64> = self.markets.iter().map(|market| required(market, &[0.5])[0]).collect();
         CurvePoint {
             price,
-            tenth: own[0],
+            p10: own[0],
             median: own[1],
-            ninetieth: own[2],
-            median_between: (least(&medians), greatest(&medians)),
+            p90: own[2],
+            median_range: (min_of(&medians), max_of(&medians)),
         }
     }
 
     /// Whether the curve shows true traits, so that figures have no range.
-    pub fn is_truth(&self) -> bool {
+    pub fn shows_true_values(&self) -> bool {
         matches!(self.basis, CurveBasis::Truth { .. })
     }
 
     /// Returns the expected decisions of leads for these plans, with current discounts.
     pub fn outcome(&self, plans: &ByPlan<PlanPoint>) -> CurveOutcome {
-        self.ask(plans, self.promotion, &self.ongoing)
+        self.evaluate(plans, self.discount, &self.ongoing_discounts)
     }
 
     /// Returns the expected decisions of leads for a single product, without quota and discounts.
-    pub fn outcome_of(&self, price: f64, quality: f64) -> CurveOutcome {
-        let point = PlanPoint { list: price, quality, quota: f64::INFINITY };
-        self.ask(&ByPlan([point; 3]), 0.0, &ByPlan([0.0; 3]))
+    pub fn outcome_at(&self, price: f64, quality: f64) -> CurveOutcome {
+        let point = PlanPoint { list_price: price, quality, quota: f64::INFINITY };
+        self.evaluate(&ByPlan([point; 3]), 0.0, &ByPlan([0.0; 3]))
     }
 
-    fn ask(&self, plans: &ByPlan<PlanPoint>, promotion: f64, ongoing: &ByPlan<f64>) -> CurveOutcome {
+    fn evaluate(&self, plans: &ByPlan<PlanPoint>, promotion: f64, ongoing: &ByPlan<f64>) -> CurveOutcome {
         let offers = ByPlan::from_fn(|plan: Plan| {
-            let PlanPoint { list, quality, quota } = plans[plan];
-            Offer { price: list, quality, quota }
+            let PlanPoint { list_price: list, quality, quota } = plans[plan];
+            PlanOffer { price: list, quality, quota }
         });
         let choose = |market: &Market| market.sample.choose(&offers, promotion, ongoing, &market.params);
-        let choices: Vec<FirstChoices> = self.markets.iter().map(choose).collect();
-        let expected = |of: fn(&FirstChoices) -> f64| {
+        let choices: Vec<LeadChoices> = self.markets.iter().map(choose).collect();
+        let expected = |of: fn(&LeadChoices) -> f64| {
             let values: Vec<f64> = choices.iter().map(of).collect();
-            Expected { likely: values[0], least: least(&values), most: greatest(&values) }
+            ExpectedRange { likely: values[0], least: min_of(&values), most: max_of(&values) }
         };
         let is_individual = !self.group.is_enterprise();
         let likely = &choices[0];
         CurveOutcome {
-            conversion: expected(FirstChoices::conversion),
-            revenue_per_lead: is_individual.then(|| expected(FirstChoices::revenue_per_lead)),
-            takers: is_individual.then(|| {
-                ByPlan::from_fn(|plan: Plan| f64::from(likely.takers[plan]) / f64::from(likely.leads))
+            conversion: expected(LeadChoices::conversion),
+            revenue_per_lead: is_individual.then(|| expected(LeadChoices::revenue_per_lead)),
+            plan_shares: is_individual.then(|| {
+                ByPlan::from_fn(|plan: Plan| {
+                    f64::from(likely.choices_by_plan[plan]) / f64::from(likely.leads)
+                })
             }),
         }
     }
 }
 
 /// Returns the curve of a group's customers from parameters alone, before any drift.
-pub fn true_curve_of(group: Group, params: &Params) -> Vec<CurvePoint> {
-    let nothing = PlanPoint { list: 0.0, quality: 0.0, quota: f64::INFINITY };
-    let on_offer = OnOffer { plans: ByPlan([nothing; 3]), promotion: 0.0, ongoing: ByPlan([0.0; 3]) };
+pub fn true_curve(group: Group, params: &Params) -> Vec<CurvePoint> {
+    let nothing = PlanPoint { list_price: 0.0, quality: 0.0, quota: f64::INFINITY };
+    let on_offer =
+        CurrentOffer { plans: ByPlan([nothing; 3]), discount: 0.0, ongoing_discounts: ByPlan([0.0; 3]) };
     let market = (Expectation::default(), Arc::new(params.clone()));
-    CurveExplorer::drawn(group, CurveBasis::Truth { day: 0 }, on_offer, vec![market]).points
+    CurveExplorer::from_markets(group, CurveBasis::Truth { day: 0 }, on_offer, vec![market]).points
 }
 
-fn least(values: &[f64]) -> f64 {
+fn min_of(values: &[f64]) -> f64 {
     values.iter().copied().fold(f64::INFINITY, f64::min)
 }
 
-fn greatest(values: &[f64]) -> f64 {
+fn max_of(values: &[f64]) -> f64 {
     values.iter().copied().fold(f64::NEG_INFINITY, f64::max)
 }

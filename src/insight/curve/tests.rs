@@ -3,14 +3,14 @@
 use serde_json::json;
 
 use super::explorer::{CurveBasis, CurveExplorer};
-use crate::curve::access::CurveLook;
+use crate::curve::access::CurveInspection;
 use novamind_record::folder::configuration::Configuration;
 use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::Via;
 use novamind_session::{NewRun, Session, Storage};
 use novamind_world::identifiers::{ByPlan, Group};
 
-fn run(mode: Mode, overrides: &[(&str, &str)]) -> Session {
+fn create_run(mode: Mode, overrides: &[(&str, &str)]) -> Session {
     let new = NewRun {
         seed: Some(7),
         mode,
@@ -19,7 +19,7 @@ fn run(mode: Mode, overrides: &[(&str, &str)]) -> Session {
         storage: Storage::Memory,
         ..NewRun::default()
     };
-    let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+    let mut session = Session::create(new, &Configuration::bundled()).expect("a run");
     for (tool, arguments) in [
         ("set_prices", json!({"A": 12, "B": 25, "C": 55})),
         ("set_usage_quotas", json!({"A": 60, "B": 300, "C": 1200})),
@@ -29,27 +29,27 @@ fn run(mode: Mode, overrides: &[(&str, &str)]) -> Session {
     session
 }
 
-fn s1() -> Group {
+fn group_s1() -> Group {
     Group::parse("S1").expect("a group")
 }
 
 fn explorer(session: &mut Session, group: &str) -> CurveExplorer {
-    CurveExplorer::of(session, Group::parse(group).expect("a group")).expect("an explorer")
+    CurveExplorer::open(session, Group::parse(group).expect("a group")).expect("an explorer")
 }
 
 /// Formats everything that an explorer shows.
-fn shown(own: &CurveExplorer) -> String {
+fn format_explorer(own: &CurveExplorer) -> String {
     let asked: Vec<_> = [(12.0, 0.2), (30.0, 0.4), (90.0, 0.9)]
         .iter()
-        .map(|(price, quality)| own.outcome_of(*price, *quality))
+        .map(|(price, quality)| own.outcome_at(*price, *quality))
         .collect();
     format!("{:?} {:?} {:?} {asked:?}", own.basis, own.points, own.outcome(&own.plans))
 }
 
 /// Conversions of the first week in the simulator, with one price on all plans (configs/lessons/price-follows-quality.toml).
 #[test]
-fn the_truth_is_within_two_points_of_the_conversions_of_the_simulator() {
-    let mut session = run(Mode::Debug, &[]);
+fn true_curve_matches_simulated_conversion_within_two_points() {
+    let mut session = create_run(Mode::Debug, &[]);
     let own = explorer(&mut session, "S1");
     assert_eq!(own.basis, CurveBasis::Truth { day: 0 });
     for (price, simulated) in [
@@ -59,7 +59,7 @@ fn the_truth_is_within_two_points_of_the_conversions_of_the_simulator() {
         (40.0, [0.02, 0.35, 0.56]),
     ] {
         for (quality, conversion) in [0.2, 0.4, 0.6].into_iter().zip(simulated) {
-            let told = own.outcome_of(price, quality);
+            let told = own.outcome_at(price, quality);
             let off = told.conversion.likely - conversion;
             assert!(off.abs() <= 0.02, "${price} at {quality}: {off}");
             assert_eq!(told.conversion.least, told.conversion.most);
@@ -70,7 +70,7 @@ fn the_truth_is_within_two_points_of_the_conversions_of_the_simulator() {
 }
 
 #[test]
-fn nothing_that_studies_do_not_tell_moves_what_an_unfinished_run_shows() {
+fn unfinished_run_depends_only_on_studied_estimates() {
     let hidden = [
         ("group.S1.c_max_std", "1"),
         ("group.S1.q_min_std", "0.3"),
@@ -83,20 +83,24 @@ fn nothing_that_studies_do_not_tell_moves_what_an_unfinished_run_shows() {
         ("quality.initial_decision_noise_min", "0.2"),
     ];
     for (key, value) in hidden {
-        let own = explorer(&mut run(Mode::Lesson, &[(key, value)]), "S1");
-        assert_eq!(shown(&own), shown(&explorer(&mut run(Mode::Lesson, &[]), "S1")), "{key}");
+        let own = explorer(&mut create_run(Mode::Lesson, &[(key, value)]), "S1");
+        assert_eq!(
+            format_explorer(&own),
+            format_explorer(&explorer(&mut create_run(Mode::Lesson, &[]), "S1")),
+            "{key}"
+        );
         // In a debug run the parameter changes the curve, which shows that the test would detect its use.
-        let truth = explorer(&mut run(Mode::Debug, &[(key, value)]), "S1");
-        let usual = explorer(&mut run(Mode::Debug, &[]), "S1");
+        let truth = explorer(&mut create_run(Mode::Debug, &[(key, value)]), "S1");
+        let usual = explorer(&mut create_run(Mode::Debug, &[]), "S1");
         let alike = key == "group.S1.usage_demand_std";
-        assert!(alike || shown(&truth) != shown(&usual), "{key}");
+        assert!(alike || format_explorer(&truth) != format_explorer(&usual), "{key}");
     }
 }
 
 #[test]
-fn unfinished_runs_show_estimates_with_ends_and_over_ones_the_truth() {
+fn unfinished_runs_show_ranges_and_finished_runs_true_values() {
     for mode in [Mode::Baseline, Mode::Sandbox, Mode::Lesson] {
-        let mut session = run(mode, &[]);
+        let mut session = create_run(mode, &[]);
         let own = explorer(&mut session, "S1");
         assert_eq!(own.basis, CurveBasis::Estimates { level: 1, noise: 0.65, as_of: 0 });
         let told = own.outcome(&own.plans);
@@ -105,40 +109,45 @@ fn unfinished_runs_show_estimates_with_ends_and_over_ones_the_truth() {
         );
         assert!(told.conversion.least < told.conversion.most);
         let wide = own.points.iter().all(|point| {
-            let (least, most) = point.median_between;
-            least <= point.median && point.median <= most && point.tenth <= point.median
+            let (least, most) = point.median_range;
+            least <= point.median && point.median <= most && point.p10 <= point.median
         });
         assert!(wide);
         let unknown = Group::parse("D_S05").expect("a group");
-        let refused = CurveExplorer::of(&mut session, unknown).expect_err("not discovered");
+        let refused = CurveExplorer::open(&mut session, unknown).expect_err("not discovered");
         assert_eq!(refused.code, "group_not_discovered");
-        assert_eq!(CurveLook::begin(&mut session, s1(), 0).expect_err("hidden").code, "not_in_this_mode");
+        assert_eq!(
+            CurveInspection::record(&mut session, group_s1(), 0).expect_err("hidden").code,
+            "not_in_this_mode"
+        );
     }
 }
 
 #[test]
-fn plans_are_asked_about_as_they_stand_and_otherwise() {
-    let mut session = run(Mode::Debug, &[]);
+fn outcome_is_computed_for_current_and_changed_plans() {
+    let mut session = create_run(Mode::Debug, &[]);
     let own = explorer(&mut session, "S1");
     let now = own.outcome(&own.plans);
-    let takers: f64 = now.takers.expect("individuals").iter().sum();
+    let takers: f64 = now.plan_shares.expect("individuals").iter().sum();
     assert!((takers - now.conversion.likely).abs() < 1e-12);
-    let dearer = ByPlan(own.plans.0.map(|plan| super::explorer::PlanPoint { list: 3.0 * plan.list, ..plan }));
+    let dearer = ByPlan(
+        own.plans.0.map(|plan| super::explorer::PlanPoint { list_price: 3.0 * plan.list_price, ..plan }),
+    );
     assert!(own.outcome(&dearer).conversion.likely < now.conversion.likely);
     let better =
         ByPlan(own.plans.0.map(|plan| super::explorer::PlanPoint { quality: plan.quality + 0.3, ..plan }));
     assert!(own.outcome(&better).conversion.likely > now.conversion.likely);
     let companies = explorer(&mut session, "E1");
     let told = companies.outcome(&companies.plans);
-    assert_eq!((told.revenue_per_lead, told.takers), (None, None));
+    assert_eq!((told.revenue_per_lead, told.plan_shares), (None, None));
 }
 
 #[test]
-fn prices_reach_beyond_the_plans_and_the_curve_rises() {
-    let own = explorer(&mut run(Mode::Debug, &[]), "S1");
+fn price_axis_covers_plans_and_curve_rises() {
+    let own = explorer(&mut create_run(Mode::Debug, &[]), "S1");
     let last = own.points.last().expect("points");
     assert!(last.price >= 1.2 * 55.0 && last.price % 10.0 == 0.0, "{}", last.price);
     assert!(own.points.windows(2).all(|pair| pair[0].median <= pair[1].median));
-    assert!(last.ninetieth.is_infinite(), "a tenth of the budgets is below the last price");
+    assert!(last.p90.is_infinite(), "a tenth of the budgets is below the last price");
     assert_eq!(super::example::example_curve().len(), 51);
 }

@@ -3,12 +3,12 @@
 use serde_json::Value;
 
 use super::decision_edit::DecisionEdit;
-use super::figure::{BranchFigure, Values, values};
+use super::figure::{BranchFigure, FigureValues, weekly_values};
 use crate::counterfactual::branch::BranchOutcome;
 use crate::counterfactual::edits::{AddedCall, Edits};
-use crate::counterfactual::script::{Move, PastCall, PastSetting};
-use novamind_session::engine::json_of_value;
-use novamind_tools::{Kind, Refusal, ToolId};
+use crate::counterfactual::recorded_steps::{RecordedCall, RecordedSetting, RecordedStep};
+use novamind_session::engine::value_to_json;
+use novamind_tools::{Rejection, ToolId, ToolKind};
 use novamind_world::events::DayFigures;
 
 /// Branches of a run with the same random draws.
@@ -34,22 +34,22 @@ pub struct BranchFigures {
     /// Last day of each week, in ascending order.
     days: Vec<u32>,
     /// Figures on those days.
-    weeks: Vec<Values>,
+    weeks: Vec<FigureValues>,
     /// Calls that differ from those of the run, by day.
-    pub differences: Vec<DecisionDifference>,
+    pub call_differences: Vec<CallDifference>,
     /// Parameter changes that differ from those of the run, by day.
-    pub parameters: Vec<ParameterDifference>,
+    pub parameter_differences: Vec<ParameterDifference>,
     /// Rejected calls and parameter changes: day, tool or key, reason.
-    pub refused: Vec<(u32, String, Refusal)>,
+    pub rejected: Vec<(u32, String, Rejection)>,
     /// Calls that were rejected in the run and would be accepted in the branch: line, day, tool. They are not made.
-    pub possible: Vec<(u64, u32, ToolId)>,
+    pub newly_accepted: Vec<(u64, u32, ToolId)>,
     /// First day at whose end the company differs from the unchanged run; `None` if it never differs.
-    pub differs_on: Option<u32>,
+    pub first_different_day: Option<u32>,
 }
 
 /// A call that differs.
 #[derive(Debug, Clone, PartialEq)]
-pub struct DecisionDifference {
+pub struct CallDifference {
     /// Decision day.
     pub day: u32,
     /// Tool.
@@ -57,11 +57,11 @@ pub struct DecisionDifference {
     /// Line in the run; `None` for an added call.
     pub seq: Option<u64>,
     /// Arguments in the run.
-    pub was: Option<Value>,
+    pub recorded: Option<Value>,
     /// Arguments in the branch; `None` if the call is not made.
-    pub is: Option<Value>,
+    pub edited: Option<Value>,
     /// For an added call: day and line of the run's next call of the same tool.
-    pub again: Option<(u32, u64)>,
+    pub next_recorded: Option<(u32, u64)>,
 }
 
 /// A parameter change that differs from the run.
@@ -72,47 +72,51 @@ pub struct ParameterDifference {
     /// Full key.
     pub key: String,
     /// Value that the run sets, if any.
-    pub was: Option<Value>,
+    pub recorded: Option<Value>,
     /// Value that the branch sets, if any.
-    pub is: Option<Value>,
+    pub edited: Option<Value>,
 }
 
 impl BranchFigures {
-    pub(super) fn of(
+    pub(super) fn new(
         edits: &[DecisionEdit],
-        (made, moves, from): (&Edits, &[Move], u32),
+        (made, moves, from): (&Edits, &[RecordedStep], u32),
         earlier: &[DayFigures],
         outcome: &BranchOutcome,
         differs_on: Option<u32>,
     ) -> BranchFigures {
-        let calls =
-            outcome.refused.iter().map(|call| (call.day, call.tool.name().to_owned(), call.refusal.clone()));
-        let mut refused: Vec<_> = calls.chain(outcome.unfit.iter().cloned()).collect();
+        let calls = outcome
+            .rejected
+            .iter()
+            .map(|call| (call.day, call.tool.name().to_owned(), call.rejection.clone()));
+        let mut refused: Vec<_> = calls.chain(outcome.rejected_parameters.iter().cloned()).collect();
         refused.sort_by_key(|(day, ..)| *day);
-        let possible = outcome.possible.iter().map(|call| (call.seq, call.day, call.tool));
-        let followed = outcome.followed.iter().map(|call| new_call(call.day, call.tool, &call.args));
-        let mut differences: Vec<_> = differences(made, moves, from).into_iter().chain(followed).collect();
+        let possible = outcome.newly_accepted.iter().map(|call| (call.seq, call.day, call.tool));
+        let followed =
+            outcome.capacity_calls.iter().map(|call| added_call_difference(call.day, call.tool, &call.args));
+        let mut differences: Vec<_> =
+            call_differences(made, moves, from).into_iter().chain(followed).collect();
         differences.sort_by_key(|call| call.day);
         BranchFigures {
             edits: edits.to_vec(),
             days: outcome.weeks.iter().map(|week| week.day).collect(),
-            weeks: values(earlier, outcome),
-            differences,
-            parameters: parameters(made, moves),
-            refused,
-            possible: possible.collect(),
-            differs_on,
+            weeks: weekly_values(earlier, outcome),
+            call_differences: differences,
+            parameter_differences: parameter_differences(made, moves),
+            rejected: refused,
+            newly_accepted: possible.collect(),
+            first_different_day: differs_on,
         }
     }
 
     /// Returns a figure at the end of each week, as pairs of day and value.
-    pub fn curve(&self, figure: BranchFigure) -> impl Iterator<Item = (u32, f64)> {
+    pub fn values_by_week(&self, figure: BranchFigure) -> impl Iterator<Item = (u32, f64)> {
         self.days.iter().zip(&self.weeks).map(move |(day, values)| (*day, values[figure as usize]))
     }
 
     /// Returns a figure at the end of the week that ends on `day`, or `None` if the branch ended earlier.
     pub fn value(&self, figure: BranchFigure, day: u32) -> Option<f64> {
-        self.curve(figure).find(|(own, _)| *own == day).map(|(_, value)| value)
+        self.values_by_week(figure).find(|(own, _)| *own == day).map(|(_, value)| value)
     }
 
     /// Returns the last simulated day.
@@ -132,76 +136,78 @@ impl BranchComparison {
 }
 
 /// Returns the difference for a call that the run did not make.
-fn new_call(day: u32, tool: ToolId, args: &Value) -> DecisionDifference {
-    DecisionDifference { day, tool, seq: None, was: None, is: Some(args.clone()), again: None }
+fn added_call_difference(day: u32, tool: ToolId, args: &Value) -> CallDifference {
+    CallDifference { day, tool, seq: None, recorded: None, edited: Some(args.clone()), next_recorded: None }
 }
 
-fn differences(edits: &Edits, moves: &[Move], from: u32) -> Vec<DecisionDifference> {
-    let opening = edits.opening.iter().map(|(tool, args)| new_call(from, *tool, args));
+fn call_differences(edits: &Edits, moves: &[RecordedStep], from: u32) -> Vec<CallDifference> {
+    let opening = edits.initial_calls.iter().map(|(tool, args)| added_call_difference(from, *tool, args));
     let next = |added: &AddedCall| {
         moves.iter().find_map(|step| match step {
-            Move::Call(call)
+            RecordedStep::Call(call)
                 if call.tool == added.tool
                     && call.day > added.day
                     && call.accepted
-                    && !edits.dropped.contains(&call.seq) =>
+                    && !edits.dropped_lines.contains(&call.seq) =>
             {
                 Some((call.day, call.seq))
             }
             _ => None,
         })
     };
-    let added = edits.added.iter().map(|call| {
-        let is_set = call.tool.spec().kind == Kind::Setting;
+    let added = edits.added_calls.iter().map(|call| {
+        let is_set = call.tool.spec().kind == ToolKind::Setting;
         let again = if is_set { next(call) } else { None };
-        DecisionDifference { again, ..new_call(call.day, call.tool, &call.args) }
+        CallDifference { next_recorded: again, ..added_call_difference(call.day, call.tool, &call.args) }
     });
     let of_run = moves.iter().filter_map(|step| match step {
-        Move::Call(call) => of_call(edits, call),
-        Move::Parameter(_) | Move::Days(_) => None,
+        RecordedStep::Call(call) => edited_call_difference(edits, call),
+        RecordedStep::Parameter(_) | RecordedStep::Days(_) => None,
     });
     opening.chain(of_run).chain(added).collect()
 }
 
 /// Returns the parameter changes that edits change, by day.
-fn parameters(edits: &Edits, moves: &[Move]) -> Vec<ParameterDifference> {
+fn parameter_differences(edits: &Edits, moves: &[RecordedStep]) -> Vec<ParameterDifference> {
     let dropped = moves.iter().filter_map(|step| match step {
-        Move::Parameter(PastSetting { day, change }) if edits.dropped.contains(&change.seq) => {
+        RecordedStep::Parameter(RecordedSetting { day, change })
+            if edits.dropped_lines.contains(&change.seq) =>
+        {
             Some(ParameterDifference {
                 day: change.from_day.map_or(*day, |from| from - 1),
                 key: change.key.clone(),
-                was: Some(json_of_value(&change.value)),
-                is: None,
+                recorded: Some(value_to_json(&change.value)),
+                edited: None,
             })
         }
         _ => None,
     });
-    let added = edits.set.iter().map(|setting| ParameterDifference {
+    let added = edits.added_settings.iter().map(|setting| ParameterDifference {
         day: setting.day,
         key: setting.key.clone(),
-        was: None,
-        is: Some(setting.value.clone()),
+        recorded: None,
+        edited: Some(setting.value.clone()),
     });
     let mut all: Vec<ParameterDifference> = dropped.chain(added).collect();
     all.sort_by_key(|own| own.day);
     all
 }
 
-fn of_call(edits: &Edits, call: &PastCall) -> Option<DecisionDifference> {
-    let is = match edits.changed.get(&call.seq) {
-        _ if edits.dropped.contains(&call.seq) => None,
+fn edited_call_difference(edits: &Edits, call: &RecordedCall) -> Option<CallDifference> {
+    let is = match edits.changed_arguments.get(&call.seq) {
+        _ if edits.dropped_lines.contains(&call.seq) => None,
         Some(args) => Some(args.clone()),
         None => return None,
     };
     if !call.accepted && is.is_none() || is.as_ref() == Some(&call.args) {
         return None;
     }
-    Some(DecisionDifference {
+    Some(CallDifference {
         day: call.day,
         tool: call.tool,
         seq: Some(call.seq),
-        was: Some(call.args.clone()),
-        is,
-        again: None,
+        recorded: Some(call.args.clone()),
+        edited: is,
+        next_recorded: None,
     })
 }

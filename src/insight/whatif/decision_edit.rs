@@ -5,17 +5,17 @@ use std::str::FromStr;
 
 use serde_json::{Map, Value, json};
 
-use crate::counterfactual::edits::{AddedCall, AddedSetting, Edits, FollowedUsage};
-use crate::counterfactual::kept_state::KeptState;
-use crate::counterfactual::script::{Move, PastCall};
-use novamind_base::notation::json_number;
+use crate::counterfactual::edits::{AddedCall, AddedSetting, Edits, UsageBasedCapacity};
+use crate::counterfactual::memory_snapshot::MemorySnapshot;
+use crate::counterfactual::recorded_steps::{RecordedCall, RecordedStep};
+use novamind_base::formatting::json_number;
 use novamind_record::mode::Mode;
-use novamind_session::engine::{UsageRule, refuse_outside_debug, unknown, value_of_json};
-use novamind_tools::{ArgumentKind, Kind, Refusal, ToolId, catalogue, find};
+use novamind_session::engine::{UsageCapacityRule, json_to_value, require_debug_mode, unknown_parameter};
+use novamind_tools::{ArgumentKind, Rejection, ToolId, ToolKind, catalogue, find};
 use novamind_world::params::Params;
 use novamind_world::settings::Settings;
 
-const MOST_FACTOR: f64 = 1000.0;
+const MAX_FACTOR: f64 = 1000.0;
 
 /// An edit of decisions from the start of a week.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,12 +66,12 @@ pub enum DecisionEdit {
 /// # Errors
 /// `line_unknown`, `week_unknown` or `parameter_unknown` for an unknown name, `parameter_not_allowed`, and
 /// `not_in_this_mode` if a parameter is set outside a debug run.
-pub(super) fn edits(
+pub(super) fn build_edits(
     decided: &[DecisionEdit],
-    opening: &Opening<'_>,
-    moves: &[Move],
+    opening: &BranchStart<'_>,
+    moves: &[RecordedStep],
     until: u32,
-) -> Result<Edits, Refusal> {
+) -> Result<Edits, Rejection> {
     let mut edits = Edits::default();
     for edit in decided {
         edit.add_to(&mut edits, opening, moves, until)?;
@@ -80,7 +80,7 @@ pub(super) fn edits(
 }
 
 /// The company at the start of the first week of a what-if.
-pub(super) struct Opening<'a> {
+pub(super) struct BranchStart<'a> {
     pub day: u32,
     pub settings: &'a Settings,
     /// Parameters in force.
@@ -89,14 +89,14 @@ pub(super) struct Opening<'a> {
     pub mode: Mode,
 }
 
-impl Opening<'_> {
-    pub(super) fn of(start: &KeptState, mode: Mode) -> Opening<'_> {
-        let KeptState { world, params, .. } = start;
-        Opening { day: world.day, settings: &world.settings, params, mode }
+impl BranchStart<'_> {
+    pub(super) fn new(start: &MemorySnapshot, mode: Mode) -> BranchStart<'_> {
+        let MemorySnapshot { world, params, .. } = start;
+        BranchStart { day: world.day, settings: &world.settings, params, mode }
     }
 
     /// Returns the first day of the week of an added decision.
-    fn day_of(&self, week: Option<u32>, until: u32) -> Result<u32, Refusal> {
+    fn decision_day(&self, week: Option<u32>, until: u32) -> Result<u32, Rejection> {
         let (from, days) = (self.day, self.params.run.days_per_week);
         let day = week.map_or(from, |week| week.saturating_sub(1).saturating_mul(days));
         if (from..until).contains(&day) {
@@ -104,21 +104,21 @@ impl Opening<'_> {
         }
         let (first, last) = (from / days + 1, until.div_ceil(days));
         let message = format!("a decision can be added in weeks {first} to {last} of this what-if");
-        Err(Refusal::at("week", "week_unknown", message))
+        Err(Rejection::for_field("week", "week_unknown", message))
     }
 
     /// Rejects a parameter that cannot be set.
-    fn check_parameter(&self, key: &str, value: &Value) -> Result<(), Refusal> {
-        refuse_outside_debug(self.mode)?;
-        let in_force = self.params.value(key).map_err(unknown)?;
-        let not_allowed = |problem| Refusal::at(key, "parameter_not_allowed", problem);
+    fn check_parameter(&self, key: &str, value: &Value) -> Result<(), Rejection> {
+        require_debug_mode(self.mode)?;
+        let in_force = self.params.value(key).map_err(unknown_parameter)?;
+        let not_allowed = |problem| Rejection::for_field(key, "parameter_not_allowed", problem);
         if let (Value::String(word), false) = (value, in_force.is_str()) {
             return Err(not_allowed(format!(
                 "{word} is not a valid value of {key}, which is {in_force} now"
             )));
         }
         let value =
-            value_of_json(value).ok_or_else(|| not_allowed(format!("{key} cannot be or contain null")))?;
+            json_to_value(value).ok_or_else(|| not_allowed(format!("{key} cannot be or contain null")))?;
         self.params.with(key, value).map(drop).map_err(|error| not_allowed(error.problem))
     }
 }
@@ -127,120 +127,132 @@ impl DecisionEdit {
     fn add_to(
         &self,
         edits: &mut Edits,
-        opening: &Opening<'_>,
-        moves: &[Move],
+        opening: &BranchStart<'_>,
+        moves: &[RecordedStep],
         until: u32,
-    ) -> Result<(), Refusal> {
+    ) -> Result<(), Rejection> {
         match self {
-            DecisionEdit::Scale { tool, factor } => scale(*tool, *factor, edits, opening, moves),
-            DecisionEdit::Keep(tool) => drop_all(*tool, edits, moves),
+            DecisionEdit::Scale { tool, factor } => scale_settings(*tool, *factor, edits, opening, moves),
+            DecisionEdit::Keep(tool) => drop_calls_of_tool(*tool, edits, moves),
             DecisionEdit::Drop(seq) => {
-                move_of(*seq, moves)?;
-                edits.dropped.insert(*seq);
+                check_is_decision(*seq, moves)?;
+                edits.dropped_lines.insert(*seq);
             }
             DecisionEdit::Change { seq, args } => {
-                call_of(*seq, moves)?;
-                edits.changed.insert(*seq, args.clone());
+                check_is_call(*seq, moves)?;
+                edits.changed_arguments.insert(*seq, args.clone());
             }
             DecisionEdit::Add { week, tool, args } => {
-                let day = opening.day_of(*week, until)?;
-                edits.added.push(AddedCall { day, tool: *tool, args: args.clone() });
+                let day = opening.decision_day(*week, until)?;
+                edits.added_calls.push(AddedCall { day, tool: *tool, args: args.clone() });
             }
             DecisionEdit::Set { week, key, value } => {
                 opening.check_parameter(key, value)?;
-                let day = opening.day_of(*week, until)?;
-                edits.set.push(AddedSetting { day, key: key.clone(), value: value.clone() });
+                let day = opening.decision_day(*week, until)?;
+                edits.added_settings.push(AddedSetting { day, key: key.clone(), value: value.clone() });
             }
             DecisionEdit::CapacityFollowsUsage => {
-                let followed = FollowedUsage { rule: UsageRule::BusiestDay, from: opening.day };
-                let_capacity_follow(followed, edits, moves);
+                let followed =
+                    UsageBasedCapacity { rule: UsageCapacityRule::BusiestDay, from_day: opening.day };
+                follow_usage_with_capacity(followed, edits, moves);
             }
         }
         Ok(())
     }
 }
 
-fn calls(moves: &[Move]) -> impl Iterator<Item = &PastCall> {
+fn recorded_calls(moves: &[RecordedStep]) -> impl Iterator<Item = &RecordedCall> {
     moves.iter().filter_map(|step| match step {
-        Move::Call(call) => Some(call),
-        Move::Parameter(_) | Move::Days(_) => None,
+        RecordedStep::Call(call) => Some(call),
+        RecordedStep::Parameter(_) | RecordedStep::Days(_) => None,
     })
 }
 
 /// Lets the capacity follow usage and omits calls that set it.
-pub(super) fn let_capacity_follow(followed: FollowedUsage, edits: &mut Edits, moves: &[Move]) {
-    drop_all(ToolId::SetCapacityTier, edits, moves);
-    edits.capacity = Some(followed);
+pub(super) fn follow_usage_with_capacity(
+    followed: UsageBasedCapacity,
+    edits: &mut Edits,
+    moves: &[RecordedStep],
+) {
+    drop_calls_of_tool(ToolId::SetCapacityTier, edits, moves);
+    edits.capacity_rule = Some(followed);
 }
 
-fn drop_all(tool: ToolId, edits: &mut Edits, moves: &[Move]) {
-    edits.dropped.extend(calls(moves).filter(|call| call.tool == tool).map(|call| call.seq));
+fn drop_calls_of_tool(tool: ToolId, edits: &mut Edits, moves: &[RecordedStep]) {
+    edits.dropped_lines.extend(recorded_calls(moves).filter(|call| call.tool == tool).map(|call| call.seq));
 }
 
-fn call_of(seq: u64, moves: &[Move]) -> Result<(), Refusal> {
-    let is_there = calls(moves).any(|call| call.seq == seq);
-    is_there.then_some(()).ok_or_else(|| no_line(seq))
+fn check_is_call(seq: u64, moves: &[RecordedStep]) -> Result<(), Rejection> {
+    let is_there = recorded_calls(moves).any(|call| call.seq == seq);
+    is_there.then_some(()).ok_or_else(|| unknown_line(seq))
 }
 
 /// Returns the recorded decision of a line.
-fn move_of(seq: u64, moves: &[Move]) -> Result<(), Refusal> {
-    let is_it = |step: &Move| matches!(step, Move::Parameter(setting) if setting.change.seq == seq);
-    if moves.iter().any(is_it) { Ok(()) } else { call_of(seq, moves) }
+fn check_is_decision(seq: u64, moves: &[RecordedStep]) -> Result<(), Rejection> {
+    let is_it =
+        |step: &RecordedStep| matches!(step, RecordedStep::Parameter(setting) if setting.change.seq == seq);
+    if moves.iter().any(is_it) { Ok(()) } else { check_is_call(seq, moves) }
 }
 
-fn no_line(seq: u64) -> Refusal {
+fn unknown_line(seq: u64) -> Rejection {
     let message =
         format!("line {seq} is not a decision in the weeks of this what-if; whatif WEEK lists the decisions");
-    Refusal::at("line", "line_unknown", message)
+    Rejection::for_field("line", "line_unknown", message)
 }
 
 /// Multiplies current settings by calls before all others, and changes the numbers of recorded calls.
-fn scale(tool: ToolId, factor: f64, edits: &mut Edits, opening: &Opening<'_>, moves: &[Move]) {
+fn scale_settings(
+    tool: ToolId,
+    factor: f64,
+    edits: &mut Edits,
+    opening: &BranchStart<'_>,
+    moves: &[RecordedStep],
+) {
     let mut in_force = tool.tool().current(opening.settings);
     if tool == ToolId::SetPrices {
         // A plan without a price keeps no price.
         in_force.retain(|_, price| price.as_f64() != Some(0.0));
     }
     // Settings that the run changes on that day are scaled in its own call.
-    let is_set_anew = calls(moves)
+    let is_set_anew = recorded_calls(moves)
         .filter(|call| call.tool == tool && call.day == opening.day)
         .any(|call| call.accepted && in_force.keys().all(|name| call.args.get(name).is_some()));
     if !in_force.is_empty() && !is_set_anew {
-        edits.opening.push((tool, scaled(&Value::Object(in_force), factor)));
+        edits.initial_calls.push((tool, scale_numbers(&Value::Object(in_force), factor)));
     }
-    for call in calls(moves).filter(|call| call.tool == tool) {
-        let args = edits.changed.get(&call.seq).unwrap_or(&call.args);
-        let args = scaled(args, factor);
-        edits.changed.insert(call.seq, args);
+    for call in recorded_calls(moves).filter(|call| call.tool == tool) {
+        let args = edits.changed_arguments.get(&call.seq).unwrap_or(&call.args);
+        let args = scale_numbers(args, factor);
+        edits.changed_arguments.insert(call.seq, args);
     }
 }
 
 /// Multiplies every number by a factor.
-fn scaled(value: &Value, factor: f64) -> Value {
+fn scale_numbers(value: &Value, factor: f64) -> Value {
     match value {
         Value::Number(number) => {
-            number.as_f64().map_or(Value::Null, |own| json_number(rounded(own * factor)))
+            number.as_f64().map_or(Value::Null, |own| json_number(round_to_12_digits(own * factor)))
         }
         Value::Object(fields) => {
-            fields.iter().map(|(name, value)| (name.clone(), scaled(value, factor))).collect()
+            fields.iter().map(|(name, value)| (name.clone(), scale_numbers(value, factor))).collect()
         }
-        Value::Array(items) => items.iter().map(|item| scaled(item, factor)).collect(),
+        Value::Array(items) => items.iter().map(|item| scale_numbers(item, factor)).collect(),
         other => other.clone(),
     }
 }
 
 /// Rounds to twelve digits, which removes binary rounding errors.
-fn rounded(value: f64) -> f64 {
+fn round_to_12_digits(value: f64) -> f64 {
     format!("{value:.11e}").parse().unwrap_or(value)
 }
 
 /// Whether the arguments of a tool are amounts that can be multiplied by a factor.
-pub fn sets_amounts(tool: ToolId) -> bool {
+pub fn is_scalable(tool: ToolId) -> bool {
     let spec = tool.spec();
     let is_amount = |kind: &ArgumentKind| {
         matches!(kind, ArgumentKind::Number(_) | ArgumentKind::Map(..) | ArgumentKind::Matrix(..))
     };
-    spec.kind == Kind::Setting && spec.arguments.iter().all(|own| is_amount(&own.kind))
+    spec.kind == ToolKind::Setting && spec.arguments.iter().all(|own| is_amount(&own.kind))
 }
 
 impl Display for DecisionEdit {
@@ -266,7 +278,7 @@ impl Display for DecisionEdit {
 }
 
 /// Example edits for help and error messages.
-pub const FORMS: [&str; 7] = [
+pub const EDIT_SYNTAX: [&str; 7] = [
     "set_prices * 0.9",
     "keep set_daily_spend",
     "drop 57",
@@ -284,48 +296,50 @@ impl FromStr for DecisionEdit {
         let (first, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
         let rest = rest.trim();
         match first {
-            "" => Err(format!("an edit is missing; for example {}", FORMS.join(" or "))),
-            "keep" => acting(rest).map(DecisionEdit::Keep),
-            "drop" => line(rest).map(DecisionEdit::Drop),
+            "" => Err(format!("an edit is missing; for example {}", EDIT_SYNTAX.join(" or "))),
+            "keep" => parse_acting_tool(rest).map(DecisionEdit::Keep),
+            "drop" => parse_line_number(rest).map(DecisionEdit::Drop),
             "change" => {
                 let (seq, args) = rest.split_once(char::is_whitespace).unwrap_or((rest, ""));
-                Ok(DecisionEdit::Change { seq: line(seq)?, args: arguments(args, None)? })
+                Ok(DecisionEdit::Change { seq: parse_line_number(seq)?, args: parse_arguments(args, None)? })
             }
             "in" => {
                 let rest = rest.strip_prefix("week ").map_or(rest, str::trim_start);
                 let (week, call) = rest.split_once(char::is_whitespace).unwrap_or((rest, ""));
                 let number = week.parse().map_err(|_| format!("{week} is not the number of a week"))?;
-                decided_besides(Some(number), call.trim())
+                parse_set_or_call(Some(number), call.trim())
             }
             "capacity" if rest == "follows usage" || rest == "follows use" => {
                 Ok(DecisionEdit::CapacityFollowsUsage)
             }
-            "set" => decided_besides(None, text),
-            _ => scale_or_call(text),
+            "set" => parse_set_or_call(None, text),
+            _ => parse_scale_or_call(text),
         }
     }
 }
 
-/// Parses `set_prices * 0.9`, or a call.
-fn scale_or_call(text: &str) -> Result<DecisionEdit, String> {
+/// Parses `set_prices_validates_and_updates * 0.9`, or a call.
+fn parse_scale_or_call(text: &str) -> Result<DecisionEdit, String> {
     let name = text.split(|letter: char| letter.is_whitespace() || letter == '*').next().unwrap_or_default();
-    let Some(factor) = text[name.len()..].trim_start().strip_prefix('*') else { return added(None, text) };
-    let tool = acting(name)?;
-    if !sets_amounts(tool) {
-        let amounts: Vec<&str> = ToolId::all().filter(|own| sets_amounts(*own)).map(ToolId::name).collect();
+    let Some(factor) = text[name.len()..].trim_start().strip_prefix('*') else {
+        return parse_added_call(None, text);
+    };
+    let tool = parse_acting_tool(name)?;
+    if !is_scalable(tool) {
+        let amounts: Vec<&str> = ToolId::all().filter(|own| is_scalable(*own)).map(ToolId::name).collect();
         return Err(format!("{name} has no amounts; a factor works with {}", amounts.join(", ")));
     }
     let factor = factor.trim();
-    let number = factor.parse().ok().filter(|number: &f64| (0.0..=MOST_FACTOR).contains(number));
+    let number = factor.parse().ok().filter(|number: &f64| (0.0..=MAX_FACTOR).contains(number));
     number.map(|factor| DecisionEdit::Scale { tool, factor }).ok_or_else(|| {
-        format!("{factor} is not a factor; enter a number from 0 to {MOST_FACTOR}, for example 0.9")
+        format!("{factor} is not a factor; enter a number from 0 to {MAX_FACTOR}, for example 0.9")
     })
 }
 
 /// Parses `set KEY VALUE`, or a call.
-fn decided_besides(week: Option<u32>, text: &str) -> Result<DecisionEdit, String> {
+fn parse_set_or_call(week: Option<u32>, text: &str) -> Result<DecisionEdit, String> {
     let Some(rest) = text.strip_prefix("set").filter(|rest| rest.starts_with(char::is_whitespace)) else {
-        return added(week, text);
+        return parse_added_call(week, text);
     };
     let (key, value) = rest.trim().split_once(char::is_whitespace).unwrap_or((rest.trim(), ""));
     match value.trim() {
@@ -340,36 +354,36 @@ fn decided_besides(week: Option<u32>, text: &str) -> Result<DecisionEdit, String
     }
 }
 
-fn added(week: Option<u32>, call: &str) -> Result<DecisionEdit, String> {
+fn parse_added_call(week: Option<u32>, call: &str) -> Result<DecisionEdit, String> {
     let (name, rest) = call.split_once(char::is_whitespace).unwrap_or((call, ""));
-    let tool = acting(name)?;
-    Ok(DecisionEdit::Add { week, tool, args: arguments(rest, tool.spec().whole)? })
+    let tool = parse_acting_tool(name)?;
+    Ok(DecisionEdit::Add { week, tool, args: parse_arguments(rest, tool.spec().unnamed_argument)? })
 }
 
 /// Parses the name of a tool that can change the company.
-fn acting(name: &str) -> Result<ToolId, String> {
+fn parse_acting_tool(name: &str) -> Result<ToolId, String> {
     let Some(tool) = find(name) else {
-        let near = catalogue::nearest(name);
+        let near = catalogue::similar_tools(name);
         let help = match near.is_empty() {
-            true => format!("an edit has one of the forms {}", FORMS.join(" or ")),
+            true => format!("an edit has one of the forms {}", EDIT_SYNTAX.join(" or ")),
             false => format!("did you mean {}?", near.join(" or ")),
         };
         return Err(format!("there is no tool {name}; {help}"));
     };
     let spec = tool.spec();
-    match spec.kind.acts() && spec.kind != Kind::Time {
+    match spec.kind.changes_company() && spec.kind != ToolKind::Time {
         true => Ok(spec.id),
         false => Err(format!("{name} does not change the company")),
     }
 }
 
-fn line(number: &str) -> Result<u64, String> {
+fn parse_line_number(number: &str) -> Result<u64, String> {
     let number = number.trim();
     number.parse().map_err(|_| format!("{number} is not a line number; for example drop 57"))
 }
 
 /// Parses arguments as JSON, or as `NAME=VALUE` separated by spaces.
-fn arguments(text: &str, whole: Option<&str>) -> Result<Value, String> {
+fn parse_arguments(text: &str, whole: Option<&str>) -> Result<Value, String> {
     let text = text.trim();
     if text.starts_with('{') {
         let given: Map<String, Value> =
@@ -393,7 +407,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn edits_are_written_as_they_are_read() {
+    fn edits_round_trip_through_text() {
         for text in [
             "set_prices * 0.9",
             "keep set_daily_spend",
@@ -408,7 +422,7 @@ mod tests {
             let edit: DecisionEdit = text.parse().expect(text);
             assert_eq!(edit.to_string(), text);
         }
-        assert!(FORMS.iter().all(|form| form.parse::<DecisionEdit>().is_ok()));
+        assert!(EDIT_SYNTAX.iter().all(|form| form.parse::<DecisionEdit>().is_ok()));
         let call = |text: &str| text.parse::<DecisionEdit>().expect(text).to_string();
         assert_eq!(call("set_prices*2"), "set_prices * 2");
         assert_eq!(call("set_prices * 1e-300"), "set_prices * 1e-300");
@@ -421,7 +435,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_edit_is_refused_with_what_is_one() {
+    fn invalid_edit_is_rejected_with_the_syntax() {
         let said = |text: &str| text.parse::<DecisionEdit>().expect_err(text);
         assert!(said("").starts_with("an edit is missing"));
         assert_eq!(
@@ -447,11 +461,14 @@ mod tests {
     }
 
     #[test]
-    fn every_number_of_a_call_is_scaled_and_no_name() {
+    fn scaling_changes_numbers_and_keeps_names() {
         let args = json!({"targeted_spend": {"linkedin": {"S1": 50.0}}, "name": "7"});
-        assert_eq!(scaled(&args, 0.5), json!({"targeted_spend": {"linkedin": {"S1": 25}}, "name": "7"}));
-        assert_eq!(scaled(&json!({"A": 12}), 1.1), json!({"A": 13.2}));
-        assert!(sets_amounts(ToolId::SetPrices) && sets_amounts(ToolId::SetTargetedAdSpend));
-        assert!(!sets_amounts(ToolId::SetModelTiers) && !sets_amounts(ToolId::PostSocialMedia));
+        assert_eq!(
+            scale_numbers(&args, 0.5),
+            json!({"targeted_spend": {"linkedin": {"S1": 25}}, "name": "7"})
+        );
+        assert_eq!(scale_numbers(&json!({"A": 12}), 1.1), json!({"A": 13.2}));
+        assert!(is_scalable(ToolId::SetPrices) && is_scalable(ToolId::SetTargetedAdSpend));
+        assert!(!is_scalable(ToolId::SetModelTiers) && !is_scalable(ToolId::PostSocialMedia));
     }
 }

@@ -4,7 +4,7 @@ use crate::counterfactual::branch::BranchOutcome;
 use novamind_record::figures::{FigureUnit, WeekFigures};
 use novamind_world::events::DayFigures;
 
-const CHURN_DAYS: usize = 30;
+const CHURN_WINDOW_DAYS: usize = 30;
 
 /// A figure at the end of a week.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,7 +30,7 @@ pub enum BranchFigure {
 }
 
 /// Values of all figures at the end of a week.
-pub(super) type Values = [f64; BranchFigure::ALL.len()];
+pub(super) type FigureValues = [f64; BranchFigure::ALL.len()];
 
 impl BranchFigure {
     /// All figures in display order.
@@ -83,11 +83,11 @@ impl BranchFigure {
 }
 
 /// Returns the figures at the end of each week of a branch. `earlier` contains the days before its first day.
-pub(super) fn values(earlier: &[DayFigures], outcome: &BranchOutcome) -> Vec<Values> {
+pub(super) fn weekly_values(earlier: &[DayFigures], outcome: &BranchOutcome) -> Vec<FigureValues> {
     let days: Vec<&DayFigures> = earlier.iter().chain(&outcome.days).collect();
     let churn = |last_day: u32| {
         let last = days.iter().rposition(|day| day.day == last_day).unwrap_or(0);
-        let Some(before) = (last + 1).checked_sub(CHURN_DAYS + 1) else { return f64::NAN };
+        let Some(before) = (last + 1).checked_sub(CHURN_WINDOW_DAYS + 1) else { return f64::NAN };
         let left: u32 = days[before + 1..=last].iter().map(|day| day.cancellations).sum();
         f64::from(left) / f64::from(days[before].individual_subscribers)
     };

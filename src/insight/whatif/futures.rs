@@ -1,6 +1,6 @@
 //! Branches with redrawn random draws: the range of outcomes, and the certainty of differences.
 
-use super::figure::{BranchFigure, Values};
+use super::figure::{BranchFigure, FigureValues};
 use novamind_base::statistics::{PairedDifference, quantile_of_sorted};
 
 /// Branches with several futures; all branches have the same futures.
@@ -13,12 +13,12 @@ pub struct Futures {
     /// Last day of each week from the start of the branches, including weeks after a bankruptcy.
     days: Vec<u32>,
     /// Figures by branch, future and week; a future that ended in bankruptcy has fewer weeks.
-    branches: Vec<Vec<Vec<Values>>>,
+    branches: Vec<Vec<Vec<FigureValues>>>,
 }
 
 /// The distribution of a figure over several futures.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FutureBand {
+pub struct FutureInterval {
     /// 10th percentile.
     pub low: f64,
     /// Median.
@@ -28,46 +28,51 @@ pub struct FutureBand {
 }
 
 impl Futures {
-    pub(super) fn of(redrawn_after: u32, days: Vec<u32>, branches: Vec<Vec<Vec<Values>>>) -> Futures {
+    pub(super) fn new(redrawn_after: u32, days: Vec<u32>, branches: Vec<Vec<Vec<FigureValues>>>) -> Futures {
         let count = branches.first().map_or(0, Vec::len) as u32;
         Futures { count, redrawn_after, days, branches }
     }
 
     /// Returns a figure of a branch at the end of the week that ends on `day`, or `None` if no future has a value.
-    pub fn band(&self, branch: usize, figure: BranchFigure, day: u32) -> Option<FutureBand> {
+    pub fn interval(&self, branch: usize, figure: BranchFigure, day: u32) -> Option<FutureInterval> {
         let mut values: Vec<f64> =
             self.values(branch, figure, day).into_iter().filter(|value| !value.is_nan()).collect();
         values.sort_by(f64::total_cmp);
         let at = |share: f64| quantile_of_sorted(&values, share);
-        Some(FutureBand { low: at(0.1)?, median: at(0.5)?, high: at(0.9)? })
+        Some(FutureInterval { low: at(0.1)?, median: at(0.5)?, high: at(0.9)? })
     }
 
     /// Returns a figure of a branch at the end of every week, as pairs of day and distribution.
-    pub fn bands(&self, branch: usize, figure: BranchFigure) -> impl Iterator<Item = (u32, FutureBand)> {
-        self.days.iter().filter_map(move |day| Some((*day, self.band(branch, figure, *day)?)))
+    pub fn intervals(
+        &self,
+        branch: usize,
+        figure: BranchFigure,
+    ) -> impl Iterator<Item = (u32, FutureInterval)> {
+        self.days.iter().filter_map(move |day| Some((*day, self.interval(branch, figure, *day)?)))
     }
 
     /// Returns the difference of a figure between a branch and the first one at the end of the week that ends on `day`, or `None`
     /// if no future has a value in both.
     pub fn difference(&self, branch: usize, figure: BranchFigure, day: u32) -> Option<PairedDifference> {
         let pairs = self.values(branch, figure, day).into_iter().zip(self.values(0, figure, day));
-        PairedDifference::of(pairs)
+        PairedDifference::from_pairs(pairs)
     }
 
     /// Returns the number of futures in which a branch ends in bankruptcy.
-    pub fn bankrupt(&self, branch: usize) -> u32 {
+    pub fn bankruptcy_count(&self, branch: usize) -> u32 {
         let own = self.branches.get(branch).into_iter().flatten();
-        let is_broke =
-            |weeks: &Vec<Values>| weeks.last().is_some_and(|last| last[BranchFigure::Cash as usize] < 0.0);
+        let is_broke = |weeks: &Vec<FigureValues>| {
+            weeks.last().is_some_and(|last| last[BranchFigure::Cash as usize] < 0.0)
+        };
         own.filter(|weeks| weeks.len() < self.days.len() || is_broke(weeks)).count() as u32
     }
 
     /// Returns a figure in each future, NaN if it has no value.
     fn values(&self, branch: usize, figure: BranchFigure, day: u32) -> Vec<f64> {
         let week = self.days.iter().position(|own| *own == day);
-        let value = |weeks: &Vec<Values>| match (week, weeks.last()) {
+        let value = |weeks: &Vec<FigureValues>| match (week, weeks.last()) {
             (Some(at), _) if at < weeks.len() => weeks[at][figure as usize],
-            (Some(_), Some(last)) => after_the_end(figure, last),
+            (Some(_), Some(last)) => value_after_end(figure, last),
             _ => f64::NAN,
         };
         self.branches.get(branch).into_iter().flatten().map(value).collect()
@@ -75,7 +80,7 @@ impl Futures {
 }
 
 /// Returns a figure of a future after its bankruptcy: cash stays, counts are 0, churn and satisfaction are NaN.
-fn after_the_end(figure: BranchFigure, last: &Values) -> f64 {
+fn value_after_end(figure: BranchFigure, last: &FigureValues) -> f64 {
     match figure {
         BranchFigure::Cash => last[figure as usize],
         BranchFigure::Churn | BranchFigure::Satisfaction => f64::NAN,
@@ -88,41 +93,41 @@ mod tests {
     use super::*;
     use novamind_base::statistics::Interval;
 
-    fn futures(cash: &[[f64; 2]]) -> Futures {
+    fn sample_futures(cash: &[[f64; 2]]) -> Futures {
         let week = |value: f64| {
             let mut values = [f64::NAN; BranchFigure::ALL.len()];
             values[BranchFigure::Cash as usize] = value;
             vec![values]
         };
         let branch = |at: usize| cash.iter().map(|pair| week(pair[at])).collect();
-        Futures::of(0, vec![7], vec![branch(0), branch(1)])
+        Futures::new(0, vec![7], vec![branch(0), branch(1)])
     }
 
     #[test]
-    fn bands_and_paired_differences_have_their_values() {
+    fn intervals_and_paired_differences_are_computed() {
         let drawn: Vec<[f64; 2]> = (0..11).map(|at| [f64::from(at), f64::from(at) + 2.0]).collect();
-        let futures = futures(&drawn);
-        let band = futures.band(0, BranchFigure::Cash, 7);
-        assert_eq!(band, Some(FutureBand { low: 1.0, median: 5.0, high: 9.0 }));
+        let futures = sample_futures(&drawn);
+        let band = futures.interval(0, BranchFigure::Cash, 7);
+        assert_eq!(band, Some(FutureInterval { low: 1.0, median: 5.0, high: 9.0 }));
         let difference = futures.difference(1, BranchFigure::Cash, 7).expect("pairs");
         assert_eq!((difference.mean, difference.interval), (2.0, Some(Interval { low: 2.0, high: 2.0 })));
-        assert_eq!((difference.more, difference.of), (11, 11));
-        assert_eq!(futures.band(0, BranchFigure::Leads, 7), None);
-        assert_eq!(futures.band(0, BranchFigure::Cash, 14), None);
+        assert_eq!((difference.first_greater, difference.pair_count), (11, 11));
+        assert_eq!(futures.interval(0, BranchFigure::Leads, 7), None);
+        assert_eq!(futures.interval(0, BranchFigure::Cash, 14), None);
     }
 
     #[test]
-    fn a_future_that_ended_counts_with_the_cash_it_had_and_with_nobody() {
+    fn bankrupt_future_keeps_cash_and_has_no_subscribers() {
         let week = |cash: f64| {
             let mut values = [f64::NAN; BranchFigure::ALL.len()];
             values[BranchFigure::Cash as usize] = cash;
             values[BranchFigure::Subscribers as usize] = 10.0;
             values
         };
-        let futures = Futures::of(0, vec![7, 14], vec![vec![vec![week(-5.0)], vec![week(1.0), week(3.0)]]]);
-        assert_eq!(futures.bankrupt(0), 1);
-        let in_the_last_week = Futures::of(0, vec![7], vec![vec![vec![week(-5.0)], vec![week(1.0)]]]);
-        assert_eq!(in_the_last_week.bankrupt(0), 1);
+        let futures = Futures::new(0, vec![7, 14], vec![vec![vec![week(-5.0)], vec![week(1.0), week(3.0)]]]);
+        assert_eq!(futures.bankruptcy_count(0), 1);
+        let in_the_last_week = Futures::new(0, vec![7], vec![vec![vec![week(-5.0)], vec![week(1.0)]]]);
+        assert_eq!(in_the_last_week.bankruptcy_count(0), 1);
         assert_eq!(futures.values(0, BranchFigure::Cash, 14), [-5.0, 3.0]);
         assert_eq!(futures.values(0, BranchFigure::Subscribers, 14), [0.0, 10.0]);
         assert!(futures.values(0, BranchFigure::Churn, 14)[0].is_nan());

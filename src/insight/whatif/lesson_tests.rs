@@ -5,15 +5,15 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::*;
-use crate::branch_with_decisions;
+use crate::create_branch_with_decisions;
 use novamind_record::folder::configuration::Configuration;
 use novamind_record::lesson::Lesson;
 use novamind_record::trajectory::record::Via;
-use novamind_session::engine::UsageRule;
+use novamind_session::engine::UsageCapacityRule;
 use novamind_session::{LessonEntry, NewRun, Storage};
 
 /// Starts a company that outgrows its servers in a lesson that changes the capacity.
-const PLAN: &str = r#"
+const LESSON_TOML: &str = r#"
 title = "More and more"
 minutes = 5
 learning_goal = "You find out who rents the servers."
@@ -58,83 +58,87 @@ text = "Nothing either."
 pitfall = "none"
 "#;
 
-const MORE: &str = r#"in 1 set_targeted_ad_spend {"targeted_spend": {"content_marketing": {"S1": 6000}}}"#;
+const MORE_ADVERTISING: &str =
+    r#"in 1 set_targeted_ad_spend {"targeted_spend": {"content_marketing": {"S1": 6000}}}"#;
 
-fn begun(folder: &Path, runs: &str) -> Session {
+fn start_lesson(folder: &Path, runs: &str) -> Session {
     let path = folder.join("more.toml");
-    std::fs::write(&path, PLAN).expect("a file");
+    std::fs::write(&path, LESSON_TOML).expect("a file");
     std::fs::write(folder.join("more.md"), "## Debrief\n\nSo it goes.\n").expect("a file");
-    let lesson = Arc::new(Lesson::of_file(&path).expect("a lesson"));
+    let lesson = Arc::new(Lesson::from_file(&path).expect("a lesson"));
     let new = NewRun {
         mode: Mode::Lesson,
         lesson: Some(LessonEntry { lesson, part: 0, is_judged: true }),
         storage: Storage::Runs(folder.join(runs)),
         ..NewRun::default()
     };
-    Session::create(new, &Configuration::shipped()).expect("the lesson begins")
+    Session::create(new, &Configuration::bundled()).expect("the lesson begins")
 }
 
-fn weeks(session: &mut Session, count: u32) {
+fn advance_weeks(session: &mut Session, count: u32) {
     for _ in 0..count {
         let forecasts = session.company().naive_forecasts();
         session.advance("on", &forecasts, Via::Plain, &mut |_| {}).expect("a week");
     }
 }
 
-fn compared(session: &Session, until: u32, alternatives: &[&str]) -> Result<BranchComparison, Refusal> {
+fn compare(session: &Session, until: u32, alternatives: &[&str]) -> Result<BranchComparison, Rejection> {
     let alternatives: Vec<Vec<DecisionEdit>> =
         alternatives.iter().map(|edit| vec![edit.parse().expect(edit)]).collect();
-    let mut own = WhatIf::read(session.folder().expect("a folder")).expect("a what-if");
+    let mut own = WhatIf::open(session.folder().expect("a folder")).expect("a what-if");
     let go_on = |_: usize, _: usize| ControlFlow::Continue(());
     Ok(own.compare(1, Some(until), &alternatives, &go_on)?.expect("it is not stopped"))
 }
 
-fn cash(session: &Session) -> Vec<f64> {
+fn weekly_cash(session: &Session) -> Vec<f64> {
     session.weeks().iter().map(|week| week.cash).collect()
 }
 
-fn curve(branch: &BranchFigures) -> Vec<f64> {
-    branch.curve(BranchFigure::Cash).map(|(_, cash)| cash).collect()
+fn cash_of_branch(branch: &BranchFigures) -> Vec<f64> {
+    branch.values_by_week(BranchFigure::Cash).map(|(_, cash)| cash).collect()
 }
 
 #[test]
-fn the_capacity_follows_usage_in_every_branch_as_it_does_in_the_lesson() {
+fn lesson_capacity_rule_applies_in_every_branch() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut session = begun(folder.path(), "waited");
-    weeks(&mut session, 4);
-    let ahead = compared(&session, 10, &[MORE]).expect("an answer");
-    weeks(&mut session, 6);
-    let mut other = begun(folder.path(), "decided");
+    let mut session = start_lesson(folder.path(), "waited");
+    advance_weeks(&mut session, 4);
+    let ahead = compare(&session, 10, &[MORE_ADVERTISING]).expect("an answer");
+    advance_weeks(&mut session, 6);
+    let mut other = start_lesson(folder.path(), "decided");
     let more = serde_json::json!({"targeted_spend": {"content_marketing": {"S1": 6000}}});
     other.call("set_targeted_ad_spend", &more, Via::Plain).expect("as by hand");
     let mut is_distinguished = false;
     for _ in 0..10 {
-        weeks(&mut other, 1);
-        is_distinguished |=
-            other.company().tier_by(UsageRule::BusiestDay) != other.company().tier_by(UsageRule::StepByStep);
+        advance_weeks(&mut other, 1);
+        is_distinguished |= other.company().capacity_tier_by_rule(UsageCapacityRule::BusiestDay)
+            != other.company().capacity_tier_by_rule(UsageCapacityRule::StepByStep);
     }
     assert!(is_distinguished, "another rule would lead elsewhere");
     let tier = |session: &Session| session.settings().core.capacity_tier;
     assert!(tier(&other) > tier(&session), "the lesson rents more where more is used");
     let [was, decided] = &ahead.branches[..] else { panic!("{:?}", ahead.branches) };
-    assert_eq!(curve(was), cash(&session), "weeks that are still to come go as they do");
-    assert_eq!(curve(decided), cash(&other), "and so does what is decided otherwise");
-    let adopted =
-        branch_with_decisions(&session, 1, &[MORE.parse().expect(MORE)], Mode::Sandbox, &mut |_| {
-            ControlFlow::Continue(())
-        })
-        .expect("a branch");
-    assert_eq!(cash(&adopted.session), cash(&other));
+    assert_eq!(cash_of_branch(was), weekly_cash(&session), "weeks that are still to come go as they do");
+    assert_eq!(cash_of_branch(decided), weekly_cash(&other), "and so does what is decided otherwise");
+    let adopted = create_branch_with_decisions(
+        &session,
+        1,
+        &[MORE_ADVERTISING.parse().expect(MORE_ADVERTISING)],
+        Mode::Sandbox,
+        &mut |_| ControlFlow::Continue(()),
+    )
+    .expect("a branch");
+    assert_eq!(weekly_cash(&adopted.session), weekly_cash(&other));
 }
 
 #[test]
-fn what_the_next_step_may_ask_for_is_not_told() {
+fn what_if_stops_at_the_end_of_the_lesson_step() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut session = begun(folder.path(), "runs");
-    weeks(&mut session, 2);
-    let refused = compared(&session, 11, &[MORE]).expect_err("it is another step");
+    let mut session = start_lesson(folder.path(), "runs");
+    advance_weeks(&mut session, 2);
+    let refused = compare(&session, 11, &[MORE_ADVERTISING]).expect_err("it is another step");
     assert_eq!(refused.code, "week_unknown");
     assert!(refused.message.contains("the step of the lesson, 10"), "{refused}");
-    weeks(&mut session, 8);
-    compared(&session, 14, &[MORE]).expect("it is this step");
+    advance_weeks(&mut session, 8);
+    compare(&session, 14, &[MORE_ADVERTISING]).expect("it is this step");
 }

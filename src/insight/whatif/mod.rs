@@ -3,15 +3,15 @@
 //! Branches have the random draws of the run, so a difference is exactly the effect of the edit. Futures can be redrawn as well;
 //! then all branches have the same futures.
 
-mod adopt;
+mod adoption;
 mod comparison;
 mod decision_edit;
 mod figure;
 mod futures;
-mod kin;
-pub(crate) mod lesson_limits;
+pub(crate) mod lesson_restrictions;
 #[cfg(test)]
 mod lesson_tests;
+mod related_runs;
 #[cfg(test)]
 mod tests;
 
@@ -20,134 +20,143 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-pub use adopt::{Adopted, branch_with_decisions};
-pub use comparison::{BranchComparison, BranchFigures, DecisionDifference, ParameterDifference};
-pub use decision_edit::{DecisionEdit, FORMS, sets_amounts};
+pub use adoption::{AdoptedBranch, create_branch_with_decisions};
+pub use comparison::{BranchComparison, BranchFigures, CallDifference, ParameterDifference};
+pub use decision_edit::{DecisionEdit, EDIT_SYNTAX, is_scalable};
 pub use figure::BranchFigure;
-pub use futures::{FutureBand, Futures};
-pub use kin::{BranchOrigin, FirstChange, Kin, branches_of, origin_of};
+pub use futures::{FutureInterval, Futures};
+pub use related_runs::{BranchOrigin, FirstChange, RelatedRun, branch_origin, related_runs};
 
-use self::lesson_limits::{lesson_of, refuse_locked};
-use crate::counterfactual::branch::{BranchOutcome, counterfactual, first_difference};
-use crate::counterfactual::edits::{Edits, FollowedUsage, Redrawn};
-use crate::counterfactual::kept_state::KeptState;
-use crate::counterfactual::last_read::OfRecord;
-use crate::counterfactual::one_each::one_each;
-use crate::counterfactual::past::Past;
-use crate::counterfactual::script::{Move, PastDecision};
-use crate::why::{Sight, sight};
+use self::lesson_restrictions::{check_tools_unlocked, lesson_state};
+use crate::causes::{InputVisibility, input_visibility};
+use crate::counterfactual::analysis_cache::RecordAnalysis;
+use crate::counterfactual::branch::{BranchOutcome, first_different_day, simulate_branch};
+use crate::counterfactual::edits::{Edits, Redraw, UsageBasedCapacity};
+use crate::counterfactual::memory_snapshot::MemorySnapshot;
+use crate::counterfactual::parallel_map::parallel_map;
+use crate::counterfactual::recorded_run::RecordedRun;
+use crate::counterfactual::recorded_steps::{RecordedDecision, RecordedStep};
 use novamind_record::figures::WeekFigures;
-use novamind_record::lesson::LessonStanding;
+use novamind_record::lesson::LessonProgress;
 use novamind_record::mode::Mode;
-use novamind_session::engine::UsageRule;
-use novamind_session::{Look, Session, not_readable};
-use novamind_tools::{Refusal, highest_named};
+use novamind_session::engine::UsageCapacityRule;
+use novamind_session::{InspectionPermit, Session, unreadable_record};
+use novamind_tools::{Rejection, highest_customer};
 use novamind_world::events::DayFigures;
 
 /// Maximum number of alternatives in one comparison.
-pub const MOST_ALTERNATIVES: usize = 3;
+pub const MAX_ALTERNATIVES: usize = 3;
 /// Minimum number of simulated weeks, limited by the last week of the run.
-const LEAST_WEEKS: u32 = 12;
+const MIN_WEEKS: u32 = 12;
 /// Weeks before the start of the branches that figures over past days use.
-const WEEKS_BACK: u32 = 5;
+const LOOKBACK_WEEKS: u32 = 5;
 
 /// Receives the number of simulated days and the total. Can stop the work.
-pub type OnWhatIfProgress<'a> = &'a (dyn Fn(usize, usize) -> ControlFlow<()> + Sync);
+pub type WhatIfProgressFn<'a> = &'a (dyn Fn(usize, usize) -> ControlFlow<()> + Sync);
 
 /// Compares a run with branches in which decisions are changed.
 pub struct WhatIf {
     folder: PathBuf,
-    past: Past,
-    sight: Sight,
+    run: RecordedRun,
+    visibility: InputVisibility,
     /// Whether the inspection is recorded, so that hidden figures may be shown.
-    tells_hidden: bool,
+    shows_hidden: bool,
     /// The unfinished lesson of the run, if any.
-    lesson: Option<LessonStanding>,
+    lesson: Option<LessonProgress>,
     /// Whether the lesson of the run changes the capacity automatically, as in every branch.
-    moves_capacity: bool,
+    automates_capacity: bool,
 }
 
 /// The recorded days after the start of the branches.
-struct Parting {
-    start: Arc<KeptState>,
+struct BranchPoint {
+    start: Arc<MemorySnapshot>,
     earlier: Vec<DayFigures>,
-    moves: Vec<Move>,
+    steps: Vec<RecordedStep>,
     until: u32,
 }
 
-impl OfRecord for WhatIf {
+impl RecordAnalysis for WhatIf {
     /// # Errors
-    /// `not_in_this_mode` for an unfinished baseline run, `not_readable`.
-    fn read(folder: &Path) -> Result<WhatIf, Refusal> {
-        let past = Past::read(folder).map_err(|error| not_readable(&error))?;
-        let sight = sight(&past.manifest, past.ended)?;
-        let (lesson, moves_capacity) = lesson_of(folder, &past)?;
-        Ok(WhatIf { folder: folder.to_owned(), past, sight, tells_hidden: false, lesson, moves_capacity })
+    /// `not_in_this_mode` for an unfinished baseline run, `unreadable_record`.
+    fn open(folder: &Path) -> Result<WhatIf, Rejection> {
+        let past = RecordedRun::open(folder).map_err(|error| unreadable_record(&error))?;
+        let sight = input_visibility(&past.manifest, past.is_ended)?;
+        let (lesson, moves_capacity) = lesson_state(folder, &past)?;
+        Ok(WhatIf {
+            folder: folder.to_owned(),
+            run: past,
+            visibility: sight,
+            shows_hidden: false,
+            lesson,
+            automates_capacity: moves_capacity,
+        })
     }
 
-    fn renew(&mut self) -> Result<(), Refusal> {
-        self.past.renew().map_err(|error| not_readable(&error))?;
-        self.sight = sight(&self.past.manifest, self.past.ended)?;
-        (self.lesson, self.moves_capacity) = lesson_of(&self.folder, &self.past)?;
+    fn refresh(&mut self) -> Result<(), Rejection> {
+        self.run.refresh().map_err(|error| unreadable_record(&error))?;
+        self.visibility = input_visibility(&self.run.manifest, self.run.is_ended)?;
+        (self.lesson, self.automates_capacity) = lesson_state(&self.folder, &self.run)?;
         Ok(())
     }
 }
 
 /// Records an inspection for a what-if that shows true satisfaction. Returns `false` if the run may not be inspected or the event
 /// cannot be written; then the what-if omits the figure.
-pub fn look_at_what_if(run: &mut Session, week: u32) -> bool {
+pub fn record_what_if_inspection(run: &mut Session, week: u32) -> bool {
     let day = run.day();
-    Look::begin_at(run, "whatif", &format!("from {week}"), day).is_ok()
+    InspectionPermit::start_at_current_state(run, "whatif", &format!("from {week}"), day).is_ok()
 }
 
 impl WhatIf {
     /// Sets whether hidden figures are shown, which requires a recorded inspection.
-    pub fn tell_hidden(&mut self, is_recorded: bool) {
-        self.tells_hidden = is_recorded;
+    pub fn set_shows_hidden(&mut self, is_recorded: bool) {
+        self.shows_hidden = is_recorded;
     }
 
     /// Rejects the what-if while the question of a lesson is open.
-    fn refuse_before_guess(&self) -> Result<(), Refusal> {
-        let weeks = self.past.last_day() / self.past.days_per_week();
-        self.lesson.as_ref().map_or(Ok(()), |lesson| lesson.refuse_before_guess(weeks))
+    fn check_guess_submitted(&self) -> Result<(), Rejection> {
+        let weeks = self.run.last_day() / self.run.days_per_week();
+        self.lesson.as_ref().map_or(Ok(()), |lesson| lesson.check_guess_submitted(weeks))
     }
 
     /// Returns the edits of each branch after checking that the player may make them, or `None` if stopped.
-    fn all_edits(
+    fn edits_for_branches(
         &mut self,
         alternatives: &[Vec<DecisionEdit>],
-        parting: &Parting,
-        progress: OnWhatIfProgress<'_>,
-    ) -> Result<Option<AllEdits>, Refusal> {
+        parting: &BranchPoint,
+        progress: WhatIfProgressFn<'_>,
+    ) -> Result<Option<BranchEdits>, Rejection> {
         if let Some(lesson) = &self.lesson {
-            alternatives.iter().try_for_each(|own| refuse_locked(lesson, own, &parting.moves))?;
+            alternatives.iter().try_for_each(|own| check_tools_unlocked(lesson, own, &parting.steps))?;
         }
-        let (all, mut edits) = all_edits(alternatives, parting, self.past.manifest.mode)?;
-        let week_before = parting.week_before(self.past.days_per_week());
+        let (all, mut edits) = build_branch_edits(alternatives, parting, self.run.manifest.mode)?;
+        let week_before = parting.week_before(self.run.days_per_week());
         for (own, decided) in edits.iter_mut().zip(&all) {
             own.week_before = week_before;
-            if self.moves_capacity {
-                self.move_capacity_as_lesson(own, decided, parting);
+            if self.automates_capacity {
+                self.apply_lesson_capacity(own, decided, parting);
             }
         }
-        let Some(day) = parting.last_meeting(&edits) else { return Ok(Some((all, edits))) };
-        let day = self.past.last_end(day);
-        let met = self.past.moment(day, &mut |simulated| progress(simulated as usize, day as usize));
-        let Some(met) = met.map_err(|error| not_readable(&error))? else { return Ok(None) };
+        let Some(day) = parting.last_day_naming_new_customers(&edits) else { return Ok(Some((all, edits))) };
+        let day = self.run.last_boundary(day);
+        let met = self.run.snapshot_at(day, &mut |simulated| progress(simulated as usize, day as usize));
+        let Some(met) = met.map_err(|error| unreadable_record(&error))? else { return Ok(None) };
         let meant = Arc::new(met.world.customers.numbers.clone());
-        edits.iter_mut().for_each(|own| own.meant = Some(meant.clone()));
+        edits.iter_mut().for_each(|own| own.recorded_numbers = Some(meant.clone()));
         Ok(Some((all, edits)))
     }
 
     /// Applies the capacity rule of the lesson: in the unchanged run after the last recorded day, and in every edited branch that
     /// has no other rule.
-    fn move_capacity_as_lesson(&self, edits: &mut Edits, decided: &[DecisionEdit], parting: &Parting) {
-        let rule = UsageRule::StepByStep;
-        match (decided.is_empty(), edits.capacity) {
-            (true, _) => edits.capacity = Some(FollowedUsage { rule, from: self.past.last_day() }),
+    fn apply_lesson_capacity(&self, edits: &mut Edits, decided: &[DecisionEdit], parting: &BranchPoint) {
+        let rule = UsageCapacityRule::StepByStep;
+        match (decided.is_empty(), edits.capacity_rule) {
+            (true, _) => {
+                edits.capacity_rule = Some(UsageBasedCapacity { rule, from_day: self.run.last_day() })
+            }
             (false, None) => {
-                let followed = FollowedUsage { rule, from: parting.start.world.day };
-                decision_edit::let_capacity_follow(followed, edits, &parting.moves);
+                let followed = UsageBasedCapacity { rule, from_day: parting.start.world.day };
+                decision_edit::follow_usage_with_capacity(followed, edits, &parting.steps);
             }
             (false, Some(_)) => {}
         }
@@ -157,33 +166,33 @@ impl WhatIf {
     ///
     /// # Errors
     /// `week_unknown`, and `guess_first` while the question of a lesson is open.
-    pub fn decisions(&self, week: u32) -> Result<Vec<PastDecision>, Refusal> {
-        self.refuse_before_guess()?;
-        let from = self.day_of(week)?;
-        let moves = self.past.between(from, self.past.manifest.days);
+    pub fn decisions(&self, week: u32) -> Result<Vec<RecordedDecision>, Rejection> {
+        self.check_guess_submitted()?;
+        let from = self.first_day_of_week(week)?;
+        let moves = self.run.steps_between(from, self.run.manifest.days);
         // Automatic settings of a lesson are not decisions of the student.
-        let sets_parameters = self.past.manifest.mode == Mode::Debug;
-        let decided = moves.iter().filter_map(PastDecision::of);
-        Ok(decided.filter(|own| sets_parameters || matches!(own, PastDecision::Call(_))).collect())
+        let sets_parameters = self.run.manifest.mode == Mode::Debug;
+        let decided = moves.iter().filter_map(RecordedDecision::from_step);
+        Ok(decided.filter(|own| sets_parameters || matches!(own, RecordedDecision::Call(_))).collect())
     }
 
-    /// Returns the branches of [`WhatIf::compare`], and those of [`WhatIf::futures`] if a number of futures is given. Returns `None`
+    /// Returns the branches of [`WhatIf::compare`], and those of [`WhatIf::sample_futures`] if a number of futures is given. Returns `None`
     /// if stopped.
     ///
     /// # Errors
     /// As for [`WhatIf::compare`].
-    pub fn answer(
+    pub fn compare_with_futures(
         &mut self,
         (week, until_week): (u32, Option<u32>),
         alternatives: &[Vec<DecisionEdit>],
         futures: Option<u32>,
-        progress: OnWhatIfProgress<'_>,
-    ) -> Result<Option<(BranchComparison, Option<Futures>)>, Refusal> {
-        let Some(parting) = self.parting(week, until_week, progress)? else { return Ok(None) };
-        let Some(all) = self.all_edits(alternatives, &parting, progress)? else { return Ok(None) };
-        let Some(compared) = self.compared(&parting, &all, progress)? else { return Ok(None) };
+        progress: WhatIfProgressFn<'_>,
+    ) -> Result<Option<(BranchComparison, Option<Futures>)>, Rejection> {
+        let Some(parting) = self.branch_point(week, until_week, progress)? else { return Ok(None) };
+        let Some(all) = self.edits_for_branches(alternatives, &parting, progress)? else { return Ok(None) };
+        let Some(compared) = self.compare_branches(&parting, &all, progress)? else { return Ok(None) };
         let Some(count) = futures else { return Ok(Some((compared, None))) };
-        let drawn = self.drawn(&parting, &all.1, count, progress)?;
+        let drawn = self.simulate_futures(&parting, &all.1, count, progress)?;
         Ok(drawn.map(|drawn| (compared, Some(drawn))))
     }
 
@@ -191,48 +200,50 @@ impl WhatIf {
     /// week is the last recorded one, but at least twelve weeks are simulated. Returns `None` if stopped.
     ///
     /// # Errors
-    /// `week_unknown`, `line_unknown`, `too_many_alternatives`, `too_many_leads`, `not_readable`; in an unfinished lesson
+    /// `week_unknown`, `line_unknown`, `too_many_alternatives`, `too_many_leads`, `unreadable_record`; in an unfinished lesson
     /// `guess_first` while its question is open, and `not_in_this_lesson` for an unavailable tool.
     pub fn compare(
         &mut self,
         week: u32,
         until_week: Option<u32>,
         alternatives: &[Vec<DecisionEdit>],
-        progress: OnWhatIfProgress<'_>,
-    ) -> Result<Option<BranchComparison>, Refusal> {
-        Ok(self.answer((week, until_week), alternatives, None, progress)?.map(|(compared, _)| compared))
+        progress: WhatIfProgressFn<'_>,
+    ) -> Result<Option<BranchComparison>, Rejection> {
+        Ok(self
+            .compare_with_futures((week, until_week), alternatives, None, progress)?
+            .map(|(compared, _)| compared))
     }
 
-    fn compared(
+    fn compare_branches(
         &self,
-        parting: &Parting,
-        (all, edits): &AllEdits,
-        progress: OnWhatIfProgress<'_>,
-    ) -> Result<Option<BranchComparison>, Refusal> {
+        parting: &BranchPoint,
+        (all, edits): &BranchEdits,
+        progress: WhatIfProgressFn<'_>,
+    ) -> Result<Option<BranchComparison>, Rejection> {
         let Some(outcomes) = parting.simulate(edits, progress)? else { return Ok(None) };
-        let Parting { start, earlier, moves, until } = parting;
+        let BranchPoint { start, earlier, steps: moves, until } = parting;
         let from = start.world.day;
         let mut branches = Vec::new();
         for ((decided, made), outcome) in all.iter().zip(edits).zip(&outcomes) {
-            let differs_on = match differs_by(&outcomes[0], outcome) {
+            let differs_on = match latest_difference_day(&outcomes[0], outcome) {
                 None => None,
                 Some(last) => {
                     let mut go_on = |day: u32| progress(day as usize, last as usize);
                     let pair = (&edits[0], made);
-                    let Some(day) = first_difference(start, moves, pair, last, &mut go_on) else {
+                    let Some(day) = first_different_day(start, moves, pair, last, &mut go_on) else {
                         return Ok(None);
                     };
                     day
                 }
             };
-            branches.push(BranchFigures::of(decided, (made, moves, from), earlier, outcome, differs_on));
+            branches.push(BranchFigures::new(decided, (made, moves, from), earlier, outcome, differs_on));
         }
-        let tells_all = self.sight == Sight::All && self.tells_hidden;
+        let tells_all = self.visibility == InputVisibility::EveryInput && self.shows_hidden;
         let shown = |figure: &BranchFigure| tells_all || !figure.is_hidden();
         Ok(Some(BranchComparison {
             from,
             until: *until,
-            recorded_until: self.past.last_day(),
+            recorded_until: self.run.last_day(),
             branches,
             figures: BranchFigure::ALL.into_iter().filter(shown).collect(),
         }))
@@ -249,54 +260,56 @@ impl WhatIf {
         until_week: Option<u32>,
         alternatives: &[Vec<DecisionEdit>],
         count: u32,
-        progress: OnWhatIfProgress<'_>,
-    ) -> Result<Option<Futures>, Refusal> {
-        let Some(parting) = self.parting(week, until_week, progress)? else { return Ok(None) };
-        let Some((_, edits)) = self.all_edits(alternatives, &parting, progress)? else { return Ok(None) };
-        self.drawn(&parting, &edits, count, progress)
+        progress: WhatIfProgressFn<'_>,
+    ) -> Result<Option<Futures>, Rejection> {
+        let Some(parting) = self.branch_point(week, until_week, progress)? else { return Ok(None) };
+        let Some((_, edits)) = self.edits_for_branches(alternatives, &parting, progress)? else {
+            return Ok(None);
+        };
+        self.simulate_futures(&parting, &edits, count, progress)
     }
 
-    fn drawn(
+    fn simulate_futures(
         &self,
-        parting: &Parting,
+        parting: &BranchPoint,
         edits: &[Edits],
         count: u32,
-        progress: OnWhatIfProgress<'_>,
-    ) -> Result<Option<Futures>, Refusal> {
-        let last = self.past.last_day();
+        progress: WhatIfProgressFn<'_>,
+    ) -> Result<Option<Futures>, Rejection> {
+        let last = self.run.last_day();
         let after =
             if last < parting.until { last.max(parting.start.world.day) } else { parting.start.world.day };
         let redrawn = |edits: &Edits, salt| {
-            let redrawn = Some(Redrawn { after, salt });
-            Edits { redrawn, ..edits.clone() }
+            let redrawn = Some(Redraw { after_day: after, salt });
+            Edits { redraw: redrawn, ..edits.clone() }
         };
         let salts = || 0..u64::from(count);
         let drawn: Vec<Edits> =
             edits.iter().flat_map(|own| salts().map(move |salt| redrawn(own, salt))).collect();
         let Some(outcomes) = parting.simulate(&drawn, progress)? else { return Ok(None) };
-        let days = parting.week_ends(self.past.days_per_week());
+        let days = parting.week_ends(self.run.days_per_week());
         let valued: Vec<_> =
-            outcomes.iter().map(|outcome| figure::values(&parting.earlier, outcome)).collect();
+            outcomes.iter().map(|outcome| figure::weekly_values(&parting.earlier, outcome)).collect();
         let branches = valued.chunks(count.max(1) as usize).map(<[_]>::to_vec).collect();
-        Ok(Some(Futures::of(after, days, branches)))
+        Ok(Some(Futures::new(after, days, branches)))
     }
 
     /// Returns the number of days per week of the run.
     pub fn days_per_week(&self) -> u32 {
-        self.past.days_per_week()
+        self.run.days_per_week()
     }
 
     /// Returns the day on which a week starts, if recorded days end on it.
-    fn day_of(&self, week: u32) -> Result<u32, Refusal> {
-        let days = self.past.days_per_week();
+    fn first_day_of_week(&self, week: u32) -> Result<u32, Rejection> {
+        let days = self.run.days_per_week();
         let day = week.checked_sub(1).map(|earlier| earlier.saturating_mul(days));
-        let last = self.past.last_day().min(self.past.manifest.days.saturating_sub(1)) / days + 1;
+        let last = self.run.last_day().min(self.run.manifest.days.saturating_sub(1)) / days + 1;
         match day {
-            Some(day) if week <= last && self.past.ends_on(day) => Ok(day),
+            Some(day) if week <= last && self.run.has_boundary_on(day) => Ok(day),
             _ => {
                 let message =
                     format!("a what-if cannot start with week {week}; choose a week from 1 to {last}");
-                Err(Refusal::at("week", "week_unknown", message))
+                Err(Rejection::for_field("week", "week_unknown", message))
             }
         }
     }
@@ -304,10 +317,10 @@ impl WhatIf {
     /// Returns the last day that can be simulated, and a name for its end. In an unfinished lesson it is the end of the step, because
     /// the next step can ask for the outcome.
     fn horizon(&self) -> (u32, &'static str) {
-        let (days, last) = (self.past.days_per_week(), self.past.manifest.days);
+        let (days, last) = (self.run.days_per_week(), self.run.manifest.days);
         let step_end = self.lesson.as_ref().and_then(|lesson| {
-            let part = lesson.own_part();
-            part.step_after(self.past.last_day() / days).map(|step| part.weeks_of(step).1 * days)
+            let part = lesson.current_part();
+            part.step_after(self.run.last_day() / days).map(|step| part.step_weeks(step).1 * days)
         });
         match step_end {
             Some(end) if end < last => (end, "the step of the lesson"),
@@ -315,48 +328,49 @@ impl WhatIf {
         }
     }
 
-    fn parting(
+    fn branch_point(
         &mut self,
         week: u32,
         until_week: Option<u32>,
-        progress: OnWhatIfProgress<'_>,
-    ) -> Result<Option<Parting>, Refusal> {
-        self.refuse_before_guess()?;
-        let from = self.day_of(week)?;
-        let (days, (horizon, ends)) = (self.past.days_per_week(), self.horizon());
+        progress: WhatIfProgressFn<'_>,
+    ) -> Result<Option<BranchPoint>, Rejection> {
+        self.check_guess_submitted()?;
+        let from = self.first_day_of_week(week)?;
+        let (days, (horizon, ends)) = (self.run.days_per_week(), self.horizon());
         let until = match until_week {
             Some(last) if last > horizon.div_ceil(days) => {
                 let message =
                     format!("week {last} is after the last week of {ends}, {}", horizon.div_ceil(days));
-                return Err(Refusal::at("until", "week_unknown", message));
+                return Err(Rejection::for_field("until", "week_unknown", message));
             }
             Some(last) if last >= week => last.saturating_mul(days).min(horizon),
             Some(last) => {
                 let message = format!("a what-if from week {week} cannot end with week {last}");
-                return Err(Refusal::at("until", "week_unknown", message));
+                return Err(Rejection::for_field("until", "week_unknown", message));
             }
             // A record can end within a week, but figures need complete weeks.
             None => {
-                let last_end = self.past.last_day().div_ceil(days) * days;
-                last_end.max(from + LEAST_WEEKS * days).min(horizon)
+                let last_end = self.run.last_day().div_ceil(days) * days;
+                last_end.max(from + MIN_WEEKS * days).min(horizon)
             }
         };
         let mut reach = |day: u32| progress(day as usize, from as usize);
-        let back = (0..=from.saturating_sub(WEEKS_BACK * days)).rev().find(|day| self.past.ends_on(*day));
-        let moments = back.map_or(Ok(None), |day| self.past.moment(day, &mut reach));
-        let Some(back) = moments.map_err(|error| not_readable(&error))? else { return Ok(None) };
-        let moment = self.past.moment(from, &mut reach).map_err(|error| not_readable(&error))?;
+        let back =
+            (0..=from.saturating_sub(LOOKBACK_WEEKS * days)).rev().find(|day| self.run.has_boundary_on(*day));
+        let moments = back.map_or(Ok(None), |day| self.run.snapshot_at(day, &mut reach));
+        let Some(back) = moments.map_err(|error| unreadable_record(&error))? else { return Ok(None) };
+        let moment = self.run.snapshot_at(from, &mut reach).map_err(|error| unreadable_record(&error))?;
         let Some(start) = moment else { return Ok(None) };
-        let way = self.past.between(back.world.day, from);
-        let Some(earlier) = counterfactual(&back, way, &Edits::default(), from, &mut reach) else {
+        let way = self.run.steps_between(back.world.day, from);
+        let Some(earlier) = simulate_branch(&back, way, &Edits::default(), from, &mut reach) else {
             return Ok(None);
         };
-        let moves = self.past.between(from, until).to_vec();
-        Ok(Some(Parting { start, earlier: earlier.days, moves, until }))
+        let moves = self.run.steps_between(from, until).to_vec();
+        Ok(Some(BranchPoint { start, earlier: earlier.days, steps: moves, until }))
     }
 }
 
-impl Parting {
+impl BranchPoint {
     /// Returns the last day of each week.
     fn week_ends(&self, days_per_week: u32) -> Vec<u32> {
         let from = self.start.world.day;
@@ -368,25 +382,26 @@ impl Parting {
     fn week_before(&self, days_per_week: u32) -> Option<WeekFigures> {
         let from = self.earlier.len().checked_sub(days_per_week as usize)?;
         let mut week = WeekFigures::default();
-        self.earlier[from..].iter().for_each(|day| week.add(day));
+        self.earlier[from..].iter().for_each(|day| week.add_day_figures(day));
         Some(week)
     }
 
     /// Returns the last day on which a call names a customer who came after the start of the branches. Such customers have other
     /// numbers in a branch with more or fewer customers.
-    fn last_meeting(&self, edits: &[Edits]) -> Option<u32> {
+    fn last_day_naming_new_customers(&self, edits: &[Edits]) -> Option<u32> {
         let first_new = self.start.world.customers.next_customer;
-        let is_met = |tool, args| highest_named(tool, args) >= Some(first_new);
-        let made = self.moves.iter().filter_map(|step| match step {
-            Move::Call(call) => Some(call),
-            Move::Parameter(_) | Move::Days(_) => None,
+        let is_met = |tool, args| highest_customer(tool, args) >= Some(first_new);
+        let made = self.steps.iter().filter_map(|step| match step {
+            RecordedStep::Call(call) => Some(call),
+            RecordedStep::Parameter(_) | RecordedStep::Days(_) => None,
         });
         let kept = made.clone().filter(|call| is_met(call.tool, &call.args)).map(|call| call.day);
         let changed = made.filter(|call| {
-            let mut other = edits.iter().filter_map(|own| own.changed.get(&call.seq));
+            let mut other = edits.iter().filter_map(|own| own.changed_arguments.get(&call.seq));
             other.any(|args| is_met(call.tool, args))
         });
-        let added = edits.iter().flat_map(|own| &own.added).filter(|call| is_met(call.tool, &call.args));
+        let added =
+            edits.iter().flat_map(|own| &own.added_calls).filter(|call| is_met(call.tool, &call.args));
         kept.chain(changed.map(|call| call.day)).chain(added.map(|call| call.day)).max()
     }
 
@@ -397,11 +412,11 @@ impl Parting {
     fn simulate(
         &self,
         edits: &[Edits],
-        progress: OnWhatIfProgress<'_>,
-    ) -> Result<Option<Vec<BranchOutcome>>, Refusal> {
+        progress: WhatIfProgressFn<'_>,
+    ) -> Result<Option<Vec<BranchOutcome>>, Rejection> {
         let days = (self.until - self.start.world.day) as usize * edits.len();
         let done = AtomicUsize::new(0);
-        let outcomes = one_each(edits, |own, stopped| {
+        let outcomes = parallel_map(edits, |own, stopped| {
             let mut go_on = |_| {
                 let day = done.fetch_add(1, Ordering::Relaxed) + 1;
                 match progress(day, days).is_break() || stopped.is_set() {
@@ -409,11 +424,11 @@ impl Parting {
                     false => ControlFlow::Continue(()),
                 }
             };
-            counterfactual(&self.start, &self.moves, own, self.until, &mut go_on)
+            simulate_branch(&self.start, &self.steps, own, self.until, &mut go_on)
         });
-        match outcomes.iter().flatten().find_map(|outcome| outcome.crowded.clone()) {
-            Some(Refusal { code, message, .. }) => {
-                Err(Refusal::new(code, format!("in one of the branches {message}")))
+        match outcomes.iter().flatten().find_map(|outcome| outcome.lead_overflow.clone()) {
+            Some(Rejection { code, message, .. }) => {
+                Err(Rejection::new(code, format!("in one of the branches {message}")))
             }
             None => Ok(outcomes),
         }
@@ -422,28 +437,32 @@ impl Parting {
 
 /// Returns the latest possible first day on which two branches differ: the end of the first week with different figures, or
 /// `None` if all figures are equal.
-fn differs_by(one: &BranchOutcome, other: &BranchOutcome) -> Option<u32> {
+fn latest_difference_day(one: &BranchOutcome, other: &BranchOutcome) -> Option<u32> {
     let other_figures = one.days.iter().zip(&other.days).find(|(own, their)| own != their);
     if let Some((day, _)) = other_figures {
         return Some(day.day);
     }
-    let (one, other) = (&one.end.world, &other.end.world);
+    let (one, other) = (&one.final_state.world, &other.final_state.world);
     (one.day != other.day || one.part_hashes() != other.part_hashes()).then_some(one.day.max(other.day))
 }
 
 /// The decision edits of each branch, the unchanged run first, and the resulting edits of recorded steps.
-type AllEdits = (Vec<Vec<DecisionEdit>>, Vec<Edits>);
+type BranchEdits = (Vec<Vec<DecisionEdit>>, Vec<Edits>);
 
-fn all_edits(alternatives: &[Vec<DecisionEdit>], parting: &Parting, mode: Mode) -> Result<AllEdits, Refusal> {
-    if alternatives.len() > MOST_ALTERNATIVES {
-        let message = format!("a what-if compares at most {MOST_ALTERNATIVES} alternatives");
-        return Err(Refusal::new("too_many_alternatives", message));
+fn build_branch_edits(
+    alternatives: &[Vec<DecisionEdit>],
+    parting: &BranchPoint,
+    mode: Mode,
+) -> Result<BranchEdits, Rejection> {
+    if alternatives.len() > MAX_ALTERNATIVES {
+        let message = format!("a what-if compares at most {MAX_ALTERNATIVES} alternatives");
+        return Err(Rejection::new("too_many_alternatives", message));
     }
-    let Parting { start, moves, until, .. } = parting;
+    let BranchPoint { start, steps: moves, until, .. } = parting;
     let all: Vec<Vec<DecisionEdit>> =
         std::iter::once(Vec::new()).chain(alternatives.iter().cloned()).collect();
-    let opening = decision_edit::Opening::of(start, mode);
-    let edits = all.iter().map(|decided| decision_edit::edits(decided, &opening, moves, *until));
+    let opening = decision_edit::BranchStart::new(start, mode);
+    let edits = all.iter().map(|decided| decision_edit::build_edits(decided, &opening, moves, *until));
     let edits = edits.collect::<Result<_, _>>()?;
     Ok((all, edits))
 }

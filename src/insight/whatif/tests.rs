@@ -6,9 +6,9 @@ use std::path::Path;
 use serde_json::json;
 
 use super::*;
-use crate::counterfactual::last_read::LastRead;
-use crate::counterfactual::test_kit::played;
-use crate::xray::inspector::Inspect;
+use crate::counterfactual::analysis_cache::AnalysisCache;
+use crate::counterfactual::test_kit::play_weeks;
+use crate::inspection::inspector::Inspect;
 use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::Via;
 use novamind_record::trajectory::{Record, Trajectory};
@@ -16,28 +16,28 @@ use novamind_session::{Access, Session};
 use novamind_tools::ToolId;
 use novamind_world::identifiers::Group;
 
-fn on(_: usize, _: usize) -> ControlFlow<()> {
+fn continue_progress(_: usize, _: usize) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-fn edits(all: &[&str]) -> Vec<DecisionEdit> {
+fn parse_edits(all: &[&str]) -> Vec<DecisionEdit> {
     all.iter().map(|edit| edit.parse().expect(edit)).collect()
 }
 
-fn of(session: &Session) -> WhatIf {
-    WhatIf::read(session.folder().expect("a folder")).expect("a what-if")
+fn open_what_if(session: &Session) -> WhatIf {
+    WhatIf::open(session.folder().expect("a folder")).expect("a what-if")
 }
 
-fn compared(session: &Session, week: u32, alternatives: &[&[&str]]) -> BranchComparison {
-    let alternatives: Vec<_> = alternatives.iter().map(|own| edits(own)).collect();
+fn compare(session: &Session, week: u32, alternatives: &[&[&str]]) -> BranchComparison {
+    let alternatives: Vec<_> = alternatives.iter().map(|own| parse_edits(own)).collect();
     let until = session.day() / 7;
-    let compared = of(session).compare(week, Some(until), &alternatives, &on);
+    let compared = open_what_if(session).compare(week, Some(until), &alternatives, &continue_progress);
     compared.expect("an answer").expect("it is not stopped")
 }
 
 /// Plays a run with decisions in weeks 1, 5 and 8, and starts a project twice.
-fn run(runs: &Path, mode: Mode) -> Session {
-    let mut session = played(runs, mode, 3, Some(("set_prices", json!({"B": 30}))));
+fn play_run(runs: &Path, mode: Mode) -> Session {
+    let mut session = play_weeks(runs, mode, 3, Some(("set_prices", json!({"B": 30}))));
     session.call("start_research_project", &json!({"tier": 1}), Via::Plain).expect("a project");
     session.call("start_research_project", &json!({"tier": 1}), Via::Plain).expect_err("it is running");
     for _ in 0..2 {
@@ -48,59 +48,65 @@ fn run(runs: &Path, mode: Mode) -> Session {
 }
 
 #[test]
-fn the_run_as_it_was_is_the_run() {
+fn unchanged_branch_equals_the_run() {
     let runs = tempfile::tempdir().expect("a folder");
-    let session = run(runs.path(), Mode::Debug);
-    let compared = compared(&session, 4, &[&["keep set_model_tiers"]]);
+    let session = play_run(runs.path(), Mode::Debug);
+    let compared = compare(&session, 4, &[&["keep set_model_tiers"]]);
     let [was, same] = &compared.branches[..] else { panic!("{:?}", compared.branches) };
     let cash: Vec<f64> = session.weeks().iter().skip(3).map(|week| week.cash).collect();
-    let curve =
-        |branch: &BranchFigures| branch.curve(BranchFigure::Cash).map(|(_, cash)| cash).collect::<Vec<_>>();
+    let curve = |branch: &BranchFigures| {
+        branch.values_by_week(BranchFigure::Cash).map(|(_, cash)| cash).collect::<Vec<_>>()
+    };
     assert_eq!(curve(was), cash);
     // These weeks have no changed settings, so keeping them changes nothing.
-    assert_eq!((curve(same), same.differs_on, same.differences.len()), (cash, None, 0));
+    assert_eq!((curve(same), same.first_different_day, same.call_differences.len()), (cash, None, 0));
     let left = was.value(BranchFigure::Churn, session.day()).expect("a value");
     let days = session.weeks().len();
     assert!(left > 0.0 && left < 1.0 && days > 8, "{left}");
 }
 
 #[test]
-fn an_alternative_leads_where_a_branch_with_its_decisions_leads() {
+fn alternative_equals_a_played_branch() {
     let runs = tempfile::tempdir().expect("a folder");
-    let session = run(runs.path(), Mode::Debug);
+    let session = play_run(runs.path(), Mode::Debug);
     for alternative in [
         &["set_prices * 0.9"][..],
         &["set_targeted_ad_spend * 0.5", "in 6 set_daily_spend operations=900"],
         &["keep set_prices", "capacity follows usage"],
         &["set_prices A=5 B=6 C=7"],
     ] {
-        let compared = compared(&session, 5, &[alternative]);
+        let compared = compare(&session, 5, &[alternative]);
         let own = &compared.branches[1];
-        assert_eq!(own.refused, []);
-        let adopted = branch_with_decisions(&session, 5, &edits(alternative), Mode::Debug, &mut |_| {
-            ControlFlow::Continue(())
-        });
+        assert_eq!(own.rejected, []);
+        let adopted =
+            create_branch_with_decisions(&session, 5, &parse_edits(alternative), Mode::Debug, &mut |_| {
+                ControlFlow::Continue(())
+            });
         let adopted = adopted.expect("a branch");
-        assert_eq!((adopted.refused.len(), adopted.session.day()), (0, session.day()), "{alternative:?}");
+        assert_eq!((adopted.rejected.len(), adopted.session.day()), (0, session.day()), "{alternative:?}");
         let weeks = adopted.session.weeks().iter().skip(4);
         let cash: Vec<f64> = weeks.map(|week| week.cash).collect();
-        let curve: Vec<f64> = own.curve(BranchFigure::Cash).map(|(_, cash)| cash).collect();
+        let curve: Vec<f64> = own.values_by_week(BranchFigure::Cash).map(|(_, cash)| cash).collect();
         assert_eq!(curve, cash, "{alternative:?}");
         assert_ne!(curve.last(), session.weeks().last().map(|week| &week.cash), "{alternative:?}");
         let first = if alternative[0].starts_with("keep") { 50 } else { 29 };
-        assert!(own.differs_on.is_some_and(|day| day <= first), "{alternative:?}: {:?}", own.differs_on);
+        assert!(
+            own.first_different_day.is_some_and(|day| day <= first),
+            "{alternative:?}: {:?}",
+            own.first_different_day
+        );
     }
 }
 
 #[test]
-fn a_factor_scales_what_is_in_force_and_what_is_set_later() {
+fn factor_scales_current_and_later_settings() {
     let runs = tempfile::tempdir().expect("a folder");
-    let session = run(runs.path(), Mode::Debug);
-    let compared = compared(&session, 5, &[&["set_prices * 0.5"]]);
+    let session = play_run(runs.path(), Mode::Debug);
+    let compared = compare(&session, 5, &[&["set_prices * 0.5"]]);
     let told: Vec<_> = compared.branches[1]
-        .differences
+        .call_differences
         .iter()
-        .map(|call| (call.day, call.tool, call.was.clone(), call.is.clone()))
+        .map(|call| (call.day, call.tool, call.recorded.clone(), call.edited.clone()))
         .collect();
     assert_eq!(
         told,
@@ -112,34 +118,36 @@ fn a_factor_scales_what_is_in_force_and_what_is_set_later() {
 }
 
 #[test]
-fn what_is_refused_now_and_what_is_not_any_more_is_told() {
+fn newly_rejected_and_newly_accepted_calls_are_reported() {
     let runs = tempfile::tempdir().expect("a folder");
-    let session = run(runs.path(), Mode::Debug);
-    let own = of(&session);
+    let session = play_run(runs.path(), Mode::Debug);
+    let own = open_what_if(&session);
     let decided = own.decisions(8).expect("decisions");
-    let calls = decided.iter().filter_map(PastDecision::call);
+    let calls = decided.iter().filter_map(RecordedDecision::call);
     let projects: Vec<_> = calls.filter(|call| call.tool == ToolId::StartResearchProject).collect();
     let [first, second] = projects[..] else { panic!("{decided:?}") };
     assert_eq!((first.accepted, second.accepted), (true, false));
     let drop = format!("drop {}", first.seq);
     let earlier = "in 7 start_research_project tier=1";
-    let compared = compared(&session, 7, &[&[&drop], &[earlier]]);
+    let compared = compare(&session, 7, &[&[&drop], &[earlier]]);
     let [_, dropped, twice] = &compared.branches[..] else { panic!("{:?}", compared.branches) };
-    assert_eq!(dropped.possible, [(second.seq, second.day, second.tool)]);
-    assert_eq!(dropped.differences.len(), 1);
-    let [(56, what, refusal)] = &twice.refused[..] else { panic!("{twice:?}") };
+    assert_eq!(dropped.newly_accepted, [(second.seq, second.day, second.tool)]);
+    assert_eq!(dropped.call_differences.len(), 1);
+    let [(56, what, refusal)] = &twice.rejected[..] else { panic!("{twice:?}") };
     assert_eq!(what, "start_research_project");
     assert!(refusal.message.contains("running"), "{refusal}");
 }
 
 #[test]
-fn futures_are_the_same_for_every_branch_and_for_every_question() {
+fn futures_share_draws_across_branches_and_calls() {
     let runs = tempfile::tempdir().expect("a folder");
-    let session = run(runs.path(), Mode::Debug);
-    let mut own = of(&session);
+    let session = play_run(runs.path(), Mode::Debug);
+    let mut own = open_what_if(&session);
     let asked = |own: &mut WhatIf| {
-        let alternatives = [edits(&["set_prices * 0.8"]), edits(&["keep set_prices"])];
-        own.futures(10, Some(13), &alternatives, 5, &on).expect("an answer").expect("it is not stopped")
+        let alternatives = [parse_edits(&["set_prices * 0.8"]), parse_edits(&["keep set_prices"])];
+        own.futures(10, Some(13), &alternatives, 5, &continue_progress)
+            .expect("an answer")
+            .expect("it is not stopped")
     };
     let futures = asked(&mut own);
     assert_eq!((futures.count, futures.redrawn_after), (5, session.day()));
@@ -147,68 +155,76 @@ fn futures_are_the_same_for_every_branch_and_for_every_question() {
     // There are no decisions after the record, so keeping the settings changes nothing.
     let difference = |branch, figure| futures.difference(branch, figure, 91).expect("pairs");
     let same = difference(2, BranchFigure::Cash);
-    assert_eq!((same.mean, same.interval, same.more), (0.0, None, 0), "five are too few for an interval");
+    assert_eq!(
+        (same.mean, same.interval, same.first_greater),
+        (0.0, None, 0),
+        "five are too few for an interval"
+    );
     // Lower prices retain more subscribers in every future.
     let fewer = difference(1, BranchFigure::Cancellations);
-    assert!(fewer.mean < 0.0 && fewer.more == 0, "{fewer:?}");
-    let band = futures.band(0, BranchFigure::Leads, 91).expect("a band");
+    assert!(fewer.mean < 0.0 && fewer.first_greater == 0, "{fewer:?}");
+    let band = futures.interval(0, BranchFigure::Leads, 91).expect("a band");
     assert!(band.low < band.median && band.median < band.high, "{band:?}");
 }
 
 #[test]
-fn luck_is_drawn_anew_from_the_day_after_the_record_on_and_not_before() {
+fn futures_redraw_only_after_the_last_recorded_day() {
     let runs = tempfile::tempdir().expect("a folder");
-    let session = run(runs.path(), Mode::Debug);
-    let futures =
-        of(&session).futures(8, Some(12), &[], 4, &on).expect("an answer").expect("it is not stopped");
-    let band = |week: u32| futures.band(0, BranchFigure::Cash, 7 * week).expect("a band");
+    let session = play_run(runs.path(), Mode::Debug);
+    let futures = open_what_if(&session)
+        .futures(8, Some(12), &[], 4, &continue_progress)
+        .expect("an answer")
+        .expect("it is not stopped");
+    let band = |week: u32| futures.interval(0, BranchFigure::Cash, 7 * week).expect("a band");
     let recorded = session.weeks()[9 - 1].cash;
     assert_eq!((band(9).low, band(9).high), (recorded, recorded));
     assert!(band(11).low < band(11).high);
 }
 
 #[test]
-fn weeks_lines_and_numbers_that_are_not_there_are_refused() {
+fn unknown_weeks_lines_and_customers_are_rejected() {
     let runs = tempfile::tempdir().expect("a folder");
-    let session = run(runs.path(), Mode::Debug);
-    let mut own = of(&session);
+    let session = play_run(runs.path(), Mode::Debug);
+    let mut own = open_what_if(&session);
     let mut code = |week, until, alternatives: &[Vec<DecisionEdit>]| {
-        own.compare(week, until, alternatives, &on).expect_err("a refusal").code
+        own.compare(week, until, alternatives, &continue_progress).expect_err("a refusal").code
     };
     assert_eq!(code(0, None, &[]), "week_unknown");
     assert_eq!(code(12, None, &[]), "week_unknown");
     assert_eq!(code(u32::MAX, None, &[]), "week_unknown");
     assert_eq!(code(5, Some(4), &[]), "week_unknown");
-    assert_eq!(code(5, None, &[edits(&["drop 1"])]), "line_unknown");
-    assert_eq!(code(5, None, &[edits(&["in 4 set_prices B=3"])]), "week_unknown");
-    assert_eq!(code(5, None, &vec![edits(&["set_prices * 2"]); 4]), "too_many_alternatives");
-    let refused = branch_with_decisions(&session, 5, &edits(&["drop 1"]), Mode::Debug, &mut |_| {
-        ControlFlow::Continue(())
-    });
+    assert_eq!(code(5, None, &[parse_edits(&["drop 1"])]), "line_unknown");
+    assert_eq!(code(5, None, &[parse_edits(&["in 4 set_prices B=3"])]), "week_unknown");
+    assert_eq!(code(5, None, &vec![parse_edits(&["set_prices * 2"]); 4]), "too_many_alternatives");
+    let refused =
+        create_branch_with_decisions(&session, 5, &parse_edits(&["drop 1"]), Mode::Debug, &mut |_| {
+            ControlFlow::Continue(())
+        });
     assert_eq!(refused.err().map(|refusal| refusal.code), Some("line_unknown"));
     assert_eq!(std::fs::read_dir(runs.path()).expect("runs").count(), 1);
     assert!(own.compare(5, None, &[], &|_, _| ControlFlow::Break(())).expect("no refusal").is_none());
 }
 
 #[test]
-fn an_unfinished_baseline_has_no_what_if_and_a_sandbox_shows_no_satisfaction() {
+fn unfinished_baseline_rejects_what_if_and_sandbox_hides_satisfaction() {
     let runs = tempfile::tempdir().expect("a folder");
-    let baseline = played(runs.path(), Mode::Baseline, 3, None);
-    let refused = WhatIf::read(baseline.folder().expect("a folder")).err().map(|refusal| refusal.code);
+    let baseline = play_weeks(runs.path(), Mode::Baseline, 3, None);
+    let refused = WhatIf::open(baseline.folder().expect("a folder")).err().map(|refusal| refusal.code);
     assert_eq!(refused, Some("not_in_this_mode"));
-    let kept = branch_with_decisions(&baseline, 2, &[], Mode::Sandbox, &mut |_| ControlFlow::Continue(()));
+    let kept =
+        create_branch_with_decisions(&baseline, 2, &[], Mode::Sandbox, &mut |_| ControlFlow::Continue(()));
     assert_eq!(kept.err().map(|refusal| refusal.code), Some("not_in_this_mode"));
     for (mode, shown) in [(Mode::Sandbox, false), (Mode::Debug, true)] {
-        let mut session = played(runs.path(), mode, 3, None);
+        let mut session = play_weeks(runs.path(), mode, 3, None);
         let folder = session.folder().expect("a folder").to_owned();
-        let mut own = WhatIf::read(&folder).expect("it is read");
+        let mut own = WhatIf::open(&folder).expect("it is read");
         let mut tells = |is_recorded| {
-            own.tell_hidden(is_recorded);
+            own.set_shows_hidden(is_recorded);
             let all = own.compare(4, None, &[], &|_, _| ControlFlow::Continue(())).expect("no refusal");
             all.expect("it was not stopped").figures.contains(&BranchFigure::Satisfaction)
         };
         assert!(!tells(false), "{mode}: not without a line");
-        let is_recorded = look_at_what_if(&mut session, 4);
+        let is_recorded = record_what_if_inspection(&mut session, 4);
         assert_eq!((is_recorded, tells(is_recorded)), (shown, shown), "{mode}");
         drop(session);
         let text = std::fs::read_to_string(folder.join("trajectory.jsonl")).expect("a trajectory");
@@ -217,51 +233,57 @@ fn an_unfinished_baseline_has_no_what_if_and_a_sandbox_shows_no_satisfaction() {
             usize::from(shown)
         );
         let mut read = Session::open(&folder, Access::Read, false).expect("it opens");
-        assert!(!look_at_what_if(&mut read, 4), "{mode}: nothing writes a line");
+        assert!(!record_what_if_inspection(&mut read, 4), "{mode}: nothing writes a line");
     }
 }
 
 #[test]
-fn what_was_read_last_takes_in_what_was_decided_since_on_the_same_day() {
+fn cache_includes_new_decisions_of_the_same_day() {
     let runs = tempfile::tempdir().expect("a folder");
-    let mut session = run(runs.path(), Mode::Debug);
-    let mut kept: LastRead<WhatIf> = LastRead::default();
+    let mut session = play_run(runs.path(), Mode::Debug);
+    let mut kept: AnalysisCache<WhatIf> = AnalysisCache::default();
     let present = session.day() / 7 + 1;
     let folder = session.folder().expect("a folder").to_owned();
-    let decided = |kept: &mut LastRead<WhatIf>| {
-        kept.of(folder.clone()).expect("a record").decisions(present).expect("decisions").len()
+    let decided = |kept: &mut AnalysisCache<WhatIf>| {
+        kept.get_or_open(folder.clone()).expect("a record").decisions(present).expect("decisions").len()
     };
     assert_eq!(decided(&mut kept), 0);
     session.call("set_prices", &json!({"C": 70}), Via::Plain).expect("a price");
     assert_eq!(decided(&mut kept), 1);
     let forecasts = session.company().naive_forecasts();
     session.advance("on", &forecasts, Via::Plain, &mut |_| {}).expect("a week");
-    let asked = kept.of(folder.clone()).expect("a record").compare(4, Some(present), &[], &on);
+    let asked = kept.get_or_open(folder.clone()).expect("a record").compare(
+        4,
+        Some(present),
+        &[],
+        &continue_progress,
+    );
     let branches = asked.expect("an answer").expect("it is not stopped").branches;
     let cash = session.weeks().last().map(|week| week.cash);
     assert_eq!(branches[0].value(BranchFigure::Cash, session.day()), cash);
 }
 
 #[test]
-fn the_tree_names_where_a_branch_left_and_what_it_did_first() {
+fn related_runs_name_branch_week_and_first_change() {
     let runs = tempfile::tempdir().expect("a folder");
-    let session = run(runs.path(), Mode::Debug);
+    let session = play_run(runs.path(), Mode::Debug);
     let mut branch = session.branch(5, Mode::Debug).expect("a branch");
     branch.call("set_prices", &json!({"C": 70}), Via::Plain).expect("a price");
-    let other = branch_with_decisions(&branch, 2, &[], Mode::Debug, &mut |_| ControlFlow::Continue(()));
+    let other =
+        create_branch_with_decisions(&branch, 2, &[], Mode::Debug, &mut |_| ControlFlow::Continue(()));
     let other = other.expect("a branch").session;
-    let origin = origin_of(branch.folder().expect("a folder")).expect("it is a branch");
+    let origin = branch_origin(branch.folder().expect("a folder")).expect("it is a branch");
     let change = |day, what: &str, is_left_out| Some(FirstChange { day, what: what.to_owned(), is_left_out });
     let first_change = change(28, "set_prices", false);
     assert_eq!(origin, BranchOrigin { run: session.manifest().id.clone(), week: 5, first_change });
-    let origin = origin_of(other.folder().expect("a folder")).expect("it is a branch");
+    let origin = branch_origin(other.folder().expect("a folder")).expect("it is a branch");
     assert_eq!((origin.week, origin.first_change), (2, None));
-    assert_eq!(origin_of(session.folder().expect("a folder")), None);
+    assert_eq!(branch_origin(session.folder().expect("a folder")), None);
     for id in [&session.manifest().id, &branch.manifest().id, &other.manifest().id] {
-        let tree = branches_of(runs.path(), id);
+        let tree = related_runs(runs.path(), id);
         let told: Vec<_> = tree
             .iter()
-            .map(|kin| (kin.run.id.clone(), kin.depth, kin.left_in_week, kin.first_change.clone()))
+            .map(|kin| (kin.run.id.clone(), kin.depth, kin.branched_in_week, kin.first_change.clone()))
             .collect();
         assert_eq!(
             told,
@@ -275,37 +297,39 @@ fn the_tree_names_where_a_branch_left_and_what_it_did_first() {
 }
 
 #[test]
-fn the_tree_names_a_decision_that_a_branch_leaves_out() {
+fn related_runs_name_a_dropped_decision() {
     let runs = tempfile::tempdir().expect("a folder");
-    let session = run(runs.path(), Mode::Debug);
-    let decided = of(&session).decisions(5).expect("decisions");
+    let session = play_run(runs.path(), Mode::Debug);
+    let decided = open_what_if(&session).decisions(5).expect("decisions");
     let call = decided[0].call().expect("a call");
-    let branch = adopted(&session, 5, &[&format!("drop {}", call.seq)]);
-    let origin = origin_of(branch.folder().expect("a folder")).expect("it is a branch");
+    let branch = adopt(&session, 5, &[&format!("drop {}", call.seq)]);
+    let origin = branch_origin(branch.folder().expect("a folder")).expect("it is a branch");
     let left_out = FirstChange { day: call.day, what: call.tool.name().to_owned(), is_left_out: true };
     assert_eq!(origin.first_change, Some(left_out));
 }
 
-fn adopted(session: &Session, week: u32, alternative: &[&str]) -> Session {
+fn adopt(session: &Session, week: u32, alternative: &[&str]) -> Session {
     let go_on = &mut |_| ControlFlow::Continue(());
-    let adopted = branch_with_decisions(session, week, &edits(alternative), Mode::Debug, go_on);
-    let Adopted { session, refused } = adopted.expect("a branch");
+    let adopted = create_branch_with_decisions(session, week, &parse_edits(alternative), Mode::Debug, go_on);
+    let AdoptedBranch { session, rejected: refused } = adopted.expect("a branch");
     assert_eq!(refused, []);
     session
 }
 
 #[test]
-fn a_parameter_is_set_as_a_run_sets_it() {
+fn edited_parameter_equals_a_parameter_set_in_a_run() {
     let runs = tempfile::tempdir().expect("a folder");
-    let session = run(runs.path(), Mode::Debug);
+    let session = play_run(runs.path(), Mode::Debug);
     let alternative = &["set group.S1.c_max_mean 200", "in 7 set satisfaction.satisfaction_ema_alpha 0.9"];
     // A branch in which the same parameters are set manually.
     let mut by_hand = session.branch(5, Mode::Debug).expect("a branch");
-    let recorded: Vec<_> = of(&session).decisions(5).expect("decisions");
+    let recorded: Vec<_> = open_what_if(&session).decisions(5).expect("decisions");
     for week in 5..=session.day() / 7 {
         let today = by_hand.day();
-        for call in
-            recorded.iter().filter_map(PastDecision::call).filter(|call| call.day == today && call.accepted)
+        for call in recorded
+            .iter()
+            .filter_map(RecordedDecision::call)
+            .filter(|call| call.day == today && call.accepted)
         {
             by_hand.call(call.tool.name(), &call.args, Via::Plain).expect("as in the run");
         }
@@ -320,13 +344,14 @@ fn a_parameter_is_set_as_a_run_sets_it() {
         let forecasts = by_hand.company().naive_forecasts();
         by_hand.advance("on", &forecasts, Via::Plain, &mut |_| {}).expect("a week");
     }
-    let compared = compared(&session, 5, &[alternative]);
+    let compared = compare(&session, 5, &[alternative]);
     let cash = |session: &Session| session.weeks().iter().skip(4).map(|week| week.cash).collect::<Vec<_>>();
     let own = &compared.branches[1];
-    let curve: Vec<f64> = own.curve(BranchFigure::Cash).map(|(_, cash)| cash).collect();
+    let curve: Vec<f64> = own.values_by_week(BranchFigure::Cash).map(|(_, cash)| cash).collect();
     assert_eq!(curve, cash(&by_hand));
     assert_ne!(curve, cash(&session));
-    let told: Vec<_> = own.parameters.iter().map(|set| (set.day, set.key.as_str(), set.is.clone())).collect();
+    let told: Vec<_> =
+        own.parameter_differences.iter().map(|set| (set.day, set.key.as_str(), set.edited.clone())).collect();
     assert_eq!(
         told,
         [
@@ -334,7 +359,7 @@ fn a_parameter_is_set_as_a_run_sets_it() {
             (42, "satisfaction.satisfaction_ema_alpha", Some(json!(0.9))),
         ]
     );
-    let adopted = adopted(&session, 5, alternative);
+    let adopted = adopt(&session, 5, alternative);
     assert_eq!(adopted.state_hash(), by_hand.state_hash());
     // Branches of a branch can omit its parameter changes.
     let lines =
@@ -345,44 +370,48 @@ fn a_parameter_is_set_as_a_run_sets_it() {
         .map(|line| format!("drop {}", line.seq))
         .collect();
     let [first, second] = &set[..] else { panic!("{set:?}") };
-    let undone = self::compared(&adopted, 5, &[&[first, second]]);
-    let undone: Vec<f64> = undone.branches[1].curve(BranchFigure::Cash).map(|(_, cash)| cash).collect();
+    let undone = self::compare(&adopted, 5, &[&[first, second]]);
+    let undone: Vec<f64> =
+        undone.branches[1].values_by_week(BranchFigure::Cash).map(|(_, cash)| cash).collect();
     assert_eq!(undone, cash(&session));
 }
 
 #[test]
-fn parameters_that_cannot_be_set_are_refused() {
+fn invalid_parameters_are_rejected() {
     let runs = tempfile::tempdir().expect("a folder");
     let code = |session: &Session, edit: &str| {
-        of(session).compare(3, None, &[edits(&[edit])], &on).expect_err("a refusal").code
+        open_what_if(session)
+            .compare(3, None, &[parse_edits(&[edit])], &continue_progress)
+            .expect_err("a refusal")
+            .code
     };
-    let debug = played(runs.path(), Mode::Debug, 3, None);
+    let debug = play_weeks(runs.path(), Mode::Debug, 3, None);
     assert_eq!(code(&debug, "set group.S1.c_max_men 20"), "parameter_unknown");
     assert_eq!(code(&debug, "set group.S1.c_max_mean much"), "parameter_not_allowed");
     assert_eq!(code(&debug, "set operations.base_outage_prob 2"), "parameter_not_allowed");
     assert_eq!(code(&debug, "set run.seed 2"), "parameter_not_allowed");
     assert_eq!(code(&debug, "in 2 set operations.base_outage_prob 0.5"), "week_unknown");
     assert_eq!(code(&debug, "set leads.ad_spend_unit 1e-9"), "too_many_leads");
-    let sandbox = played(runs.path(), Mode::Sandbox, 3, None);
+    let sandbox = play_weeks(runs.path(), Mode::Sandbox, 3, None);
     assert_eq!(code(&sandbox, "set operations.base_outage_prob 0.5"), "not_in_this_mode");
     assert_eq!(code(&sandbox, "set no.such 1"), "not_in_this_mode");
 }
 
 #[test]
-fn days_that_were_run_one_by_one_are_adopted_too() {
+fn adoption_replays_single_days() {
     let runs = tempfile::tempdir().expect("a folder");
-    let mut session = played(runs.path(), Mode::Debug, 3, None);
+    let mut session = play_weeks(runs.path(), Mode::Debug, 3, None);
     session.step(2, &mut |_| {}).expect("days");
     session.call("set_prices", &json!({"B": 31}), Via::Plain).expect("a price");
     session.inspect().run_until_breakpoint(9, &mut |_| {}).expect("days");
-    let same = adopted(&session, 2, &[]);
+    let same = adopt(&session, 2, &[]);
     assert_eq!((same.day(), same.state_hash()), (session.day(), session.state_hash()));
 }
 
 /// Plays a run that answers every waiting enterprise each week.
 fn run_with_offers(runs: &Path) -> Session {
     let ads = json!({"E1": 4000, "E2": 4000, "E3": 4000});
-    let mut session = played(runs, Mode::Debug, 3, None);
+    let mut session = play_weeks(runs, Mode::Debug, 3, None);
     for (tool, args) in [
         ("set_targeted_dev_spend", json!({"E1": 4000, "E2": 5000, "E3": 5000})),
         ("set_targeted_ad_spend", json!({"social_media": ads, "linkedin": ads})),
@@ -390,7 +419,7 @@ fn run_with_offers(runs: &Path) -> Session {
         session.call(tool, &args, Via::Plain).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
     }
     for _ in 0..8 {
-        let threads = &session.xray().expect("a debug run").world().enterprise.threads;
+        let threads = &session.debug_hidden_state().expect("a debug run").world().enterprise.threads;
         let open = threads.iter().filter(|thread| thread.is_open()).map(|thread| thread.customer);
         let deals: Vec<_> = open.map(|customer| json!([customer, [["B", 20], ["C", 50]]])).collect();
         if !deals.is_empty() {
@@ -403,7 +432,7 @@ fn run_with_offers(runs: &Path) -> Session {
 }
 
 /// Returns the enterprises with offers as day, group and number in the group, and their customer numbers.
-fn offers(session: &Session) -> (Vec<(u32, Group, u32)>, Vec<u32>) {
+fn sent_offers(session: &Session) -> (Vec<(u32, Group, u32)>, Vec<u32>) {
     let numbers = session.company().customer_numbers();
     let path = session.folder().expect("a folder").join("trajectory.jsonl");
     let lines = Trajectory::read(&path).expect("a trajectory").lines;
@@ -424,26 +453,27 @@ fn offers(session: &Session) -> (Vec<(u32, Group, u32)>, Vec<u32>) {
 }
 
 #[test]
-fn offers_reach_the_same_companies_where_more_or_fewer_leads_come() {
+fn offers_reach_the_same_enterprises_when_lead_counts_change() {
     let runs = tempfile::tempdir().expect("a folder");
     let session = run_with_offers(runs.path());
-    let (made, numbers) = offers(&session);
+    let (made, numbers) = sent_offers(&session);
     assert!(made.len() > 10, "{made:?}");
     for (alternative, all_come) in
         [("set_targeted_ad_spend * 1.5", true), ("set_targeted_ad_spend * 0.2", false)]
     {
-        let compared = compared(&session, 9, &[&[alternative]]);
+        let compared = compare(&session, 9, &[&[alternative]]);
         let own = &compared.branches[1];
         let mut on = |_| ControlFlow::Continue(());
-        let adopted = branch_with_decisions(&session, 9, &edits(&[alternative]), Mode::Debug, &mut on);
-        let Adopted { session: branch, refused } = adopted.expect("a branch");
-        let (reached, under) = offers(&branch);
+        let adopted =
+            create_branch_with_decisions(&session, 9, &parse_edits(&[alternative]), Mode::Debug, &mut on);
+        let AdoptedBranch { session: branch, rejected: refused } = adopted.expect("a branch");
+        let (reached, under) = sent_offers(&branch);
         assert_ne!(under, numbers, "{alternative}");
-        let is_absent = |(_, _, refusal): &(u32, String, Refusal)| {
+        let is_absent = |(_, _, refusal): &(u32, String, Rejection)| {
             refusal.message.contains("does not exist in this branch")
         };
         let absent = refused.iter().filter(|refused| is_absent(refused)).count();
-        assert_eq!(own.refused.iter().filter(|refused| is_absent(refused)).count(), absent, "{alternative}");
+        assert_eq!(own.rejected.iter().filter(|refused| is_absent(refused)).count(), absent, "{alternative}");
         assert_eq!(absent == 0, all_come, "{alternative}: {absent}");
         assert!(reached.iter().all(|own| made.contains(own)), "{alternative}");
         let rejected = refused.len() - absent;
@@ -453,26 +483,29 @@ fn offers_reach_the_same_companies_where_more_or_fewer_leads_come() {
         );
         let seats: Vec<f64> =
             branch.weeks().iter().skip(8).map(|week| week.enterprise_seats.into()).collect();
-        let curve: Vec<f64> = own.curve(BranchFigure::Seats).map(|(_, seats)| seats).collect();
+        let curve: Vec<f64> = own.values_by_week(BranchFigure::Seats).map(|(_, seats)| seats).collect();
         assert_eq!(curve, seats, "{alternative}");
     }
 }
 
 #[test]
-fn figures_of_a_record_that_stops_inside_a_week_are_those_of_whole_weeks() {
+fn partial_last_week_is_simulated_to_its_end() {
     let runs = tempfile::tempdir().expect("a folder");
-    let mut session = run(runs.path(), Mode::Debug);
+    let mut session = play_run(runs.path(), Mode::Debug);
     for _ in 0..5 {
         let forecasts = session.company().naive_forecasts();
         session.advance("on", &forecasts, Via::Plain, &mut |_| {}).expect("a week");
     }
     session.step(3, &mut |_| {}).expect("days");
-    let compared = of(&session).compare(2, None, &[edits(&["set_prices * 0.9"])], &on);
+    let compared =
+        open_what_if(&session).compare(2, None, &[parse_edits(&["set_prices * 0.9"])], &continue_progress);
     let compared = compared.expect("an answer").expect("it is not stopped");
     assert_eq!((compared.recorded_until, compared.until), (108, 112));
     for branch in &compared.branches {
         assert!(branch.value(BranchFigure::Cash, compared.until).is_some(), "{branch:?}");
     }
-    let beyond = of(&session).compare(2, Some(19), &[], &on).expect_err("the run has 120 days");
+    let beyond = open_what_if(&session)
+        .compare(2, Some(19), &[], &continue_progress)
+        .expect_err("the run has 120 days");
     assert_eq!(beyond.code, "week_unknown");
 }

@@ -1,11 +1,11 @@
 //! Effect of competitors that copy shared development and drain targeted development (docs/laboratory/ablation.md).
 
-mod exhibit;
+mod competitors;
 mod probes;
-mod rivals;
+mod report;
 #[cfg(test)]
 mod tests;
 
-pub use exhibit::{Axis, SHORT_DAYS, ShortRun, ablation_exhibit};
-pub use probes::{shared_probe, short_run_policies, targeted_probe};
-pub use rivals::{COPY, DRAIN, RivalSetting, arms};
+pub use competitors::{COPY_SETTINGS, CompetitorSetting, DRAIN_SETTINGS, competitor_arms};
+pub use probes::{shared_development_probe, short_run_policies, targeted_development_probe};
+pub use report::{AblationAxis, SHORT_DAYS, ShortRun, ablation_report};

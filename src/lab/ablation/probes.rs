@@ -1,6 +1,6 @@
 //! Policies that play against the competitor settings.
 
-use crate::baseline::{Grid, PAPER};
+use crate::baseline::{PAPER_GRID, PolicyGrid};
 use crate::policy::{Policy, PolicyError, RuleBased};
 use novamind_world::params::ParameterSource;
 
@@ -8,19 +8,19 @@ use novamind_world::params::ParameterSource;
 ///
 /// # Errors
 /// Fails if the bundled file is invalid.
-pub fn shared_probe() -> Result<Policy, PolicyError> {
-    shipped("shared", include_str!("../../../configs/probes/shared.toml"))
+pub fn shared_development_probe() -> Result<Policy, PolicyError> {
+    parse_bundled("shared", include_str!("../../../configs/probes/shared.toml"))
 }
 
 /// Returns the probe that buys targeted development for one group.
 ///
 /// # Errors
 /// Fails if the bundled file is invalid.
-pub fn targeted_probe() -> Result<Policy, PolicyError> {
-    shipped("targeted", include_str!("../../../configs/probes/targeted.toml"))
+pub fn targeted_development_probe() -> Result<Policy, PolicyError> {
+    parse_bundled("targeted", include_str!("../../../configs/probes/targeted.toml"))
 }
 
-fn shipped(name: &str, text: &str) -> Result<Policy, PolicyError> {
+fn parse_bundled(name: &str, text: &str) -> Result<Policy, PolicyError> {
     Policy::parse(&ParameterSource { name: format!("configs/probes/{name}.toml"), text: text.to_owned() })
 }
 
@@ -31,10 +31,10 @@ fn shipped(name: &str, text: &str) -> Result<Policy, PolicyError> {
 /// Fails if a bundled grid is invalid.
 pub fn short_run_policies() -> Result<Vec<(&'static str, Policy)>, PolicyError> {
     let of = |grid: &str, wanted: &dyn Fn(&Policy) -> bool| -> Result<Option<Policy>, PolicyError> {
-        let all = Grid::find(grid)?.configurations;
+        let all = PolicyGrid::find(grid)?.configurations;
         Ok(all.into_iter().rev().map(|own| own.policy).find(|own| wanted(own)))
     };
-    let routine = of(PAPER, &|own| own.rule_based == Some(RuleBased::default()))?;
+    let routine = of(PAPER_GRID, &|own| own.rule_based == Some(RuleBased::default()))?;
     let from_the_first_day = of("content-ads", &|_| true)?;
     let named = [("the paper's baseline", routine), ("ads from day 0", from_the_first_day)];
     Ok(named.into_iter().filter_map(|(name, policy)| Some((name, policy?))).collect())

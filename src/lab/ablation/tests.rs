@@ -3,56 +3,66 @@ use crate::experiment::{ExperimentResults, test_kit};
 use crate::policy::Policy;
 
 /// Plays a policy against competitor settings, over (days, last day).
-fn played(policy: &Policy, settings: &[RivalSetting], (days, until): (u32, u32)) -> ExperimentResults {
-    let mut arms = arms(policy, settings, days);
-    arms.iter_mut().for_each(|arm| arm.spec.until = Some(until));
-    test_kit::played(arms, 1..=2)
+fn play_arms(
+    policy: &Policy,
+    settings: &[CompetitorSetting],
+    (days, until): (u32, u32),
+) -> ExperimentResults {
+    let mut arms = competitor_arms(policy, settings, days);
+    arms.iter_mut().for_each(|arm| arm.spec.stop_after_day = Some(until));
+    test_kit::play_arms(arms, 1..=2)
 }
 
 #[test]
-fn copying_costs_shared_development_and_draining_targeted_one() {
-    let (shared, targeted) = (shared_probe().expect("a probe"), targeted_probe().expect("a probe"));
-    let at = |results: &ExperimentResults, arm: usize| results.of(arm, |run| f64::from(run.subscribers));
-    let pick = |all: &[RivalSetting], names: &[&str]| -> Vec<RivalSetting> {
+fn copying_hurts_shared_and_draining_hurts_targeted_development() {
+    let (shared, targeted) =
+        (shared_development_probe().expect("a probe"), targeted_development_probe().expect("a probe"));
+    let at = |results: &ExperimentResults, arm: usize| {
+        results.figures_of_arm(arm, |run| f64::from(run.subscribers))
+    };
+    let pick = |all: &[CompetitorSetting], names: &[&str]| -> Vec<CompetitorSetting> {
         names.iter().map(|name| *all.iter().find(|own| own.name == *name).expect("a setting")).collect()
     };
-    let copy = played(&shared, &pick(&COPY, &["off", "default", "hard"]), (500, 105));
+    let copy = play_arms(&shared, &pick(&COPY_SETTINGS, &["off", "default", "hard"]), (500, 105));
     for seed in 0..2 {
         let [off, default, hard] = [0, 1, 2].map(|arm| at(&copy, arm)[seed]);
         assert!(off > default && default >= hard, "{off} {default} {hard}");
     }
     // With targeted spending alone, default and hard competitors have the same effect; draining has not.
-    let drain =
-        played(&targeted, &pick(&DRAIN, &["no drain", "default", "hard", "drain to 0.2"]), (500, 105));
+    let drain = play_arms(
+        &targeted,
+        &pick(&DRAIN_SETTINGS, &["no drain", "default", "hard", "drain to 0.2"]),
+        (500, 105),
+    );
     assert_eq!(at(&drain, 1), at(&drain, 2));
-    let cash = |arm: usize| drain.of(arm, |run| run.cash);
+    let cash = |arm: usize| drain.figures_of_arm(arm, |run| run.cash);
     assert_eq!(cash(1), cash(2));
     assert!(at(&drain, 0)[0] > at(&drain, 3)[0], "{:?} {:?}", at(&drain, 0), at(&drain, 3));
 }
 
 #[test]
-fn fifty_days_have_neither_rivals_nor_drift() {
-    let rivals: Vec<RivalSetting> =
-        COPY.into_iter().filter(|own| ["off", "default", "hard"].contains(&own.name)).collect();
-    let probe = shared_probe().expect("a probe");
-    let results = played(&probe, &rivals, (SHORT_DAYS, SHORT_DAYS));
-    let cash = |arm: usize| results.of(arm, |run| run.cash);
+fn first_50_days_have_no_competitors_or_drift() {
+    let rivals: Vec<CompetitorSetting> =
+        COPY_SETTINGS.into_iter().filter(|own| ["off", "default", "hard"].contains(&own.name)).collect();
+    let probe = shared_development_probe().expect("a probe");
+    let results = play_arms(&probe, &rivals, (SHORT_DAYS, SHORT_DAYS));
+    let cash = |arm: usize| results.figures_of_arm(arm, |run| run.cash);
     assert!(cash(0) == cash(1) && cash(1) == cash(2));
     let short = [ShortRun { name: "the probe", settings: &rivals, results: &results }];
-    let axis = Axis {
+    let axis = AblationAxis {
         name: "copy",
         caption: "the probe".to_owned(),
         policy: "probe",
         settings: &rivals,
         results: &results,
     };
-    let exhibit = ablation_exhibit(&[axis], &short, 49);
-    let runs = exhibit.table("runs").expect("every run").as_csv();
+    let exhibit = ablation_report(&[axis], &short, 49);
+    let runs = exhibit.table("runs").expect("every run").to_csv_rows();
     assert_eq!(runs.len(), 1 + 2 * 3 * 2, "axis and short runs, three settings, two seeds");
     assert_eq!(runs[1][..4], ["copy", "probe", "off", "1"]);
     assert_eq!(runs[12][..4], ["short", "the probe", "hard", "2"]);
     assert_eq!(runs[1][7], results.by_arm[0][0].cash.to_string());
-    let text = exhibit.as_text(100);
+    let text = exhibit.to_text(100);
     assert!(text.contains("neither competitors nor drift") && text.contains("identical in 2 of 2"), "{text}");
     let named: Vec<&str> = short_run_policies().expect("policies").iter().map(|(name, _)| *name).collect();
     assert_eq!(named, ["the paper's baseline", "ads from day 0"]);

@@ -3,19 +3,19 @@
 use serde::Deserialize;
 use toml::{Spanned, Table, Value};
 
-use crate::exhibit::column_name;
+use crate::lab_report::column_name;
 use crate::policy::{Policy, PolicyError};
 use novamind_world::params::ParameterSource;
 
 /// Maximum number of combinations in a grid.
-pub const MOST: usize = 2_000;
+pub const MAX_COMBINATIONS: usize = 2_000;
 
 /// Separator between the levels in a label.
-const BETWEEN_LEVELS: &str = " / ";
+const LEVEL_SEPARATOR: &str = " / ";
 
 /// A grid.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Grid {
+pub struct PolicyGrid {
     /// Name.
     pub name: String,
     /// Description for readers of the file.
@@ -38,7 +38,7 @@ pub struct GridPoint {
 impl GridPoint {
     /// Returns the level names joined by the separator.
     pub fn label(&self) -> String {
-        self.levels.join(BETWEEN_LEVELS)
+        self.levels.join(LEVEL_SEPARATOR)
     }
 }
 
@@ -78,22 +78,22 @@ struct GridLevel {
     span: std::ops::Range<usize>,
 }
 
-impl Grid {
+impl PolicyGrid {
     /// Returns a bundled grid by name, or reads a file if `name` contains a path separator or ends in .toml.
     ///
     /// # Errors
     /// Fails if the grid does not exist or is invalid.
-    pub fn find(name: &str) -> Result<Grid, PolicyError> {
+    pub fn find(name: &str) -> Result<PolicyGrid, PolicyError> {
         let wrong =
             |problem: String| PolicyError { source: name.to_owned(), line: None, problem, is_unknown: false };
         if name.ends_with(".toml") || name.contains(std::path::is_separator) {
             let text = std::fs::read_to_string(name).map_err(|error| wrong(error.to_string()))?;
-            return Grid::parse(&ParameterSource { name: name.to_owned(), text });
+            return PolicyGrid::parse(&ParameterSource { name: name.to_owned(), text });
         }
         match novamind_assets::grids().into_iter().find(|(shipped, _)| *shipped == name) {
             Some((_, text)) => {
                 let file = format!("configs/grids/{name}.toml");
-                Grid::parse(&ParameterSource { name: file, text: text.to_owned() })
+                PolicyGrid::parse(&ParameterSource { name: file, text: text.to_owned() })
             }
             None => {
                 let known: Vec<&str> = novamind_assets::grids().into_iter().map(|(name, _)| name).collect();
@@ -107,10 +107,10 @@ impl Grid {
     ///
     /// # Errors
     /// Fails on unknown keys, axes without levels, duplicate level names, invalid policies, and too many combinations.
-    pub fn parse(source: &ParameterSource) -> Result<Grid, PolicyError> {
-        let reader = Reader(source);
+    pub fn parse(source: &ParameterSource) -> Result<PolicyGrid, PolicyError> {
+        let reader = GridReader(source);
         let file: GridFile =
-            toml::from_str(&source.text).map_err(|error| reader.at(error.span(), error.message()))?;
+            toml::from_str(&source.text).map_err(|error| reader.error_at(error.span(), error.message()))?;
         let base = file.policy.map(|policy| (policy.span(), policy.into_inner()));
         let mut axes: Vec<(String, Vec<GridLevel>)> = Vec::new();
         for axis in file.axis {
@@ -119,30 +119,31 @@ impl Grid {
             let column = column_name(&axis.name);
             if !is_label(&axis.name)
                 || column.is_empty()
-                || COLUMNS_OF_TABLES.contains(&column.as_str())
+                || RESERVED_COLUMNS.contains(&column.as_str())
                 || axes.iter().any(|(name, _)| column_name(name) == column)
             {
-                return Err(reader.at(
+                return Err(reader.error_at(
                     Some(span),
                     &format!(
-                        "axis names need letters or digits, must be unique and must not be {}; a name {LABEL}",
-                        COLUMNS_OF_TABLES.join(", ")
+                        "axis names need letters or digits, must be unique and must not be {}; a name {LABEL_RULE}",
+                        RESERVED_COLUMNS.join(", ")
                     ),
                 ));
             }
-            let levels = reader.levels(&axis.name, axis.level, span)?;
+            let levels = reader.read_levels(&axis.name, axis.level, span)?;
             axes.push((axis.name, levels));
         }
         let count = axes.iter().map(|(_, levels)| levels.len()).product::<usize>();
-        if axes.is_empty() || count > MOST {
-            return Err(
-                reader.at(None, &format!("a grid has 1 to {MOST} combinations, this one has {count}"))
-            );
+        if axes.is_empty() || count > MAX_COMBINATIONS {
+            return Err(reader.error_at(
+                None,
+                &format!("a grid has 1 to {MAX_COMBINATIONS} combinations, this one has {count}"),
+            ));
         }
         reader.check_base(base.as_ref())?;
         let base = base.map(|(_, table)| table).unwrap_or_default();
-        let points = (0..count).map(|number| reader.point(number, &axes, &base, &file.name));
-        Ok(Grid {
+        let points = (0..count).map(|number| reader.build_point(number, &axes, &base, &file.name));
+        Ok(PolicyGrid {
             configurations: points.collect::<Result<_, _>>()?,
             axes: axes.into_iter().map(|(name, _)| name).collect(),
             name: file.name,
@@ -152,10 +153,10 @@ impl Grid {
 }
 
 /// Rule for names, for error messages.
-const LABEL: &str = "is one line of text without \" / \", which separates the levels of a combination";
+const LABEL_RULE: &str = "is one line of text without \" / \", which separates the levels of a combination";
 
 /// Column names that axes must not use.
-const COLUMNS_OF_TABLES: [&str; 13] = [
+const RESERVED_COLUMNS: [&str; 13] = [
     "seed",
     "cash",
     "survival",
@@ -174,15 +175,15 @@ const COLUMNS_OF_TABLES: [&str; 13] = [
 /// Returns whether a name can be part of a label without ambiguity.
 fn is_label(name: &str) -> bool {
     !name.trim().is_empty()
-        && !name.contains(BETWEEN_LEVELS)
+        && !name.contains(LEVEL_SEPARATOR)
         && !name.chars().any(|letter| letter.is_control() || ['\u{2028}', '\u{2029}'].contains(&letter))
 }
 
 /// Reads the parts of a file and locates problems.
-struct Reader<'a>(&'a ParameterSource);
+struct GridReader<'a>(&'a ParameterSource);
 
-impl Reader<'_> {
-    fn at(&self, span: Option<std::ops::Range<usize>>, problem: &str) -> PolicyError {
+impl GridReader<'_> {
+    fn error_at(&self, span: Option<std::ops::Range<usize>>, problem: &str) -> PolicyError {
         let text = &self.0.text;
         PolicyError {
             source: self.0.name.clone(),
@@ -192,7 +193,7 @@ impl Reader<'_> {
         }
     }
 
-    fn levels(
+    fn read_levels(
         &self,
         axis: &str,
         entries: Vec<Spanned<LevelEntry>>,
@@ -204,15 +205,17 @@ impl Reader<'_> {
             let LevelEntry { name, set, call } = entry.into_inner();
             if levels.iter().any(|own| own.name == name) {
                 let problem = format!("axis {axis} has two levels named {name}");
-                return Err(self.at(Some(span), &problem));
+                return Err(self.error_at(Some(span), &problem));
             }
             if !is_label(&name) {
-                return Err(self.at(Some(span), &format!("axis {axis}: the name of a level {LABEL}")));
+                return Err(
+                    self.error_at(Some(span), &format!("axis {axis}: the name of a level {LABEL_RULE}"))
+                );
             }
             levels.push(GridLevel { name, set, calls: call, span });
         }
         if levels.is_empty() {
-            return Err(self.at(Some(span), &format!("axis {axis} has no levels")));
+            return Err(self.error_at(Some(span), &format!("axis {axis} has no levels")));
         }
         Ok(levels)
     }
@@ -220,12 +223,12 @@ impl Reader<'_> {
     // The part that all combinations share must be a valid policy too.
     fn check_base(&self, base: Option<&(std::ops::Range<usize>, Table)>) -> Result<(), PolicyError> {
         let Some((span, table)) = base else { return Ok(()) };
-        let told = policy_of(table.clone(), "policy").map_err(|problem| (span.clone(), problem));
-        told.map(drop).map_err(|(span, problem)| self.located(span, &problem))
+        let told = parse_policy(table.clone(), "policy").map_err(|problem| (span.clone(), problem));
+        told.map(drop).map_err(|(span, problem)| self.error_at_key(span, &problem))
     }
 
     /// Returns the combination with a number; the last axis varies fastest.
-    fn point(
+    fn build_point(
         &self,
         number: usize,
         axes: &[(String, Vec<GridLevel>)],
@@ -240,7 +243,7 @@ impl Reader<'_> {
         chosen.reverse();
         let mut table = base.clone();
         for level in &chosen {
-            lay_over(&mut table, level.set.clone());
+            merge_into(&mut table, level.set.clone());
             if !level.calls.is_empty() {
                 let calls = table.entry("call").or_insert_with(|| Value::Array(Vec::new()));
                 if let Value::Array(calls) = calls {
@@ -248,20 +251,20 @@ impl Reader<'_> {
                 }
             }
             // The previous levels were valid, so the problem is in this level.
-            let checked = policy_of(table.clone(), grid);
+            let checked = parse_policy(table.clone(), grid);
             checked.map_err(|problem| {
-                self.located(level.span.clone(), &format!("level {}: {problem}", level.name))
+                self.error_at_key(level.span.clone(), &format!("level {}: {problem}", level.name))
             })?;
         }
         let levels: Vec<String> = chosen.iter().map(|level| level.name.clone()).collect();
-        let policy =
-            policy_of(table, &levels.join(BETWEEN_LEVELS)).map_err(|problem| self.at(None, &problem))?;
+        let policy = parse_policy(table, &levels.join(LEVEL_SEPARATOR))
+            .map_err(|problem| self.error_at(None, &problem))?;
         Ok(GridPoint { levels, policy })
     }
 
     /// Locates a problem at the first line from `span` that begins with the key quoted in the message, otherwise at `span`.
-    fn located(&self, span: std::ops::Range<usize>, problem: &str) -> PolicyError {
-        let mut error = self.at(Some(span.clone()), problem);
+    fn error_at_key(&self, span: std::ops::Range<usize>, problem: &str) -> PolicyError {
+        let mut error = self.error_at(Some(span.clone()), problem);
         let text = self.0.text.get(span.start..).unwrap_or_default();
         let key = problem.split('`').nth(1).unwrap_or_default();
         let names = |line: &str| {
@@ -276,16 +279,16 @@ impl Reader<'_> {
 }
 
 /// Merges a table into another, key by key.
-fn lay_over(below: &mut Table, above: Table) {
+fn merge_into(below: &mut Table, above: Table) {
     for (key, value) in above {
         match (below.get_mut(&key), value) {
-            (Some(Value::Table(below)), Value::Table(above)) => lay_over(below, above),
+            (Some(Value::Table(below)), Value::Table(above)) => merge_into(below, above),
             (_, value) => drop(below.insert(key, value)),
         }
     }
 }
 
-fn policy_of(mut table: Table, name: &str) -> Result<Policy, String> {
+fn parse_policy(mut table: Table, name: &str) -> Result<Policy, String> {
     table.insert("name".to_owned(), Value::String(name.to_owned()));
     let text = toml::to_string(&table).map_err(|error| error.to_string())?;
     Policy::parse(&ParameterSource { name: name.to_owned(), text }).map_err(|error| error.problem)
@@ -295,13 +298,13 @@ fn policy_of(mut table: Table, name: &str) -> Result<Policy, String> {
 mod tests {
     use super::*;
 
-    fn parse(text: &str) -> Result<Grid, PolicyError> {
-        Grid::parse(&ParameterSource { name: "grid.toml".to_owned(), text: text.to_owned() })
+    fn parse(text: &str) -> Result<PolicyGrid, PolicyError> {
+        PolicyGrid::parse(&ParameterSource { name: "grid.toml".to_owned(), text: text.to_owned() })
     }
 
     #[test]
-    fn the_paper_has_24_configurations_that_all_differ() {
-        let grid = Grid::find("paper").expect("a grid");
+    fn paper_grid_has_24_distinct_configurations() {
+        let grid = PolicyGrid::find("paper").expect("a grid");
         assert_eq!((grid.axes.len(), grid.configurations.len()), (4, 24));
         let labels: Vec<String> = grid.configurations.iter().map(GridPoint::label).collect();
         assert_eq!(
@@ -321,8 +324,8 @@ mod tests {
     }
 
     #[test]
-    fn calls_of_levels_are_added_to_those_of_the_base() {
-        let grid = Grid::find("content-ads").expect("a grid");
+    fn level_calls_extend_base_calls() {
+        let grid = PolicyGrid::find("content-ads").expect("a grid");
         assert_eq!(grid.configurations.len(), 6);
         let last = &grid.configurations[5].policy;
         let tools: Vec<&str> = last.calls.iter().map(|call| call.tool.as_str()).collect();
@@ -330,7 +333,7 @@ mod tests {
     }
 
     #[test]
-    fn wrong_grids_name_line_and_key() {
+    fn invalid_grids_name_line_and_key() {
         let level = "[[axis]]\nname = \"a\"\n[[axis.level]]\nname = \"x\"\n";
         for (text, line, part) in [
             ("name = \"g\"\nwhat = 1\n".to_owned(), Some(2), "what"),
@@ -360,7 +363,7 @@ mod tests {
             assert_eq!(error.line, line, "{text}: {error}");
             assert!(error.problem.contains(part), "{text}: {error}");
         }
-        let missing = Grid::find("nothing").expect_err("unknown grid");
+        let missing = PolicyGrid::find("nothing").expect_err("unknown grid");
         assert!(missing.problem.contains("paper"), "{missing}");
     }
 }

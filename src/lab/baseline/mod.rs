@@ -1,14 +1,14 @@
 //! The paper's rule-based configurations, and custom grids (docs/laboratory/baseline.md).
 
-mod exhibit;
 mod grid;
-mod shared_play;
+mod report;
+mod shared_runs;
 #[cfg(test)]
 mod tests;
 
-pub use exhibit::baseline_exhibit;
-pub use grid::{Grid, GridPoint};
-pub use shared_play::{is_shared, leaders};
+pub use grid::{GridPoint, PolicyGrid};
+pub use report::baseline_report;
+pub use shared_runs::{is_shared_run, shared_run_leaders};
 
 /// Name of the bundled grid with the paper's configurations.
-pub const PAPER: &str = "paper";
+pub const PAPER_GRID: &str = "paper";

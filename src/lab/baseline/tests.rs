@@ -2,45 +2,45 @@ use super::*;
 use crate::experiment::{Arm, ExperimentResults, test_kit};
 
 /// The results of some configurations over a few days, all played.
-fn played(points: &[GridPoint], seeds: &[u64], days: u32) -> ExperimentResults {
+fn play_configurations(points: &[GridPoint], seeds: &[u64], days: u32) -> ExperimentResults {
     let arms = points.iter().map(|own| {
         let mut arm = Arm::new(own.label(), own.policy.clone());
-        arm.spec.until = Some(days);
+        arm.spec.stop_after_day = Some(days);
         arm
     });
-    test_kit::played(arms.collect(), seeds.iter().copied())
+    test_kit::play_arms(arms.collect(), seeds.iter().copied())
 }
 
 #[test]
-fn configurations_of_one_leader_play_alike_unless_cash_comes_between_their_floors() {
-    let grid = Grid::find(PAPER).expect("a grid");
+fn shared_runs_are_equal_unless_cash_is_between_floors() {
+    let grid = PolicyGrid::find(PAPER_GRID).expect("a grid");
     let points = &grid.configurations;
-    let leaders = leaders(points);
+    let leaders = shared_run_leaders(points);
     let expected: Vec<usize> = (0..24).map(|at| at / 2 * 2).collect();
     assert_eq!(leaders, expected);
     // mid / S1 / light comes below $300,000 within 350 days, mid / S1 / heavy within 50 does not.
     let (light, heavy) = (&points[12..14], &points[16..18]);
     for (pair, days, shared) in [(light, 350, false), (heavy, 49, true)] {
-        let results = played(pair, &[1], days);
+        let results = play_configurations(pair, &[1], days);
         let (low, high) = (&results.by_arm[0][0], &results.by_arm[1][0]);
-        assert_eq!(is_shared(&pair[0].policy, &pair[1].policy, 1e6, low), shared, "{}", pair[0].label());
+        assert_eq!(is_shared_run(&pair[0].policy, &pair[1].policy, 1e6, low), shared, "{}", pair[0].label());
         assert_eq!(low.state_hash == high.state_hash, shared, "{}", pair[0].label());
     }
 }
 
 #[test]
-fn one_seed_is_told_as_the_paper_does_and_many_with_their_spread() {
-    let grid = Grid::find(PAPER).expect("a grid");
+fn one_seed_is_shown_as_in_the_paper_and_many_with_spread() {
+    let grid = PolicyGrid::find(PAPER_GRID).expect("a grid");
     let few: Vec<GridPoint> = [0, 12].map(|at: usize| grid.configurations[at].clone()).into();
-    let few = Grid { configurations: few, ..grid };
-    let one = baseline_exhibit(&few, true, &played(&few.configurations, &[1], 28));
-    let text = one.as_text(100);
+    let few = PolicyGrid { configurations: few, ..grid };
+    let one = baseline_report(&few, true, &play_configurations(&few.configurations, &[1], 28));
+    let text = one.to_text(100);
     assert!(text.contains("survival") && text.contains("peak") && text.contains("15,756,408"), "{text}");
     assert!(!text.contains("Kendall"), "{text}");
-    let two = baseline_exhibit(&few, false, &played(&few.configurations, &[1, 2], 28));
-    let text = two.as_text(100);
+    let two = baseline_report(&few, false, &play_configurations(&few.configurations, &[1, 2], 28));
+    let text = two.to_text(100);
     assert!(text.contains("quartile") && text.contains("Kendall") && !text.contains("15,756"), "{text}");
-    let rows = |name: &str| two.table(name).expect(name).as_csv();
+    let rows = |name: &str| two.table(name).expect(name).to_csv_rows();
     const AXES: [&str; 4] = ["price_book", "target", "spend", "floor"];
     for name in ["configurations", "stability", "runs"] {
         assert_eq!(rows(name)[0][..4], AXES, "{name}");

@@ -1,10 +1,13 @@
 //! Computes every line of the account from the plan and the parameters.
 
-use super::climate::{Climate, climate};
-use super::premises::Premises;
-use super::published::AccountLine;
-use super::requirement::overload_penalty;
-use super::{customers, improving, knowing, renewals, running, targeted, winning};
+use super::account_line::AccountLine;
+use super::assumptions::BoundAssumptions;
+use super::required_quality::overload_penalty;
+use super::shared_quality::{SharedQualityPath, shared_quality_path};
+use super::{
+    acquisition_costs, attainable_market, improvement_costs, operating_costs, renewals, research_costs,
+    targeted_development,
+};
 use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
 
@@ -18,50 +21,50 @@ pub struct BoundGroup {
     /// Price, dollars a month.
     pub price: f64,
     /// Widest quality gap that targeted development must close.
-    pub gap: f64,
+    pub quality_gap: f64,
     /// Spending that closes the gap exactly, before slack, dollars a day.
-    pub least_spending: f64,
+    pub min_spending: f64,
     /// Spending with slack, dollars a day.
     pub spending: f64,
     /// Share of customers who renew, by renewal day.
-    pub renewing: Vec<f64>,
+    pub renewal_shares: Vec<f64>,
     /// Revenue over all renewals, dollars.
     pub revenue: f64,
 }
 
 /// A line of the account and its figures.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Figured {
+pub struct AccountEntry {
     /// Line.
     pub line: AccountLine,
     /// Computed figure, dollars.
-    pub own: f64,
+    pub computed: f64,
     /// Published figure, dollars.
     pub published: f64,
     /// Explanation of the difference.
-    pub why: String,
+    pub explanation: String,
 }
 
 /// The complete account.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BoundAccount {
     /// Premises.
-    pub premises: Premises,
+    pub assumptions: BoundAssumptions,
     /// Whether the parameters have competitors.
     pub has_rivals: bool,
     /// Usage of all customers, units a day.
     pub daily_usage: f64,
     /// Quality lost to overload.
-    pub overload: f64,
+    pub overload_penalty: f64,
     /// Groups.
     pub groups: Vec<BoundGroup>,
     /// Lines in order.
-    pub lines: Vec<Figured>,
+    pub lines: Vec<AccountEntry>,
 }
 
 /// A row of the sensitivity to slack.
 #[derive(Debug, Clone, PartialEq)]
-pub struct SlackRow {
+pub struct SensitivityRow {
     /// Slack.
     pub slack: f64,
     /// Targeted development, dollars.
@@ -77,60 +80,79 @@ pub struct SlackRow {
 }
 
 /// Share above which nearly all customers of a group are satisfied.
-pub const NEARLY_ALL: f64 = 0.99;
+pub const SATISFIED_SHARE: f64 = 0.99;
 
 impl BoundAccount {
     /// Returns the account of a plan.
-    pub fn of(premises: Premises, params: &Params) -> BoundAccount {
-        let climate = climate(&premises, params);
-        BoundAccount::under(premises, &climate, params)
+    pub fn new(premises: BoundAssumptions, params: &Params) -> BoundAccount {
+        let climate = shared_quality_path(&premises, params);
+        BoundAccount::with_shared_quality(premises, &climate, params)
     }
 
     /// Returns the account of a plan under given market conditions.
-    fn under(premises: Premises, climate: &Climate, params: &Params) -> BoundAccount {
-        let daily_usage = customers::daily_usage(params);
+    fn with_shared_quality(
+        premises: BoundAssumptions,
+        climate: &SharedQualityPath,
+        params: &Params,
+    ) -> BoundAccount {
+        let daily_usage = attainable_market::daily_usage(params);
         let overload = overload_penalty(daily_usage, premises.capacity_tier, params);
         let groups: Vec<BoundGroup> =
-            Group::all().map(|group| account_of(group, overload, climate, &premises, params)).collect();
+            Group::all().map(|group| group_account(group, overload, climate, &premises, params)).collect();
         let has_rivals = !params.competitor.competitor_events_disabled;
-        let mut account =
-            BoundAccount { premises, has_rivals, daily_usage, overload, groups, lines: Vec::new() };
-        account.lines = account.figured(params);
+        let mut account = BoundAccount {
+            assumptions: premises,
+            has_rivals,
+            daily_usage,
+            overload_penalty: overload,
+            groups,
+            lines: Vec::new(),
+        };
+        account.lines = account.entries(params);
         account
     }
 
-    fn figured(&self, params: &Params) -> Vec<Figured> {
+    fn entries(&self, params: &Params) -> Vec<AccountEntry> {
         let line = |line: AccountLine| {
-            let own = self.dollars(line, params);
-            Figured { line, own, published: 1e6 * line.published(), why: self.why(line, own, params) }
+            let own = self.line_dollars(line, params);
+            AccountEntry {
+                line,
+                computed: own,
+                published: 1e6 * line.published_millions(),
+                explanation: self.explain_difference(line, own, params),
+            }
         };
         AccountLine::ALL.into_iter().map(line).collect()
     }
 
-    fn dollars(&self, line: AccountLine, params: &Params) -> f64 {
-        let premises = &self.premises;
+    fn line_dollars(&self, line: AccountLine, params: &Params) -> f64 {
+        let premises = &self.assumptions;
         match line {
             AccountLine::Individuals => self.revenue_of(false),
-            AccountLine::Companies => self.revenue_of(true),
+            AccountLine::Enterprises => self.revenue_of(true),
             AccountLine::Revenue => self.revenue_of(false) + self.revenue_of(true),
-            AccountLine::Compute => running::compute(self.daily_usage, premises, params),
-            AccountLine::Capacity => running::capacity(premises, params),
-            AccountLine::GlobalDevelopment => improving::global_development(premises),
-            AccountLine::TargetedDevelopment => self.targeted(),
-            AccountLine::Research => improving::research(premises, params),
+            AccountLine::Compute => operating_costs::compute_cost(self.daily_usage, premises, params),
+            AccountLine::Capacity => operating_costs::capacity_cost(premises, params),
+            AccountLine::GlobalDevelopment => improvement_costs::global_development_cost(premises),
+            AccountLine::TargetedDevelopment => self.targeted_development(),
+            AccountLine::Research => improvement_costs::research_cost(premises, params),
             AccountLine::Advertising => {
-                Group::all().map(|group| winning::advertising(group, premises, params)).sum()
+                Group::all().map(|group| acquisition_costs::advertising_cost(group, premises, params)).sum()
             }
-            AccountLine::LeadCosts => winning::lead_costs(params),
-            AccountLine::Operations => running::operations(self.customers(), premises),
-            AccountLine::MarketResearch => knowing::market_research(params),
-            AccountLine::GroupResearch => knowing::group_research(premises, params),
-            AccountLine::Costs => AccountLine::COSTS.into_iter().map(|cost| self.dollars(cost, params)).sum(),
+            AccountLine::LeadCosts => acquisition_costs::lead_costs(params),
+            AccountLine::Operations => operating_costs::operations_cost(self.customers(), premises),
+            AccountLine::MarketResearch => research_costs::market_research_cost(params),
+            AccountLine::GroupResearch => research_costs::group_research_cost(premises, params),
+            AccountLine::Costs => {
+                AccountLine::COSTS.into_iter().map(|cost| self.line_dollars(cost, params)).sum()
+            }
             AccountLine::Subtotal => {
-                params.initial.initial_cash + self.dollars(AccountLine::Revenue, params)
-                    - self.dollars(AccountLine::Costs, params)
+                params.initial.initial_cash + self.line_dollars(AccountLine::Revenue, params)
+                    - self.line_dollars(AccountLine::Costs, params)
             }
-            AccountLine::Estimate => premises.reported_share * self.dollars(AccountLine::Subtotal, params),
+            AccountLine::Estimate => {
+                premises.reported_share * self.line_dollars(AccountLine::Subtotal, params)
+            }
         }
     }
 
@@ -143,8 +165,8 @@ impl BoundAccount {
         own.map(|own| own.revenue).sum()
     }
 
-    fn targeted(&self) -> f64 {
-        f64::from(self.premises.days) * self.groups.iter().map(|own| own.spending).sum::<f64>()
+    fn targeted_development(&self) -> f64 {
+        f64::from(self.assumptions.days) * self.groups.iter().map(|own| own.spending).sum::<f64>()
     }
 
     /// Returns the number of paying customers and seats.
@@ -153,53 +175,56 @@ impl BoundAccount {
     }
 
     /// Computes the figure of a line, dollars.
-    pub fn of_line(&self, line: AccountLine) -> f64 {
-        self.lines.iter().find(|own| own.line == line).map_or(0.0, |own| own.own)
+    pub fn computed(&self, line: AccountLine) -> f64 {
+        self.lines.iter().find(|own| own.line == line).map_or(0.0, |own| own.computed)
     }
 
-    fn slack_row(&self) -> SlackRow {
-        let shares = || self.groups.iter().flat_map(|own| own.renewing.iter().copied());
+    fn sensitivity_row(&self) -> SensitivityRow {
+        let shares = || self.groups.iter().flat_map(|own| own.renewal_shares.iter().copied());
         let renewals = shares().count();
-        SlackRow {
-            slack: self.premises.slack,
-            targeted: self.targeted(),
-            satisfied: shares().filter(|share| *share > NEARLY_ALL).count(),
+        SensitivityRow {
+            slack: self.assumptions.slack,
+            targeted: self.targeted_development(),
+            satisfied: shares().filter(|share| *share > SATISFIED_SHARE).count(),
             renewals,
             mean_share: shares().sum::<f64>() / renewals.max(1) as f64,
-            estimate: self.of_line(AccountLine::Estimate),
+            estimate: self.computed(AccountLine::Estimate),
         }
     }
 }
 
 /// Returns a row for each slack.
-pub fn sensitivity(slacks: &[f64], params: &Params) -> Vec<SlackRow> {
-    let premises = |slack: &f64| Premises::of_the_paper(*slack);
+pub fn sensitivity(slacks: &[f64], params: &Params) -> Vec<SensitivityRow> {
+    let premises = |slack: &f64| BoundAssumptions::from_paper(*slack);
     let Some(first) = slacks.first() else { return Vec::new() };
     // Slack does not change market conditions: competitors copy in proportion to a targeted gain.
-    let climate = climate(&premises(first), params);
-    slacks.iter().map(|slack| BoundAccount::under(premises(slack), &climate, params).slack_row()).collect()
+    let climate = shared_quality_path(&premises(first), params);
+    slacks
+        .iter()
+        .map(|slack| BoundAccount::with_shared_quality(premises(slack), &climate, params).sensitivity_row())
+        .collect()
 }
 
-fn account_of(
+fn group_account(
     group: Group,
     overload: f64,
-    climate: &Climate,
-    premises: &Premises,
+    climate: &SharedQualityPath,
+    premises: &BoundAssumptions,
     params: &Params,
 ) -> BoundGroup {
-    let gap = targeted::widest_gap(group, overload, climate, premises, params);
-    let least_spending = targeted::least_spending(gap, premises, params);
+    let gap = targeted_development::widest_gap(group, overload, climate, premises, params);
+    let least_spending = targeted_development::min_spending(gap, premises, params);
     let spending = premises.slack * least_spending;
-    let renewing = renewals::renewing(group, spending, overload, climate, premises, params);
+    let renewing = renewals::renewal_shares(group, spending, overload, climate, premises, params);
     BoundGroup {
         group: group.id(),
-        customers: customers::attainable(group, params),
-        price: customers::highest_price(group, params),
-        gap,
-        least_spending,
+        customers: attainable_market::attainable_customers(group, params),
+        price: attainable_market::highest_price(group, params),
+        quality_gap: gap,
+        min_spending: least_spending,
         spending,
-        revenue: customers::full_bill(group, params) * renewing.iter().sum::<f64>(),
-        renewing,
+        revenue: attainable_market::full_billing_revenue(group, params) * renewing.iter().sum::<f64>(),
+        renewal_shares: renewing,
     }
 }
 
@@ -208,11 +233,11 @@ mod tests {
     use super::*;
 
     fn account(slack: f64) -> BoundAccount {
-        BoundAccount::of(Premises::of_the_paper(slack), &Params::shipped())
+        BoundAccount::new(BoundAssumptions::from_paper(slack), &Params::bundled())
     }
 
     #[test]
-    fn lines_that_are_products_of_parameters_are_the_published_ones() {
+    fn product_lines_equal_published_figures() {
         let own = account(3.0);
         for line in [
             AccountLine::Capacity,
@@ -220,26 +245,26 @@ mod tests {
             AccountLine::Research,
             AccountLine::Operations,
         ] {
-            let off = own.of_line(line) / 1e6 - line.published();
-            assert!(off.abs() <= line.rounding(), "{}: {off}", line.name());
+            let off = own.computed(line) / 1e6 - line.published_millions();
+            assert!(off.abs() <= line.rounding_error(), "{}: {off}", line.name());
         }
     }
 
     #[test]
-    fn sums_are_within_three_percent_of_the_published_ones() {
+    fn sums_are_within_3_percent_of_published_figures() {
         let own = account(3.0);
         for line in [AccountLine::Revenue, AccountLine::Costs, AccountLine::Subtotal, AccountLine::Estimate] {
-            let ratio = own.of_line(line) / 1e6 / line.published();
+            let ratio = own.computed(line) / 1e6 / line.published_millions();
             assert!((ratio - 1.0).abs() < 0.03, "{}: {ratio}", line.name());
         }
         let targeted = AccountLine::TargetedDevelopment;
-        let ratio = own.of_line(targeted) / 1e6 / targeted.published();
+        let ratio = own.computed(targeted) / 1e6 / targeted.published_millions();
         assert!((0.85..1.0).contains(&ratio), "{ratio}");
     }
 
     #[test]
-    fn three_and_four_times_are_enough_and_one_and_two_are_not() {
-        let rows = sensitivity(&[1.0, 2.0, 3.0, 4.0], &Params::shipped());
+    fn slack_of_three_suffices_and_two_does_not() {
+        let rows = sensitivity(&[1.0, 2.0, 3.0, 4.0], &Params::bundled());
         assert!(rows.iter().all(|row| row.renewals == 26 * 16));
         for row in &rows[..2] {
             assert!(row.mean_share < 0.9 && row.satisfied < 360, "{row:?}");
@@ -251,12 +276,12 @@ mod tests {
     }
 
     #[test]
-    fn the_account_adds_up() {
+    fn account_lines_add_up() {
         let own = account(2.0);
-        let costs: f64 = AccountLine::COSTS.iter().map(|line| own.of_line(*line)).sum();
-        assert!((costs - own.of_line(AccountLine::Costs)).abs() < 1e-3);
-        let left = 1e6 + own.of_line(AccountLine::Revenue) - costs;
-        assert!((left - own.of_line(AccountLine::Subtotal)).abs() < 1e-3);
-        assert!((0.49 * left - own.of_line(AccountLine::Estimate)).abs() < 1e-3);
+        let costs: f64 = AccountLine::COSTS.iter().map(|line| own.computed(*line)).sum();
+        assert!((costs - own.computed(AccountLine::Costs)).abs() < 1e-3);
+        let left = 1e6 + own.computed(AccountLine::Revenue) - costs;
+        assert!((left - own.computed(AccountLine::Subtotal)).abs() < 1e-3);
+        assert!((0.49 * left - own.computed(AccountLine::Estimate)).abs() < 1e-3);
     }
 }

@@ -1,23 +1,23 @@
 //! The paper's upper-bound account, computed line by line from the current parameters (docs/laboratory/bound.md).
 
 mod account;
-mod climate;
-mod customers;
-mod exhibit;
-mod improving;
-mod knowing;
+mod account_line;
+mod acquisition_costs;
+mod assumptions;
+mod attainable_market;
+mod differences;
+mod improvement_costs;
+mod operating_costs;
 #[cfg(test)]
-mod page;
-mod premises;
-mod published;
-mod reasons;
+mod page_tests;
 mod renewals;
-mod requirement;
-mod running;
-mod targeted;
-mod winning;
+mod report;
+mod required_quality;
+mod research_costs;
+mod shared_quality;
+mod targeted_development;
 
-pub use account::{BoundAccount, SlackRow, sensitivity};
-pub use exhibit::bound_exhibit;
-pub use premises::Premises;
-pub use published::AccountLine;
+pub use account::{BoundAccount, SensitivityRow, sensitivity};
+pub use account_line::AccountLine;
+pub use assumptions::BoundAssumptions;
+pub use report::bound_report;

@@ -1,31 +1,32 @@
 //! r: the share of a group's customers who are satisfied at a renewal.
 
-use super::climate::Climate;
-use super::premises::Premises;
-use super::requirement::{required, risen};
-use crate::normal::normal_share;
+use super::assumptions::BoundAssumptions;
+use super::required_quality::{added_expectation, required_quality};
+use super::shared_quality::SharedQualityPath;
+use crate::normal_distribution::normal_cdf;
 use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
 use novamind_world::product::development::targeted_development_gain;
 
 /// Returns the renewal share on each renewal day, given targeted spending (dollars a day) and overload.
-pub fn renewing(
+pub fn renewal_shares(
     group: Group,
     spending: f64,
     overload: f64,
-    climate: &Climate,
-    premises: &Premises,
+    climate: &SharedQualityPath,
+    premises: &BoundAssumptions,
     params: &Params,
 ) -> Vec<f64> {
     let gain = targeted_development_gain(spending, &params.development);
     let model = params.model(premises.model_tier).quality_multiplier;
-    let (mean, spread) = required(group, params);
+    let (mean, spread) = required_quality(group, params);
     let share = |day: &u32| {
         let at = *day as usize;
         let targeted = gain * f64::from(day - 1);
         let quality = params.quality.base_product_quality + climate.shared[at] + targeted;
-        let expected = risen(group, *day, climate, params) + gain * climate.copied[at][group];
-        normal_share((model * quality - expected - overload - mean) / spread)
+        let expected =
+            added_expectation(group, *day, climate, params) + gain * climate.copied_quality[at][group];
+        normal_cdf((model * quality - expected - overload - mean) / spread)
     };
     premises.renewals.iter().map(share).collect()
 }
@@ -33,17 +34,17 @@ pub fn renewing(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bound::climate::climate;
+    use crate::bound::shared_quality::shared_quality_path;
 
     #[test]
-    fn a_renewal_follows_the_equation_of_the_paper() {
-        let (premises, params) = (Premises::of_the_paper(3.0), Params::shipped());
-        let (s1, calm) = (Group::parse("S1").expect("a group"), climate(&premises, &params));
-        let own = renewing(s1, 5000.0, 0.05, &calm, &premises, &params);
+    fn renewal_share_follows_the_paper() {
+        let (premises, params) = (BoundAssumptions::from_paper(3.0), Params::bundled());
+        let (s1, calm) = (Group::parse("S1").expect("a group"), shared_quality_path(&premises, &params));
+        let own = renewal_shares(s1, 5000.0, 0.05, &calm, &premises, &params);
         // Day 30: no competitor has acted, and 29 days of development have accumulated.
         let gain = 0.0225 * std::f64::consts::LN_2;
         let quality = 0.9 * (0.2 + calm.shared[30] + 29.0 * gain);
-        let expected = normal_share((quality - 0.05 - 0.55) / 0.0125f64.sqrt());
+        let expected = normal_cdf((quality - 0.05 - 0.55) / 0.0125f64.sqrt());
         assert!((own[0] - expected).abs() < 1e-12, "{} {expected}", own[0]);
         assert_eq!(own.len(), 16);
     }

@@ -1,43 +1,43 @@
 //! Comparison of runs: result, cash by week, decisions and behavior, next to published figures.
 
-mod compared;
+mod comparison;
 mod figures;
-mod rows;
+mod run_rows;
 mod table;
 
-pub use compared::{Comparison, Decided, measure_of};
-pub use figures::{ComparedFigure, FIGURES, figure_of};
-pub use table::{as_rows, as_text};
+pub use comparison::{ComparedDecisions, Comparison, measure_for_unit};
+pub use figures::{ComparedFigure, FIGURES, find_figure};
+pub use table::{comparison_to_rows, comparison_to_text};
 
 use novamind_report::Logbook;
-use novamind_report::comparable::{RunTerms, left_out_in_words};
-use novamind_report::ranking::by_result;
+use novamind_report::ranking::compare_results;
+use novamind_report::ranking_eligibility::{RankingCriteria, describe_excluded};
 
 /// Returns the comparison of runs.
-pub fn beside(runs: &[Logbook]) -> Comparison {
+pub fn compare_runs(runs: &[Logbook]) -> Comparison {
     let mut figures: Vec<_> = FIGURES.iter().map(|figure| figure.row(runs)).collect();
-    figures.extend(figures::by_group(runs));
+    figures.extend(figures::group_rows(runs));
     Comparison {
         runs: runs.iter().map(|run| run.run.clone()).collect(),
-        participants: runs.iter().map(Logbook::player).collect(),
-        order: order(runs),
+        participants: runs.iter().map(Logbook::player_name).collect(),
+        order: order_by_result(runs),
         ends: runs.iter().map(|run| (run.day, run.ended)).collect(),
         figures,
-        cash: figures::cash(runs),
-        decisions: decisions(runs),
+        cash: figures::cash_rows(runs),
+        decisions: decisions_by_day(runs),
         caveats: caveats(runs),
     }
 }
 
 /// Returns the runs ordered by result, best first; an unfinished run counts with its current cash.
-fn order(runs: &[Logbook]) -> Vec<usize> {
+fn order_by_result(runs: &[Logbook]) -> Vec<usize> {
     let result = |run: &Logbook| (run.score.unwrap_or(run.cash), run.measures.survival_days);
     let mut order: Vec<usize> = (0..runs.len()).collect();
-    order.sort_by(|one, other| by_result(result(&runs[*other]), result(&runs[*one])));
+    order.sort_by(|one, other| compare_results(result(&runs[*other]), result(&runs[*one])));
     order
 }
 
-fn decisions(runs: &[Logbook]) -> Vec<Decided> {
+fn decisions_by_day(runs: &[Logbook]) -> Vec<ComparedDecisions> {
     let mut days: Vec<u32> =
         runs.iter().flat_map(|run| run.weeks.iter().map(|week| week.decision_day)).collect();
     days.sort_unstable();
@@ -46,8 +46,9 @@ fn decisions(runs: &[Logbook]) -> Vec<Decided> {
         let weeks = run.weeks.iter().filter(|week| week.decision_day == day);
         weeks.flat_map(|week| week.decisions.iter().cloned()).collect::<Vec<_>>()
     };
-    let decided =
-        days.iter().map(|day| Decided { day: *day, by_run: runs.iter().map(|run| of(run, *day)).collect() });
+    let decided = days
+        .iter()
+        .map(|day| ComparedDecisions { day: *day, by_run: runs.iter().map(|run| of(run, *day)).collect() });
     decided.filter(|decided| decided.by_run.iter().any(|own| !own.is_empty())).collect()
 }
 
@@ -66,8 +67,8 @@ fn caveats(runs: &[Logbook]) -> Vec<String> {
     note(any(&|own, first| own.start_cash != first.start_cash), "cash at the start");
     note(any(&|own, first| own.parameters_digest != first.parameters_digest), "parameters");
     note(any(&|own, first| own.mode != first.mode), "mode");
-    let obstacles: Vec<_> = runs.iter().map(|run| RunTerms::of_logbook(run).obstacles()).collect();
-    caveats.extend(left_out_in_words(&obstacles).map(|(count, why)| match count {
+    let obstacles: Vec<_> = runs.iter().map(|run| RankingCriteria::from_logbook(run).obstacles()).collect();
+    caveats.extend(describe_excluded(&obstacles).map(|(count, why)| match count {
         1 => format!("One run is not comparable with published runs: {why}."),
         count => format!("{count} runs are not comparable with published runs: {why}."),
     }));

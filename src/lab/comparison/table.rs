@@ -1,25 +1,25 @@
 //! Comparison of runs as text and as CSV rows.
 
-use super::compared::{Comparison, Range, Row};
-use super::rows::one_a_row;
-use novamind_base::notation::{dollars, grouped, percent};
-use novamind_report::ranking::{published, published_terms};
+use super::comparison::{Comparison, ComparisonRow, PublishedRange};
+use super::run_rows::row_per_run_report;
+use novamind_base::formatting::{dollars, grouped_number, percent};
+use novamind_report::ranking::{describe_published_conditions, published_results};
 
 /// Maximum number of days with cash in the text; longer runs skip weeks.
-const CASH_ROWS: usize = 20;
+const MAX_CASH_ROWS: usize = 20;
 
-const LINE: usize = 124;
+const MAX_LINE_WIDTH: usize = 124;
 
 /// Returns the comparison as text: runs in columns if `width` allows, otherwise one row per run.
-pub fn as_text(beside: &Comparison, width: usize) -> String {
+pub fn comparison_to_text(beside: &Comparison, width: usize) -> String {
     let table = side_by_side(beside);
     if table.lines().any(|line| line.chars().count() > width) {
-        let mut exhibit = one_a_row(beside);
+        let mut exhibit = row_per_run_report(beside);
         exhibit.notes.extend(beside.caveats.iter().cloned());
-        return exhibit.as_text(width);
+        return exhibit.to_text(width);
     }
-    let foot: String = foot(beside).into_iter().map(|line| line + "\n").collect();
-    table + &decisions(beside, width.min(LINE)) + &agents() + &foot
+    let foot: String = footnotes(beside).into_iter().map(|line| line + "\n").collect();
+    table + &decision_lines(beside, width.min(MAX_LINE_WIDTH)) + &published_agents_text() + &foot
 }
 
 fn side_by_side(beside: &Comparison) -> String {
@@ -34,21 +34,21 @@ fn side_by_side(beside: &Comparison) -> String {
     rows.extend(beside.figures.iter().map(text_row));
     rows.push(vec![String::new(); beside.runs.len() + 2]);
     let last = beside.cash.len().saturating_sub(1);
-    let every = beside.cash.len().div_ceil(CASH_ROWS).max(1);
+    let every = beside.cash.len().div_ceil(MAX_CASH_ROWS).max(1);
     let told = beside.cash.iter().enumerate().filter(|(at, _)| at % every == 0 || *at == last);
     rows.extend(told.map(|(_, row)| text_row(row)));
-    aligned(&rows)
+    align_cells(&rows)
 }
 
 /// Returns the limits of comparability and the source of published figures.
-fn foot(beside: &Comparison) -> Vec<String> {
+fn footnotes(beside: &Comparison) -> Vec<String> {
     let mut lines = beside.caveats.clone();
-    lines.push(format!("{}.", published_terms()));
-    lines.push(format!("Published: {}.", published().source));
+    lines.push(format!("{}.", describe_published_conditions()));
+    lines.push(format!("Published: {}.", published_results().source));
     lines
 }
 
-fn text_row(row: &Row) -> Vec<String> {
+fn text_row(row: &ComparisonRow) -> Vec<String> {
     let name = match (row.figure.as_str(), row.of.as_str()) {
         (figure, "") => figure.to_owned(),
         ("cash", day) => format!("cash on day {day}"),
@@ -56,13 +56,15 @@ fn text_row(row: &Row) -> Vec<String> {
         (figure, of) => format!("{figure}, {of}"),
     };
     let mut cells = vec![name];
-    cells.extend(row.values.iter().map(|value| value.map_or("-".to_owned(), |value| shown(value, row.unit))));
-    cells.push(row.published.map(|range| range_in_words(&range, row.unit)).unwrap_or_default());
+    cells.extend(
+        row.values.iter().map(|value| value.map_or("-".to_owned(), |value| format_value(value, row.unit))),
+    );
+    cells.push(row.published.map(|range| format_range(&range, row.unit)).unwrap_or_default());
     cells
 }
 
-fn range_in_words(range: &Range, unit: &str) -> String {
-    let (least, most) = (shown(range.least, unit), shown(range.most, unit));
+fn format_range(range: &PublishedRange, unit: &str) -> String {
+    let (least, most) = (format_value(range.least, unit), format_value(range.most, unit));
     if least == most {
         format!("{least} ({})", range.what)
     } else {
@@ -70,17 +72,17 @@ fn range_in_words(range: &Range, unit: &str) -> String {
     }
 }
 
-fn shown(value: f64, unit: &str) -> String {
+fn format_value(value: f64, unit: &str) -> String {
     match unit {
         "dollars" => dollars(value),
         "share" => percent(value, 1),
-        "count" | "days" => grouped(value, 0),
-        _ => grouped(value, 1),
+        "count" | "days" => grouped_number(value, 0),
+        _ => grouped_number(value, 1),
     }
 }
 
 /// Aligns cells in columns: the first and last to the left, numbers to the right.
-fn aligned(rows: &[Vec<String>]) -> String {
+fn align_cells(rows: &[Vec<String>]) -> String {
     let columns = rows.first().map_or(0, Vec::len);
     let width = |at: usize| rows.iter().map(|row| row[at].chars().count()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..columns).map(width).collect();
@@ -97,13 +99,13 @@ fn aligned(rows: &[Vec<String>]) -> String {
     text
 }
 
-fn decisions(beside: &Comparison, line: usize) -> String {
+fn decision_lines(beside: &Comparison, line: usize) -> String {
     let mut text = "\nDecisions\n".to_owned();
     let width = beside.runs.iter().map(|run| run.chars().count()).max().unwrap_or(0);
     for decided in &beside.decisions {
         text += &format!("  day {}\n", decided.day);
         for (run, own) in beside.runs.iter().zip(&decided.by_run).filter(|(_, own)| !own.is_empty()) {
-            let lines = in_lines(&counted(own), line.saturating_sub(width + 6));
+            let lines = wrap_decisions(&count_equal(own), line.saturating_sub(width + 6));
             for (at, line) in lines.iter().enumerate() {
                 let name = if at == 0 { run.as_str() } else { "" };
                 text += &format!("    {name:<width$}  {line}\n");
@@ -114,7 +116,7 @@ fn decisions(beside: &Comparison, line: usize) -> String {
 }
 
 /// Merges equal decisions of a week and adds their count.
-fn counted(decisions: &[String]) -> Vec<String> {
+fn count_equal(decisions: &[String]) -> Vec<String> {
     let mut counted: Vec<(&str, usize)> = Vec::new();
     for decision in decisions {
         match counted.iter_mut().find(|(known, _)| known == decision) {
@@ -130,7 +132,7 @@ fn counted(decisions: &[String]) -> Vec<String> {
 }
 
 /// Joins decisions into lines of limited width without breaking a decision.
-fn in_lines(decisions: &[String], width: usize) -> Vec<String> {
+fn wrap_decisions(decisions: &[String], width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for (at, decision) in decisions.iter().enumerate() {
         let own = if at + 1 < decisions.len() { format!("{decision};") } else { decision.clone() };
@@ -142,10 +144,10 @@ fn in_lines(decisions: &[String], width: usize) -> Vec<String> {
     lines
 }
 
-fn agents() -> String {
+fn published_agents_text() -> String {
     let head = ["published agent", "best cash", "mean survival", "turns a week", "targeted development"];
     let mut rows: Vec<Vec<String>> = vec![head.map(str::to_owned).to_vec()];
-    for agent in &published().agent {
+    for agent in &published_results().agent {
         rows.push(vec![
             agent.name.clone(),
             dollars(agent.best_cash),
@@ -154,11 +156,11 @@ fn agents() -> String {
             agent.targeted_development_share.map_or("-".to_owned(), |share| percent(share, 0)),
         ]);
     }
-    aligned(&rows) + "\n"
+    align_cells(&rows) + "\n"
 }
 
 /// Returns the comparison as table rows, one per figure and day; the first row has the column names.
-pub fn as_rows(beside: &Comparison) -> Vec<Vec<String>> {
+pub fn comparison_to_rows(beside: &Comparison) -> Vec<Vec<String>> {
     let mut head = ["figure", "of", "unit"].map(str::to_owned).to_vec();
     head.extend(beside.runs.iter().cloned());
     head.extend(["published_least", "published_most", "published_what"].map(str::to_owned));
@@ -180,12 +182,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn equal_decisions_stand_once_and_lines_are_short() {
+    fn equal_decisions_are_counted_and_lines_wrapped() {
         let own = ["found nothing", "price A: 1 → 2", "found nothing"].map(str::to_owned);
-        let told = counted(&own);
+        let told = count_equal(&own);
         assert_eq!(told, ["found nothing (2 times)", "price A: 1 → 2"]);
-        assert_eq!(in_lines(&told, 100), ["found nothing (2 times); price A: 1 → 2"]);
-        assert_eq!(in_lines(&told, 30), ["found nothing (2 times);", "price A: 1 → 2"]);
-        assert!(in_lines(&[], 30).is_empty());
+        assert_eq!(wrap_decisions(&told, 100), ["found nothing (2 times); price A: 1 → 2"]);
+        assert_eq!(wrap_decisions(&told, 30), ["found nothing (2 times);", "price A: 1 → 2"]);
+        assert!(wrap_decisions(&[], 30).is_empty());
     }
 }

@@ -3,176 +3,176 @@
 //! Each claim is tested on two plays with the same seed. A play with another seed shows that the claim could have
 //! failed: if it gives the same values too, equality is not evidence.
 
-mod exhibit;
-mod luck;
+mod random_draws;
+mod report;
 
 use super::policy::{Policy, PolicyError};
 use super::runner::{RunError, RunSpec};
-use luck::{Drawn, LuckKey, PlayedLuck, play_for_luck};
 use novamind_record::folder::configuration::Configuration;
 use novamind_world::identifiers::{Channel, Group};
 use novamind_world::params::ParameterSource;
+use random_draws::{DrawKey, DrawMap, PlayDraws, play_recording_draws};
 use rayon::prelude::*;
 
-pub use luck::LuckEnd;
+pub use random_draws::PlayEnd;
 
 /// Offset of the control seed from the tested seed.
-const CONTROL: u64 = 1_000_003;
+const CONTROL_SEED_OFFSET: u64 = 1_000_003;
 
 /// The values of two plays that are compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Compared {
+enum ComparedKeys {
     /// Values that both plays have; a play with fewer attempts has fewer.
-    OfBoth,
+    Common,
     /// All values until the earlier end of the two plays; a value that only one has is a difference.
-    Dated,
+    UntilFirstEnd,
 }
 
 /// A claim on common random draws.
 struct Claim {
     /// Text of the claim.
-    says: &'static str,
+    statement: &'static str,
     /// Noun for the compared values, singular and plural.
-    counts: (&'static str, &'static str),
+    unit_names: (&'static str, &'static str),
     /// Returns the values of a play.
-    of: fn(&PlayedLuck) -> &Drawn,
-    compared: Compared,
+    draws: fn(&PlayDraws) -> &DrawMap,
+    compared_keys: ComparedKeys,
     /// Whether it compares two plays of the same decisions.
     same_decisions: bool,
     /// Describes a key.
-    name: fn(LuckKey) -> String,
+    format_key: fn(DrawKey) -> String,
 }
 
 const CLAIMS: &[Claim] = &[
     Claim {
-        says: "the n-th attempt of market research has the same result",
-        counts: ("attempt", "attempts"),
-        of: |luck| &luck.attempts,
-        compared: Compared::OfBoth,
+        statement: "the n-th attempt of market research has the same result",
+        unit_names: ("attempt", "attempts"),
+        draws: |luck| &luck.attempts,
+        compared_keys: ComparedKeys::Common,
         same_decisions: false,
-        name: |[attempt, _]| format!("attempt {attempt}"),
+        format_key: |[attempt, _]| format!("attempt {attempt}"),
     },
     Claim {
-        says: "the n-th customer of a group has the same demand, seats and profile",
-        counts: ("customer", "customers"),
-        of: |luck| &luck.customers,
-        compared: Compared::OfBoth,
+        statement: "the n-th customer of a group has the same demand, seats and profile",
+        unit_names: ("customer", "customers"),
+        draws: |luck| &luck.customers,
+        compared_keys: ComparedKeys::Common,
         same_decisions: false,
-        name: |[group, n]| format!("customer {n} of {}", group_name(group)),
+        format_key: |[group, n]| format!("customer {n} of {}", group_key_name(group)),
     },
     Claim {
-        says: "the index of the economy does not depend on play",
-        counts: ("day", "days"),
-        of: |luck| &luck.economy,
-        compared: Compared::Dated,
+        statement: "the index of the economy does not depend on play",
+        unit_names: ("day", "days"),
+        draws: |luck| &luck.economy,
+        compared_keys: ComparedKeys::UntilFirstEnd,
         same_decisions: false,
-        name: day_name,
+        format_key: day_key_name,
     },
     Claim {
-        says: "competitor events have the same days and sizes before copying",
-        counts: ("move", "moves"),
-        of: |luck| &luck.rivals,
-        compared: Compared::Dated,
+        statement: "competitor events have the same days and sizes before copying",
+        unit_names: ("move", "moves"),
+        draws: |luck| &luck.rivals,
+        compared_keys: ComparedKeys::UntilFirstEnd,
         same_decisions: false,
-        name: day_name,
+        format_key: day_key_name,
     },
     Claim {
-        says: "demand surges have the same days, lengths and strengths",
-        counts: ("surge", "surges"),
-        of: |luck| &luck.surges,
-        compared: Compared::Dated,
+        statement: "demand surges have the same days, lengths and strengths",
+        unit_names: ("surge", "surges"),
+        draws: |luck| &luck.surges,
+        compared_keys: ComparedKeys::UntilFirstEnd,
         same_decisions: false,
-        name: day_name,
+        format_key: day_key_name,
     },
     Claim {
-        says: "the yield of each channel for each group changes equally",
-        counts: ("yield", "yields"),
-        of: |luck| &luck.yields,
-        compared: Compared::Dated,
+        statement: "the yield of each channel for each group changes equally",
+        unit_names: ("yield", "yields"),
+        draws: |luck| &luck.yields,
+        compared_keys: ComparedKeys::UntilFirstEnd,
         same_decisions: false,
-        name: |[day, pair]| {
+        format_key: |[day, pair]| {
             let (group, channel) = (pair / Channel::ALL.len() as u32, pair as usize % Channel::ALL.len());
-            format!("{} for {} on day {day}", Channel::ALL[channel].id(), group_name(group))
+            format!("{} for {} on day {day}", Channel::ALL[channel].id(), group_key_name(group))
         },
     },
     Claim {
-        says: "the same share of payments fails in each group and month",
-        counts: ("rate", "rates"),
-        of: |luck| &luck.failed_payments,
-        compared: Compared::OfBoth,
+        statement: "the same share of payments fails in each group and month",
+        unit_names: ("rate", "rates"),
+        draws: |luck| &luck.failed_payments,
+        compared_keys: ComparedKeys::Common,
         same_decisions: false,
-        name: |[group, day]| format!("{} after day {day}", group_name(group)),
+        format_key: |[group, day]| format!("{} after day {day}", group_key_name(group)),
     },
     Claim {
-        says: "the n-th project of an R&D tier has the same duration and gain",
-        counts: ("project", "projects"),
-        of: |luck| &luck.projects,
-        compared: Compared::OfBoth,
+        statement: "the n-th project of an R&D tier has the same duration and gain",
+        unit_names: ("project", "projects"),
+        draws: |luck| &luck.projects,
+        compared_keys: ComparedKeys::Common,
         same_decisions: false,
-        name: |[tier, number]| format!("project {number} of tier {tier}"),
+        format_key: |[tier, number]| format!("project {number} of tier {tier}"),
     },
     Claim {
-        says: "the daily noise of quality is the same",
-        counts: ("day", "days"),
-        of: |luck| &luck.noise,
-        compared: Compared::OfBoth,
+        statement: "the daily noise of quality is the same",
+        unit_names: ("day", "days"),
+        draws: |luck| &luck.noise,
+        compared_keys: ComparedKeys::Common,
         same_decisions: false,
-        name: day_name,
+        format_key: day_key_name,
     },
     Claim {
-        says: "outages occur on a day at the same outage probability",
-        counts: ("day", "days"),
-        of: |luck| &luck.outages,
-        compared: Compared::OfBoth,
+        statement: "outages occur on a day at the same outage probability",
+        unit_names: ("day", "days"),
+        draws: |luck| &luck.outages,
+        compared_keys: ComparedKeys::Common,
         same_decisions: false,
-        name: day_name,
+        format_key: day_key_name,
     },
     Claim {
-        says: "the same decisions give the same company on one thread and on all",
-        counts: ("state", "states"),
-        of: |luck| &luck.state,
-        compared: Compared::OfBoth,
+        statement: "the same decisions give the same company on one thread and on all",
+        unit_names: ("state", "states"),
+        draws: |luck| &luck.state,
+        compared_keys: ComparedKeys::Common,
         same_decisions: true,
-        name: day_name,
+        format_key: day_key_name,
     },
 ];
 
-fn group_name(index: u32) -> String {
+fn group_key_name(index: u32) -> String {
     Group::at(index as usize).map_or(index.to_string(), |group| group.to_string())
 }
 
-fn day_name([day, _]: LuckKey) -> String {
+fn day_key_name([day, _]: DrawKey) -> String {
     format!("day {day}")
 }
 
 /// The result of a claim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ClaimVerdict {
+pub enum ClaimOutcome {
     /// All compared values are equal, and differ under another seed.
     Holds,
     /// At least one value differs.
     Fails,
     /// The plays have no common values for it.
-    Untried,
+    NotTested,
     /// Values are equal under another seed too: recorded draws are replayed, or nothing is random.
     SameUnderEverySeed,
 }
 
-impl ClaimVerdict {
+impl ClaimOutcome {
     /// Returns the verdict as text.
-    pub fn in_words(self) -> &'static str {
+    pub fn label(self) -> &'static str {
         match self {
-            ClaimVerdict::Holds => "holds",
-            ClaimVerdict::Fails => "FAILS",
-            ClaimVerdict::Untried => "not tried",
-            ClaimVerdict::SameUnderEverySeed => "not random",
+            ClaimOutcome::Holds => "holds",
+            ClaimOutcome::Fails => "FAILS",
+            ClaimOutcome::NotTested => "not tried",
+            ClaimOutcome::SameUnderEverySeed => "not random",
         }
     }
 }
 
 /// A tested claim.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct TriedClaim {
+pub struct ClaimResult {
     /// Text of the claim.
     pub claim: &'static str,
     /// Number of compared values over all seeds.
@@ -188,7 +188,7 @@ pub struct TriedClaim {
     /// Description of the first difference.
     pub first_difference: Option<String>,
     /// Verdict.
-    pub verdict: ClaimVerdict,
+    pub outcome: ClaimOutcome,
 }
 
 /// Two plays and the results of all claims.
@@ -197,19 +197,19 @@ pub struct ConsistencyCheck {
     /// Names of the two policies.
     pub policies: [String; 2],
     /// Results of both policies on the first seed.
-    pub ends: [LuckEnd; 2],
+    pub ends: [PlayEnd; 2],
     /// Whether both plays ended in the same state, so that nothing was tested.
     pub plays_alike: bool,
     /// Whether one policy switches demand surges off and was played with them anyway.
     pub equalises_surges: bool,
     /// Tested claims.
-    pub claims: Vec<TriedClaim>,
+    pub claims: Vec<ClaimResult>,
 }
 
 impl ConsistencyCheck {
     /// Returns the claims that fail.
-    pub fn failures(&self) -> impl Iterator<Item = &TriedClaim> {
-        self.claims.iter().filter(|claim| claim.verdict == ClaimVerdict::Fails)
+    pub fn failures(&self) -> impl Iterator<Item = &ClaimResult> {
+        self.claims.iter().filter(|claim| claim.outcome == ClaimOutcome::Fails)
     }
 }
 
@@ -249,7 +249,7 @@ impl ConsistencySpec {
     }
 
     /// Returns the reason why two policies cannot play the same world, if there is one.
-    pub fn obstacle(&self, policies: &[Policy; 2]) -> Option<&'static str> {
+    pub fn precondition_problem(&self, policies: &[Policy; 2]) -> Option<&'static str> {
         let [one, other] = policies.each_ref().map(|policy| &policy.start);
         match self.scenario {
             _ if policies[0] == policies[1] => {
@@ -279,7 +279,7 @@ pub fn check_consistency(
     let plays: Result<Vec<SeedPlays>, RunError> = spec
         .seeds
         .iter()
-        .map(|seed| SeedPlays::of(policies, *seed, spec, configuration, on_played))
+        .map(|seed| SeedPlays::play(policies, *seed, spec, configuration, on_played))
         .collect();
     let plays = plays?;
     let ends = plays.first().map(|first| [first.one.end, first.other.end]).unwrap_or_default();
@@ -288,25 +288,25 @@ pub fn check_consistency(
         plays_alike: plays.iter().all(|play| play.one.state == play.other.state),
         equalises_surges: ConsistencySpec::surges(policies).is_some(),
         ends,
-        claims: CLAIMS.iter().map(|claim| claim.tried(&plays)).collect(),
+        claims: CLAIMS.iter().map(|claim| claim.evaluate(&plays)).collect(),
     })
 }
 
 /// Number of plays per seed.
-pub const PLAYS_OF_A_SEED: u64 = 4;
+pub const PLAYS_PER_SEED: u64 = 4;
 
 struct SeedPlays {
     seed: u64,
-    one: PlayedLuck,
-    other: PlayedLuck,
+    one: PlayDraws,
+    other: PlayDraws,
     /// First policy repeated on one thread.
-    again: PlayedLuck,
+    again: PlayDraws,
     /// First policy with another seed.
-    control: PlayedLuck,
+    control: PlayDraws,
 }
 
 impl SeedPlays {
-    fn of(
+    fn play(
         policies: &[Policy; 2],
         seed: u64,
         spec: &ConsistencySpec,
@@ -316,24 +316,24 @@ impl SeedPlays {
         let play = |policy: &Policy, seed: u64| {
             let run = RunSpec {
                 scenario: spec.scenario.clone(),
-                until: spec.until,
+                stop_after_day: spec.until,
                 surges: ConsistencySpec::surges(policies),
-                ..RunSpec::of_seed(seed)
+                ..RunSpec::for_seed(seed)
             };
-            let luck = play_for_luck(policy, &run, configuration);
+            let luck = play_recording_draws(policy, &run, configuration);
             on_played();
             luck
         };
         let [first, second] = policies;
-        let games = [(first, seed), (second, seed), (first, seed.wrapping_add(CONTROL))];
-        let played: Result<Vec<PlayedLuck>, RunError> =
+        let games = [(first, seed), (second, seed), (first, seed.wrapping_add(CONTROL_SEED_OFFSET))];
+        let played: Result<Vec<PlayDraws>, RunError> =
             games.par_iter().with_max_len(1).map(|(policy, seed)| play(policy, *seed)).collect();
         // If a single-threaded pool cannot be built, the repetition uses all threads.
         let again = match rayon::ThreadPoolBuilder::new().num_threads(1).build() {
             Ok(pool) => pool.install(|| play(first, seed)),
             Err(_) => play(first, seed),
         }?;
-        let [one, other, control] = <[PlayedLuck; 3]>::try_from(played?).unwrap_or_default();
+        let [one, other, control] = <[PlayDraws; 3]>::try_from(played?).unwrap_or_default();
         Ok(SeedPlays { seed, one, other, again, control })
     }
 }
@@ -343,22 +343,22 @@ impl SeedPlays {
 struct Differences {
     compared: usize,
     different: usize,
-    first: Option<LuckKey>,
+    first: Option<DrawKey>,
 }
 
 impl Differences {
-    fn between(one: &PlayedLuck, other: &PlayedLuck, claim: &Claim) -> Differences {
-        let (own, others) = ((claim.of)(one), (claim.of)(other));
+    fn compare(one: &PlayDraws, other: &PlayDraws, claim: &Claim) -> Differences {
+        let (own, others) = ((claim.draws)(one), (claim.draws)(other));
         let last = one.end.day.min(other.end.day);
         let mut found = Differences::default();
-        let mut note = |key: &LuckKey, differs: bool| {
+        let mut note = |key: &DrawKey, differs: bool| {
             found.compared += 1;
             found.different += usize::from(differs);
             if differs && found.first.is_none_or(|first| *key < first) {
                 found.first = Some(*key);
             }
         };
-        let is_dated = claim.compared == Compared::Dated;
+        let is_dated = claim.compared_keys == ComparedKeys::UntilFirstEnd;
         for (key, value) in own {
             match others.get(key) {
                 Some(other) => note(key, value != other),
@@ -377,36 +377,36 @@ impl Differences {
 }
 
 impl Claim {
-    fn tried(&self, plays: &[SeedPlays]) -> TriedClaim {
+    fn evaluate(&self, plays: &[SeedPlays]) -> ClaimResult {
         let (mut compared, mut different, mut first_difference) = (0, 0, None);
         let (mut controls, mut different_controls) = (0, 0);
         for own in plays {
             let other = if self.same_decisions { &own.again } else { &own.other };
-            let found = Differences::between(&own.one, other, self);
+            let found = Differences::compare(&own.one, other, self);
             compared += found.compared;
             different += found.different;
             if let (None, Some(key)) = (&first_difference, found.first) {
-                first_difference = Some(format!("{}, seed {}", (self.name)(key), own.seed));
+                first_difference = Some(format!("{}, seed {}", (self.format_key)(key), own.seed));
             }
-            let control = Differences::between(&own.one, &own.control, self);
+            let control = Differences::compare(&own.one, &own.control, self);
             controls += control.compared;
             different_controls += control.different;
         }
         let verdict = match (compared, different, different_controls) {
-            (0, ..) => ClaimVerdict::Untried,
-            (_, 0, 0) => ClaimVerdict::SameUnderEverySeed,
-            (_, 0, _) => ClaimVerdict::Holds,
-            _ => ClaimVerdict::Fails,
+            (0, ..) => ClaimOutcome::NotTested,
+            (_, 0, 0) => ClaimOutcome::SameUnderEverySeed,
+            (_, 0, _) => ClaimOutcome::Holds,
+            _ => ClaimOutcome::Fails,
         };
-        TriedClaim {
-            claim: self.says,
+        ClaimResult {
+            claim: self.statement,
             compared,
-            of: if compared == 1 { self.counts.0 } else { self.counts.1 },
+            of: if compared == 1 { self.unit_names.0 } else { self.unit_names.1 },
             different,
             compared_with_other_seed: controls,
             different_under_other_seed: different_controls,
             first_difference,
-            verdict,
+            outcome: verdict,
         }
     }
 }
@@ -421,14 +421,14 @@ mod tests {
 
     fn check(spec: &ConsistencySpec) -> ConsistencyCheck {
         let policies = contrasting_policies().expect("the bundled policies");
-        check_consistency(&policies, spec, &Configuration::shipped(), &|| ()).expect("it plays")
+        check_consistency(&policies, spec, &Configuration::bundled(), &|| ()).expect("it plays")
     }
 
     #[test]
-    fn every_claim_is_tried_and_holds() {
+    fn every_claim_is_tested_and_holds() {
         let found = check(&spec(280));
         for claim in &found.claims {
-            assert_eq!(claim.verdict, ClaimVerdict::Holds, "{claim:?}");
+            assert_eq!(claim.outcome, ClaimOutcome::Holds, "{claim:?}");
         }
         let attempts = found.claims.iter().find(|claim| claim.of == "attempts").map(|claim| claim.compared);
         assert_eq!(attempts, Some(27), "the late policy makes three attempts in each of nine weeks");
@@ -438,35 +438,35 @@ mod tests {
     }
 
     #[test]
-    fn what_a_record_replays_has_no_chance_in_it() {
+    fn replayed_series_are_not_random() {
         let replayed = ConsistencySpec { scenario: Some("reference-seed42".to_owned()), ..spec(119) };
         let found = check(&replayed);
         let verdict = |part: &str| {
-            found.claims.iter().find(|claim| claim.claim.contains(part)).map(|claim| claim.verdict)
+            found.claims.iter().find(|claim| claim.claim.contains(part)).map(|claim| claim.outcome)
         };
-        assert_eq!(verdict("economy"), Some(ClaimVerdict::SameUnderEverySeed));
-        assert_eq!(verdict("n-th customer"), Some(ClaimVerdict::Holds));
+        assert_eq!(verdict("economy"), Some(ClaimOutcome::SameUnderEverySeed));
+        assert_eq!(verdict("n-th customer"), Some(ClaimOutcome::Holds));
     }
 
     #[test]
-    fn a_difference_is_found_and_named() {
-        let luck = |economy: &[(u32, u64)]| PlayedLuck {
+    fn differences_are_found_and_named() {
+        let luck = |economy: &[(u32, u64)]| PlayDraws {
             economy: economy.iter().map(|(day, value)| ([*day, 0], [*value, 0, 0, 0])).collect(),
-            end: LuckEnd { day: 9, ..LuckEnd::default() },
-            ..PlayedLuck::default()
+            end: PlayEnd { day: 9, ..PlayEnd::default() },
+            ..PlayDraws::default()
         };
         let plays = |other: &[(u32, u64)]| {
             let [one, other] = [luck(&[(1, 5), (2, 6), (12, 7)]), luck(other)];
             [SeedPlays { seed: 3, again: one.clone(), control: luck(&[(1, 9)]), one, other }]
         };
-        let claim = CLAIMS.iter().find(|claim| claim.says.contains("economy")).expect("a claim");
-        let tried = |other: &[(u32, u64)]| claim.tried(&plays(other));
-        assert_eq!(tried(&[(1, 5), (2, 6)]).verdict, ClaimVerdict::Holds, "day 12 came after the end");
+        let claim = CLAIMS.iter().find(|claim| claim.statement.contains("economy")).expect("a claim");
+        let tried = |other: &[(u32, u64)]| claim.evaluate(&plays(other));
+        assert_eq!(tried(&[(1, 5), (2, 6)]).outcome, ClaimOutcome::Holds, "day 12 came after the end");
         for (other, day) in
             [(&[(1, 5), (2, 8)][..], "day 2"), (&[(1, 5)], "day 2"), (&[(1, 5), (2, 6), (4, 1)], "day 4")]
         {
             let found = tried(other);
-            assert_eq!((found.verdict, found.different), (ClaimVerdict::Fails, 1));
+            assert_eq!((found.outcome, found.different), (ClaimOutcome::Fails, 1));
             assert_eq!(found.first_difference, Some(format!("{day}, seed 3")));
         }
     }

@@ -9,14 +9,14 @@ use std::time::Duration;
 use rayon::prelude::*;
 
 use super::key::ArmKey;
-use super::result::DayWatch;
+use super::result::RunRecorder;
 use super::{Arm, Experiment, ResultStore, RunResult};
 use crate::runner::{self, RunError, RunSpec};
 use novamind_record::folder::configuration::Configuration;
 use novamind_session::DayReport;
 
 /// Resources of an experiment.
-pub struct Conduct<'a> {
+pub struct ExperimentContext<'a> {
     /// Scenarios and parameters.
     pub configuration: &'a Configuration,
     /// Store of results; `None`: results are not stored.
@@ -84,24 +84,29 @@ pub struct ExperimentResults {
 
 impl ExperimentResults {
     /// Returns a figure of an arm by seed.
-    pub fn of(&self, arm: usize, figure: impl Fn(&RunResult) -> f64) -> Vec<f64> {
+    pub fn figures_of_arm(&self, arm: usize, figure: impl Fn(&RunResult) -> f64) -> Vec<f64> {
         self.by_arm.get(arm).into_iter().flatten().map(figure).collect()
     }
 
     /// Returns pairs of a figure for two arms, by seed.
-    pub fn pairs(&self, arm: usize, other: usize, figure: impl Fn(&RunResult) -> f64) -> Vec<(f64, f64)> {
-        self.of(arm, &figure).into_iter().zip(self.of(other, &figure)).collect()
+    pub fn paired_figures(
+        &self,
+        arm: usize,
+        other: usize,
+        figure: impl Fn(&RunResult) -> f64,
+    ) -> Vec<(f64, f64)> {
+        self.figures_of_arm(arm, &figure).into_iter().zip(self.figures_of_arm(other, &figure)).collect()
     }
 }
 
 /// An experiment with its stored results loaded.
-pub struct Prepared<'a> {
+pub struct PreparedExperiment<'a> {
     experiment: &'a Experiment,
     /// Keys of runs by number, ordered by arm, then by seed.
     keys: Vec<String>,
     /// Cash on day 0 by arm, dollars.
     start_cash: Vec<f64>,
-    known: BTreeMap<String, RunResult>,
+    known_results: BTreeMap<String, RunResult>,
 }
 
 impl Experiment {
@@ -114,35 +119,35 @@ impl Experiment {
         configuration: &Configuration,
         store: Option<&ResultStore>,
         fresh: bool,
-    ) -> Result<Prepared<'_>, ExperimentError> {
+    ) -> Result<PreparedExperiment<'_>, ExperimentError> {
         let arms = self.arm_keys(configuration)?;
-        let keys = self.keys_of(&arms);
+        let keys = self.keys_of_arms(&arms);
         let start_cash = arms.iter().map(|arm| arm.start_cash).collect();
         let known = match store.filter(|_| !fresh) {
             None => BTreeMap::new(),
             Some(store) => {
                 let all: BTreeSet<&str> = keys.iter().map(String::as_str).collect();
-                store.known(&all).map_err(|error| in_store(store, error))?
+                store.load(&all).map_err(|error| store_error(store, error))?
             }
         };
-        Ok(Prepared { experiment: self, keys, start_cash, known })
+        Ok(PreparedExperiment { experiment: self, keys, start_cash, known_results: known })
     }
 
     /// Returns the key of each run by number. A key covers everything the result depends on.
     ///
     /// # Errors
     /// Fails if an arm has an unknown scenario or an invalid parameter.
-    pub fn keys(&self, configuration: &Configuration) -> Result<Vec<String>, ExperimentError> {
-        Ok(self.keys_of(&self.arm_keys(configuration)?))
+    pub fn run_keys(&self, configuration: &Configuration) -> Result<Vec<String>, ExperimentError> {
+        Ok(self.keys_of_arms(&self.arm_keys(configuration)?))
     }
 
-    fn keys_of(&self, arms: &[ArmKey]) -> Vec<String> {
-        arms.iter().flat_map(|arm| self.seeds.iter().map(|seed| arm.of_seed(*seed))).collect()
+    fn keys_of_arms(&self, arms: &[ArmKey]) -> Vec<String> {
+        arms.iter().flat_map(|arm| self.seeds.iter().map(|seed| arm.run_key(*seed))).collect()
     }
 
     fn arm_keys(&self, configuration: &Configuration) -> Result<Vec<ArmKey>, ExperimentError> {
         let key = |arm: &Arm| {
-            ArmKey::of(arm, &self.wanted, configuration).map_err(|error| ExperimentError::Run {
+            ArmKey::new(arm, &self.recorded, configuration).map_err(|error| ExperimentError::Run {
                 arm: arm.name.clone(),
                 error: Box::new(error.into()),
             })
@@ -151,37 +156,37 @@ impl Experiment {
     }
 }
 
-fn in_store(store: &ResultStore, error: io::Error) -> ExperimentError {
+fn store_error(store: &ResultStore, error: io::Error) -> ExperimentError {
     ExperimentError::Store { path: store.path().to_owned(), error }
 }
 
-impl Prepared<'_> {
+impl PreparedExperiment<'_> {
     /// Counts the runs among some numbers that have no result.
-    pub fn left(&self, numbers: &[usize]) -> usize {
-        self.to_play(numbers).len()
+    pub fn remaining_runs(&self, numbers: &[usize]) -> usize {
+        self.pending_runs(numbers).len()
     }
 
     /// Sets the result of a run that the caller knows to be identical to another run.
-    pub fn know(&mut self, arm: usize, run: &RunResult) {
+    pub fn add_result(&mut self, arm: usize, run: &RunResult) {
         let seeds = &self.experiment.seeds;
         let place = seeds.iter().position(|seed| *seed == run.seed);
         if let Some(key) = place.and_then(|place| self.keys.get(arm * seeds.len() + place)) {
-            self.known.entry(key.clone()).or_insert_with(|| run.clone());
+            self.known_results.entry(key.clone()).or_insert_with(|| run.clone());
         }
     }
 
     /// Returns the numbers of the runs to play, each once.
-    fn to_play(&self, numbers: &[usize]) -> Vec<usize> {
+    fn pending_runs(&self, numbers: &[usize]) -> Vec<usize> {
         let mut taken = BTreeSet::new();
         let is_left = |number: &&usize| {
             let key = &self.keys[**number];
-            !self.known.contains_key(key) && taken.insert(key)
+            !self.known_results.contains_key(key) && taken.insert(key)
         };
         numbers.iter().filter(is_left).copied().collect()
     }
 
     /// Returns the numbers of all runs.
-    pub fn numbers(&self) -> Vec<usize> {
+    pub fn run_numbers(&self) -> Vec<usize> {
         (0..self.keys.len()).collect()
     }
 
@@ -189,10 +194,10 @@ impl Prepared<'_> {
     ///
     /// # Errors
     /// Fails if a run cannot be played, a result cannot be stored, or the experiment is stopped. Earlier results stay stored.
-    pub fn conduct(self, with: &Conduct<'_>) -> Result<ExperimentResults, ExperimentError> {
+    pub fn run(self, with: &ExperimentContext<'_>) -> Result<ExperimentResults, ExperimentError> {
         let (seeds, arms) = (self.experiment.seeds.clone(), self.experiment.arms.len());
-        let all = self.numbers();
-        let mut results = self.conduct_some(&all, with)?.into_iter();
+        let all = self.run_numbers();
+        let mut results = self.run_some(&all, with)?.into_iter();
         let by_arm = (0..arms).map(|_| results.by_ref().take(seeds.len()).collect()).collect();
         Ok(ExperimentResults { seeds, by_arm })
     }
@@ -200,19 +205,22 @@ impl Prepared<'_> {
     /// Plays the remaining runs with these numbers and returns their results in this order.
     ///
     /// # Errors
-    /// As for [`Prepared::conduct`].
-    pub fn conduct_some(
+    /// As for [`PreparedExperiment::run`].
+    pub fn run_some(
         mut self,
         numbers: &[usize],
-        with: &Conduct<'_>,
+        with: &ExperimentContext<'_>,
     ) -> Result<Vec<RunResult>, ExperimentError> {
-        let left = self.to_play(numbers);
-        let before = numbers.iter().filter(|number| self.known.contains_key(&self.keys[**number])).count();
+        let left = self.pending_runs(numbers);
+        let before =
+            numbers.iter().filter(|number| self.known_results.contains_key(&self.keys[**number])).count();
         let played = AtomicUsize::new(0);
         let one = |number: usize| {
-            let Some(result) = self.play(number, with)? else { return Ok(None) };
+            let Some(result) = self.play_run(number, with)? else { return Ok(None) };
             if let Some(store) = with.store {
-                store.keep(&self.keys[number], &result).map_err(|error| in_store(store, error))?;
+                store
+                    .append_result(&self.keys[number], &result)
+                    .map_err(|error| store_error(store, error))?;
             }
             played.fetch_add(1, Ordering::Relaxed);
             (with.on_run)();
@@ -223,15 +231,19 @@ impl Prepared<'_> {
         let kept = if with.store.is_some() { before + played.into_inner() } else { 0 };
         for own in found {
             match own? {
-                Some((number, result)) => self.known.insert(self.keys[number].clone(), result),
+                Some((number, result)) => self.known_results.insert(self.keys[number].clone(), result),
                 None => return Err(ExperimentError::Stopped { kept, of: numbers.len() }),
             };
         }
-        Ok(numbers.iter().filter_map(|number| self.known.get(&self.keys[*number]).cloned()).collect())
+        Ok(numbers.iter().filter_map(|number| self.known_results.get(&self.keys[*number]).cloned()).collect())
     }
 
     /// Plays a run; returns `None` if it was stopped.
-    fn play(&self, number: usize, with: &Conduct<'_>) -> Result<Option<RunResult>, ExperimentError> {
+    fn play_run(
+        &self,
+        number: usize,
+        with: &ExperimentContext<'_>,
+    ) -> Result<Option<RunResult>, ExperimentError> {
         let seeds = &self.experiment.seeds;
         let (at, seed) = (number / seeds.len(), seeds[number % seeds.len()]);
         let arm = &self.experiment.arms[at];
@@ -239,12 +251,12 @@ impl Prepared<'_> {
         if !goes_on() {
             return Ok(None);
         }
-        let spec = RunSpec { seed, save: None, projection: false, ..arm.spec.clone() };
-        let mut watch = DayWatch::of(&self.experiment.wanted, self.start_cash[at]);
-        let mut day = |report: &DayReport<'_>| watch.day(report);
+        let spec = RunSpec { seed, save_folder: None, saves_database: false, ..arm.spec.clone() };
+        let mut watch = RunRecorder::new(&self.experiment.recorded, self.start_cash[at]);
+        let mut day = |report: &DayReport<'_>| watch.add_day(report);
         let session = runner::play_while(&goes_on, &arm.policy, &spec, with.configuration, &mut day)
             .map_err(|error| ExperimentError::Run { arm: arm.name.clone(), error: Box::new(error) })?;
         let outcome = runner::outcome(&arm.policy, seed, &session, Duration::ZERO);
-        Ok(runner::is_over(&session, &spec).then(|| watch.result(outcome, session.weeks())))
+        Ok(runner::is_over(&session, &spec).then(|| watch.into_result(outcome, session.weeks())))
     }
 }

@@ -1,6 +1,6 @@
 //! Keys of experiment runs: a hash of everything the result depends on.
 
-use super::{Arm, Wanted};
+use super::{Arm, RecordedFigures};
 use novamind_record::error::RunError;
 use novamind_record::folder::configuration::Configuration;
 use novamind_world::MECHANICS;
@@ -18,8 +18,12 @@ impl ArmKey {
     ///
     /// # Errors
     /// Fails if the scenario is unknown or a parameter is invalid.
-    pub(super) fn of(arm: &Arm, wanted: &Wanted, configuration: &Configuration) -> Result<ArmKey, RunError> {
-        let (days, cash, params) = arm.terms(configuration)?;
+    pub(super) fn new(
+        arm: &Arm,
+        wanted: &RecordedFigures,
+        configuration: &Configuration,
+    ) -> Result<ArmKey, RunError> {
+        let (days, cash, params) = arm.run_conditions(configuration)?;
         let policy = &arm.policy;
         let plays = (&policy.rule_based, &policy.calls, &policy.enterprise);
         let mut hasher = blake3::Hasher::new();
@@ -27,7 +31,7 @@ impl ArmKey {
             format!("{} {MECHANICS}", env!("CARGO_PKG_VERSION")),
             params.digest(),
             format!("{plays:?}"),
-            format!("{days} {:?} {}", arm.spec.until, cash.to_bits()),
+            format!("{days} {:?} {}", arm.spec.stop_after_day, cash.to_bits()),
             format!("{wanted:?}"),
         ] {
             hasher.update(&(part.len() as u64).to_le_bytes());
@@ -37,7 +41,7 @@ impl ArmKey {
     }
 
     /// Returns the key of a run.
-    pub(super) fn of_seed(&self, seed: u64) -> String {
+    pub(super) fn run_key(&self, seed: u64) -> String {
         let mut hasher = self.hasher.clone();
         hasher.update(&seed.to_le_bytes());
         hasher.finalize().to_hex()[..32].to_owned()

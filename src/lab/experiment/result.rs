@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Wanted;
+use super::RecordedFigures;
 use crate::metrics::Collector;
-use crate::runner::{Outcome, RunEnd};
+use crate::runner::{PolicyRunOutcome, RunEnd};
 use novamind_record::figures::WeekFigures;
 use novamind_session::DayReport;
 
@@ -118,7 +118,7 @@ impl RunResult {
 }
 
 /// Observes the days of a run.
-pub(super) struct DayWatch {
+pub(super) struct RunRecorder {
     daily: Option<Vec<DayPoint>>,
     collector: Collector,
     peak: (u32, u32),
@@ -128,19 +128,19 @@ pub(super) struct DayWatch {
     mrr: f64,
 }
 
-impl DayWatch {
+impl RunRecorder {
     /// Creates an observer for a run with the given starting cash.
-    pub(super) fn of(wanted: &Wanted, start_cash: f64) -> DayWatch {
+    pub(super) fn new(wanted: &RecordedFigures, start_cash: f64) -> RunRecorder {
         let collector = match wanted.figures_on.is_empty() {
-            true => Collector::idle(),
+            true => Collector::disabled(),
             false => Collector::new(Some(wanted.figures_on.clone())),
         };
         let daily = wanted.daily.then(Vec::new);
-        DayWatch { daily, collector, peak: (0, 0), start_cash, cash: start_cash, mrr: 0.0 }
+        RunRecorder { daily, collector, peak: (0, 0), start_cash, cash: start_cash, mrr: 0.0 }
     }
 
-    pub(super) fn day(&mut self, report: &DayReport<'_>) {
-        self.collector.day(report);
+    pub(super) fn add_day(&mut self, report: &DayReport<'_>) {
+        self.collector.add_day(report);
         let own = report.figures;
         if own.individual_subscribers > self.peak.0 {
             self.peak = (own.individual_subscribers, own.day);
@@ -166,7 +166,7 @@ impl DayWatch {
     }
 
     /// Returns the result after the end of the run.
-    pub(super) fn result(self, outcome: Outcome, weeks: &[WeekFigures]) -> RunResult {
+    pub(super) fn into_result(self, outcome: PolicyRunOutcome, weeks: &[WeekFigures]) -> RunResult {
         let week = |own: &WeekFigures| WeekPoint {
             day: own.day,
             cash: own.cash,

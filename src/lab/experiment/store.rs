@@ -27,17 +27,17 @@ struct StoredLine<R> {
 }
 
 impl<R: Serialize> StoredLine<R> {
-    fn of(key: &str, result: R) -> io::Result<StoredLine<R>> {
-        let sum = sum_of(key, &result)?;
+    fn new(key: &str, result: R) -> io::Result<StoredLine<R>> {
+        let sum = checksum(key, &result)?;
         Ok(StoredLine { key: key.to_owned(), result, sum })
     }
 
-    fn is_whole(&self) -> bool {
-        sum_of(&self.key, &self.result).is_ok_and(|sum| sum == self.sum)
+    fn is_intact(&self) -> bool {
+        checksum(&self.key, &self.result).is_ok_and(|sum| sum == self.sum)
     }
 }
 
-fn sum_of(key: &str, result: &impl Serialize) -> io::Result<String> {
+fn checksum(key: &str, result: &impl Serialize) -> io::Result<String> {
     let mut hasher = blake3::Hasher::new();
     hasher.update(key.as_bytes());
     hasher.update(&serde_json::to_vec(result).map_err(io::Error::other)?);
@@ -73,12 +73,12 @@ impl ResultStore {
     ///
     /// # Errors
     /// Fails if the file cannot be read.
-    pub(super) fn known(&self, keys: &BTreeSet<&str>) -> io::Result<BTreeMap<String, RunResult>> {
+    pub(super) fn load(&self, keys: &BTreeSet<&str>) -> io::Result<BTreeMap<String, RunResult>> {
         let mut reader = BufReader::new(File::open(&self.path)?);
         let (mut known, mut line) = (BTreeMap::new(), Vec::new());
         while reader.read_until(b'\n', &mut line)? > 0 {
             let stored: Option<StoredLine<RunResult>> = serde_json::from_slice(&line).ok();
-            let wanted = stored.filter(|own| keys.contains(own.key.as_str()) && own.is_whole());
+            let wanted = stored.filter(|own| keys.contains(own.key.as_str()) && own.is_intact());
             if let Some(own) = wanted {
                 known.insert(own.key, own.result);
             }
@@ -91,19 +91,19 @@ impl ResultStore {
     ///
     /// # Errors
     /// Fails if the write fails; the file is then unchanged.
-    pub(super) fn keep(&self, key: &str, result: &RunResult) -> io::Result<()> {
-        let stored = StoredLine::of(key, result)?;
+    pub(super) fn append_result(&self, key: &str, result: &RunResult) -> io::Result<()> {
+        let stored = StoredLine::new(key, result)?;
         let mut line = serde_json::to_vec(&stored).map_err(io::Error::other)?;
         line.push(b'\n');
         let mut file = self.file.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         file.lock()?;
-        let written = append(&mut file, line);
+        let written = append_line(&mut file, line);
         file.unlock()?;
         written
     }
 }
 
-fn append(file: &mut File, mut line: Vec<u8>) -> io::Result<()> {
+fn append_line(file: &mut File, mut line: Vec<u8>) -> io::Result<()> {
     let end = file.seek(SeekFrom::End(0))?;
     if end > 0 {
         let mut last = [0];

@@ -2,14 +2,14 @@
 
 use std::sync::atomic::AtomicBool;
 
-use super::{Arm, Conduct, Experiment, ExperimentResults};
+use super::{Arm, Experiment, ExperimentContext, ExperimentResults};
 use novamind_record::folder::configuration::Configuration;
 
-pub fn played(arms: Vec<Arm>, seeds: impl IntoIterator<Item = u64>) -> ExperimentResults {
-    let experiment = Experiment::of(arms, seeds);
-    let configuration = Configuration::shipped();
+pub fn play_arms(arms: Vec<Arm>, seeds: impl IntoIterator<Item = u64>) -> ExperimentResults {
+    let experiment = Experiment::new(arms, seeds);
+    let configuration = Configuration::bundled();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().expect("threads");
-    let with = Conduct {
+    let with = ExperimentContext {
         configuration: &configuration,
         store: None,
         pool: &pool,
@@ -17,5 +17,5 @@ pub fn played(arms: Vec<Arm>, seeds: impl IntoIterator<Item = u64>) -> Experimen
         on_run: &|| {},
     };
     let prepared = experiment.prepare(&configuration, None, true).expect("an experiment");
-    prepared.conduct(&with).expect("results")
+    prepared.run(&with).expect("results")
 }

@@ -5,18 +5,18 @@ use super::*;
 use novamind_record::folder::configuration::Configuration;
 
 fn arm(name: &str, policy: &str) -> Arm {
-    let policy = Policy::find(policy, &Configuration::shipped()).expect("a bundled policy");
+    let policy = Policy::find(policy, &Configuration::bundled()).expect("a bundled policy");
     let mut own = Arm::new(name, policy);
     own.spec.days = Some(14);
     own
 }
 
 fn experiment() -> Experiment {
-    Experiment::of(vec![arm("idle", "P0"), arm("routine", "P1b")], 1..=3)
+    Experiment::new(vec![arm("idle", "P0"), arm("routine", "P1b")], 1..=3)
 }
 
 /// Conducts an experiment with results in a file; returns the results and the number of played runs. Stops after `most` runs.
-fn conduct(
+fn run_experiment(
     experiment: &Experiment,
     path: &Path,
     fresh: bool,
@@ -29,8 +29,8 @@ fn conduct(
         stop.store(count >= most, Ordering::Relaxed);
     };
     let store = ResultStore::open(path).expect("a file");
-    let configuration = Configuration::shipped();
-    let with = Conduct {
+    let configuration = Configuration::bundled();
+    let with = ExperimentContext {
         configuration: &configuration,
         store: Some(&store),
         pool: &pool,
@@ -38,80 +38,81 @@ fn conduct(
         on_run: &on_run,
     };
     let prepared = experiment.prepare(&configuration, Some(&store), fresh).expect("arms");
-    let results = prepared.conduct(&with);
+    let results = prepared.run(&with);
     (results, played.into_inner())
 }
 
 #[test]
-fn what_is_known_is_not_played_again_and_is_the_same() {
+fn stored_results_are_reused() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("deeper/results.jsonl");
-    let (first, played) = conduct(&experiment(), &path, false, 99);
+    let (first, played) = run_experiment(&experiment(), &path, false, 99);
     let first = first.expect("results");
     assert_eq!(played, 6);
     assert_eq!(first.by_arm.iter().map(Vec::len).collect::<Vec<_>>(), [3, 3]);
     assert!(first.by_arm[1].iter().all(|run| run.weeks.len() == 2 && run.day == 14));
-    assert_ne!(first.of(0, |run| run.cash), first.of(1, |run| run.cash));
-    let (second, played) = conduct(&experiment(), &path, false, 99);
+    assert_ne!(first.figures_of_arm(0, |run| run.cash), first.figures_of_arm(1, |run| run.cash));
+    let (second, played) = run_experiment(&experiment(), &path, false, 99);
     assert_eq!((second.expect("results"), played), (first.clone(), 0));
-    let (afresh, played) = conduct(&experiment(), &path, true, 99);
+    let (afresh, played) = run_experiment(&experiment(), &path, true, 99);
     assert_eq!((afresh.expect("results"), played), (first.clone(), 6));
     // A new name keeps the key; a new day, parameter or figure changes it.
     let mut renamed = experiment();
     renamed.arms[0].name = "nothing".to_owned();
-    assert_eq!(conduct(&renamed, &path, false, 99).1, 0);
+    assert_eq!(run_experiment(&renamed, &path, false, 99).1, 0);
     renamed.arms[0].spec.days = Some(21);
-    assert_eq!(conduct(&renamed, &path, false, 99).1, 3);
+    assert_eq!(run_experiment(&renamed, &path, false, 99).1, 3);
     let surges = |share: &str| vec![("demand_surge.probability".to_owned(), share.to_owned())];
     renamed.arms[0].spec.overrides = surges("0.0");
-    assert_eq!(conduct(&renamed, &path, false, 99).1, 0, "the policy has no surges either");
+    assert_eq!(run_experiment(&renamed, &path, false, 99).1, 0, "the policy has no surges either");
     renamed.arms[0].spec.overrides = surges("0.25");
-    assert_eq!(conduct(&renamed, &path, false, 99).1, 3, "explicit overrides take precedence");
-    renamed.wanted.daily = true;
-    let (daily, played) = conduct(&renamed, &path, false, 99);
+    assert_eq!(run_experiment(&renamed, &path, false, 99).1, 3, "explicit overrides take precedence");
+    renamed.recorded.daily = true;
+    let (daily, played) = run_experiment(&renamed, &path, false, 99);
     assert_eq!(played, 6);
     assert_eq!(daily.expect("results").by_arm[0][0].daily.len(), 21);
 }
 
 #[test]
-fn a_command_that_was_stopped_goes_on_and_shows_the_same() {
+fn stopped_experiment_resumes_with_equal_results() {
     let folder = tempfile::tempdir().expect("a folder");
-    let whole = conduct(&experiment(), &folder.path().join("whole.jsonl"), false, 99).0.expect("results");
+    let whole =
+        run_experiment(&experiment(), &folder.path().join("whole.jsonl"), false, 99).0.expect("results");
     let path = folder.path().join("parts.jsonl");
-    let (stopped, played) = conduct(&experiment(), &path, false, 2);
+    let (stopped, played) = run_experiment(&experiment(), &path, false, 2);
     match stopped {
         Err(ExperimentError::Stopped { kept, of }) => assert_eq!((kept, of), (played, 6)),
         other => panic!("{other:?}"),
     }
-    let (rest, again) = conduct(&experiment(), &path, false, 99);
+    let (rest, again) = run_experiment(&experiment(), &path, false, 99);
     assert_eq!((rest.expect("results"), played + again), (whole, 6));
 }
 
 #[test]
-fn a_file_that_was_cut_off_anywhere_loses_one_run_at_most() {
+fn truncated_file_loses_at_most_one_run() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("results.jsonl");
-    let whole = conduct(&experiment(), &path, false, 99).0.expect("results");
+    let whole = run_experiment(&experiment(), &path, false, 99).0.expect("results");
     let bytes = std::fs::read(&path).expect("results");
     let lines = bytes.iter().filter(|byte| **byte == b'\n').count();
     assert_eq!(lines, 6);
     for cut in [bytes.len() - 1, bytes.len() - 40, bytes.len() / 2, 3] {
         std::fs::write(&path, &bytes[..cut]).expect("a cut file");
         let left = bytes[..cut].iter().filter(|byte| **byte == b'\n').count();
-        let (results, played) = conduct(&experiment(), &path, false, 99);
+        let (results, played) = run_experiment(&experiment(), &path, false, 99);
         assert_eq!(results.expect("results"), whole, "cut at {cut}");
         // A line that lacks only its line end is complete.
         assert!(played == 6 - left || (cut + 1 == bytes.len() && played == 0), "cut at {cut}: {played}");
-        let (again, played) = conduct(&experiment(), &path, false, 99);
+        let (again, played) = run_experiment(&experiment(), &path, false, 99);
         assert_eq!((again.expect("results"), played), (whole.clone(), 0), "cut at {cut}");
     }
 }
 
 #[test]
-fn a_result_that_was_changed_is_played_again() {
+fn altered_result_is_replayed() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("results.jsonl");
-    let whole = conduct(&experiment(), &path, false, 99).0.expect("results");
+    let whole = run_experiment(&experiment(), &path, false, 99).0.expect("results");
     let text = std::fs::read_to_string(&path).expect("results");
     for (from, to) in [
         ("\"cash\":", "\"cash\":1"),
@@ -121,29 +122,29 @@ fn a_result_that_was_changed_is_played_again() {
         let changed = text.replacen(from, to, 1);
         assert_ne!(changed, text);
         std::fs::write(&path, changed).expect("written");
-        let (again, played) = conduct(&experiment(), &path, false, 99);
+        let (again, played) = run_experiment(&experiment(), &path, false, 99);
         assert_eq!((again.expect("results"), played), (whole.clone(), 1), "{from}");
     }
 }
 
 #[test]
-fn figures_of_days_are_kept_where_they_are_asked_for() {
+fn requested_day_figures_are_stored() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut own = experiment();
-    own.wanted.figures_on = vec![7];
-    let (results, _) = conduct(&own, &folder.path().join("results.jsonl"), false, 99);
+    own.recorded.figures_on = vec![7];
+    let (results, _) = run_experiment(&own, &folder.path().join("results.jsonl"), false, 99);
     let results = results.expect("results");
     let run = &results.by_arm[1][0];
     assert_eq!(run.figure(7, "cash", ""), Some(run.weeks[0].cash));
     assert_eq!(run.figure(14, "cash", ""), None);
-    let again = conduct(&own, &folder.path().join("results.jsonl"), false, 99);
+    let again = run_experiment(&own, &folder.path().join("results.jsonl"), false, 99);
     assert_eq!((again.0.expect("results"), again.1), (results, 0), "numbers survive the file");
 }
 
 #[test]
-fn a_wrong_arm_is_named() {
+fn invalid_arm_is_named() {
     let mut own = experiment();
     own.arms[1].spec.scenario = Some("nowhere".to_owned());
-    let error = own.prepare(&Configuration::shipped(), None, false).map(|_| ()).expect_err("no scenario");
+    let error = own.prepare(&Configuration::bundled(), None, false).map(|_| ()).expect_err("no scenario");
     assert!(error.to_string().starts_with("routine: "), "{error}");
 }

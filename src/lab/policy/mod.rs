@@ -11,7 +11,7 @@ use toml::Table;
 pub use rule_based::PriceBook;
 pub use rule_based::{CapacityRule, OperationsRule, RuleBased, Target};
 
-use super::answers::EnterpriseRule;
+use super::enterprise_answers::EnterpriseRule;
 use novamind_record::folder::configuration::Configuration;
 use novamind_world::params::ParameterSource;
 
@@ -99,7 +99,7 @@ struct CallEntry {
     tool: String,
     #[serde(default)]
     args: Table,
-    #[serde(default = "once")]
+    #[serde(default = "default_repeat")]
     repeat: u32,
     every_weeks: Option<u32>,
     until_day: Option<u32>,
@@ -107,7 +107,7 @@ struct CallEntry {
     may_fail: bool,
 }
 
-fn once() -> u32 {
+fn default_repeat() -> u32 {
     1
 }
 
@@ -148,8 +148,9 @@ impl Policy {
             let text = std::fs::read_to_string(name).map_err(|error| wrong(error.to_string()))?;
             return Policy::parse(&ParameterSource { name: name.to_owned(), text });
         }
-        let own =
-            configuration.file(format!("policies/{name}.toml")).map_err(|error| wrong(error.to_string()))?;
+        let own = configuration
+            .read_file(format!("policies/{name}.toml"))
+            .map_err(|error| wrong(error.to_string()))?;
         if let Some(source) = own {
             return Policy::parse(&source);
         }
@@ -161,7 +162,7 @@ impl Policy {
             None => {
                 let mut known: Vec<String> =
                     novamind_assets::policies().into_iter().map(|(name, _)| name.to_owned()).collect();
-                known.extend(configuration.names("policies"));
+                known.extend(configuration.toml_names("policies"));
                 let problem = format!("unknown policy; available: {}", known.join(", "));
                 Err(PolicyError { is_unknown: true, ..wrong(problem) })
             }
@@ -184,20 +185,20 @@ impl Policy {
         let mut calls = Vec::new();
         for entry in file.call {
             let span = entry.span();
-            calls.push(scheduled(entry.into_inner()).map_err(|problem| at(Some(span), problem))?);
+            calls.push(parse_scheduled_call(entry.into_inner()).map_err(|problem| at(Some(span), problem))?);
         }
         let enterprise = match file.enterprise {
             None => None,
             Some(entry) => {
                 let span = entry.span();
-                Some(entry.into_inner().checked().map_err(|problem| at(Some(span), problem))?)
+                Some(entry.into_inner().validated().map_err(|problem| at(Some(span), problem))?)
             }
         };
         let rule_based = match file.rule_based {
             None => None,
             Some(rules) => {
                 let span = rules.span();
-                Some(rules.into_inner().checked().map_err(|problem| at(Some(span), problem))?)
+                Some(rules.into_inner().validated().map_err(|problem| at(Some(span), problem))?)
             }
         };
         if let Some(cash) = file.start.cash.filter(|cash| !cash.is_finite() || *cash <= 0.0) {
@@ -211,7 +212,7 @@ impl Policy {
     }
 }
 
-fn scheduled(entry: CallEntry) -> Result<ScheduledCall, String> {
+fn parse_scheduled_call(entry: CallEntry) -> Result<ScheduledCall, String> {
     if !entry.day.is_multiple_of(7) {
         return Err(format!("day {} is not a decision day; use 0, 7, 14, …", entry.day));
     }
@@ -222,9 +223,9 @@ fn scheduled(entry: CallEntry) -> Result<ScheduledCall, String> {
         return Err("every_weeks and repeat must be at least 1".to_owned());
     }
     let tool = novamind_tools::find(&entry.tool)
-        .filter(|tool| tool.spec().kind != novamind_tools::Kind::Time)
+        .filter(|tool| tool.spec().kind != novamind_tools::ToolKind::Time)
         .ok_or_else(|| {
-            let near = novamind_tools::catalogue::nearest(&entry.tool);
+            let near = novamind_tools::catalogue::similar_tools(&entry.tool);
             let help = if near.is_empty() {
                 String::new()
             } else {
@@ -233,9 +234,11 @@ fn scheduled(entry: CallEntry) -> Result<ScheduledCall, String> {
             format!("unknown tool {} for policies{help}", entry.tool)
         })?;
     let arguments = serde_json::to_value(&entry.args).map_err(|error| error.to_string())?;
-    novamind_tools::Arguments::of(tool.spec(), &arguments, || novamind_tools::Numbers::shipped().into())
-        .map_err(|refusal| refusal.to_string())?;
-    if tool.spec().own_unknown {
+    novamind_tools::Arguments::parse(tool.spec(), &arguments, || {
+        novamind_tools::ParameterNumbers::bundled().into()
+    })
+    .map_err(|refusal| refusal.to_string())?;
+    if tool.spec().has_own_unknown_code {
         let known = |key: &String| tool.spec().arguments.iter().any(|argument| argument.name == key);
         if let Some(key) = entry.args.keys().find(|key| !known(key)) {
             return Err(format!("{} has no argument {key}", entry.tool));
@@ -254,7 +257,7 @@ fn scheduled(entry: CallEntry) -> Result<ScheduledCall, String> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::strong::STRONG;
+    use super::super::strong_policies::STRONG_POLICIES;
     use super::*;
 
     fn parse(text: &str) -> Result<Policy, PolicyError> {
@@ -262,13 +265,13 @@ mod tests {
     }
 
     #[test]
-    fn all_shipped_policies_are_read() {
-        let configuration = Configuration::shipped();
+    fn bundled_policies_are_valid() {
+        let configuration = Configuration::bundled();
         for (name, _) in novamind_assets::policies() {
             let policy = Policy::find(name, &configuration).expect("a bundled policy");
             assert_eq!(policy.name, name);
             assert!(!policy.description.is_empty());
-            let surges = (!STRONG.contains(&name)).then_some(name == "P1s");
+            let surges = (!STRONG_POLICIES.contains(&name)).then_some(name == "P1s");
             assert_eq!(policy.start.surges, surges, "{name}");
         }
         let best = Policy::find("baseline", &configuration).expect("the baseline");
@@ -278,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn wrong_policies_name_line_and_problem() {
+    fn invalid_policies_name_line_and_problem() {
         for (text, line, part) in [
             ("name = \"x\"\nwhat = 1\n", Some(2), "what"),
             ("name = \"x\"\n[rule_based]\nprice_book = \"dear\"\n", Some(3), "cheap, mid"),
@@ -313,12 +316,12 @@ mod tests {
             assert_eq!(error.line, line, "{text}: {error}");
             assert!(error.problem.contains(part), "{text}: {error}");
         }
-        let missing = Policy::find("nothing", &Configuration::shipped()).expect_err("no such policy");
+        let missing = Policy::find("nothing", &Configuration::bundled()).expect_err("no such policy");
         assert!(missing.problem.contains("P1a"), "{missing}");
     }
 
     #[test]
-    fn calls_come_on_their_days() {
+    fn calls_are_due_on_their_days() {
         let text = "name = \"x\"\n[[call]]\nday = 14\nevery_weeks = 2\nuntil_day = 50\ntool = \"set_prices\"\nargs = { A = 5 }\n";
         let call = &parse(text).expect("a policy").calls[0];
         let due: Vec<u32> = (0..100).filter(|day| call.is_due(*day)).collect();

@@ -5,7 +5,7 @@ use serde::Deserialize;
 use novamind_world::identifiers::Plan;
 
 /// Cash floor that never stops spending.
-const ALWAYS: f64 = -1.0;
+const NO_CASH_FLOOR: f64 = -1.0;
 
 /// Settings of the weekly routine. The defaults are the paper's best configuration.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -46,7 +46,7 @@ impl RuleBased {
     ///
     /// # Errors
     /// Names the key with an invalid amount.
-    pub(super) fn checked(self) -> Result<RuleBased, String> {
+    pub(super) fn validated(self) -> Result<RuleBased, String> {
         let amounts = |spend: &Spend| {
             let (s1, s3) = spend.budgets();
             [s1.development, s1.ads, s3.development, s3.ads]
@@ -56,7 +56,7 @@ impl RuleBased {
             OperationsRule::Named(_) => 0.0,
         };
         let is_amount = |dollars: &f64| dollars.is_finite() && *dollars >= 0.0;
-        if self.cash_floor != ALWAYS && !is_amount(&self.cash_floor) {
+        if self.cash_floor != NO_CASH_FLOOR && !is_amount(&self.cash_floor) {
             return Err(format!("`cash_floor` must be dollars, or -1 for always, not {}", self.cash_floor));
         }
         let wrong = [("global_development", self.global_development), ("operations", fixed)]
@@ -114,7 +114,7 @@ pub struct PerPlan<T> {
 
 impl<T: Copy> PerPlan<T> {
     /// The value of a plan.
-    pub fn of(&self, plan: Plan) -> T {
+    pub fn get(&self, plan: Plan) -> T {
         match plan {
             Plan::A => self.a,
             Plan::B => self.b,
@@ -125,7 +125,7 @@ impl<T: Copy> PerPlan<T> {
 
 impl PriceBook {
     /// Prices, tiers and quotas.
-    pub fn book(&self) -> (PerPlan<f64>, PerPlan<u8>, PerPlan<u64>) {
+    pub fn prices_tiers_and_quotas(&self) -> (PerPlan<f64>, PerPlan<u8>, PerPlan<u64>) {
         match self {
             PriceBook::Named(BookName::Cheap) => (
                 PerPlan { a: 8.0, b: 18.0, c: 40.0 },

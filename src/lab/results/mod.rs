@@ -1,26 +1,26 @@
 //! The paper's results table for own runs: bankruptcies, best run, survival, and calls a week, next to the
 //! published rows (docs/laboratory/results-table.md).
 
-mod exhibit;
 #[cfg(feature = "server")]
-mod tries;
+mod attempts;
+mod report;
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::metrics::Collector;
 use super::policy::Policy;
 use super::runner::{RunEnd, RunError, RunSpec, play};
-use novamind_base::statistics::Sample;
+use novamind_base::statistics::SampleStatistics;
 use novamind_record::folder::configuration::Configuration;
-use novamind_record::trajectory::record::Ended;
-use novamind_record::trajectory::{Line, policy_of};
-use novamind_report::comparable::{Obstacle, PUBLISHED_SEED, not_ranked_in_words};
+use novamind_record::trajectory::record::RunEndReason;
+use novamind_record::trajectory::{Line, find_policy};
 use novamind_report::measures::{survival_days, tool_use};
-use novamind_report::ranking::{beaten, by_result, published};
+use novamind_report::ranking::{compare_results, count_beaten, published_results};
+use novamind_report::ranking_eligibility::{PUBLISHED_SEED, RankingObstacle, describe_not_ranked};
 use novamind_session::Session;
 
 #[cfg(feature = "server")]
-pub use tries::{Try, tries_exhibit};
+pub use attempts::{AttemptResult, attempts_report};
 
 /// A finished run with a score.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,15 +45,15 @@ pub struct FinishedRun {
 
 impl FinishedRun {
     /// Returns the result of a run, or `None` if it has no score.
-    pub fn of(session: &Session, lines: &[Line]) -> Option<FinishedRun> {
+    pub fn from_session(session: &Session, lines: &[Line]) -> Option<FinishedRun> {
         let manifest = session.manifest();
         Some(FinishedRun {
             run: manifest.id.clone(),
             participant: manifest.participant.clone(),
-            policy: policy_of(lines).map(str::to_owned),
+            policy: find_policy(lines).map(str::to_owned),
             seed: manifest.seed,
             score: session.score()?,
-            is_bankrupt: session.ended() == Some(Ended::Bankruptcy),
+            is_bankrupt: session.ended() == Some(RunEndReason::Bankruptcy),
             survival_days: survival_days(session.ended(), session.day(), manifest.days),
             calls_per_week: tool_use(session.journal()).per_week,
         })
@@ -62,7 +62,7 @@ impl FinishedRun {
 
 /// Grouping of runs into rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ResultsBy {
+pub enum ResultsGrouping {
     /// By player: participants, and policies by name.
     Participant,
     /// By policy; runs played by people are excluded.
@@ -71,7 +71,7 @@ pub enum ResultsBy {
 
 /// The player of a row. The kind is part of it, because a participant's label can equal another name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Player {
+pub enum RowSource {
     /// A participant.
     Participant,
     /// A player without a label.
@@ -79,35 +79,35 @@ pub enum Player {
     /// A policy.
     Policy,
     /// The idle company, played for the table.
-    Idle,
+    IdleCompany,
     /// An agent of the paper, by its published name.
     PublishedAgent,
     /// The rule-based company of the paper.
     PublishedBaseline,
 }
 
-impl Player {
+impl RowSource {
     /// Returns the source of the row as text.
-    pub fn source(self) -> &'static str {
+    pub fn describe(self) -> &'static str {
         match self {
-            Player::Participant => "own",
-            Player::Unnamed => "own, unnamed",
-            Player::Policy => "own policy",
-            Player::Idle => "reference",
-            Player::PublishedAgent | Player::PublishedBaseline => "published",
+            RowSource::Participant => "own",
+            RowSource::Unnamed => "own, unnamed",
+            RowSource::Policy => "own policy",
+            RowSource::IdleCompany => "reference",
+            RowSource::PublishedAgent | RowSource::PublishedBaseline => "published",
         }
     }
 }
 
-impl ResultsBy {
-    fn player(self, run: &FinishedRun) -> Option<(Player, String)> {
-        let policy = run.policy.clone().map(|name| (Player::Policy, name));
-        let participant = run.participant.clone().map(|label| (Player::Participant, label));
+impl ResultsGrouping {
+    fn row_source(self, run: &FinishedRun) -> Option<(RowSource, String)> {
+        let policy = run.policy.clone().map(|name| (RowSource::Policy, name));
+        let participant = run.participant.clone().map(|label| (RowSource::Participant, label));
         match self {
-            ResultsBy::Participant => {
-                Some(participant.or(policy).unwrap_or((Player::Unnamed, UNNAMED.to_owned())))
+            ResultsGrouping::Participant => {
+                Some(participant.or(policy).unwrap_or((RowSource::Unnamed, UNNAMED_ROW.to_owned())))
             }
-            ResultsBy::Policy => policy,
+            ResultsGrouping::Policy => policy,
         }
     }
 }
@@ -118,7 +118,7 @@ pub struct ResultsRow {
     /// Name of the player.
     pub name: String,
     /// Kind of player.
-    pub player: Player,
+    pub source: RowSource,
     /// Number of runs.
     pub runs: u32,
     /// Number of bankruptcies; `None` if not published.
@@ -136,7 +136,7 @@ pub struct ResultsRow {
     /// Calls a week: state-changing calls of own runs, published turns of agents.
     pub calls_per_week: Option<f64>,
     /// Number of published best runs with less final cash.
-    pub beats: usize,
+    pub beaten_count: usize,
 }
 
 /// The results table.
@@ -152,17 +152,17 @@ pub struct ResultsTable {
 pub const IDLE_POLICY: &str = "P0";
 
 /// Name of the row of players without a label.
-const UNNAMED: &str = "(no label)";
+const UNNAMED_ROW: &str = "(no label)";
 
-const IDLE_NAME: &str = "idle company";
+const IDLE_ROW: &str = "idle company";
 
 /// Plays the idle company on the seed of the published runs.
 ///
 /// # Errors
 /// Fails if the run cannot start.
-pub fn idle_company(policy: &Policy, configuration: &Configuration) -> Result<FinishedRun, RunError> {
-    let spec = RunSpec { surges: Some(true), ..RunSpec::of_seed(PUBLISHED_SEED) };
-    let outcome = play(policy, &spec, configuration, &mut Collector::idle())?;
+pub fn play_idle_company(policy: &Policy, configuration: &Configuration) -> Result<FinishedRun, RunError> {
+    let spec = RunSpec { surges: Some(true), ..RunSpec::for_seed(PUBLISHED_SEED) };
+    let outcome = play(policy, &spec, configuration, &mut Collector::disabled())?;
     Ok(FinishedRun {
         run: String::new(),
         participant: None,
@@ -177,16 +177,16 @@ pub fn idle_company(policy: &Policy, configuration: &Configuration) -> Result<Fi
 
 impl ResultsTable {
     /// Returns own runs and the idle company with the published rows. For incomparable runs, notes list the reasons.
-    pub fn of(
+    pub fn new(
         runs: &[FinishedRun],
-        left_out: &[Vec<Obstacle>],
+        left_out: &[Vec<RankingObstacle>],
         idle: &FinishedRun,
-        by: ResultsBy,
+        by: ResultsGrouping,
     ) -> ResultsTable {
-        let mut groups: BTreeMap<(Player, String), Vec<&FinishedRun>> = BTreeMap::new();
+        let mut groups: BTreeMap<(RowSource, String), Vec<&FinishedRun>> = BTreeMap::new();
         let mut played_by_people = 0;
         for run in runs {
-            match by.player(run) {
+            match by.row_source(run) {
                 Some(player) => groups.entry(player).or_default().push(run),
                 None => played_by_people += 1,
             }
@@ -201,19 +201,19 @@ impl ResultsTable {
             format!("Several runs of one seed: {}. A person who repeats a seed knows its future; a policy plays the same again.", again.join(", "))
         });
         let mut rows: Vec<ResultsRow> =
-            groups.into_iter().filter_map(|(player, own)| row_of(player, &own)).collect();
+            groups.into_iter().filter_map(|(player, own)| results_row(player, &own)).collect();
         rows.extend(
-            row_of((Player::Idle, IDLE_NAME.to_owned()), &[idle])
+            results_row((RowSource::IdleCompany, IDLE_ROW.to_owned()), &[idle])
                 .map(|row| ResultsRow { best_run: None, ..row }),
         );
         rows.extend(published_rows());
         rows.sort_by(|one, other| {
             let result = |row: &ResultsRow| (row.best_cash, row.max_survival_days.unwrap_or(0.0) as u32);
-            by_result(result(other), result(one)).then_with(|| one.name.cmp(&other.name))
+            compare_results(result(other), result(one)).then_with(|| one.name.cmp(&other.name))
         });
-        let mut notes = notes();
-        notes.extend(not_ranked_in_words(left_out));
-        if rows.iter().any(|row| row.player == Player::Policy) {
+        let mut notes = table_notes();
+        notes.extend(describe_not_ranked(left_out));
+        if rows.iter().any(|row| row.source == RowSource::Policy) {
             notes.push("Policies are distinguished only by the names in their files.".to_owned());
         }
         notes.extend(again);
@@ -225,53 +225,53 @@ impl ResultsTable {
                 "Own runs with seeds other than {PUBLISHED_SEED} had other random draws than published runs."
             ));
         }
-        notes.push(format!("Published: {}.", published().source));
+        notes.push(format!("Published: {}.", published_results().source));
         ResultsTable { rows, notes }
     }
 }
 
-fn best_of<'a>(runs: &[&'a FinishedRun]) -> Option<&'a FinishedRun> {
+fn best_run<'a>(runs: &[&'a FinishedRun]) -> Option<&'a FinishedRun> {
     let result = |run: &FinishedRun| (run.score, run.survival_days);
     // Ties: first by name.
     let order = |one: &&FinishedRun, other: &&FinishedRun| {
-        by_result(result(one), result(other)).then_with(|| other.run.cmp(&one.run))
+        compare_results(result(one), result(other)).then_with(|| other.run.cmp(&one.run))
     };
     runs.iter().copied().max_by(|one, other| order(one, other))
 }
 
-fn row_of((player, name): (Player, String), runs: &[&FinishedRun]) -> Option<ResultsRow> {
-    let best = best_of(runs)?;
+fn results_row((player, name): (RowSource, String), runs: &[&FinishedRun]) -> Option<ResultsRow> {
+    let best = best_run(runs)?;
     let lives: Vec<f64> = runs.iter().map(|run| f64::from(run.survival_days)).collect();
     let calls: Vec<f64> = runs.iter().map(|run| run.calls_per_week).collect();
     Some(ResultsRow {
         name,
-        player,
+        source: player,
         runs: runs.len() as u32,
         bankruptcies: Some(runs.iter().filter(|run| run.is_bankrupt).count() as u32),
         best_cash: best.score,
         best_run: Some(best.run.clone()),
         max_survival_days: lives.iter().copied().reduce(f64::max),
-        mean_survival_days: Some(Sample::of(&lives).mean),
-        std_survival_days: (lives.len() > 1).then(|| spread_of_all(&lives)),
-        calls_per_week: Some(Sample::of(&calls).mean),
-        beats: beaten(best.score).0,
+        mean_survival_days: Some(SampleStatistics::from_values(&lives).mean),
+        std_survival_days: (lives.len() > 1).then(|| population_std(&lives)),
+        calls_per_week: Some(SampleStatistics::from_values(&calls).mean),
+        beaten_count: count_beaten(best.score).0,
     })
 }
 
 /// Returns the population standard deviation, as in the published tables.
-fn spread_of_all(values: &[f64]) -> f64 {
+fn population_std(values: &[f64]) -> f64 {
     let count = values.len().max(1) as f64;
-    Sample::of(values).std * ((count - 1.0) / count).sqrt()
+    SampleStatistics::from_values(values).std * ((count - 1.0) / count).sqrt()
 }
 
 fn published_rows() -> Vec<ResultsRow> {
-    let paper = published();
+    let paper = published_results();
     let mut rows: Vec<ResultsRow> = paper
         .agent
         .iter()
         .map(|agent| ResultsRow {
             name: agent.name.clone(),
-            player: Player::PublishedAgent,
+            source: RowSource::PublishedAgent,
             runs: agent.runs,
             bankruptcies: Some(agent.bankruptcies),
             best_cash: agent.best_cash,
@@ -280,12 +280,12 @@ fn published_rows() -> Vec<ResultsRow> {
             mean_survival_days: Some(agent.mean_survival_days),
             std_survival_days: Some(agent.std_survival_days),
             calls_per_week: Some(agent.turns_per_week),
-            beats: beaten(agent.best_cash).0,
+            beaten_count: count_beaten(agent.best_cash).0,
         })
         .collect();
     rows.push(ResultsRow {
         name: "rule-based baseline".to_owned(),
-        player: Player::PublishedBaseline,
+        source: RowSource::PublishedBaseline,
         runs: 1,
         bankruptcies: None,
         best_cash: paper.rule_based_baseline,
@@ -294,13 +294,13 @@ fn published_rows() -> Vec<ResultsRow> {
         mean_survival_days: None,
         std_survival_days: None,
         calls_per_week: None,
-        beats: beaten(paper.rule_based_baseline).0,
+        beaten_count: count_beaten(paper.rule_based_baseline).0,
     });
     rows
 }
 
 /// Returns the notes that define the figures.
-fn notes() -> Vec<String> {
+fn table_notes() -> Vec<String> {
     vec![
         "The best run has the most final cash; if all runs went bankrupt, the longest life. The spread of lives is \
          that of all runs, not of a sample."
@@ -309,9 +309,9 @@ fn notes() -> Vec<String> {
          agent, which may hold several calls."
             .to_owned(),
         format!(
-            "{IDLE_NAME}: policy {IDLE_POLICY}, played on seed {PUBLISHED_SEED} for this table. beats: published best runs \
+            "{IDLE_ROW}: policy {IDLE_POLICY}, played on seed {PUBLISHED_SEED} for this table. beats: published best runs \
              that ended with less, of {}.",
-            published().agent.len()
+            published_results().agent.len()
         ),
     ]
 }
@@ -333,12 +333,12 @@ mod tests {
         }
     }
 
-    fn named<'a>(table: &'a ResultsTable, name: &str) -> &'a ResultsRow {
+    fn find_row<'a>(table: &'a ResultsTable, name: &str) -> &'a ResultsRow {
         table.rows.iter().find(|row| row.name == name).expect(name)
     }
 
     #[test]
-    fn runs_are_put_together_and_the_best_is_chosen_by_cash_then_life() {
+    fn runs_are_grouped_and_the_best_is_chosen_by_cash_then_survival() {
         let idle = run("", None, 900_000.0, 500);
         let runs = [
             run("a1", Some("P01"), 0.0, 385),
@@ -348,40 +348,45 @@ mod tests {
             run("b2", Some("P02"), 0.0, 131),
             FinishedRun { policy: Some("mine".to_owned()), ..run("d1", None, 1.0, 500) },
         ];
-        let table = ResultsTable::of(&runs, &[vec![Obstacle::Length(28)]], &idle, ResultsBy::Participant);
-        let first = named(&table, "P01");
+        let table = ResultsTable::new(
+            &runs,
+            &[vec![RankingObstacle::Length(28)]],
+            &idle,
+            ResultsGrouping::Participant,
+        );
+        let first = find_row(&table, "P01");
         assert_eq!((first.bankruptcies, first.runs, first.best_run.as_deref()), (Some(1), 3, Some("a2")));
-        assert_eq!((first.best_cash, first.beats), (3e6, 14));
+        assert_eq!((first.best_cash, first.beaten_count), (3e6, 14));
         // Published survival and spread of an agent with one bankruptcy in three runs.
         assert_eq!(first.mean_survival_days.map(|days| (days * 10.0).round() / 10.0), Some(461.7));
         assert_eq!(first.std_survival_days.map(|days| (days * 10.0).round() / 10.0), Some(54.2));
-        let second = named(&table, "P02");
+        let second = find_row(&table, "P02");
         assert_eq!((second.best_run.as_deref(), second.max_survival_days), (Some("b2"), Some(131.0)));
         assert!(table.notes.iter().any(|note| note.contains("28 days instead of 500")), "{:?}", table.notes);
         assert!(table.rows.is_sorted_by(|one, other| one.best_cash >= other.best_cash));
-        let policies = ResultsTable::of(&runs, &[], &idle, ResultsBy::Policy);
-        assert_eq!(named(&policies, "mine").player, Player::Policy);
+        let policies = ResultsTable::new(&runs, &[], &idle, ResultsGrouping::Policy);
+        assert_eq!(find_row(&policies, "mine").source, RowSource::Policy);
         assert!(policies.rows.iter().all(|row| row.name != "P01"));
         // A participant's label never merges its runs with those of a policy or with published ones.
         let named_so = [run("e1", Some("mine"), 9e6, 500), run("e2", Some("idle company"), 8e6, 500)];
         let runs: Vec<FinishedRun> = runs.into_iter().chain(named_so).collect();
-        let table = ResultsTable::of(&runs, &[], &idle, ResultsBy::Participant);
+        let table = ResultsTable::new(&runs, &[], &idle, ResultsGrouping::Participant);
         let of = |name: &str| {
             let rows = table.rows.iter().filter(|row| row.name == name);
-            rows.map(|row| (row.player.source(), row.runs)).collect::<Vec<_>>()
+            rows.map(|row| (row.source.describe(), row.runs)).collect::<Vec<_>>()
         };
         assert_eq!(of("mine"), [("own", 1), ("own policy", 1)]);
         assert_eq!(of("idle company"), [("own", 1), ("reference", 1)]);
     }
 
     #[test]
-    fn the_idle_company_is_played_and_beats_thirteen_of_sixteen() {
-        let configuration = Configuration::shipped();
+    fn idle_company_beats_13_of_16() {
+        let configuration = Configuration::bundled();
         let policy = Policy::find(IDLE_POLICY, &configuration).expect("a bundled policy");
-        let idle = idle_company(&policy, &configuration).expect("it plays");
+        let idle = play_idle_company(&policy, &configuration).expect("it plays");
         assert_eq!((idle.survival_days, idle.is_bankrupt, idle.score.round()), (500, false, 957_500.0));
-        let table = ResultsTable::of(&[], &[], &idle, ResultsBy::Participant);
-        assert_eq!(named(&table, IDLE_NAME).beats, 13);
+        let table = ResultsTable::new(&[], &[], &idle, ResultsGrouping::Participant);
+        assert_eq!(find_row(&table, IDLE_ROW).beaten_count, 13);
         assert_eq!(table.rows.len(), 16 + 2);
     }
 }

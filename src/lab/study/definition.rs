@@ -5,8 +5,8 @@ use std::path::Path;
 use serde::Deserialize;
 use toml::{Table, Value};
 
-use super::grid::{Level, crossed, flat, value_text};
-use crate::experiment::{Arm, Experiment, Wanted};
+use super::grid::{FactorLevel, cross_levels, flatten_table, override_text};
+use crate::experiment::{Arm, Experiment, RecordedFigures};
 use crate::policy::Policy;
 use crate::runner::RunSpec;
 use crate::seeds::parse_seeds;
@@ -14,7 +14,7 @@ use novamind_record::error::RunError;
 use novamind_record::folder::configuration::{Configuration, DEFAULT_SCENARIO, check_cash, check_days};
 use novamind_world::params::{ParameterError, Params, Replayed, line_of_key};
 
-const MOST_RUNS: u64 = 1_000_000;
+const MAX_RUNS: u64 = 1_000_000;
 
 /// A parsed study, in the order of its rows.
 #[derive(Debug, Clone)]
@@ -33,14 +33,14 @@ pub struct StudyPlan {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct StudyText {
+struct StudyFile {
     name: String,
     #[serde(default, rename = "description")]
     _description: String,
     policies: Vec<String>,
     #[serde(default)]
     scenarios: Vec<String>,
-    seeds: SeedsGiven,
+    seeds: SeedList,
     days: Option<u32>,
     until: Option<u32>,
     cash: Option<f64>,
@@ -55,7 +55,7 @@ struct StudyText {
 
 #[derive(Deserialize)]
 #[serde(untagged, expecting = "seeds must be a number, a range like \"1..24\", or a list of numbers")]
-enum SeedsGiven {
+enum SeedList {
     One(u64),
     Range(String),
     List(Vec<u64>),
@@ -76,12 +76,12 @@ struct StudySource<'a> {
 }
 
 impl StudySource<'_> {
-    fn wrong(&self, key: &str, problem: impl Into<String>) -> ParameterError {
-        ParameterError::of_key(&self.name, self.text, key, problem)
+    fn error_at_key(&self, key: &str, problem: impl Into<String>) -> ParameterError {
+        ParameterError::for_key(&self.name, self.text, key, problem)
     }
 
     /// Returns an error at the first line of the table that names an override.
-    fn wrong_override(&self, within: &str, key: &str, problem: impl Into<String>) -> ParameterError {
+    fn override_error(&self, within: &str, key: &str, problem: impl Into<String>) -> ParameterError {
         let from = line_of_key(self.text, within).unwrap_or(1);
         let names = |line: &&str| line.contains(key) || line.contains(key.rsplit('.').next().unwrap_or(key));
         let at = self.text.lines().skip(from - 1).position(|line| names(&line));
@@ -93,7 +93,7 @@ impl StudySource<'_> {
         }
     }
 
-    fn read(&self) -> Result<StudyText, ParameterError> {
+    fn parse(&self) -> Result<StudyFile, ParameterError> {
         let at = |line: Option<usize>, key: String, problem: &str| ParameterError {
             source: self.name.clone(),
             line,
@@ -132,34 +132,34 @@ impl StudyPlan {
             problem: error.to_string(),
         })?;
         let folder = path.parent().unwrap_or(Path::new(""));
-        StudyPlan::of(&StudySource { name, text: &text }, folder, daily, configuration)
+        StudyPlan::build(&StudySource { name, text: &text }, folder, daily, configuration)
     }
 
-    fn of(
+    fn build(
         source: &StudySource<'_>,
         folder: &Path,
         daily: bool,
         configuration: &Configuration,
     ) -> Result<StudyPlan, ParameterError> {
-        let own = source.read()?;
+        let own = source.parse()?;
         let fits = |letter: char| letter.is_ascii_alphanumeric() || "-_".contains(letter);
         if own.name.is_empty() || own.name.len() > 60 || !own.name.chars().all(fits) {
             let problem = "use up to 60 letters, digits, hyphens and underscores";
-            return Err(source.wrong("name", problem));
+            return Err(source.error_at_key("name", problem));
         }
-        let policies = policies(source, &own, folder, configuration)?;
+        let policies = read_policies(source, &own, folder, configuration)?;
         check_scenarios(source, &own)?;
-        check_terms(source, &own)?;
-        let levels = varied(source, &own)?;
-        let seeds = seeds(source, &own, (policies.len() * own.scenarios.len().max(1)) as u64, &levels)?;
+        check_days_and_cash(source, &own)?;
+        let levels = varied_factors(source, &own)?;
+        let seeds = read_seeds(source, &own, (policies.len() * own.scenarios.len().max(1)) as u64, &levels)?;
         let mut factors = vec!["policy".to_owned(), "scenario".to_owned()];
         factors.extend(levels.names.iter().cloned());
         let (mut arms, mut labels, mut replays_a_record) = (Vec::new(), Vec::new(), false);
         for policy in &policies {
-            for scenario in scenarios(&own, policy) {
+            for scenario in scenarios_for(&own, policy) {
                 for level in &levels.all {
-                    let arm = own.arm(policy, &scenario, level);
-                    let params = checked(source, &own, &arm, configuration)?;
+                    let arm = own.build_arm(policy, &scenario, level);
+                    let params = validated_parameters(source, &own, &arm, configuration)?;
                     replays_a_record |= params.series.replayed != Replayed::None;
                     arms.push(arm);
                     let words = [policy.name.clone(), scenario.clone()];
@@ -167,68 +167,68 @@ impl StudyPlan {
                 }
             }
         }
-        let wanted = Wanted { daily: own.daily || daily, figures_on: Vec::new() };
+        let wanted = RecordedFigures { daily: own.daily || daily, figures_on: Vec::new() };
         Ok(StudyPlan {
             name: own.name,
             factors,
             levels: labels,
             replays_a_record,
-            experiment: Experiment { arms, seeds, wanted },
+            experiment: Experiment { arms, seeds, recorded: wanted },
         })
     }
 
     /// Returns the indices of the arm and the seed of a run.
-    pub(super) fn run(&self, number: usize) -> (&[String], u64) {
+    pub(super) fn arm_and_seed(&self, number: usize) -> (&[String], u64) {
         let seeds = &self.experiment.seeds;
         (&self.levels[number / seeds.len()], seeds[number % seeds.len()])
     }
 }
 
-impl StudyText {
-    fn arm(&self, policy: &Policy, scenario: &str, level: &Level) -> Arm {
+impl StudyFile {
+    fn build_arm(&self, policy: &Policy, scenario: &str, level: &FactorLevel) -> Arm {
         let name: Vec<&str> = [policy.name.as_str(), scenario]
             .into_iter()
             .chain(level.labels.iter().map(String::as_str))
             .collect();
         let spec = RunSpec {
             days: self.days,
-            until: self.until,
+            stop_after_day: self.until,
             surges: self.surges,
             cash: self.cash,
             scenario: Some(scenario.to_owned()),
             overrides: level.overrides.clone(),
-            ..RunSpec::of_seed(0)
+            ..RunSpec::for_seed(0)
         };
         Arm { name: name.join(", "), policy: policy.clone(), spec }
     }
 }
 
 /// Returns the scenarios of a policy: those of the study, otherwise its own.
-fn scenarios(own: &StudyText, policy: &Policy) -> Vec<String> {
+fn scenarios_for(own: &StudyFile, policy: &Policy) -> Vec<String> {
     match own.scenarios.is_empty() {
         true => vec![policy.start.scenario.clone().unwrap_or(DEFAULT_SCENARIO.to_owned())],
         false => own.scenarios.clone(),
     }
 }
 
-fn policies(
+fn read_policies(
     source: &StudySource<'_>,
-    own: &StudyText,
+    own: &StudyFile,
     folder: &Path,
     configuration: &Configuration,
 ) -> Result<Vec<Policy>, ParameterError> {
     if own.policies.is_empty() {
-        return Err(source.wrong("policies", "a study needs at least one policy"));
+        return Err(source.error_at_key("policies", "a study needs at least one policy"));
     }
     let mut found: Vec<Policy> = Vec::new();
     for (at, name) in own.policies.iter().enumerate() {
         let key = format!("policies.{at}");
         let is_file = name.ends_with(".toml") || name.contains(std::path::is_separator);
         let place = if is_file { folder.join(name).display().to_string() } else { name.clone() };
-        let policy =
-            Policy::find(&place, configuration).map_err(|error| source.wrong(&key, error.to_string()))?;
+        let policy = Policy::find(&place, configuration)
+            .map_err(|error| source.error_at_key(&key, error.to_string()))?;
         if found.iter().any(|other| other.name == policy.name) {
-            return Err(source.wrong(&key, format!("two policies are named {}", policy.name)));
+            return Err(source.error_at_key(&key, format!("two policies are named {}", policy.name)));
         }
         found.push(policy);
     }
@@ -236,41 +236,41 @@ fn policies(
 }
 
 /// Checks that scenarios are unique and that the list is not empty.
-fn check_scenarios(source: &StudySource<'_>, own: &StudyText) -> Result<(), ParameterError> {
+fn check_scenarios(source: &StudySource<'_>, own: &StudyFile) -> Result<(), ParameterError> {
     if own.scenarios.is_empty() && line_of_key(source.text, "scenarios").is_some() {
         let problem = "the list is empty; leave the key out to play each policy's own scenario";
-        return Err(source.wrong("scenarios", problem));
+        return Err(source.error_at_key("scenarios", problem));
     }
     let twice = |at: &usize| own.scenarios[..*at].contains(&own.scenarios[*at]);
     match (0..own.scenarios.len()).find(twice) {
         Some(at) => {
             let problem = format!("scenario {} appears twice", own.scenarios[at]);
-            Err(source.wrong(&format!("scenarios.{at}"), problem))
+            Err(source.error_at_key(&format!("scenarios.{at}"), problem))
         }
         None => Ok(()),
     }
 }
 
 /// Parameters that a study or policy sets by separate keys. Values in a grid or in overrides would have no effect.
-const SAID_ELSEWHERE: [&str; 3] = ["run.seed", "run.total_days", "initial.initial_cash"];
+const RESERVED_PARAMETERS: [&str; 3] = ["run.seed", "run.total_days", "initial.initial_cash"];
 
-fn refuse_said_elsewhere<'a>(
+fn check_reserved_parameters<'a>(
     source: &StudySource<'_>,
     within: &str,
     mut keys: impl Iterator<Item = &'a String>,
 ) -> Result<(), ParameterError> {
-    match keys.find(|key| SAID_ELSEWHERE.contains(&key.as_str())) {
+    match keys.find(|key| RESERVED_PARAMETERS.contains(&key.as_str())) {
         Some(key) => {
             let problem =
                 "seeds, days and cash are keys of the study: set them there, or use several studies";
-            Err(source.wrong_override(within, key, problem))
+            Err(source.override_error(within, key, problem))
         }
         None => Ok(()),
     }
 }
 
 /// Returns whether two values are equal; 0 equals 0.0.
-fn is_same(one: &Value, other: &Value) -> bool {
+fn are_equal_values(one: &Value, other: &Value) -> bool {
     let number = |value: &Value| value.as_float().or(value.as_integer().map(|whole| whole as f64));
     match (number(one), number(other)) {
         (Some(one), Some(other)) => one == other,
@@ -279,91 +279,92 @@ fn is_same(one: &Value, other: &Value) -> bool {
 }
 
 /// The varied parameters and their combinations.
-struct Varied {
+struct VariedFactors {
     names: Vec<String>,
-    all: Vec<Level>,
+    all: Vec<FactorLevel>,
 }
 
-fn varied(source: &StudySource<'_>, own: &StudyText) -> Result<Varied, ParameterError> {
-    let (mut names, mut all) = (Vec::new(), vec![Level::default()]);
+fn varied_factors(source: &StudySource<'_>, own: &StudyFile) -> Result<VariedFactors, ParameterError> {
+    let (mut names, mut all) = (Vec::new(), vec![FactorLevel::default()]);
     if !own.overrides.is_empty() {
         names.push("overrides".to_owned());
-        let mut sets: Vec<Level> = Vec::new();
+        let mut sets: Vec<FactorLevel> = Vec::new();
         for (at, set) in own.overrides.iter().enumerate() {
             let is_taken = sets.iter().any(|other| other.labels[0] == set.name);
             if set.name.is_empty() || is_taken || set.name.chars().any(char::is_control) {
                 let problem = "every set of overrides needs a unique name";
-                return Err(source.wrong(&format!("overrides.{at}"), problem));
+                return Err(source.error_at_key(&format!("overrides.{at}"), problem));
             }
-            let given = flat(&set.set);
-            refuse_said_elsewhere(source, "overrides", given.iter().map(|(key, _)| key))?;
-            let overrides: Vec<_> = given.into_iter().map(|(key, value)| (key, value_text(value))).collect();
+            let given = flatten_table(&set.set);
+            check_reserved_parameters(source, "overrides", given.iter().map(|(key, _)| key))?;
+            let overrides: Vec<_> =
+                given.into_iter().map(|(key, value)| (key, override_text(value))).collect();
             if let Some(twin) = sets.iter().find(|other| other.overrides == overrides) {
                 let problem = format!(
                     "{} sets the same parameters as {}: their runs would be identical",
                     set.name, twin.labels[0]
                 );
-                return Err(source.wrong(&format!("overrides.{at}"), problem));
+                return Err(source.error_at_key(&format!("overrides.{at}"), problem));
             }
-            sets.push(Level { labels: vec![set.name.clone()], overrides });
+            sets.push(FactorLevel { labels: vec![set.name.clone()], overrides });
         }
-        all = crossed(&all, &sets);
+        all = cross_levels(&all, &sets);
     }
-    let grid = flat(&own.grid);
-    refuse_said_elsewhere(source, "grid", grid.iter().map(|(key, _)| key))?;
+    let grid = flatten_table(&own.grid);
+    check_reserved_parameters(source, "grid", grid.iter().map(|(key, _)| key))?;
     let is_set = |key: &String| all.iter().any(|level| level.overrides.iter().any(|(own, _)| own == key));
     if let Some((key, _)) = grid.iter().find(|(key, _)| is_set(key)) {
         let problem = "a set of overrides sets it too: vary it either there or in the grid";
-        return Err(source.wrong_override("grid", key, problem));
+        return Err(source.override_error("grid", key, problem));
     }
     for (key, values) in grid {
         let Value::Array(values) = values else {
-            return Err(source.wrong_override("grid", &key, "a grid parameter needs a list of values"));
+            return Err(source.override_error("grid", &key, "a grid parameter needs a list of values"));
         };
         if values.is_empty() {
-            return Err(source.wrong_override(
+            return Err(source.override_error(
                 "grid",
                 &key,
                 "the list is empty; add a value or remove the key",
             ));
         }
         if let Some(at) =
-            (0..values.len()).find(|at| values[..*at].iter().any(|own| is_same(own, &values[*at])))
+            (0..values.len()).find(|at| values[..*at].iter().any(|own| are_equal_values(own, &values[*at])))
         {
-            let problem = format!("the value {} appears twice", value_text(&values[at]));
-            return Err(source.wrong_override("grid", &key, problem));
+            let problem = format!("the value {} appears twice", override_text(&values[at]));
+            return Err(source.override_error("grid", &key, problem));
         }
         let level = |value: &Value| {
-            let text = value_text(value);
+            let text = override_text(value);
             let label = value.as_str().map_or(text.clone(), str::to_owned);
-            Level { labels: vec![label], overrides: vec![(key.clone(), text)] }
+            FactorLevel { labels: vec![label], overrides: vec![(key.clone(), text)] }
         };
-        let own: Vec<Level> = values.iter().map(level).collect();
+        let own: Vec<FactorLevel> = values.iter().map(level).collect();
         names.push(key.clone());
-        all = crossed(&all, &own);
+        all = cross_levels(&all, &own);
     }
-    Ok(Varied { names, all })
+    Ok(VariedFactors { names, all })
 }
 
-fn seeds(
+fn read_seeds(
     source: &StudySource<'_>,
-    own: &StudyText,
+    own: &StudyFile,
     arms: u64,
-    levels: &Varied,
+    levels: &VariedFactors,
 ) -> Result<Vec<u64>, ParameterError> {
     let arms = arms.saturating_mul(levels.all.len() as u64);
-    let most = MOST_RUNS / arms.max(1);
+    let most = MAX_RUNS / arms.max(1);
     let too_many = |count: u64| {
         let problem = format!(
-            "{count} seeds for each of {arms} arms exceed the maximum of {MOST_RUNS} runs: split the study"
+            "{count} seeds for each of {arms} arms exceed the maximum of {MAX_RUNS} runs: split the study"
         );
-        source.wrong("seeds", problem)
+        source.error_at_key("seeds", problem)
     };
     let seeds: Vec<u64> = match &own.seeds {
-        SeedsGiven::One(seed) => vec![*seed],
-        SeedsGiven::List(seeds) => seeds.clone(),
-        SeedsGiven::Range(text) => {
-            let range = parse_seeds(text).map_err(|problem| source.wrong("seeds", problem))?;
+        SeedList::One(seed) => vec![*seed],
+        SeedList::List(seeds) => seeds.clone(),
+        SeedList::Range(text) => {
+            let range = parse_seeds(text).map_err(|problem| source.error_at_key("seeds", problem))?;
             let count = (range.last - range.first).saturating_add(1);
             if count > most {
                 return Err(too_many(count));
@@ -374,34 +375,34 @@ fn seeds(
     let mut sorted = seeds.clone();
     sorted.sort_unstable();
     if let Some(pair) = sorted.windows(2).find(|pair| pair[0] == pair[1]) {
-        return Err(source.wrong("seeds", format!("seed {} appears twice", pair[0])));
+        return Err(source.error_at_key("seeds", format!("seed {} appears twice", pair[0])));
     }
     match seeds.len() as u64 {
-        0 => Err(source.wrong("seeds", "a study needs at least one seed")),
+        0 => Err(source.error_at_key("seeds", "a study needs at least one seed")),
         count if count > most => Err(too_many(count)),
         _ => Ok(seeds),
     }
 }
 
-fn check_terms(source: &StudySource<'_>, own: &StudyText) -> Result<(), ParameterError> {
-    own.days.map_or(Ok(()), check_days).map_err(|problem| source.wrong("days", problem))?;
-    own.cash.map_or(Ok(()), check_cash).map_err(|problem| source.wrong("cash", problem))?;
+fn check_days_and_cash(source: &StudySource<'_>, own: &StudyFile) -> Result<(), ParameterError> {
+    own.days.map_or(Ok(()), check_days).map_err(|problem| source.error_at_key("days", problem))?;
+    own.cash.map_or(Ok(()), check_cash).map_err(|problem| source.error_at_key("cash", problem))?;
     match own.until {
-        Some(0) => Err(source.wrong("until", "until must be at least 1")),
+        Some(0) => Err(source.error_at_key("until", "until must be at least 1")),
         _ => Ok(()),
     }
 }
 
 /// Checks that the runs of an arm can start.
-fn checked(
+fn validated_parameters(
     source: &StudySource<'_>,
-    own: &StudyText,
+    own: &StudyFile,
     arm: &Arm,
     configuration: &Configuration,
 ) -> Result<Params, ParameterError> {
-    let error = match (arm.terms(configuration), own.until) {
+    let error = match (arm.run_conditions(configuration), own.until) {
         (Ok((days, ..)), Some(until)) if until > days => {
-            return Err(source.wrong("until", format!("its runs end on day {days}")));
+            return Err(source.error_at_key("until", format!("its runs end on day {days}")));
         }
         (Ok((.., params)), _) => return Ok(params),
         (Err(error), _) => error,
@@ -412,12 +413,12 @@ fn checked(
         };
         let given = arm.spec.overrides.iter().map(|(key, _)| key).find(concerns);
         if let Some(key) = given {
-            let is_of_grid = flat(&own.grid).iter().any(|(other, _)| other == key);
+            let is_of_grid = flatten_table(&own.grid).iter().any(|(other, _)| other == key);
             let within = if is_of_grid { "grid" } else { "overrides" };
-            return Err(source.wrong_override(within, key, wrong.problem.clone()));
+            return Err(source.override_error(within, key, wrong.problem.clone()));
         }
     }
     let at = own.scenarios.iter().position(|name| Some(name) == arm.spec.scenario.as_ref());
     let key = at.map_or("policies".to_owned(), |at| format!("scenarios.{at}"));
-    Err(source.wrong(&key, error.to_string()))
+    Err(source.error_at_key(&key, error.to_string()))
 }

@@ -4,7 +4,7 @@ use toml::{Table, Value};
 
 /// A combination of settings.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(super) struct Level {
+pub(super) struct FactorLevel {
     /// One text for each column.
     pub labels: Vec<String>,
     /// `(table.key, value as TOML)`.
@@ -12,8 +12,8 @@ pub(super) struct Level {
 }
 
 /// Returns the product of two lists of combinations; the second varies fastest.
-pub(super) fn crossed(slow: &[Level], fast: &[Level]) -> Vec<Level> {
-    let both = |slow: &Level, fast: &Level| Level {
+pub(super) fn cross_levels(slow: &[FactorLevel], fast: &[FactorLevel]) -> Vec<FactorLevel> {
+    let both = |slow: &FactorLevel, fast: &FactorLevel| FactorLevel {
         labels: slow.labels.iter().chain(&fast.labels).cloned().collect(),
         overrides: slow.overrides.iter().chain(&fast.overrides).cloned().collect(),
     };
@@ -21,7 +21,7 @@ pub(super) fn crossed(slow: &[Level], fast: &[Level]) -> Vec<Level> {
 }
 
 /// Returns the entries of a table by `table.key`, from quoted keys and from nested tables.
-pub(super) fn flat(table: &Table) -> Vec<(String, &Value)> {
+pub(super) fn flatten_table(table: &Table) -> Vec<(String, &Value)> {
     let mut all = Vec::new();
     for (key, value) in table {
         match value {
@@ -35,6 +35,6 @@ pub(super) fn flat(table: &Table) -> Vec<(String, &Value)> {
 }
 
 /// Returns the text of a value for an override.
-pub(super) fn value_text(value: &Value) -> String {
+pub(super) fn override_text(value: &Value) -> String {
     value.to_string()
 }

@@ -21,29 +21,29 @@ impl fmt::Display for MergeError {
 impl std::error::Error for MergeError {}
 
 impl MergeError {
-    fn one(problem: String) -> MergeError {
+    fn single(problem: String) -> MergeError {
         MergeError(vec![problem])
     }
 }
 
 /// A complete set of undamaged shards, in order.
 #[derive(Debug)]
-pub struct Shards {
+pub struct ShardSet {
     files: Vec<PathBuf>,
 }
 
-impl Shards {
+impl ShardSet {
     /// Finds the shards in files and folders and checks that they belong together.
     ///
     /// # Errors
     /// Fails if a file is not a shard, is damaged or belongs to another study, or if a shard is missing or present twice.
-    pub fn of(places: &[PathBuf]) -> Result<Shards, MergeError> {
+    pub fn find(places: &[PathBuf]) -> Result<ShardSet, MergeError> {
         let mut problems = Vec::new();
         let (mut found, mut damaged): (Vec<(PathBuf, ShardHead)>, Vec<ShardHead>) = Default::default();
-        for file in files(places)? {
-            match read(&file) {
-                Ok(ReadShard::Whole(head)) => found.push((file, head)),
-                Ok(ReadShard::Damaged(head)) => {
+        for file in shard_files(places)? {
+            match read_head(&file) {
+                Ok(ShardState::Intact(head)) => found.push((file, head)),
+                Ok(ShardState::Damaged(head)) => {
                     problems.push(format!("{} is damaged: rerun shard {}", file.display(), head.part));
                     damaged.push(head);
                 }
@@ -82,10 +82,10 @@ impl Shards {
         let name = |shard| ShardHead::file_name(&study.study, Shard { shard, of: study.part.of });
         let missing: Vec<String> = (1..=study.part.of).filter(|shard| !is_there(shard)).map(name).collect();
         if !missing.is_empty() {
-            problems.push(format!("missing: {}", in_short(&missing)));
+            problems.push(format!("missing: {}", abbreviate_names(&missing)));
         }
         match problems.is_empty() {
-            true => Ok(Shards { files: by_number.into_values().collect() }),
+            true => Ok(ShardSet { files: by_number.into_values().collect() }),
             false => Err(MergeError(problems)),
         }
     }
@@ -103,21 +103,21 @@ impl Shards {
         let mut readers = Vec::new();
         for (at, file) in self.files.iter().enumerate() {
             let mut own = RowReader { lines: BufReader::new(File::open(file)?), line: Vec::new() };
-            own.next()?;
-            own.next()?;
+            own.read_next()?;
+            own.read_next()?;
             if at == 0 {
                 out.write_all(&own.line)?;
             }
-            own.next()?;
+            own.read_next()?;
             readers.push(own);
         }
         for run in 1.. {
             let count = readers.len();
             let own = &mut readers[(run - 1) % count];
             let mut has_rows = false;
-            while own.run() == Some(run) {
+            while own.run_number() == Some(run) {
                 out.write_all(&own.line)?;
-                own.next()?;
+                own.read_next()?;
                 has_rows = true;
             }
             if !has_rows {
@@ -133,11 +133,11 @@ impl Shards {
 }
 
 /// Lists the first names and the number of others.
-fn in_short(names: &[String]) -> String {
-    const SHOWN: usize = 10;
+fn abbreviate_names(names: &[String]) -> String {
+    const MAX_NAMES: usize = 10;
     match names.len() {
-        count if count <= SHOWN => names.join(", "),
-        count => format!("{} and {} more", names[..SHOWN].join(", "), count - SHOWN),
+        count if count <= MAX_NAMES => names.join(", "),
+        count => format!("{} and {} more", names[..MAX_NAMES].join(", "), count - MAX_NAMES),
     }
 }
 
@@ -149,19 +149,19 @@ struct RowReader {
 }
 
 impl RowReader {
-    fn next(&mut self) -> io::Result<()> {
+    fn read_next(&mut self) -> io::Result<()> {
         self.line.clear();
         self.lines.read_until(b'\n', &mut self.line).map(drop)
     }
 
-    fn run(&self) -> Option<usize> {
+    fn run_number(&self) -> Option<usize> {
         let cell = self.line.split(|byte| *byte == b',').next()?;
         std::str::from_utf8(cell).ok()?.parse().ok()
     }
 }
 
 /// Returns the given files, and the files in given folders whose names are shard names.
-fn files(places: &[PathBuf]) -> Result<Vec<PathBuf>, MergeError> {
+fn shard_files(places: &[PathBuf]) -> Result<Vec<PathBuf>, MergeError> {
     let mut all = Vec::new();
     for place in places {
         if !place.is_dir() {
@@ -169,7 +169,7 @@ fn files(places: &[PathBuf]) -> Result<Vec<PathBuf>, MergeError> {
             continue;
         }
         let entries = std::fs::read_dir(place)
-            .map_err(|error| MergeError::one(format!("{}: {error}", place.display())))?;
+            .map_err(|error| MergeError::single(format!("{}: {error}", place.display())))?;
         let mut own: Vec<PathBuf> =
             entries.flatten().map(|entry| entry.path()).filter(|path| is_named_as_shard(path)).collect();
         own.sort_unstable();
@@ -191,15 +191,15 @@ fn is_named_as_shard(path: &Path) -> bool {
 }
 
 /// A shard with a valid first line.
-enum ReadShard {
+enum ShardState {
     /// The rows match the checksum.
-    Whole(ShardHead),
+    Intact(ShardHead),
     /// The rows do not match.
     Damaged(ShardHead),
 }
 
 /// Returns the head of a shard and whether its rows match.
-fn read(file: &Path) -> Result<ReadShard, String> {
+fn read_head(file: &Path) -> Result<ShardState, String> {
     if std::fs::metadata(file).is_ok_and(|found| !found.is_file()) {
         return Err("it is not a file".to_owned());
     }
@@ -207,10 +207,10 @@ fn read(file: &Path) -> Result<ReadShard, String> {
     // First lines are short, so a file without line ends is not a shard.
     let mut line = Vec::new();
     reader.by_ref().take(4096).read_until(b'\n', &mut line).map_err(|error| error.to_string())?;
-    let head = std::str::from_utf8(&line).ok().and_then(|line| ShardHead::of_line(line.trim_end()));
+    let head = std::str::from_utf8(&line).ok().and_then(|line| ShardHead::parse(line.trim_end()));
     let head = head.ok_or("it is not a shard of a study")?;
     let mut hasher = blake3::Hasher::new();
     io::copy(&mut reader, &mut hasher).map_err(|error| error.to_string())?;
     let is_whole = hasher.finalize().to_hex()[..32] == *head.checksum;
-    Ok(if is_whole { ReadShard::Whole(head) } else { ReadShard::Damaged(head) })
+    Ok(if is_whole { ShardState::Intact(head) } else { ShardState::Damaged(head) })
 }

@@ -13,7 +13,7 @@ mod table;
 mod tests;
 
 pub use definition::StudyPlan;
-pub use merge::{MergeError, Shards};
+pub use merge::{MergeError, ShardSet};
 pub use shard::{Shard, ShardHead, parse_shard};
-pub use summary::{equal_arms, played_alike, size, summary};
-pub use table::{head, rows};
+pub use summary::{describe_size, equal_arm_warnings, equal_outcome_warnings, study_summary};
+pub use table::{column_names, rows};

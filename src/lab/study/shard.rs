@@ -10,7 +10,7 @@ use novamind_record::folder::configuration::Configuration;
 use novamind_world::MECHANICS;
 
 /// Prefix of a shard's first line.
-const MARK: &str = "# novamind study shard ";
+const SHARD_PREFIX: &str = "# novamind study shard ";
 
 /// One of several parts of a study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -27,7 +27,7 @@ impl fmt::Display for Shard {
     }
 }
 
-const MOST_SHARDS: usize = 100_000;
+const MAX_SHARDS: usize = 100_000;
 
 /// Parses `2/4`.
 ///
@@ -38,12 +38,12 @@ pub fn parse_shard(text: &str) -> Result<Shard, String> {
     let (shard, of) = text.split_once('/').ok_or_else(wrong)?;
     let number = |text: &str| text.trim().parse::<usize>().map_err(|_| wrong());
     let own = Shard { shard: number(shard)?, of: number(of)? };
-    if own.shard == 0 || own.shard > own.of || own.of > MOST_SHARDS { Err(wrong()) } else { Ok(own) }
+    if own.shard == 0 || own.shard > own.of || own.of > MAX_SHARDS { Err(wrong()) } else { Ok(own) }
 }
 
 impl Shard {
     /// Returns the indices of its runs.
-    pub fn numbers(self, runs: usize) -> Vec<usize> {
+    pub fn run_numbers(self, runs: usize) -> Vec<usize> {
         (self.shard - 1..runs).step_by(self.of).collect()
     }
 }
@@ -64,20 +64,20 @@ pub struct ShardHead {
 
 impl ShardHead {
     /// Returns the content of a shard file: first line, header, rows.
-    pub fn sealed(study: &str, digest: &str, part: Shard, rows: &str) -> String {
+    pub fn with_checksum(study: &str, digest: &str, part: Shard, rows: &str) -> String {
         let head = ShardHead {
             study: study.to_owned(),
             digest: digest.to_owned(),
             part,
             checksum: blake3::hash(rows.as_bytes()).to_hex()[..32].to_owned(),
         };
-        format!("{MARK}{}\n{rows}", serde_json::to_string(&head).expect("plain values"))
+        format!("{SHARD_PREFIX}{}\n{rows}", serde_json::to_string(&head).expect("plain values"))
     }
 
     /// Parses the first line of a file; returns `None` if it is not a shard.
-    pub(super) fn of_line(line: &str) -> Option<ShardHead> {
-        let head: ShardHead = serde_json::from_str(line.strip_prefix(MARK)?).ok()?;
-        (head.part.shard >= 1 && head.part.shard <= head.part.of && head.part.of <= MOST_SHARDS)
+    pub(super) fn parse(line: &str) -> Option<ShardHead> {
+        let head: ShardHead = serde_json::from_str(line.strip_prefix(SHARD_PREFIX)?).ok()?;
+        (head.part.shard >= 1 && head.part.shard <= head.part.of && head.part.of <= MAX_SHARDS)
             .then_some(head)
     }
 
@@ -96,7 +96,7 @@ impl StudyPlan {
         let mut hasher = blake3::Hasher::new();
         let labels = serde_json::json!([env!("CARGO_PKG_VERSION"), MECHANICS, self.factors, self.levels]);
         hasher.update(labels.to_string().as_bytes());
-        for key in self.experiment.keys(configuration)? {
+        for key in self.experiment.run_keys(configuration)? {
             hasher.update(key.as_bytes());
         }
         Ok(hasher.finalize().to_hex()[..32].to_owned())

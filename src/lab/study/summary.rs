@@ -1,55 +1,55 @@
 //! Summary of a study by arm.
 
 use super::StudyPlan;
-use crate::exhibit::{
-    AxisScale, Column, Datum, Exhibit, Graph, GraphAxis, GraphForm, Measure, Series, Tabulation,
+use crate::experiment::{Experiment, RunResult, groups_of_equal};
+use crate::lab_report::{
+    AxisScale, CellValue, Column, Graph, GraphAxis, GraphForm, LabReport, LabTable, Measure, Series,
 };
-use crate::experiment::{Experiment, RunResult, groups};
-use novamind_base::statistics::{Interval, LEAST, LEVEL, Quartiles, RESAMPLES, median};
+use novamind_base::statistics::{CONFIDENCE_LEVEL, Interval, MIN_SAMPLE_SIZE, Quartiles, RESAMPLES, median};
 use novamind_record::error::RunError;
 use novamind_record::folder::configuration::Configuration;
-use novamind_report::count;
+use novamind_report::pluralize;
 
 /// Maximum number of arms in the graph.
-const MOST_CURVES: usize = 8;
+const MAX_CURVES: usize = 8;
 const MAX_NAMES: usize = 6;
 
 /// Returns the final figures of each arm. `results` has all runs in order.
-pub fn summary(plan: &StudyPlan, results: &[RunResult]) -> Exhibit {
+pub fn study_summary(plan: &StudyPlan, results: &[RunResult]) -> LabReport {
     let seeds = plan.experiment.seeds.len();
     let by_arm: Vec<&[RunResult]> = results.chunks(seeds).collect();
-    let mut columns: Vec<Column> = plan.factors.iter().map(|name| Column::words(name, name)).collect();
+    let mut columns: Vec<Column> = plan.factors.iter().map(|name| Column::text(name, name)).collect();
     let start = |runs: &[RunResult]| runs.first().map(|run| run.start_cash);
     let differs = by_arm.iter().any(|runs| start(runs) != start(by_arm[0]));
-    columns.extend(differs.then(|| Column::numbers("start_cash", "cash on day 0", Measure::Dollars)));
+    columns.extend(differs.then(|| Column::number("start_cash", "cash on day 0", Measure::Dollars)));
     columns.extend([
-        Column::numbers("alive", "not bankrupt", Measure::Share),
-        Column::numbers("cash_lower_quartile", "lower quartile", Measure::Dollars),
-        Column::numbers("cash_median", "median final cash", Measure::Dollars),
-        Column::numbers("cash_upper_quartile", "upper quartile", Measure::Dollars),
-        Column::intervals("cash_median_interval", "median, 95 % interval", Measure::Dollars),
-        Column::numbers("peak_subscribers_median", "median peak subscribers", Measure::Count),
+        Column::number("alive", "not bankrupt", Measure::Share),
+        Column::number("cash_lower_quartile", "lower quartile", Measure::Dollars),
+        Column::number("cash_median", "median final cash", Measure::Dollars),
+        Column::number("cash_upper_quartile", "upper quartile", Measure::Dollars),
+        Column::interval("cash_median_interval", "median, 95 % interval", Measure::Dollars),
+        Column::number("peak_subscribers_median", "median peak subscribers", Measure::Count),
     ]);
-    let mut table = Tabulation::new("arms", "", columns);
+    let mut table = LabTable::new("arms", "", columns);
     for (levels, runs) in plan.levels.iter().zip(&by_arm) {
         let cash: Vec<f64> = runs.iter().map(|run| run.cash).collect();
         let peaks: Vec<f64> = runs.iter().map(|run| f64::from(run.peak_subscribers)).collect();
         let alive = runs.iter().filter(|run| !run.is_bankrupt()).count() as f64;
-        let middle = Quartiles::of(&cash);
-        let mut row: Vec<Datum> = levels.iter().map(Datum::words).collect();
-        row.extend(differs.then(|| Datum::number(start(runs))));
+        let middle = Quartiles::from_values(&cash);
+        let mut row: Vec<CellValue> = levels.iter().map(CellValue::text).collect();
+        row.extend(differs.then(|| CellValue::number(start(runs))));
         row.extend([
-            Datum::number(alive / runs.len().max(1) as f64),
-            Datum::number(middle.map(|own| own.lower)),
-            Datum::number(middle.map(|own| own.median)),
-            Datum::number(middle.map(|own| own.upper)),
-            Datum::interval(Interval::of_median(&cash)),
-            Datum::number(median(&peaks)),
+            CellValue::number(alive / runs.len().max(1) as f64),
+            CellValue::number(middle.map(|own| own.lower)),
+            CellValue::number(middle.map(|own| own.median)),
+            CellValue::number(middle.map(|own| own.upper)),
+            CellValue::interval(Interval::for_median(&cash)),
+            CellValue::number(median(&peaks)),
         ]);
         table.rows.push(row);
     }
-    let mut exhibit = Exhibit::of(format!("{}: {}", plan.name, size(plan)), table);
-    exhibit.graphs.push(curves(plan, &by_arm));
+    let mut exhibit = LabReport::with_table(format!("{}: {}", plan.name, describe_size(plan)), table);
+    exhibit.graphs.push(cash_graph(plan, &by_arm));
     let luck = match plan.replays_a_record {
         false => "Common seeds: runs with the same seed have the same random draws in every arm.",
         true => {
@@ -58,16 +58,16 @@ pub fn summary(plan: &StudyPlan, results: &[RunResult]) -> Exhibit {
         }
     };
     let interval = format!(
-        "Intervals: percentile bootstrap over {LEAST} seeds or more, {RESAMPLES} resamples, {:.0} %. Final cash is the cash of a run on its \
+        "Intervals: percentile bootstrap over {MIN_SAMPLE_SIZE} seeds or more, {RESAMPLES} resamples, {:.0} %. Final cash is the cash of a run on its \
          last day or in bankruptcy.",
-        LEVEL * 100.0
+        CONFIDENCE_LEVEL * 100.0
     );
     if differs {
         exhibit.notes.push(
             "The arms start with different cash, so final cash does not compare their earnings.".to_owned(),
         );
     }
-    exhibit.notes.extend(played_alike(plan, results));
+    exhibit.notes.extend(equal_outcome_warnings(plan, results));
     exhibit.with_note(luck).with_note(interval)
 }
 
@@ -75,27 +75,27 @@ pub fn summary(plan: &StudyPlan, results: &[RunResult]) -> Exhibit {
 ///
 /// # Errors
 /// Fails if a scenario is unknown or a parameter is invalid.
-pub fn equal_arms(plan: &StudyPlan, configuration: &Configuration) -> Result<Vec<String>, RunError> {
-    let warning = |arms: &Vec<usize>| format!("these arms are identical: {}", names(plan, arms));
+pub fn equal_arm_warnings(plan: &StudyPlan, configuration: &Configuration) -> Result<Vec<String>, RunError> {
+    let warning = |arms: &Vec<usize>| format!("these arms are identical: {}", arm_names(plan, arms));
     Ok(plan.experiment.equal_arms(configuration)?.iter().map(warning).collect())
 }
 
 /// Returns a warning for each group of arms whose runs ended in the same state with every seed. `results` has all
 /// runs in order.
-pub fn played_alike(plan: &StudyPlan, results: &[RunResult]) -> Vec<String> {
+pub fn equal_outcome_warnings(plan: &StudyPlan, results: &[RunResult]) -> Vec<String> {
     let states = |runs: &[RunResult]| runs.iter().map(|run| run.state_hash.clone()).collect::<Vec<_>>();
     let by_arm = results.chunks(plan.experiment.seeds.len().max(1)).map(states).collect();
     let warning = |arms: &Vec<usize>| {
         format!(
             "These arms ended in the same state with every seed, so their differences had no effect: {}.",
-            names(plan, arms)
+            arm_names(plan, arms)
         )
     };
-    groups(by_arm).iter().map(warning).collect()
+    groups_of_equal(by_arm).iter().map(warning).collect()
 }
 
 /// Lists the first arms and the number of others.
-fn names(plan: &StudyPlan, arms: &[usize]) -> String {
+fn arm_names(plan: &StudyPlan, arms: &[usize]) -> String {
     let names: Vec<String> = arms.iter().take(MAX_NAMES).map(|arm| plan.levels[*arm].join(" / ")).collect();
     let more = arms.len() - names.len();
     let more = if more > 0 { format!("; and {more} more") } else { String::new() };
@@ -103,26 +103,26 @@ fn names(plan: &StudyPlan, arms: &[usize]) -> String {
 }
 
 /// Describes the size of a study: `2 arms by 24 seeds`.
-pub fn size(plan: &StudyPlan) -> String {
+pub fn describe_size(plan: &StudyPlan) -> String {
     let Experiment { arms, seeds, .. } = &plan.experiment;
-    format!("{} by {}", count(arms.len() as u32, "arm"), count(seeds.len() as u32, "seed"))
+    format!("{} by {}", pluralize(arms.len() as u32, "arm"), pluralize(seeds.len() as u32, "seed"))
 }
 
 /// Returns the arms in the graph: those with the highest final cash, in the order of the study.
-fn drawn(by_arm: &[&[RunResult]]) -> Vec<usize> {
+fn arms_to_plot(by_arm: &[&[RunResult]]) -> Vec<usize> {
     let middle = |arm: &usize| {
         let cash: Vec<f64> = by_arm[*arm].iter().map(|run| run.cash).collect();
         median(&cash).unwrap_or(f64::NEG_INFINITY)
     };
     let mut arms: Vec<usize> = (0..by_arm.len()).collect();
     arms.sort_by(|one, other| middle(other).total_cmp(&middle(one)));
-    arms.truncate(MOST_CURVES);
+    arms.truncate(MAX_CURVES);
     arms.sort_unstable();
     arms
 }
 
-fn curves(plan: &StudyPlan, by_arm: &[&[RunResult]]) -> Graph {
-    let series = drawn(by_arm).into_iter().map(|arm| {
+fn cash_graph(plan: &StudyPlan, by_arm: &[&[RunResult]]) -> Graph {
+    let series = arms_to_plot(by_arm).into_iter().map(|arm| {
         let (runs, arm) = (by_arm[arm], &plan.experiment.arms[arm]);
         let mut days: Vec<u32> = runs.iter().flat_map(|run| run.weeks.iter().map(|week| week.day)).collect();
         days.sort_unstable();
@@ -136,13 +136,13 @@ fn curves(plan: &StudyPlan, by_arm: &[&[RunResult]]) -> Graph {
         Series { name: arm.name.clone(), points: points.collect() }
     });
     Graph {
-        title: match by_arm.len() <= MOST_CURVES {
+        title: match by_arm.len() <= MAX_CURVES {
             true => "Median cash by week".to_owned(),
-            false => format!("Median cash by week, the {MOST_CURVES} arms with the most final cash"),
+            false => format!("Median cash by week, the {MAX_CURVES} arms with the most final cash"),
         },
         summary: "Median over seeds of the cash at the end of each week, by arm.".to_owned(),
-        across: GraphAxis { label: "day", scale: AxisScale::Whole },
-        up: GraphAxis { label: "dollars", scale: AxisScale::Linear },
+        x_axis: GraphAxis { label: "day", scale: AxisScale::Whole },
+        y_axis: GraphAxis { label: "dollars", scale: AxisScale::Linear },
         series: series.collect(),
         form: GraphForm::Lines,
     }

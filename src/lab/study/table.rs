@@ -4,7 +4,7 @@ use super::StudyPlan;
 use crate::experiment::{DayPoint, RunResult};
 use crate::runner::RunEnd;
 
-const OF_RUN: [&str; 11] = [
+const RUN_COLUMNS: [&str; 11] = [
     "start_cash",
     "days",
     "day",
@@ -18,7 +18,7 @@ const OF_RUN: [&str; 11] = [
     "state_hash",
 ];
 
-const OF_DAY: [&str; 13] = [
+const DAY_COLUMNS: [&str; 13] = [
     "day",
     "cash",
     "mrr",
@@ -35,26 +35,26 @@ const OF_DAY: [&str; 13] = [
 ];
 
 /// Returns the names of the columns.
-pub fn head(plan: &StudyPlan) -> Vec<String> {
-    let own: &[&str] = if plan.experiment.wanted.daily { &OF_DAY } else { &OF_RUN };
+pub fn column_names(plan: &StudyPlan) -> Vec<String> {
+    let own: &[&str] = if plan.experiment.recorded.daily { &DAY_COLUMNS } else { &RUN_COLUMNS };
     let before = std::iter::once("run".to_owned()).chain(plan.factors.iter().cloned());
     before.chain(["seed".to_owned()]).chain(own.iter().map(|name| (*name).to_owned())).collect()
 }
 
 /// Returns the rows of a run, given its index. Numbers have the shortest form that parses to the same value.
 pub fn rows(plan: &StudyPlan, number: usize, result: &RunResult) -> Vec<Vec<String>> {
-    let (levels, seed) = plan.run(number);
+    let (levels, seed) = plan.arm_and_seed(number);
     let mut before = vec![(number + 1).to_string()];
     before.extend(levels.iter().cloned());
     before.push(seed.to_string());
     let row = |own: Vec<String>| before.iter().cloned().chain(own).collect();
-    if plan.experiment.wanted.daily {
-        return result.daily.iter().map(of_day).map(row).collect();
+    if plan.experiment.recorded.daily {
+        return result.daily.iter().map(day_cells).map(row).collect();
     }
-    vec![row(of_run(result))]
+    vec![row(run_cells(result))]
 }
 
-fn of_run(own: &RunResult) -> Vec<String> {
+fn run_cells(own: &RunResult) -> Vec<String> {
     let ended = match own.ended {
         RunEnd::Horizon => "horizon",
         RunEnd::Until => "until",
@@ -75,7 +75,7 @@ fn of_run(own: &RunResult) -> Vec<String> {
     ]
 }
 
-fn of_day(own: &DayPoint) -> Vec<String> {
+fn day_cells(own: &DayPoint) -> Vec<String> {
     vec![
         own.day.to_string(),
         own.cash.to_string(),

@@ -5,13 +5,13 @@ use super::*;
 use crate::experiment::test_kit;
 use novamind_record::folder::configuration::Configuration;
 
-fn write(folder: &Path, text: &str) -> PathBuf {
+fn write_study(folder: &Path, text: &str) -> PathBuf {
     let path = folder.join("study.toml");
     fs::write(&path, text).expect("a file");
     path
 }
 
-const GOOD: &str = r#"
+const VALID_STUDY: &str = r#"
 name = "copying"
 description = "effect of copying"
 policies = ["P0", "mine.toml"]
@@ -31,27 +31,27 @@ set = { "demand_surge.probability" = 0.0 }
 "#;
 
 #[test]
-fn a_study_spreads_out_into_arms_in_the_order_of_its_file() {
+fn study_expands_into_arms_in_file_order() {
     let folder = tempfile::tempdir().expect("a folder");
     fs::write(folder.path().join("mine.toml"), "name = \"mine\"\n[start]\ncash = 2e6\n").expect("a policy");
-    let path = write(folder.path(), GOOD);
-    let plan = StudyPlan::read(&path, false, &Configuration::shipped()).expect("a study");
+    let path = write_study(folder.path(), VALID_STUDY);
+    let plan = StudyPlan::read(&path, false, &Configuration::bundled()).expect("a study");
     assert_eq!(plan.factors, ["policy", "scenario", "overrides", "leads.saturation_base"]);
     assert_eq!((plan.experiment.arms.len(), plan.experiment.seeds.len()), (16, 3));
     assert_eq!(plan.levels[0], ["P0", "default", "as shipped", "12.5"]);
     assert_eq!(plan.levels[3], ["P0", "default", "no surges", "14.5"]);
     assert_eq!(plan.levels[15], ["mine", "competitor-hard", "no surges", "14.5"]);
     assert_eq!(plan.experiment.arms[3].spec.overrides.len(), 2);
-    let names = head(&plan);
+    let names = column_names(&plan);
     assert_eq!(names[..6], ["run", "policy", "scenario", "overrides", "leads.saturation_base", "seed"]);
-    assert!(!plan.experiment.wanted.daily);
+    assert!(!plan.experiment.recorded.daily);
     assert!(
-        StudyPlan::read(&path, true, &Configuration::shipped()).expect("a study").experiment.wanted.daily
+        StudyPlan::read(&path, true, &Configuration::bundled()).expect("a study").experiment.recorded.daily
     );
 }
 
 #[test]
-fn wrong_studies_name_line_and_key() {
+fn invalid_studies_name_line_and_key() {
     let folder = tempfile::tempdir().expect("a folder");
     let begin = "name = \"x\"\npolicies = [\"P0\"]\nseeds = 1\n";
     for (text, line, parts) in [
@@ -149,26 +149,27 @@ fn wrong_studies_name_line_and_key() {
         ),
         ("name = \"x\"\npolicies = [\"P0\"\nseeds = 1\n".to_owned(), Some(3), ["", ""]),
     ] {
-        let path = write(folder.path(), &text);
-        let error = StudyPlan::read(&path, false, &Configuration::shipped()).expect_err(&text);
+        let path = write_study(folder.path(), &text);
+        let error = StudyPlan::read(&path, false, &Configuration::bundled()).expect_err(&text);
         assert_eq!(error.line, line, "{text}: {error}");
         for part in parts {
             assert!(error.to_string().contains(part), "{part}: {error}");
         }
     }
-    let missing = StudyPlan::read(&folder.path().join("none.toml"), false, &Configuration::shipped());
+    let missing = StudyPlan::read(&folder.path().join("none.toml"), false, &Configuration::bundled());
     assert!(missing.expect_err("no file").to_string().contains("none.toml"));
 }
 
 #[test]
-fn shards_are_read_and_share_all_runs_out() {
+fn shards_parse_and_partition_the_runs() {
     assert_eq!(parse_shard("2/4"), Ok(Shard { shard: 2, of: 4 }));
     for wrong in ["0/4", "5/4", "4", "a/b", "1/0", "1/100001", ""] {
         assert!(parse_shard(wrong).is_err(), "{wrong}");
     }
     for runs in [0, 1, 7, 200] {
         for of in [1, 3, 4, 250] {
-            let mut all: Vec<usize> = (1..=of).flat_map(|shard| Shard { shard, of }.numbers(runs)).collect();
+            let mut all: Vec<usize> =
+                (1..=of).flat_map(|shard| Shard { shard, of }.run_numbers(runs)).collect();
             all.sort_unstable();
             assert_eq!(all, (0..runs).collect::<Vec<_>>(), "{runs} runs in {of} shards");
         }
@@ -176,7 +177,7 @@ fn shards_are_read_and_share_all_runs_out() {
 }
 
 /// Writes the shards of a study; each run has one row, or as many as its number.
-fn shards(folder: &Path, runs: usize, of: usize, has_many: bool) -> (String, Vec<PathBuf>) {
+fn write_shards(folder: &Path, runs: usize, of: usize, has_many: bool) -> (String, Vec<PathBuf>) {
     let rows = |run: usize| -> String {
         let count = if has_many { run % 3 + 1 } else { 1 };
         (0..count).map(|row| format!("{run},row {row}\n")).collect()
@@ -184,40 +185,41 @@ fn shards(folder: &Path, runs: usize, of: usize, has_many: bool) -> (String, Vec
     let whole = format!("run,what\n{}", (1..=runs).map(rows).collect::<String>());
     let write = |shard| {
         let part = Shard { shard, of };
-        let own: String = part.numbers(runs).into_iter().map(|number| rows(number + 1)).collect();
+        let own: String = part.run_numbers(runs).into_iter().map(|number| rows(number + 1)).collect();
         let path = folder.join(ShardHead::file_name("s", part));
-        fs::write(&path, ShardHead::sealed("s", "d", part, &format!("run,what\n{own}"))).expect("a file");
+        fs::write(&path, ShardHead::with_checksum("s", "d", part, &format!("run,what\n{own}")))
+            .expect("a file");
         path
     };
     (whole, (1..=of).map(write).collect())
 }
 
-fn merged(places: &[PathBuf]) -> Result<String, String> {
-    let shards = Shards::of(places).map_err(|error| error.to_string())?;
+fn merge(places: &[PathBuf]) -> Result<String, String> {
+    let shards = ShardSet::find(places).map_err(|error| error.to_string())?;
     let mut out = Vec::new();
     shards.write(&mut out).map_err(|error| error.to_string())?;
     Ok(String::from_utf8(out).expect("UTF-8"))
 }
 
 #[test]
-fn merged_shards_are_the_study_that_was_not_split() {
+fn merged_shards_equal_the_unsplit_study() {
     for (runs, of, has_many) in [(10, 4, false), (10, 4, true), (3, 5, false), (0, 2, false), (7, 1, true)] {
         let folder = tempfile::tempdir().expect("a folder");
-        let (whole, mut files) = shards(folder.path(), runs, of, has_many);
-        assert_eq!(merged(&[folder.path().to_owned()]), Ok(whole.clone()), "{runs} runs in {of} shards");
+        let (whole, mut files) = write_shards(folder.path(), runs, of, has_many);
+        assert_eq!(merge(&[folder.path().to_owned()]), Ok(whole.clone()), "{runs} runs in {of} shards");
         files.reverse();
-        assert_eq!(merged(&files), Ok(whole.clone()), "any order");
+        assert_eq!(merge(&files), Ok(whole.clone()), "any order");
         files.push(folder.path().to_owned());
-        assert_eq!(merged(&files), Ok(whole), "a file that is named twice counts once");
+        assert_eq!(merge(&files), Ok(whole), "a file that is named twice counts once");
     }
 }
 
 #[test]
-fn what_does_not_belong_together_is_refused_by_name() {
+fn mismatched_shards_are_rejected_by_name() {
     let folder = tempfile::tempdir().expect("a folder");
-    let (_, files) = shards(folder.path(), 10, 4, false);
+    let (_, files) = write_shards(folder.path(), 10, 4, false);
     let fails = |places: &[PathBuf], parts: &[&str]| {
-        let error = merged(places).expect_err("refused");
+        let error = merge(places).expect_err("refused");
         assert!(error.ends_with("nothing was written"), "{error}");
         for part in parts {
             assert!(error.contains(part), "{part}: {error}");
@@ -229,13 +231,13 @@ fn what_does_not_belong_together_is_refused_by_name() {
     let mut with_twin = files.clone();
     with_twin.push(twin.clone());
     fails(&with_twin, &["twin.csv", "s.2-of-4.csv", "both shard 2 of 4"]);
-    let foreign = ShardHead::sealed("s", "other", Shard { shard: 4, of: 4 }, "run,what\n");
+    let foreign = ShardHead::with_checksum("s", "other", Shard { shard: 4, of: 4 }, "run,what\n");
     fs::write(&twin, foreign).expect("a file");
     fails(
         &[files[..3].to_vec(), vec![twin.clone()]].concat(),
         &["twin.csv belongs to another version of s", "missing: s.4-of-4.csv"],
     );
-    let other = ShardHead::sealed("t", "d", Shard { shard: 4, of: 4 }, "run,what\n");
+    let other = ShardHead::with_checksum("t", "d", Shard { shard: 4, of: 4 }, "run,what\n");
     fs::write(&twin, other).expect("a file");
     fails(&[files.clone(), vec![twin.clone()]].concat(), &["twin.csv belongs to the study t"]);
     fs::write(&twin, "run,what\n1,row 0\n").expect("a file");
@@ -244,7 +246,7 @@ fn what_does_not_belong_together_is_refused_by_name() {
     for damaged in [&bytes[..bytes.len() - 1], &[bytes.as_slice(), b"9,9\n"].concat()] {
         fs::write(&files[2], damaged).expect("a file");
         fails(&files, &["s.3-of-4.csv is damaged: rerun shard 3 of 4"]);
-        assert!(!merged(&files).expect_err("refused").contains("missing"), "it exists");
+        assert!(!merge(&files).expect_err("refused").contains("missing"), "it exists");
     }
     fs::write(&files[2], &bytes[..20]).expect("a file");
     fails(&files, &["s.3-of-4.csv: it is not a shard", "missing: s.3-of-4.csv"]);
@@ -254,26 +256,26 @@ fn what_does_not_belong_together_is_refused_by_name() {
 }
 
 #[test]
-fn the_study_of_the_guide_is_one() {
+fn guide_study_is_valid() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/laboratory/examples/copying.toml");
-    let plan = StudyPlan::read(&path, false, &Configuration::shipped()).expect("a study");
+    let plan = StudyPlan::read(&path, false, &Configuration::bundled()).expect("a study");
     assert_eq!(plan.experiment.arms.len() * plan.experiment.seeds.len(), 144, "as stated in its first line");
 }
 
 #[test]
-fn arms_that_are_the_same_or_play_alike_are_named() {
+fn equal_arms_are_named() {
     let folder = tempfile::tempdir().expect("a folder");
     let text = "name = \"x\"\npolicies = [\"P0\"]\nseeds = \"1..2\"\ndays = 14\n\n[[overrides]]\nname = \"plain\"\n\n\
                 [[overrides]]\nname = \"usual\"\nset = { \"drift.drift_grace_period_days\" = 60 }\n\n\
                 [[overrides]]\nname = \"late\"\nset = { \"drift.drift_grace_period_days\" = 90 }\n";
-    let plan =
-        StudyPlan::read(&write(folder.path(), text), false, &Configuration::shipped()).expect("a study");
-    let same = equal_arms(&plan, &Configuration::shipped()).expect("parameters");
+    let plan = StudyPlan::read(&write_study(folder.path(), text), false, &Configuration::bundled())
+        .expect("a study");
+    let same = equal_arm_warnings(&plan, &Configuration::bundled()).expect("parameters");
     assert_eq!(same, ["these arms are identical: P0 / default / plain; P0 / default / usual"]);
-    let played = test_kit::played(plan.experiment.arms.clone(), 1..=2);
+    let played = test_kit::play_arms(plan.experiment.arms.clone(), 1..=2);
     let results: Vec<_> = played.by_arm.into_iter().flatten().collect();
-    let alike = played_alike(&plan, &results);
+    let alike = equal_outcome_warnings(&plan, &results);
     assert_eq!(alike.len(), 1, "{alike:?}");
     assert!(alike[0].ends_with("plain; P0 / default / usual; P0 / default / late."), "{alike:?}");
-    assert!(summary(&plan, &results).notes.contains(&alike[0]));
+    assert!(study_summary(&plan, &results).notes.contains(&alike[0]));
 }

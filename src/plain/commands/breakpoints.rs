@@ -2,33 +2,38 @@
 
 use serde_json::{Value, json};
 
-use super::super::answers::Answer;
-use super::super::grammar::Problem;
+use super::super::grammar::ParseError;
+use super::super::response::CommandResponse;
 use super::Interpreter;
-use novamind_base::notation::json_number;
+use novamind_base::formatting::json_number;
 use novamind_insight::{
-    Breakpoint, Condition, ConditionProblem, Inspect, Judged, LookBack, WhoWrites, Write, WrittenBy,
+    Breakpoint, Condition, ConditionHistory, ConditionParseError, ConditionState, FigureWrite, FigureWrites,
+    Inspect, WriteSource,
 };
-use novamind_report::xray::{
-    AskedWords, breakpoints_in_words, look_back_in_words, stop_in_words, written_by,
+use novamind_report::inspection::{
+    InspectionCommand, describe_breakpoints, describe_condition_history, describe_source, describe_stop,
 };
 use novamind_session::ReputationCause;
 
 impl Interpreter {
     /// `break`, `break CONDITION`, `break clear N|all`. `column` is where the rest begins.
-    pub(super) fn breakpoint(&mut self, rest: &str, column: usize) -> Result<Answer, Problem> {
-        if let Err(refusal) = self.session.refuse_to_look_inside() {
-            return Ok(Answer::refused("break", refusal));
+    pub(super) fn breakpoint_command(
+        &mut self,
+        rest: &str,
+        column: usize,
+    ) -> Result<CommandResponse, ParseError> {
+        if let Err(refusal) = self.session.check_inspection() {
+            return Ok(CommandResponse::rejected("break", refusal));
         }
-        let rest = without_comment(rest);
+        let rest = strip_comment(rest);
         let shown = match rest.split_once(char::is_whitespace).unwrap_or((rest, "")) {
             ("", _) => self.session.inspect().breakpoints().map(|set| {
-                let data = json!({ "breakpoints": as_list(&set) });
-                Answer::done("break", breakpoints_in_words(&set).join("\n"), data)
+                let data = json!({ "breakpoints": breakpoints_to_json(&set) });
+                CommandResponse::success("break", describe_breakpoints(&set).join("\n"), data)
             }),
             ("clear", which) => {
                 let removed =
-                    self.session.inspect().clear_breakpoints(number_or_all(which.trim(), column + 6)?);
+                    self.session.inspect().clear_breakpoints(parse_number_or_all(which.trim(), column + 6)?);
                 removed.map(|removed| {
                     let lines: Vec<String> = removed
                         .iter()
@@ -36,40 +41,43 @@ impl Interpreter {
                         .collect();
                     let text =
                         if lines.is_empty() { "no breakpoint was set".to_owned() } else { lines.join("\n") };
-                    Answer::done("break", text, json!({ "removed": as_list(&removed) }))
+                    CommandResponse::success(
+                        "break",
+                        text,
+                        json!({ "removed": breakpoints_to_json(&removed) }),
+                    )
                 })
             }
             _ => {
-                let set = self.session.inspect().set_breakpoint(condition(rest, column)?);
+                let set = self.session.inspect().set_breakpoint(parse_condition(rest, column)?);
                 set.map(|own| {
                     let next = match self.session.ended() {
                         None => "run DAYS stops there".to_owned(),
                         Some(_) => format!("since {} shows since when it is true or false", own.number),
                     };
                     let text = format!("breakpoint {}: {}; {next}", own.number, own.condition);
-                    Answer::done("break", text, as_data(&own))
+                    CommandResponse::success("break", text, breakpoint_to_json(&own))
                 })
             }
         };
-        Ok(shown.unwrap_or_else(|refusal| Answer::refused("break", refusal)))
+        Ok(shown.unwrap_or_else(|refusal| CommandResponse::rejected("break", refusal)))
     }
 
     /// `run DAYS`, `run DAYS until CONDITION`, which sets the condition as `break` does.
-    pub(super) fn run_days(&mut self, rest: &str, column: usize) -> Result<Answer, Problem> {
-        if let Err(refusal) = self.session.refuse_to_look_inside() {
-            return Ok(Answer::refused("run", refusal));
+    pub(super) fn run_days(&mut self, rest: &str, column: usize) -> Result<CommandResponse, ParseError> {
+        if let Err(refusal) = self.session.check_inspection() {
+            return Ok(CommandResponse::rejected("run", refusal));
         }
-        let (number, until) =
-            without_comment(rest).split_once("until").unwrap_or((without_comment(rest), ""));
-        let days = number.trim().parse().ok().filter(|days| *days > 0).ok_or_else(|| Problem {
+        let (number, until) = strip_comment(rest).split_once("until").unwrap_or((strip_comment(rest), ""));
+        let days = number.trim().parse().ok().filter(|days| *days > 0).ok_or_else(|| ParseError {
             text: "run needs a number of days, for example run 28".to_owned(),
             column,
         })?;
-        if number.len() < without_comment(rest).len() {
+        if number.len() < strip_comment(rest).len() {
             let begins = column + number.chars().count() + "until".len();
-            let condition = condition(until, begins)?;
+            let condition = parse_condition(until, begins)?;
             if let Err(refusal) = self.session.inspect().set_breakpoint(condition) {
-                return Ok(Answer::refused("run", refusal));
+                return Ok(CommandResponse::rejected("run", refusal));
             }
         }
         let set = self.session.inspect().breakpoints().map_or(0, |set| set.len());
@@ -77,10 +85,10 @@ impl Interpreter {
         Ok(match run {
             Ok(run) => {
                 let day = self.session.day();
-                let mut data = run.week.as_json();
+                let mut data = run.week.to_json();
                 data["from"] = run.from.into();
-                let hit = |condition: &Condition, number: u32, judged: &Judged| {
-                    let mut hit = judged_as_data(judged);
+                let hit = |condition: &Condition, number: u32, judged: &ConditionState| {
+                    let mut hit = judged_to_json(judged);
                     hit["number"] = number.into();
                     hit["condition"] = condition.to_string().into();
                     hit
@@ -88,109 +96,119 @@ impl Interpreter {
                 let hits = run
                     .hits
                     .iter()
-                    .map(|own| hit(&own.breakpoint.condition, own.breakpoint.number, &own.judged));
+                    .map(|own| hit(&own.breakpoint.condition, own.breakpoint.number, &own.state));
                 data["stopped_by"] = hits.collect();
-                let told = super::next::report("run", &self.session, &run.week).as_text();
-                let text = format!("{told}{}", stop_in_words(&run, day, set).join("\n"));
-                Answer::done("run", text, data)
+                let told = super::advance::week_response("run", &self.session, &run.week).to_text();
+                let text = format!("{told}{}", describe_stop(&run, day, set).join("\n"));
+                CommandResponse::success("run", text, data)
             }
-            Err(refusal) => Answer::refused("run", refusal),
+            Err(refusal) => CommandResponse::rejected("run", refusal),
         })
     }
 
     /// `since`, `since N`, `since CONDITION`
-    pub(super) fn back(&mut self, word: &str, rest: &str, column: usize) -> Result<Answer, Problem> {
-        if let Err(refusal) = self.session.refuse_to_look_inside() {
-            return Ok(Answer::refused(word, refusal));
+    pub(super) fn run_back(
+        &mut self,
+        word: &str,
+        rest: &str,
+        column: usize,
+    ) -> Result<CommandResponse, ParseError> {
+        if let Err(refusal) = self.session.check_inspection() {
+            return Ok(CommandResponse::rejected(word, refusal));
         }
-        let rest = without_comment(rest);
+        let rest = strip_comment(rest);
         let found = match (rest, rest.parse::<u32>()) {
-            ("", _) => self.session.inspect().look_back_from(None),
-            (_, Ok(number)) => self.session.inspect().look_back_from(Some(number)),
-            _ => self.session.inspect().look_back(condition(rest, column)?).map(|own| vec![own]),
+            ("", _) => self.session.inspect().breakpoint_histories(None),
+            (_, Ok(number)) => self.session.inspect().breakpoint_histories(Some(number)),
+            _ => {
+                self.session.inspect().condition_history(parse_condition(rest, column)?).map(|own| vec![own])
+            }
         };
         Ok(match found {
             Ok(found) if found.is_empty() => {
-                return Err(Problem {
+                return Err(ParseError {
                     text: "no breakpoint is set; give a condition, for example since churn(S1) > 0.05 over 7"
                         .to_owned(),
                     column,
                 });
             }
             Ok(found) => {
-                let lines: Vec<String> = found.iter().flat_map(look_back_in_words).collect();
-                let data: Vec<Value> = found.iter().map(look_back_as_data).collect();
-                Answer::done(word, lines.join("\n"), json!({ "conditions": data }))
+                let lines: Vec<String> = found.iter().flat_map(describe_condition_history).collect();
+                let data: Vec<Value> = found.iter().map(look_back_to_json).collect();
+                CommandResponse::success(word, lines.join("\n"), json!({ "conditions": data }))
             }
-            Err(refusal) => Answer::refused(word, refusal),
+            Err(refusal) => CommandResponse::rejected(word, refusal),
         })
     }
 
     /// `find CONDITION`
-    pub(super) fn find_days(&mut self, rest: &str, column: usize) -> Result<Answer, Problem> {
-        self.ask_words("find", || AskedWords::find(rest, column))
+    pub(super) fn find_days(&mut self, rest: &str, column: usize) -> Result<CommandResponse, ParseError> {
+        self.run_debug_command("find", || InspectionCommand::parse_find(rest, column))
     }
 
-    /// `who FIGURE [DAY]`
-    pub(super) fn who(&mut self, rest: &str, column: usize) -> Result<Answer, Problem> {
-        self.ask_words("who", || AskedWords::who(rest, column))
+    /// `who FIGURE [EXAMPLE_DAY]`
+    pub(super) fn find_writers(&mut self, rest: &str, column: usize) -> Result<CommandResponse, ParseError> {
+        self.run_debug_command("who", || InspectionCommand::parse_who(rest, column))
     }
 }
 
-fn without_comment(text: &str) -> &str {
+fn strip_comment(text: &str) -> &str {
     text.split('#').next().unwrap_or_default().trim()
 }
 
-fn condition(text: &str, column: usize) -> Result<Condition, Problem> {
-    text.parse().map_err(|problem| at(problem, column))
+fn parse_condition(text: &str, column: usize) -> Result<Condition, ParseError> {
+    text.parse().map_err(|problem| at_column(problem, column))
 }
 
 /// Shifts a problem in the rest of a line to the columns of the line.
-fn at(problem: ConditionProblem, column: usize) -> Problem {
-    Problem { text: problem.message, column: column + problem.column - 1 }
+fn at_column(problem: ConditionParseError, column: usize) -> ParseError {
+    ParseError { text: problem.message, column: column + problem.column - 1 }
 }
 
 /// Parses the number of a breakpoint. Returns `None` for all of them.
-fn number_or_all(word: &str, column: usize) -> Result<Option<u32>, Problem> {
+fn parse_number_or_all(word: &str, column: usize) -> Result<Option<u32>, ParseError> {
     match (word, word.parse()) {
         ("all", _) => Ok(None),
         (_, Ok(number)) => Ok(Some(number)),
-        _ => Err(Problem { text: "break clear needs the number of a breakpoint, or all".to_owned(), column }),
+        _ => Err(ParseError {
+            text: "break clear needs the number of a breakpoint, or all".to_owned(),
+            column,
+        }),
     }
 }
 
-fn as_list(set: &[Breakpoint]) -> Vec<Value> {
-    set.iter().map(as_data).collect()
+fn breakpoints_to_json(set: &[Breakpoint]) -> Vec<Value> {
+    set.iter().map(breakpoint_to_json).collect()
 }
 
-fn as_data(own: &Breakpoint) -> Value {
+fn breakpoint_to_json(own: &Breakpoint) -> Value {
     json!({ "number": own.number, "condition": own.condition.to_string() })
 }
 
-pub(super) fn judged_as_data(own: &Judged) -> Value {
+pub(super) fn judged_to_json(own: &ConditionState) -> Value {
     json!({
         "day": own.day, "value": own.value.map(json_number), "before": own.before.map(json_number),
         "true": own.is_true, "true_before": own.was_true,
     })
 }
 
-fn look_back_as_data(own: &LookBack) -> Value {
+fn look_back_to_json(own: &ConditionHistory) -> Value {
     json!({
         "condition": own.condition.to_string(),
-        "today": judged_as_data(&own.today),
-        "last_true": own.last_true.as_ref().map(judged_as_data),
-        "last_false": own.last_false.as_ref().map(judged_as_data),
-        "since": own.since(),
+        "today": judged_to_json(&own.today),
+        "last_true": own.last_true.as_ref().map(judged_to_json),
+        "last_false": own.last_false.as_ref().map(judged_to_json),
+        "since": own.unchanged_since(),
     })
 }
 
-pub(super) fn writes_as_data(own: &WhoWrites) -> Value {
-    let write = |write: &Write| {
+pub(super) fn writers_to_json(own: &FigureWrites) -> Value {
+    let write = |write: &FigureWrite| {
         let mut data = json!({
-            "by": written_by(write), "amount": write.amount(), "before": write.before, "after": write.after,
-            "asked": write.asked(), "count": write.changes.len(), "limited": write.is_limited(),
+            "by": describe_source(write), "amount": write.amount(), "before": write.before, "after": write.after,
+            "asked": write.requested_change(), "count": write.changes.len(), "limited": write.is_limited(),
         });
-        if let WrittenBy::Reputation(ReputationCause::SpillOver(spill)) = write.by {
+        if let WriteSource::Reputation(ReputationCause::Spillover(spill)) = write.source {
             data["spill_over"] = json!({
                 "source": spill.source.id(), "change": spill.change, "weight": spill.weight, "factor": spill.factor,
             });
@@ -200,9 +218,9 @@ pub(super) fn writes_as_data(own: &WhoWrites) -> Value {
     json!({
         "figure": own.target.to_string(),
         "day": own.day,
-        "first": own.first,
-        "last": own.last,
-        "change": own.last - own.first,
+        "first": own.opening_value,
+        "last": own.closing_value,
+        "change": own.closing_value - own.opening_value,
         "writes": own.writes.iter().map(write).collect::<Vec<Value>>(),
     })
 }

@@ -2,47 +2,47 @@
 
 use serde_json::{Value, json};
 
-use super::super::answers::Answer;
-use super::super::grammar::{Argument, Problem};
-use super::{Interpreter, problem};
-use novamind_base::nearest;
-use novamind_base::notation::price_to_cents;
-use novamind_database::text::aligned;
-use novamind_insight::{CurveExplorer, CurveOutcome, CurvePoint, SAMPLED_LEADS};
+use super::super::grammar::{Argument, ParseError};
+use super::super::response::CommandResponse;
+use super::{Interpreter, argument_error};
+use novamind_base::formatting::price_to_cents;
+use novamind_base::similar_names;
+use novamind_database::text::align_columns;
+use novamind_insight::{CurveExplorer, CurveOutcome, CurvePoint, LEAD_SAMPLE_SIZE};
 use novamind_report::curve::{
-    basis_in_words, columns, outcome_in_words, plan_in_words, quality, remarks, rows,
+    column_names, describe_basis, describe_outcome, describe_plan, footnotes, format_quality, rows,
 };
 use novamind_session::identifiers::{Group, Plan};
 
 const USAGE: &str = "give a group, and optionally a price and a quality: curve S1, curve S1 30 0.4";
 
 /// A group, and optionally a price and a quality.
-type Asked = (Group, Option<(f64, f64)>);
+type CurveRequest = (Group, Option<(f64, f64)>);
 
 impl Interpreter {
-    pub(super) fn curve(&mut self, arguments: &[Argument]) -> Result<Answer, Problem> {
-        let (group, product) = asked(arguments)?;
-        Ok(match CurveExplorer::of(&mut self.session, group) {
-            Ok(own) => answer(&own, product),
-            Err(refusal) => Answer::refused("curve", refusal),
+    pub(super) fn curve(&mut self, arguments: &[Argument]) -> Result<CommandResponse, ParseError> {
+        let (group, product) = parse_request(arguments)?;
+        Ok(match CurveExplorer::open(&mut self.session, group) {
+            Ok(own) => curve_response(&own, product),
+            Err(refusal) => CommandResponse::rejected("curve", refusal),
         })
     }
 }
 
-fn asked(arguments: &[Argument]) -> Result<Asked, Problem> {
-    let usage = || problem(arguments, USAGE);
+fn parse_request(arguments: &[Argument]) -> Result<CurveRequest, ParseError> {
+    let usage = || argument_error(arguments, USAGE);
     let (first, rest) = arguments.split_first().ok_or_else(usage)?;
     let id = first.value.as_str().filter(|_| first.key.is_none()).ok_or_else(usage)?;
     let group = Group::all().find(|group| group.id().eq_ignore_ascii_case(id)).ok_or_else(|| {
-        let text = match nearest(id, Group::all().map(Group::id))[..] {
+        let text = match similar_names(id, Group::all().map(Group::id))[..] {
             [] => format!("there is no group {id}"),
             ref near => format!("there is no group {id}; did you mean {}?", near.join(" or ")),
         };
-        Problem { text, column: first.column }
+        ParseError { text, column: first.column }
     })?;
     let number = |own: &Argument| {
         let value = own.value.as_f64().filter(|value| own.key.is_none() && *value >= 0.0);
-        value.ok_or_else(|| Problem {
+        value.ok_or_else(|| ParseError {
             text: "price and quality must be numbers from 0: curve S1 30 0.4".to_owned(),
             column: own.column,
         })
@@ -54,8 +54,8 @@ fn asked(arguments: &[Argument]) -> Result<Asked, Problem> {
     }
 }
 
-fn answer(own: &CurveExplorer, product: Option<(f64, f64)>) -> Answer {
-    let basis = basis_in_words(&own.basis);
+fn curve_response(own: &CurveExplorer, product: Option<(f64, f64)>) -> CommandResponse {
+    let basis = describe_basis(&own.basis);
     let mut lines = Vec::new();
     let outcome = match product {
         Some((list, delivered)) => {
@@ -63,36 +63,38 @@ fn answer(own: &CurveExplorer, product: Option<(f64, f64)>) -> Answer {
                 "{}: one product at {} with quality {}, by {basis}",
                 own.group,
                 price_to_cents(list),
-                quality(delivered)
+                format_quality(delivered)
             ));
-            own.outcome_of(list, delivered)
+            own.outcome_at(list, delivered)
         }
         None => {
             lines.push(format!("{}: quality that leads require at a price, by {basis}", own.group));
-            lines.extend(aligned(&columns(own), &rows(own)).lines().map(str::to_owned));
+            lines.extend(align_columns(&column_names(own), &rows(own)).lines().map(str::to_owned));
             own.outcome(&own.plans)
         }
     };
     if product.is_none() {
-        lines.extend(Plan::ALL.map(|plan| plan_in_words(plan, &own.plans[plan], outcome.takers.as_ref())));
+        lines.extend(
+            Plan::ALL.map(|plan| describe_plan(plan, &own.plans[plan], outcome.plan_shares.as_ref())),
+        );
     }
-    lines.push(format!("{}; {SAMPLED_LEADS} sampled leads", outcome_in_words(&outcome)));
-    lines.extend(remarks(own));
-    Answer::done("curve", lines.join("\n"), as_data(own, product, &outcome))
+    lines.push(format!("{}; {LEAD_SAMPLE_SIZE} sampled leads", describe_outcome(&outcome)));
+    lines.extend(footnotes(own));
+    CommandResponse::success("curve", lines.join("\n"), curve_to_json(own, product, &outcome))
 }
 
-fn as_data(own: &CurveExplorer, product: Option<(f64, f64)>, outcome: &CurveOutcome) -> Value {
+fn curve_to_json(own: &CurveExplorer, product: Option<(f64, f64)>, outcome: &CurveOutcome) -> Value {
     let point = |own: &CurvePoint| {
-        let (least, most) = own.median_between;
+        let (least, most) = own.median_range;
         json!({
-            "price": own.price, "tenth": own.tenth, "half": own.median, "nine_tenths": own.ninetieth,
+            "price": own.price, "tenth": own.p10, "half": own.median, "nine_tenths": own.p90,
             "half_at_least": least, "half_at_most": most,
         })
     };
     let plan = |plan: Plan| {
         let point = &own.plans[plan];
-        let taken = outcome.takers.filter(|_| product.is_none()).map(|all| all[plan]);
-        json!({ "plan": plan.id(), "list_price": point.list, "quality": point.quality, "quota": point.quota, "taken_by": taken })
+        let taken = outcome.plan_shares.filter(|_| product.is_none()).map(|all| all[plan]);
+        json!({ "plan": plan.id(), "list_price": point.list_price, "quality": point.quality, "quota": point.quota, "taken_by": taken })
     };
     json!({
         "group": own.group,
@@ -102,6 +104,6 @@ fn as_data(own: &CurveExplorer, product: Option<(f64, f64)>, outcome: &CurveOutc
         "plans": Plan::ALL.map(plan),
         "conversion": outcome.conversion,
         "revenue_per_lead": outcome.revenue_per_lead,
-        "leads": SAMPLED_LEADS,
+        "leads": LEAD_SAMPLE_SIZE,
     })
 }

@@ -3,44 +3,52 @@
 
 use serde_json::{Value, json};
 
-use super::super::answers::Answer;
-use super::super::grammar::{Argument, Problem};
-use super::{Interpreter, problem};
-use novamind_base::nearest;
-use novamind_base::notation::{cents, dollars, grouped};
-use novamind_report::fit::{Concern, Fit, LeadFlow, PlanFit, fits};
+use super::super::grammar::{Argument, ParseError};
+use super::super::response::CommandResponse;
+use super::{Interpreter, argument_error};
+use novamind_base::formatting::{cents, dollars, grouped_number};
+use novamind_base::similar_names;
+use novamind_report::fit::{Fit, FitCriterion, LeadFlow, PlanFit, fits};
 use novamind_report::insights::{insights_as_ranges, overview_with_ages};
-use novamind_report::lead_costs::{AdSpell, PairCost, pair_costs};
+use novamind_report::lead_costs::{AdWindow, LeadCost, lead_costs_by_pair};
 use novamind_report::research::projects_with_means;
 use novamind_session::identifiers::{Group, Plan};
 use novamind_session::{GroupWeek, Session};
 
 impl Interpreter {
-    pub(super) fn fit(&self, name: Option<&str>, arguments: &[Argument]) -> Result<Answer, Problem> {
+    pub(super) fn fit(
+        &self,
+        name: Option<&str>,
+        arguments: &[Argument],
+    ) -> Result<CommandResponse, ParseError> {
         let all = fits(&self.session);
-        let shown = known(&all, name, arguments)?;
-        let mut lines: Vec<String> = shown.iter().flat_map(|fit| fit.lines()).collect();
+        let shown = select_groups(&all, name, arguments)?;
+        let mut lines: Vec<String> = shown.iter().flat_map(|fit| fit.describe_lines()).collect();
         lines.push(
             "ranges are for group averages; a customer's required quality rises with the price".to_owned(),
         );
-        let data = json!({ "groups": shown.into_iter().map(fit_as_data).collect::<Vec<Value>>() });
-        Ok(Answer::done("fit", lines.join("\n"), data))
+        let data = json!({ "groups": shown.into_iter().map(fit_to_json).collect::<Vec<Value>>() });
+        Ok(CommandResponse::success("fit", lines.join("\n"), data))
     }
 
-    pub(super) fn leads(&self, name: Option<&str>, arguments: &[Argument]) -> Result<Answer, Problem> {
+    pub(super) fn leads(
+        &self,
+        name: Option<&str>,
+        arguments: &[Argument],
+    ) -> Result<CommandResponse, ParseError> {
         let (all, weeks) = (fits(&self.session), self.session.company().group_weeks());
-        let shown = known(&all, name, arguments)?;
+        let shown = select_groups(&all, name, arguments)?;
         let mut lines: Vec<String> = Vec::new();
         for fit in &shown {
             match fit.last_week {
                 Some(week) => {
-                    let (group, week, recent) = (fit.group, week.in_words(), fit.recent.in_words());
+                    let (group, week, recent) = (fit.group, week.describe(), fit.recent.describe());
                     lines.push(format!("{group}: last week {week}; last 4 weeks {recent}"));
                 }
                 None => lines.push(format!("{}: no week has run", fit.group)),
             }
         }
-        let mut costs = pair_costs(weeks);
+        let mut costs = lead_costs_by_pair(weeks);
         costs.retain(|pair| shown.iter().any(|fit| fit.group == pair.group));
         lines.extend(costs.iter().map(cost_line));
         let week = |(at, own): (usize, &GroupWeek)| {
@@ -57,23 +65,27 @@ impl Interpreter {
         };
         let groups: Vec<Value> =
             shown.iter().map(|fit| json!({ "group": fit.group.id(), "weeks": by_week(fit.group) })).collect();
-        let costs: Vec<Value> = costs.iter().map(cost_as_data).collect();
-        Ok(Answer::done("leads", lines.join("\n"), json!({ "groups": groups, "costs": costs })))
+        let costs: Vec<Value> = costs.iter().map(cost_to_json).collect();
+        Ok(CommandResponse::success("leads", lines.join("\n"), json!({ "groups": groups, "costs": costs })))
     }
 }
 
 /// Returns the group of a name, or every known one.
-fn known<'a>(all: &'a [Fit], name: Option<&str>, arguments: &[Argument]) -> Result<Vec<&'a Fit>, Problem> {
+fn select_groups<'a>(
+    all: &'a [Fit],
+    name: Option<&str>,
+    arguments: &[Argument],
+) -> Result<Vec<&'a Fit>, ParseError> {
     let Some(id) = name else { return Ok(all.iter().collect()) };
     if let Some(fit) = all.iter().find(|fit| fit.group.id().eq_ignore_ascii_case(id)) {
         return Ok(vec![fit]);
     }
-    let near = nearest(id, all.iter().map(|fit| fit.group.id()));
+    let near = similar_names(id, all.iter().map(|fit| fit.group.id()));
     let known = match near.is_empty() {
         true => all.iter().map(|fit| fit.group.id()).collect::<Vec<_>>().join(", "),
         false => near.join(" or "),
     };
-    Err(problem(arguments, &format!("{id} is not a known group; known: {known}")))
+    Err(argument_error(arguments, &format!("{id} is not a known group; known: {known}")))
 }
 
 /// Returns the answer of a tool with ranges and dates in place of estimates, and with true means of projects. Returns `None` if it
@@ -95,15 +107,16 @@ pub(super) fn with_ranges(session: &Session, answer: &novamind_tools::Answer) ->
     }
 }
 
-fn fit_as_data(fit: &Fit) -> Value {
+fn fit_to_json(fit: &Fit) -> Value {
     let plan = |own: &PlanFit| {
-        let missing = |concern: &Concern| (concern.id().to_owned(), json!(fit.missing(own.plan, *concern)));
-        let missing: serde_json::Map<String, Value> = Concern::ALL.iter().map(missing).collect();
+        let missing =
+            |concern: &FitCriterion| (concern.name().to_owned(), json!(fit.certain_gap(own.plan, *concern)));
+        let missing: serde_json::Map<String, Value> = FitCriterion::ALL.iter().map(missing).collect();
         json!({
             "plan": own.plan.id(),
-            "list_price": own.list,
-            "price_for_leads": own.price,
-            "billed": own.billed,
+            "list_price": own.list_price,
+            "price_for_leads": own.lead_price,
+            "billed": own.billed_price,
             "quality": own.quality,
             "quota": own.quota,
             "missing": missing,
@@ -112,37 +125,37 @@ fn fit_as_data(fit: &Fit) -> Value {
     json!({
         "group": fit.group.id(),
         "level": fit.level,
-        "noise": fit.noise,
-        "as_of": fit.as_of,
-        "age_days": fit.age,
+        "noise": fit.max_relative_error,
+        "as_of": fit.study_day,
+        "age_days": fit.age_days,
         "floor": fit.floor,
         "budget": fit.budget,
         "usage": fit.usage,
         "plans": Plan::ALL.map(|own| plan(&fit.plans[own])),
-        "last_week": fit.last_week.map(flow_as_data),
-        "last_4_weeks": flow_as_data(fit.recent),
+        "last_week": fit.last_week.map(flow_to_json),
+        "last_4_weeks": flow_to_json(fit.recent),
     })
 }
 
-fn flow_as_data(flow: LeadFlow) -> Value {
+fn flow_to_json(flow: LeadFlow) -> Value {
     json!({
         "leads": flow.leads,
-        "paid": flow.paid,
+        "paid": flow.channel_leads,
         "word_of_mouth": flow.word_of_mouth,
-        "signed": flow.signed,
+        "signed": flow.signups,
         "conversion": flow.conversion(),
     })
 }
 
-fn cost_as_data(pair: &PairCost) -> Value {
-    let spell = |spell: &AdSpell| {
+fn cost_to_json(pair: &LeadCost) -> Value {
+    let spell = |spell: &AdWindow| {
         json!({
             "weeks": [spell.weeks.0, spell.weeks.1],
             "leads": spell.leads,
             "spend": spell.spend,
-            "per_lead": spell.per_lead(),
-            "first_bills": spell.billed,
-            "per_first_bill": spell.per_bill(),
+            "per_lead": spell.cost_per_lead(),
+            "first_bills": spell.first_bills,
+            "per_first_bill": spell.cost_per_bill(),
         })
     };
     json!({
@@ -153,10 +166,10 @@ fn cost_as_data(pair: &PairCost) -> Value {
     })
 }
 
-fn cost_line(pair: &PairCost) -> String {
+fn cost_line(pair: &LeadCost) -> String {
     let each = |value: Option<f64>| value.map_or("–".to_owned(), cents);
-    let words = |spell: &AdSpell| {
-        format!("{} a lead, {} a first bill", each(spell.per_lead()), each(spell.per_bill()))
+    let words = |spell: &AdWindow| {
+        format!("{} a lead, {} a first bill", each(spell.cost_per_lead()), each(spell.cost_per_bill()))
     };
     let before = pair.cheapest.map_or(String::new(), |spell| {
         format!("; cheapest in weeks {} to {}: {}", spell.weeks.0, spell.weeks.1, words(&spell))
@@ -165,7 +178,7 @@ fn cost_line(pair: &PairCost) -> String {
         "{} × {}: {} leads for {} in 4 weeks, {}{before}",
         pair.channel.id(),
         pair.group,
-        grouped(f64::from(pair.recent.leads), 0),
+        grouped_number(f64::from(pair.recent.leads), 0),
         dollars(pair.recent.spend),
         words(&pair.recent)
     )

@@ -4,22 +4,22 @@ use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
 
-use super::super::answers::Answer;
-use super::super::grammar::{Argument, Problem};
-use super::{Interpreter, problem};
-use novamind_base::notation::{cents, grouped};
-use novamind_report::count;
+use super::super::grammar::{Argument, ParseError};
+use super::super::response::CommandResponse;
+use super::{Interpreter, argument_error};
+use novamind_base::formatting::{cents, grouped_number};
 use novamind_report::funnel::{Funnel, funnels};
-use novamind_rules::{AskingThread, Filter};
-use novamind_session::CompanyNames;
+use novamind_report::pluralize;
+use novamind_rules::{Filter, ThreadContext};
+use novamind_session::EnterpriseNames;
 use novamind_session::identifiers::Plan;
 
 /// Maximum number of threads in the text; the data contains all of them.
-const TOLD: usize = 20;
+const LISTED_THREADS: usize = 20;
 /// Days left at which a thread is urgent.
-const URGENT: u32 = 2;
+const URGENT_DAYS: u32 = 2;
 
-pub(super) const IN_FULL: &str = "\
+pub(super) const HELP: &str = "\
 inbox                     list the number of waiting threads in each group, and the 20 with the earliest deadlines, larger ones first
 inbox all                 list every waiting thread
 inbox where CONDITION     list those that meet a condition in the grammar of rules, for example
@@ -32,23 +32,23 @@ send_enterprise_deal and reject_enterprise_deal answer a thread; rules answers m
 
 /// The selection of threads.
 #[derive(Default)]
-struct Wanted {
+struct ThreadSelection {
     all: bool,
     filter: Option<Filter>,
 }
 
 impl Interpreter {
-    /// `inbox`, `inbox all`, `inbox NUMBER`.
-    pub(super) fn inbox(&mut self, arguments: &[Argument]) -> Result<Answer, Problem> {
+    /// `inbox`, `inbox all`, `inbox NUMBER_PLACEHOLDER`.
+    pub(super) fn inbox(&mut self, arguments: &[Argument]) -> Result<CommandResponse, ParseError> {
         match arguments {
-            [] => Ok(self.threads(&Wanted::default())),
+            [] => Ok(self.list_threads(&ThreadSelection::default())),
             [Argument { key: None, value: Value::String(word), .. }] if word == "all" => {
-                Ok(self.threads(&Wanted { all: true, filter: None }))
+                Ok(self.list_threads(&ThreadSelection { all: true, filter: None }))
             }
             [Argument { key: None, value, .. }] if value.is_u64() => {
-                Ok(self.thread_of_company(value.as_u64().unwrap_or_default()))
+                Ok(self.thread_of_enterprise(value.as_u64().unwrap_or_default()))
             }
-            _ => Err(problem(
+            _ => Err(argument_error(
                 arguments,
                 "inbox takes all, the number of a company, or where and a condition, for example inbox where seats >= \
                  500; help inbox explains more",
@@ -57,78 +57,84 @@ impl Interpreter {
     }
 
     /// `inbox [all] where CONDITION`. `text` is the text after the command, which begins at a column.
-    pub(super) fn inbox_where(&mut self, text: &str, column: usize) -> Answer {
+    pub(super) fn inbox_where(&mut self, text: &str, column: usize) -> CommandResponse {
         let before = text.find("where").map_or(0, |at| at + "where".len());
         let (head, condition) = text.split_at(before);
         match Filter::parse(condition) {
             Ok(filter) => {
-                self.note_look(&format!("inbox {text}"), &[]);
-                self.threads(&Wanted { all: head.starts_with("all"), filter: Some(filter) })
+                self.record_view(&format!("inbox {text}"), &[]);
+                self.list_threads(&ThreadSelection { all: head.starts_with("all"), filter: Some(filter) })
             }
-            Err(wrong) => Answer::usage(wrong.text, column + head.chars().count() + wrong.column - 1),
+            Err(wrong) => {
+                CommandResponse::syntax_error(wrong.text, column + head.chars().count() + wrong.column - 1)
+            }
         }
     }
 
-    fn threads(&mut self, wanted: &Wanted) -> Answer {
-        let mut waiting = match AskingThread::all(&mut self.session) {
+    fn list_threads(&mut self, wanted: &ThreadSelection) -> CommandResponse {
+        let mut waiting = match ThreadContext::read_all(&mut self.session) {
             Ok((waiting, _)) => waiting,
-            Err(refusal) => return Answer::refused("inbox", refusal),
+            Err(refusal) => return CommandResponse::rejected("inbox", refusal),
         };
         let everyone = waiting.len();
         if let Some(filter) = &wanted.filter {
-            waiting.retain(|thread| filter.means(thread));
+            waiting.retain(|thread| filter.matches(thread));
         }
         let names = self.session.company().company_names();
         let funnels = funnels(&self.session);
         let data = json!({
-            "threads": waiting.iter().map(|thread| thread.row(names)).collect::<Vec<Value>>(),
-            "funnels": funnels.iter().map(funnel_row).collect::<Vec<Value>>(),
+            "threads": waiting.iter().map(|thread| thread.to_json(names)).collect::<Vec<Value>>(),
+            "funnels": funnels.iter().map(funnel_to_json).collect::<Vec<Value>>(),
         });
         let mut lines = match (&wanted.filter, waiting.len()) {
             (None, 0) => vec!["no threads waiting".to_owned()],
-            (None, many) => vec![format!("{} waiting", threads_in_words(many))],
+            (None, many) => vec![format!("{} waiting", describe_thread_count(many))],
             (Some(_), many) => {
-                vec![format!("{} of {} waiting match", grouped(many as f64, 0), threads_in_words(everyone))]
+                vec![format!(
+                    "{} of {} waiting match",
+                    grouped_number(many as f64, 0),
+                    describe_thread_count(everyone)
+                )]
             }
         };
         lines.extend(group_lines(&waiting));
         if wanted.filter.is_none() {
-            lines.extend(funnels.iter().map(Funnel::in_words));
+            lines.extend(funnels.iter().map(Funnel::describe));
         }
-        lines.extend(told_lines(&waiting, wanted, names));
-        Answer::done("inbox", lines.join("\n"), data)
+        lines.extend(thread_lines(&waiting, wanted, names));
+        CommandResponse::success("inbox", lines.join("\n"), data)
     }
 }
 
-fn threads_in_words(many: usize) -> String {
-    count(many as u32, "thread")
+fn describe_thread_count(many: usize) -> String {
+    pluralize(many as u32, "thread")
 }
 
-fn funnel_row(own: &Funnel) -> Value {
+fn funnel_to_json(own: &Funnel) -> Value {
     json!({
         "group": own.group.id(),
-        "came": own.came,
-        "no_plan_good_enough": own.turned_away(),
-        "asked": own.asked,
-        "signed": own.signed,
+        "came": own.enterprises,
+        "no_plan_good_enough": own.lost_before_request(),
+        "asked": own.requests,
+        "signed": own.deals,
     })
 }
 
 /// Returns a sentence for each group with threads.
-fn group_lines(waiting: &[AskingThread]) -> Vec<String> {
-    let mut groups: BTreeMap<&str, Vec<&AskingThread>> = BTreeMap::new();
+fn group_lines(waiting: &[ThreadContext]) -> Vec<String> {
+    let mut groups: BTreeMap<&str, Vec<&ThreadContext>> = BTreeMap::new();
     for thread in waiting {
         groups.entry(thread.waiting.group).or_default().push(thread);
     }
     groups.into_iter().map(|(group, threads)| group_line(group, &threads)).collect()
 }
 
-fn group_line(group: &str, threads: &[&AskingThread]) -> String {
+fn group_line(group: &str, threads: &[&ThreadContext]) -> String {
     let seats: u32 = threads.iter().map(|thread| thread.waiting.seats).sum();
-    let mut line = format!("{group}: {}, {}", threads_in_words(threads.len()), count(seats, "seat"));
-    let urgent = threads.iter().filter(|thread| thread.waiting.days_left <= URGENT).count();
+    let mut line = format!("{group}: {}, {}", describe_thread_count(threads.len()), pluralize(seats, "seat"));
+    let urgent = threads.iter().filter(|thread| thread.waiting.days_left <= URGENT_DAYS).count();
     if urgent > 0 {
-        line += &format!(", {} with {URGENT} days or less", grouped(urgent as f64, 0));
+        line += &format!(", {} with {URGENT_DAYS} days or less", grouped_number(urgent as f64, 0));
     }
     let asked: Vec<f64> = threads.iter().filter_map(|thread| thread.waiting.asked).collect();
     let least = asked.iter().copied().fold(f64::INFINITY, f64::min);
@@ -137,14 +143,19 @@ fn group_line(group: &str, threads: &[&AskingThread]) -> String {
         0 => line + ", none asks a price",
         1 => line + &format!(", 1 asks a price, {}", cents(most)),
         many => {
-            line + &format!(", {} ask a price, {} to {}", grouped(many as f64, 0), cents(least), cents(most))
+            line + &format!(
+                ", {} ask a price, {} to {}",
+                grouped_number(many as f64, 0),
+                cents(least),
+                cents(most)
+            )
         }
     }
 }
 
 /// Returns the threads as sentences, and how to list the others.
-fn told_lines(waiting: &[AskingThread], wanted: &Wanted, names: &CompanyNames) -> Vec<String> {
-    let told = if wanted.all { waiting.len() } else { waiting.len().min(TOLD) };
+fn thread_lines(waiting: &[ThreadContext], wanted: &ThreadSelection, names: &EnterpriseNames) -> Vec<String> {
+    let told = if wanted.all { waiting.len() } else { waiting.len().min(LISTED_THREADS) };
     if told == 0 {
         return Vec::new();
     }
@@ -152,9 +163,9 @@ fn told_lines(waiting: &[AskingThread], wanted: &Wanted, names: &CompanyNames) -
         true => format!("the {told} with the earliest deadlines, larger ones first:"),
         false => "earliest deadline first:".to_owned(),
     }];
-    lines.extend(waiting.iter().take(told).map(|thread| sentence(thread, names)));
+    lines.extend(waiting.iter().take(told).map(|thread| describe_thread(thread, names)));
     if told < waiting.len() {
-        let more = grouped((waiting.len() - told) as f64, 0);
+        let more = grouped_number((waiting.len() - told) as f64, 0);
         lines.push(match wanted.filter {
             Some(_) => format!("{more} more: inbox all where … lists all of them"),
             None => format!(
@@ -168,28 +179,28 @@ fn told_lines(waiting: &[AskingThread], wanted: &Wanted, names: &CompanyNames) -
 }
 
 /// Formats a thread as one sentence.
-fn sentence(thread: &AskingThread, names: &CompanyNames) -> String {
+fn describe_thread(thread: &ThreadContext, names: &EnterpriseNames) -> String {
     let own = &thread.waiting;
     let mut parts = vec![
-        names.with_number(own.customer),
+        names.name_with_number(own.customer),
         own.group.to_owned(),
-        count(own.seats, "seat"),
+        pluralize(own.seats, "seat"),
         own.kind.replace('_', " "),
-        format!("{} left", count(own.days_left, "day")),
+        format!("{} left", pluralize(own.days_left, "day")),
     ];
-    parts.extend(ask_in_words(thread));
+    parts.extend(describe_request(thread));
     parts.push(match own.last_offer.as_slice() {
         [] => "no offer yet".to_owned(),
-        offered => format!("last offer {}", offer_in_words(offered)),
+        offered => format!("last offer {}", describe_offer(offered)),
     });
-    if let Some(units) = thread.needed_quota {
-        parts.push(format!("needs a quota of {} units a day", grouped(units.round(), 0)));
+    if let Some(units) = thread.required_quota {
+        parts.push(format!("needs a quota of {} units a day", grouped_number(units.round(), 0)));
     }
     parts.join(", ")
 }
 
 /// Describes the demand of a company: a price, a plan, or both.
-pub(super) fn ask_in_words(thread: &AskingThread) -> Option<String> {
+pub(super) fn describe_request(thread: &ThreadContext) -> Option<String> {
     match (thread.waiting.asked, thread.asked_plan) {
         (Some(price), Some(plan)) => Some(format!("asks {} for plan {plan}", cents(price))),
         (Some(price), None) => Some(format!("asks {}", cents(price))),
@@ -199,7 +210,7 @@ pub(super) fn ask_in_words(thread: &AskingThread) -> Option<String> {
 }
 
 /// Describes an offer, as in `plan B at $30.00 or plan C at $55.00`.
-pub(super) fn offer_in_words(offered: &[(Plan, f64)]) -> String {
+pub(super) fn describe_offer(offered: &[(Plan, f64)]) -> String {
     let line = |(plan, price): &(Plan, f64)| format!("plan {plan} at {}", cents(*price));
     offered.iter().map(line).collect::<Vec<_>>().join(" or ")
 }
@@ -210,7 +221,7 @@ mod tests {
     use novamind_session::WaitingThread;
     use novamind_world::params::Params;
 
-    fn thread(customer: u32, asked: Option<f64>, asked_plan: Option<Plan>) -> AskingThread {
+    fn thread(customer: u32, asked: Option<f64>, asked_plan: Option<Plan>) -> ThreadContext {
         let waiting = WaitingThread {
             thread: customer + 1_000,
             customer,
@@ -223,20 +234,20 @@ mod tests {
             asked,
             days_left: customer % 7 + 1,
         };
-        AskingThread { waiting, asked_plan, needed_quota: Some(5_000.0) }
+        ThreadContext { waiting, asked_plan, required_quota: Some(5_000.0) }
     }
 
     #[test]
-    fn a_full_inbox_is_told_by_group_and_twenty_threads() {
-        let names = CompanyNames::new(3, &Params::shipped().personas.email);
-        let mut waiting: Vec<AskingThread> = (1..=682).map(|at| thread(at, None, None)).collect();
+    fn full_inbox_lists_groups_and_twenty_threads() {
+        let names = EnterpriseNames::new(3, &Params::bundled().personas.email);
+        let mut waiting: Vec<ThreadContext> = (1..=682).map(|at| thread(at, None, None)).collect();
         waiting[0] = thread(1, Some(20.0), Some(Plan::B));
         waiting[1] = thread(2, None, Some(Plan::A));
         let groups = group_lines(&waiting);
         assert!(groups[0].starts_with("E1: 341 threads, 17,050 seats, "), "{groups:?}");
         assert!(groups[0].ends_with(", 1 asks a price, $20.00") && groups[1].ends_with("none asks a price"));
-        let lines = told_lines(&waiting, &Wanted::default(), &names);
-        assert_eq!(lines.len(), 1 + TOLD + 2);
+        let lines = thread_lines(&waiting, &ThreadSelection::default(), &names);
+        assert_eq!(lines.len(), 1 + LISTED_THREADS + 2);
         assert!(
             lines[1].contains("50 seats, plan change, 2 days left, asks $20.00 for plan B, no offer yet")
         );
@@ -244,8 +255,8 @@ mod tests {
             lines[2].contains("asks the price of plan A, no offer yet, needs a quota of 5,000 units a day")
         );
         assert!(lines[21].starts_with("662 more: inbox all") && lines[22].starts_with("inbox NUMBER"));
-        let all = told_lines(&waiting, &Wanted { all: true, filter: None }, &names);
+        let all = thread_lines(&waiting, &ThreadSelection { all: true, filter: None }, &names);
         assert_eq!(all.len(), 1 + 682 + 1);
-        assert!(told_lines(&[], &Wanted::default(), &names).is_empty());
+        assert!(thread_lines(&[], &ThreadSelection::default(), &names).is_empty());
     }
 }

@@ -2,75 +2,83 @@
 
 use serde_json::{Value, json};
 
-use super::super::answers::Answer;
-use super::super::grammar::{Argument, Problem, as_object};
+use super::super::grammar::{Argument, ParseError, arguments_to_object};
+use super::super::response::CommandResponse;
 use super::super::signals::Phase;
-use super::{Interpreter, problem, unknown};
-use novamind_record::folder::library::NamedQuery;
+use super::{Interpreter, argument_error, unknown_command};
+use novamind_record::folder::query_library::NamedQuery;
 use novamind_record::trajectory::record::{QuerySource, Via};
 use novamind_session::RunDatabase;
-use novamind_tools::{Refusal, ToolId};
+use novamind_tools::{Rejection, ToolId};
 
 impl Interpreter {
     /// `queries`
-    pub(super) fn queries(&self) -> Answer {
+    pub(super) fn queries(&self) -> CommandResponse {
         let queries = self.library.queries();
         let width = queries.iter().map(|query| query.name.chars().count()).max().unwrap_or(0);
         let line = |query: &NamedQuery| format!("{:<width$}  {}", query.name, query.title);
         let lines: Vec<String> = queries.iter().map(line).collect();
-        let one =
-            |query: &NamedQuery| json!({ "name": query.name, "title": query.title, "what": query.what });
+        let one = |query: &NamedQuery| json!({ "name": query.name, "title": query.title, "what": query.description });
         let data: Vec<Value> = queries.iter().map(one).collect();
         let text = format!("{}\nqueries NAME runs one of them", lines.join("\n"));
-        Answer::done("queries", text, json!({ "queries": data }))
+        CommandResponse::success("queries", text, json!({ "queries": data }))
     }
 
     /// `queries NAME`
-    pub(super) fn named_query(&mut self, name: &str, arguments: &[Argument]) -> Result<Answer, Problem> {
+    pub(super) fn named_query(
+        &mut self,
+        name: &str,
+        arguments: &[Argument],
+    ) -> Result<CommandResponse, ParseError> {
         let Some(query) = self.library.find(name) else {
-            let near = self.library.near(name);
+            let near = self.library.similar_names(name);
             let help = if near.is_empty() {
                 "queries lists them".to_owned()
             } else {
                 format!("did you mean {}?", near.join(" or "))
             };
-            return Err(problem(arguments, &format!("there is no query {name}; {help}")));
+            return Err(argument_error(arguments, &format!("there is no query {name}; {help}")));
         };
         let sql = query.sql.clone();
-        Ok(self.query(&sql, QuerySource::Library))
+        Ok(self.execute_query(&sql, QuerySource::Library))
     }
 
     /// Records the call of a tool that does not exist: an unknown word that is followed by arguments.
-    pub(super) fn unknown_tool(&mut self, word: &str, column: usize, arguments: &[Argument]) -> Problem {
-        let args = as_object(arguments, None).ok().filter(|_| !arguments.is_empty());
+    pub(super) fn record_unknown_tool(
+        &mut self,
+        word: &str,
+        column: usize,
+        arguments: &[Argument],
+    ) -> ParseError {
+        let args = arguments_to_object(arguments, None).ok().filter(|_| !arguments.is_empty());
         if let Some(args) = args.filter(|_| novamind_tools::find(word).is_none()) {
             // The message also names commands of plain mode.
             let _ = self.session.call(word, &args, Via::Plain);
         }
-        unknown(word, column)
+        unknown_command(word, column)
     }
 
     /// Calls a tool. A signal stops a long script, as it stops a query.
-    pub(super) fn call_stoppable(
+    pub(super) fn call_cancellable(
         &mut self,
         tool: ToolId,
         arguments: &Value,
-    ) -> Result<novamind_tools::Answer, Refusal> {
-        if tool.runs_code()
-            && let Ok(interrupt) = self.session.complete_database().and_then(RunDatabase::interrupt)
+    ) -> Result<novamind_tools::Answer, Rejection> {
+        if tool.executes_code()
+            && let Ok(interrupt) = self.session.up_to_date_database().and_then(RunDatabase::interrupt_handle)
         {
             self.watch.enter_query(interrupt);
         }
         let answer = self.session.call(tool, arguments, Via::Plain);
-        self.watch.enter(Phase::Working);
+        self.watch.set_phase(Phase::Working);
         answer
     }
 }
 
 /// Returns the output of a script, line by line.
-pub(super) fn of_script(tool: ToolId, answer: &novamind_tools::Answer) -> Answer {
+pub(super) fn script_response(tool: ToolId, answer: &novamind_tools::Answer) -> CommandResponse {
     let data = answer.to_json();
     let part = |name: &str| data[name].as_str().unwrap_or_default().trim_end().to_owned();
     let text = ["stdout", "stderr"].map(part).join("\n");
-    Answer::done(tool.name(), format!("ok {tool}\n{}", text.trim_end()), data)
+    CommandResponse::success(tool.name(), format!("ok {tool}\n{}", text.trim_end()), data)
 }

@@ -2,41 +2,46 @@
 
 use serde_json::{Value, json};
 
-use super::super::answers::Answer;
-use super::super::grammar::{Argument, Problem};
-use super::{Interpreter, problem};
-use novamind_base::notation::signed_dollars;
-use novamind_report::{Story, WeekReport, as_markdown};
-use novamind_session::Verdict;
-use novamind_tools::Refusal;
+use super::super::grammar::{Argument, ParseError};
+use super::super::response::CommandResponse;
+use super::{Interpreter, argument_error};
+use novamind_base::formatting::signed_dollars;
+use novamind_report::{RunReport, WeekReport, report_to_markdown};
+use novamind_session::IntervalPosition;
+use novamind_tools::Rejection;
 
 /// Maximum number of changed figures in the text.
-const TOLD: usize = 6;
+const LISTED_MOVES: usize = 6;
 
 impl Interpreter {
-    pub(super) fn report(&self, what: Option<&str>, arguments: &[Argument]) -> Result<Answer, Problem> {
+    pub(super) fn report(
+        &self,
+        what: Option<&str>,
+        arguments: &[Argument],
+    ) -> Result<CommandResponse, ParseError> {
         match what {
             None | Some("week") => Ok(self.week_report()),
             Some("run") => Ok(self.run_report()),
-            Some(_) => Err(problem(arguments, "report takes week or run: report week, report run")),
+            Some(_) => Err(argument_error(arguments, "report takes week or run: report week, report run")),
         }
     }
 
-    fn week_report(&self) -> Answer {
-        match WeekReport::of_session(&self.session) {
-            Some(report) => Answer::done("report", in_words(&report), as_data(&report)),
-            None => {
-                Answer::refused("report", Refusal::new("no_week_yet", "no week has run yet; next runs one"))
-            }
+    fn week_report(&self) -> CommandResponse {
+        match WeekReport::from_session(&self.session) {
+            Some(report) => CommandResponse::success("report", describe_week(&report), week_to_json(&report)),
+            None => CommandResponse::rejected(
+                "report",
+                Rejection::new("no_week_yet", "no week has run yet; next runs one"),
+            ),
         }
     }
 
-    fn run_report(&self) -> Answer {
-        let story = Story::of(&self.session);
+    fn run_report(&self) -> CommandResponse {
+        let story = RunReport::from_session(&self.session);
         let measures = &story.measures;
         let data = json!({
             "headline": story.headline(),
-            "rank": story.standing.rank,
+            "rank": story.ranking.rank,
             "survival_days": measures.survival_days,
             "cash": measures.cash,
             "best_tried_channel_share": measures.channels.as_ref().and_then(|skill| skill.share),
@@ -45,78 +50,91 @@ impl Interpreter {
             "forecasts": story.shows_calibration().then_some(&measures.forecasts),
             "calls_per_week": measures.tools.per_week,
             "planning_words_per_rationale": measures.planning.planning_each,
-            "report": as_markdown(&story),
+            "report": report_to_markdown(&story),
         });
-        Answer::done("report", as_markdown(&story), data)
+        CommandResponse::success("report", report_to_markdown(&story), data)
     }
 }
 
 /// Formats the report on a week, one sentence per line.
-fn in_words(report: &WeekReport) -> String {
+fn describe_week(report: &WeekReport) -> String {
     let week = &report.week;
-    let parts: Vec<String> =
-        report.parts.iter().map(|(name, dollars)| format!("{name} {}", signed_dollars(*dollars))).collect();
+    let parts: Vec<String> = report
+        .cash_components
+        .iter()
+        .map(|(name, dollars)| format!("{name} {}", signed_dollars(*dollars)))
+        .collect();
     let change = signed_dollars(week.cash_change);
     let mut lines =
         vec![format!("week to day {}: cash change {change}, of which {}", week.day, parts.join(", "))];
-    lines.extend(report.short.iter().map(|short| format!("this is a week {short}")));
+    lines.extend(report.short_week_note.iter().map(|short| format!("this is a week {short}")));
     if report.was_filed_at_limit() {
         lines.push(
             "the time limit for this week was reached: it was submitted with the naive projection".to_owned(),
         );
     }
-    if !report.decided.is_empty() {
-        lines.push(format!("decisions before it: {}", report.decided.join("; ")));
+    if !report.decisions.is_empty() {
+        lines.push(format!("decisions before it: {}", report.decisions.join("; ")));
     }
-    for moved in report.moves.iter().take(TOLD) {
+    for moved in report.moved_figures.iter().take(LISTED_MOVES) {
         let mut line = format!("{} {} → {}", moved.name, moved.old, moved.new);
-        let standing = moved.movement.standing();
+        let standing = moved.change.describe_rarity();
         if !standing.is_empty() {
             line += &format!(", {standing}");
         }
-        if !moved.split.is_empty() {
-            let split =
-                moved.split.iter().map(|(name, dollars)| format!("{name} {}", signed_dollars(*dollars)));
+        if !moved.category_changes.is_empty() {
+            let split = moved
+                .category_changes
+                .iter()
+                .map(|(name, dollars)| format!("{name} {}", signed_dollars(*dollars)));
             line += &format!("; {}", split.collect::<Vec<_>>().join(", "));
         }
         lines.push(line);
     }
-    for due in &report.due {
-        let ago = counted(due.forecast.horizon_days / 7, "week", "weeks");
-        let miss = due.miss_in_words().map_or(String::new(), |miss| format!(", point {miss}"));
-        let verdict = due.verdict().map_or("open", Verdict::word);
-        let filed = if report.is_of_limit(due) { ", submitted by the program at the time limit" } else { "" };
+    for due in &report.due_forecasts {
+        let ago = count_noun(due.forecast.horizon_days / 7, "week", "weeks");
+        let miss = due.describe_error().map_or(String::new(), |miss| format!(", point {miss}"));
+        let verdict = due.interval_position().map_or("open", IntervalPosition::as_str);
+        let filed = if report.was_forecast_filed_at_limit(due) {
+            ", submitted by the program at the time limit"
+        } else {
+            ""
+        };
         lines.push(format!("forecast from {ago} ago{filed}: {verdict} the interval{miss}"));
     }
     lines.push(format!(
         "new: {}, {}, {}, {}, {}, {}",
-        counted(week.threads_opened, "thread", "threads"),
-        counted(week.replies, "reply", "replies"),
-        counted(report.customer_posts, "post", "posts"),
-        counted(report.comments, "comment on your posts", "comments on your posts"),
-        counted(report.news_items, "news item", "news items"),
-        counted(week.research_finished, "finished R&D project or study", "finished R&D projects and studies")
+        count_noun(week.threads_opened, "thread", "threads"),
+        count_noun(week.replies, "reply", "replies"),
+        count_noun(report.customer_posts, "post", "posts"),
+        count_noun(report.comments, "comment on your posts", "comments on your posts"),
+        count_noun(report.news_items, "news item", "news items"),
+        count_noun(
+            week.research_finished,
+            "finished R&D project or study",
+            "finished R&D projects and studies"
+        )
     ));
     lines.join("\n").replace("from 1 weeks ago", "from 1 week ago")
 }
 
-fn counted(count: u32, one: &str, many: &str) -> String {
+fn count_noun(count: u32, one: &str, many: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { many })
 }
 
-fn parts(parts: &[(&'static str, f64)]) -> Value {
+fn parts_to_json(parts: &[(&'static str, f64)]) -> Value {
     parts.iter().map(|(name, dollars)| json!({ "part": name, "dollars": dollars })).collect()
 }
 
-fn as_data(report: &WeekReport) -> Value {
-    let moved = |moved: &novamind_report::week::Move| {
+fn week_to_json(report: &WeekReport) -> Value {
+    let moved = |moved: &novamind_report::week::MovedFigure| {
         json!({
             "figure": moved.name,
-            "old": moved.movement.old,
-            "new": moved.movement.new,
-            "unusual": moved.movement.unusual,
-            "standing": moved.movement.standing(),
-            "split": parts(&moved.split),
+            "old": moved.change.old,
+            "new": moved.change.new,
+            "unusual": moved.change.unusualness,
+            "standing": moved.change.describe_rarity(),
+            "split": parts_to_json(&moved.category_changes),
         })
     };
     let due = |due: &novamind_session::ScoredForecast| {
@@ -126,16 +144,16 @@ fn as_data(report: &WeekReport) -> Value {
             "lower": due.forecast.lower,
             "upper": due.forecast.upper,
             "outcome": due.outcome,
-            "inside": due.is_inside(),
+            "inside": due.is_covered(),
         })
     };
     json!({
         "day": report.week.day,
         "cash_change": report.week.cash_change,
-        "parts": parts(&report.parts),
-        "decided": report.decided,
+        "parts": parts_to_json(&report.cash_components),
+        "decided": report.decisions,
         "filed_at_limit": report.was_filed_at_limit(),
-        "moves": report.moves.iter().map(moved).collect::<Vec<_>>(),
-        "forecasts": report.due.iter().map(due).collect::<Vec<_>>(),
+        "moves": report.moved_figures.iter().map(moved).collect::<Vec<_>>(),
+        "forecasts": report.due_forecasts.iter().map(due).collect::<Vec<_>>(),
     })
 }

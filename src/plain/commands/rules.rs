@@ -2,19 +2,19 @@
 
 use serde_json::{Value, json};
 
-use super::super::answers::Answer;
+use super::super::response::CommandResponse;
 use super::Interpreter;
-use novamind_base::notation::{cents, grouped};
-use novamind_database::text::aligned;
+use novamind_base::formatting::{cents, grouped_number};
+use novamind_database::text::align_columns;
 use novamind_record::trajectory::record::Via;
-use novamind_rules::{AskingThread, Batch, RuledThread};
-use novamind_session::CompanyNames;
-use novamind_tools::{Refusal, ToolId};
+use novamind_rules::{RuleBatch, RuleOutcome, ThreadContext};
+use novamind_session::EnterpriseNames;
+use novamind_tools::{Rejection, ToolId};
 
 /// Maximum number of threads in a preview; the data contains all of them.
-const LISTED: usize = 20;
+const LISTED_THREADS: usize = 20;
 
-pub const IN_FULL: &str = "\
+pub const HELP: &str = "\
 rules RULES         preview the answer to each waiting thread; nothing is sent
 rules send RULES    the same, and send them with one call of send_enterprise_deal and one of reject_enterprise_deal
 A rule is an action with conditions. Semicolons separate rules; the first rule that matches a thread answers it.
@@ -27,31 +27,37 @@ Conditions use: group, type, seats, asked, asked_plan, last_offer, offers_so_far
 Operators: = != < <= > >=, in (…), is null, is not null; and joins conditions. rest matches all other threads.";
 
 impl Interpreter {
-    pub(super) fn rules(&mut self, text: &str, column: usize) -> Answer {
+    pub(super) fn rules_command(&mut self, text: &str, column: usize) -> CommandResponse {
         let (send, text, before) = match text.split_once(char::is_whitespace) {
             Some(("send", rest)) => (true, rest.trim_start(), text.len() - rest.trim_start().len()),
             _ => (false, text, 0),
         };
         let rules = match novamind_rules::parse(text) {
             Ok(rules) => rules,
-            Err(problem) => return Answer::usage(problem.text, column + before + problem.column - 1),
+            Err(problem) => {
+                return CommandResponse::syntax_error(problem.text, column + before + problem.column - 1);
+            }
         };
-        let (threads, market) = match AskingThread::all(&mut self.session) {
+        let (threads, market) = match ThreadContext::read_all(&mut self.session) {
             Ok(all) => all,
-            Err(refusal) => return Answer::refused("rules", refusal),
+            Err(refusal) => return CommandResponse::rejected("rules", refusal),
         };
-        let batch = Batch::of(rules, threads, &market);
-        if send { self.send(&batch) } else { preview(&batch, self.session.company().company_names()) }
+        let batch = RuleBatch::new(rules, threads, &market);
+        if send {
+            self.send_batch(&batch)
+        } else {
+            preview_response(&batch, self.session.company().company_names())
+        }
     }
 
-    fn send(&mut self, batch: &Batch) -> Answer {
-        let calls = batch.calls();
+    fn send_batch(&mut self, batch: &RuleBatch) -> CommandResponse {
+        let calls = batch.tool_calls();
         if calls.is_empty() {
             let text = format!(
                 "no waiting thread would get an offer or a rejection\n{}",
                 batch.summary().join("\n")
             );
-            return Answer::refused("rules", Refusal::new("nothing_to_send", text));
+            return CommandResponse::rejected("rules", Rejection::new("nothing_to_send", text));
         }
         let (mut lines, mut data) = (batch.summary(), Vec::new());
         for (tool, arguments) in calls {
@@ -64,10 +70,10 @@ impl Interpreter {
                     let (all, failed) =
                         results.map_or((0, 0), |all| (all.len(), all.iter().filter(failed).count()));
                     let refused = if failed > 0 { format!(", {failed} refused") } else { String::new() };
-                    lines.push(format!("{} {what}{refused}", grouped((all - failed) as f64, 0)));
+                    lines.push(format!("{} {what}{refused}", grouped_number((all - failed) as f64, 0)));
                     data.push(json!({ "tool": tool, "answer": answer }));
                 }
-                Err(refusal) if data.is_empty() => return Answer::refused("rules", refusal),
+                Err(refusal) if data.is_empty() => return CommandResponse::rejected("rules", refusal),
                 // Earlier calls stay sent.
                 Err(refusal) => {
                     lines.push(format!("{tool} rejected {}: {}", refusal.code, refusal.message));
@@ -75,41 +81,46 @@ impl Interpreter {
                 }
             }
         }
-        Answer::done("rules", lines.join("\n"), json!({ "rules": batch.sums_as_json(), "calls": data }))
+        CommandResponse::success(
+            "rules",
+            lines.join("\n"),
+            json!({ "rules": batch.totals_to_json(), "calls": data }),
+        )
     }
 }
 
-fn preview(batch: &Batch, names: &CompanyNames) -> Answer {
+fn preview_response(batch: &RuleBatch, names: &EnterpriseNames) -> CommandResponse {
     let mut lines = batch.summary();
-    let meant: Vec<&RuledThread> = batch.threads.iter().filter(|ruled| ruled.rule.is_some()).collect();
+    let meant: Vec<&RuleOutcome> = batch.threads.iter().filter(|ruled| ruled.rule_index.is_some()).collect();
     if !meant.is_empty() {
         let head = ["rule", "company", "group", "seats", "asked", "last offer", "left", "sends"];
-        let rows: Vec<Vec<String>> = meant.iter().take(LISTED).map(|ruled| row(ruled, names)).collect();
-        lines.push(aligned(&head.map(str::to_owned), &rows).trim_end().to_owned());
+        let rows: Vec<Vec<String>> =
+            meant.iter().take(LISTED_THREADS).map(|ruled| preview_row(ruled, names)).collect();
+        lines.push(align_columns(&head.map(str::to_owned), &rows).trim_end().to_owned());
     }
-    if meant.len() > LISTED {
-        lines.push(format!("and {} more", grouped((meant.len() - LISTED) as f64, 0)));
+    if meant.len() > LISTED_THREADS {
+        lines.push(format!("and {} more", grouped_number((meant.len() - LISTED_THREADS) as f64, 0)));
     }
     lines.push("nothing was sent; to send, type rules send …".to_owned());
-    let threads: Vec<Value> = batch.threads.iter().map(|ruled| ruled.row(names)).collect();
-    let data = json!({ "rules": batch.sums_as_json(), "threads": threads });
-    Answer::done("rules", lines.join("\n"), data)
+    let threads: Vec<Value> = batch.threads.iter().map(|ruled| ruled.to_json(names)).collect();
+    let data = json!({ "rules": batch.totals_to_json(), "threads": threads });
+    CommandResponse::success("rules", lines.join("\n"), data)
 }
 
-fn row(ruled: &RuledThread, names: &CompanyNames) -> Vec<String> {
+fn preview_row(ruled: &RuleOutcome, names: &EnterpriseNames) -> Vec<String> {
     let thread = &ruled.thread;
     let own = &thread.waiting;
     let plan = thread.asked_plan.map_or(String::new(), |plan| format!("{plan} "));
     let last: Vec<String> =
         own.last_offer.iter().map(|(plan, price)| format!("{plan} {}", cents(*price))).collect();
     vec![
-        ruled.rule.map_or(String::new(), |at| (at + 1).to_string()),
-        names.with_number(own.customer),
+        ruled.rule_index.map_or(String::new(), |at| (at + 1).to_string()),
+        names.name_with_number(own.customer),
         own.group.to_owned(),
         own.seats.to_string(),
         own.asked.map_or(String::new(), |asked| format!("{plan}{}", cents(asked))),
         last.join(" or "),
         own.days_left.to_string(),
-        ruled.reply_in_words(),
+        ruled.describe_reply(),
     ]
 }

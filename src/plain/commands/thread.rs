@@ -2,60 +2,63 @@
 
 use serde_json::{Value, json};
 
-use super::super::answers::Answer;
-use super::super::grammar::{Argument, Problem};
-use super::inbox::{ask_in_words, offer_in_words};
-use super::{Interpreter, count as number, problem};
-use novamind_base::notation::{cents, grouped};
-use novamind_database::{Cell, Rows, number_at, text_at};
-use novamind_report::count;
-use novamind_rules::{AskingThread, offer_of};
-use novamind_tools::Refusal;
+use super::super::grammar::{Argument, ParseError};
+use super::super::response::CommandResponse;
+use super::inbox::{describe_offer, describe_request};
+use super::{Interpreter, argument_error, optional_count};
+use novamind_base::formatting::{cents, grouped_number};
+use novamind_database::{Cell, QueryResult, number_at, text_at};
+use novamind_report::pluralize;
+use novamind_rules::{ThreadContext, parse_offer};
+use novamind_tools::Rejection;
 
 /// Columns of the turns of a thread.
-const TURNS: &str = "SELECT thread_id, customer_id, thread_type, turn_number, sender, message_text, offer_json, day, \
+const TURNS_SQL: &str = "SELECT thread_id, customer_id, thread_type, turn_number, sender, message_text, offer_json, day, \
                      seat_count, close_reason FROM enterprise_turns";
 /// Columns of a company.
-const COMPANY: &str = "SELECT c.group_id, c.persona_industry, c.company_size_descriptor, c.company_culture, \
+const ENTERPRISE_SQL: &str = "SELECT c.group_id, c.persona_industry, c.company_size_descriptor, c.company_culture, \
                        c.company_decision_style, c.company_primary_concern, s.status, s.plan, s.effective_price \
                        FROM customers c CROSS JOIN subscriptions s WHERE s.customer_id = c.customer_id";
 
 impl Interpreter {
-    /// `thread NUMBER`.
-    pub(super) fn thread(&mut self, arguments: &[Argument]) -> Result<Answer, Problem> {
-        let Some(thread) = number(arguments)? else {
-            return Err(problem(arguments, "thread needs the number of a thread, for example thread 12"));
+    /// `thread NUMBER_PLACEHOLDER`.
+    pub(super) fn thread_command(&mut self, arguments: &[Argument]) -> Result<CommandResponse, ParseError> {
+        let Some(thread) = optional_count(arguments)? else {
+            return Err(argument_error(
+                arguments,
+                "thread needs the number of a thread, for example thread 12",
+            ));
         };
-        let told = self.conversation(&format!("{TURNS} WHERE thread_id = {thread} ORDER BY message_id"));
+        let told = self.show_thread(&format!("{TURNS_SQL} WHERE thread_id = {thread} ORDER BY message_id"));
         Ok(told.unwrap_or_else(|| {
             let text = format!("there is no thread {thread}; inbox NUMBER takes the number of a company");
-            Answer::refused("thread", Refusal::new("thread_not_found", text))
+            CommandResponse::rejected("thread", Rejection::new("thread_not_found", text))
         }))
     }
 
     /// Answers with the newest thread of a company.
-    pub(super) fn thread_of_company(&mut self, customer: u64) -> Answer {
+    pub(super) fn thread_of_enterprise(&mut self, customer: u64) -> CommandResponse {
         let newest = format!(
-            "{TURNS} WHERE thread_id = (SELECT max(thread_id) FROM enterprise_turns WHERE customer_id = {customer}) \
+            "{TURNS_SQL} WHERE thread_id = (SELECT max(thread_id) FROM enterprise_turns WHERE customer_id = {customer}) \
              ORDER BY message_id"
         );
-        self.conversation(&newest).unwrap_or_else(|| {
+        self.show_thread(&newest).unwrap_or_else(|| {
             let text = format!("company {customer} has no thread; inbox lists those that wait");
-            Answer::refused("inbox", Refusal::new("thread_not_found", text))
+            CommandResponse::rejected("inbox", Rejection::new("thread_not_found", text))
         })
     }
 
     /// Returns the thread that a statement selects. Returns `None` if it selects no turn.
-    fn conversation(&mut self, statement: &str) -> Option<Answer> {
-        let turns = match self.session.look_into_database(statement) {
+    fn show_thread(&mut self, statement: &str) -> Option<CommandResponse> {
+        let turns = match self.session.query_unrecorded(statement) {
             Ok(turns) => turns,
-            Err(refusal) => return Some(Answer::refused("thread", refusal)),
+            Err(refusal) => return Some(CommandResponse::rejected("thread", refusal)),
         };
         let first = turns.rows.first()?;
         let (thread, customer) = (number_at(first, 0) as u32, number_at(first, 1) as u32);
         let company =
-            self.session.look_into_database(&format!("{COMPANY} AND c.customer_id = {customer}")).ok();
-        let waiting = AskingThread::all(&mut self.session)
+            self.session.query_unrecorded(&format!("{ENTERPRISE_SQL} AND c.customer_id = {customer}")).ok();
+        let waiting = ThreadContext::read_all(&mut self.session)
             .ok()
             .and_then(|(waiting, _)| waiting.into_iter().find(|own| own.waiting.thread == thread));
         let names = self.session.company().company_names();
@@ -68,25 +71,25 @@ impl Interpreter {
         );
         let mut lines = vec![format!(
             "{}, {}, {kind}, thread {thread}",
-            names.with_number(customer),
-            count(seats, "seat")
+            names.name_with_number(customer),
+            pluralize(seats, "seat")
         )];
-        lines.extend(company.as_ref().and_then(company_in_words));
-        lines.extend(turns.rows.iter().filter_map(|row| Some(names.put_into(&turn_in_words(row)?))));
-        lines.extend(state_in_words(waiting.as_ref(), turns.rows.last().unwrap_or(first), customer));
+        lines.extend(company.as_ref().and_then(describe_enterprise));
+        lines.extend(turns.rows.iter().filter_map(|row| Some(names.insert_names(&describe_turn(row)?))));
+        lines.extend(describe_state(waiting.as_ref(), turns.rows.last().unwrap_or(first), customer));
         let data = json!({
             "thread": thread,
             "customer": customer,
-            "company": names.of(customer),
-            "waiting": waiting.map(|own| own.row(names)),
-            "turns": turns.rows.iter().map(|row| turn_row(row)).collect::<Vec<Value>>(),
+            "company": names.name(customer),
+            "waiting": waiting.map(|own| own.to_json(names)),
+            "turns": turns.rows.iter().map(|row| turn_to_json(row)).collect::<Vec<Value>>(),
         });
-        Some(Answer::done("thread", lines.join("\n"), data))
+        Some(CommandResponse::success("thread", lines.join("\n"), data))
     }
 }
 
 /// Describes group, profile and subscription of a company.
-fn company_in_words(rows: &Rows) -> Option<String> {
+fn describe_enterprise(rows: &QueryResult) -> Option<String> {
     let row = rows.rows.first()?;
     let mut parts = vec![format!("group {}", text_at(row, 0))];
     let trade = format!("{} {}", text_at(row, 2), text_at(row, 1));
@@ -111,12 +114,12 @@ fn company_in_words(rows: &Rows) -> Option<String> {
 }
 
 /// Formats a turn as one line. Returns `None` for an opening without a message.
-fn turn_in_words(row: &[Cell]) -> Option<String> {
+fn describe_turn(row: &[Cell]) -> Option<String> {
     let (day, words) = (number_at(row, 7), text_at(row, 5));
-    let (offers, price) = offer_of(text_at(row, 6));
+    let (offers, price) = parse_offer(text_at(row, 6));
     let said = match (text_at(row, 4), text_at(row, 9)) {
         ("agent", "agent_rejected") => "you ended the thread".to_owned(),
-        ("agent", _) => format!("you offered {}", offer_in_words(&offers)),
+        ("agent", _) => format!("you offered {}", describe_offer(&offers)),
         ("customer", _) if words.is_empty() => format!("they ask {}", cents(price?)),
         ("customer", _) => format!("they wrote: {words}"),
         _ if words.is_empty() => return None,
@@ -126,7 +129,7 @@ fn turn_in_words(row: &[Cell]) -> Option<String> {
 }
 
 /// Returns the state of the thread and the possible next step.
-fn state_in_words(waiting: Option<&AskingThread>, last: &[Cell], customer: u32) -> Vec<String> {
+fn describe_state(waiting: Option<&ThreadContext>, last: &[Cell], customer: u32) -> Vec<String> {
     let Some(thread) = waiting else {
         return vec![match text_at(last, 9) {
             "accepted" => "the thread ended with a deal".to_owned(),
@@ -135,13 +138,11 @@ fn state_in_words(waiting: Option<&AskingThread>, last: &[Cell], customer: u32) 
         }];
     };
     let mut parts =
-        vec![format!("the thread waits for you: {} left", count(thread.waiting.days_left, "day"))];
-    parts.extend(ask_in_words(thread).map(|ask| format!("the company {ask}")));
-    parts.extend(
-        thread
-            .needed_quota
-            .map(|units| format!("the company needs a quota of {} units a day", grouped(units.round(), 0))),
-    );
+        vec![format!("the thread waits for you: {} left", pluralize(thread.waiting.days_left, "day"))];
+    parts.extend(describe_request(thread).map(|ask| format!("the company {ask}")));
+    parts.extend(thread.required_quota.map(|units| {
+        format!("the company needs a quota of {} units a day", grouped_number(units.round(), 0))
+    }));
     let plan = thread.asked_plan.map_or("B", |plan| plan.id());
     vec![
         parts.join("; "),
@@ -151,8 +152,8 @@ fn state_in_words(waiting: Option<&AskingThread>, last: &[Cell], customer: u32) 
     ]
 }
 
-fn turn_row(row: &[Cell]) -> Value {
-    let (offers, price) = offer_of(text_at(row, 6));
+fn turn_to_json(row: &[Cell]) -> Value {
+    let (offers, price) = parse_offer(text_at(row, 6));
     json!({
         "turn": number_at(row, 3),
         "sender": text_at(row, 4),

@@ -4,35 +4,35 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use super::super::answers::Answer;
-use super::super::grammar::{Argument, Problem};
-use super::{Interpreter, Phase, count, problem};
-use novamind_database::text::aligned;
+use super::super::grammar::{Argument, ParseError};
+use super::super::response::CommandResponse;
+use super::{Interpreter, Phase, argument_error, optional_count};
+use novamind_database::text::align_columns;
 use novamind_insight::{
-    BranchComparison, BranchFigures, DecisionEdit, Futures, PastDecision, WhatIf, branch_with_decisions,
-    branches_of, folder_of_causes, look_at_what_if, unless_stopped,
+    BranchComparison, BranchFigures, DecisionEdit, Futures, RecordedDecision, WhatIf, cause_analysis_folder,
+    continue_unless_stopped, create_branch_with_decisions, record_what_if_inspection, related_runs,
 };
 use novamind_record::trajectory::record::LeavingCause;
 use novamind_report::whatif::{
-    bankrupt, branch_line, decisions, difference_line, futures_heading, futures_table, heading, kin_line,
-    name, table,
+    branch_line, branch_name, comparison_table, describe_bankruptcies, describe_decisions, difference_line,
+    futures_heading, futures_table, heading, related_run_line,
 };
-use novamind_rules::answers_to_companies;
+use novamind_rules::calls_for_waiting_threads;
 use novamind_session::{Interface, Session};
-use novamind_tools::Refusal;
+use novamind_tools::Rejection;
 
 /// Default number of futures.
-const FUTURES: u32 = 20;
+const DEFAULT_FUTURES: u32 = 20;
 /// Maximum number of futures.
-const MOST_FUTURES: u32 = 200;
+const MAX_FUTURES: u32 = 200;
 /// Maximum size of a file with a question, in bytes.
-const LARGEST_FILE: u64 = 64 << 10;
+const MAX_FILE_BYTES: u64 = 64 << 10;
 /// Example in error messages.
 const USAGE: &str = "for example: whatif from 2: set_prices * 0.9";
 
 /// A parsed question.
 #[derive(Debug, Clone, PartialEq)]
-struct Question {
+struct WhatIfQuestion {
     from: u32,
     until: Option<u32>,
     futures: Option<u32>,
@@ -40,161 +40,168 @@ struct Question {
 }
 
 impl Interpreter {
-    /// `whatif WEEK`, `whatif [adopt] from WEEK [until WEEK] [futures [N]]: EDIT; EDIT | EDIT`, `whatif file PATH`.
-    pub(super) fn what_if(&mut self, words: &str, column: usize) -> Result<Answer, Problem> {
+    /// `whatif NEXT_WEEK_KEYS`, `whatif [adopt] from NEXT_WEEK_KEYS [until NEXT_WEEK_KEYS] [futures [N]]: EDIT; EDIT | EDIT`, `whatif file PATH`.
+    pub(super) fn what_if(&mut self, words: &str, column: usize) -> Result<CommandResponse, ParseError> {
         // Check the permission before parsing anything.
-        if let Err(refusal) = folder_of_causes(&self.session) {
-            return Ok(Answer::refused("whatif", refusal));
+        if let Err(refusal) = cause_analysis_folder(&self.session) {
+            return Ok(CommandResponse::rejected("whatif", refusal));
         }
         if let Ok(week) = words.parse() {
-            return Ok(self.decisions_from(week));
+            return Ok(self.list_decisions(week));
         }
         if let Some(path) = words.strip_prefix("file ") {
-            let problem = |text: String| Problem { text, column: column + "file ".len() };
-            let text = self.question_in(Path::new(path.trim()));
+            let problem = |text: String| ParseError { text, column: column + "file ".len() };
+            let text = self.read_question_file(Path::new(path.trim()));
             let text = text.map_err(|why| problem(format!("{} cannot be read: {why}", path.trim())))?;
-            return read(&as_question(&text), 0)
+            return parse_question(&question_from_file(&text), 0)
                 .map(|question| self.compare(&question))
                 .map_err(|wrong| problem(wrong.text));
         }
         match words.strip_prefix("adopt ") {
             Some(rest) if rest.trim_start().starts_with("from") => {
-                read(rest, column + "adopt ".len()).and_then(|question| self.adopt(&question, column))
+                parse_question(rest, column + "adopt ".len())
+                    .and_then(|question| self.adopt(&question, column))
             }
-            _ => read(words, column).map(|question| self.compare(&question)),
+            _ => parse_question(words, column).map(|question| self.compare(&question)),
         }
     }
 
     /// Reads a file with a question. Participants of a study may not use files; others need a small regular file.
-    fn question_in(&self, path: &Path) -> Result<String, String> {
-        if self.leads_participant {
+    fn read_question_file(&self, path: &Path) -> Result<String, String> {
+        if self.is_participant {
             return Err("in a session of a study, type the question instead".to_owned());
         }
         let found = std::fs::metadata(path).map_err(|error| error.to_string())?;
-        if !found.is_file() || found.len() > LARGEST_FILE {
-            return Err(format!("it is not a text file of at most {} KiB", LARGEST_FILE >> 10));
+        if !found.is_file() || found.len() > MAX_FILE_BYTES {
+            return Err(format!("it is not a text file of at most {} KiB", MAX_FILE_BYTES >> 10));
         }
         std::fs::read_to_string(path).map_err(|error| error.to_string())
     }
 
-    fn what_if_of_run(&mut self) -> Result<&mut WhatIf, Refusal> {
-        let folder = folder_of_causes(&self.session)?;
-        self.branches_kept.of(folder)
+    fn prepare_what_if(&mut self) -> Result<&mut WhatIf, Rejection> {
+        let folder = cause_analysis_folder(&self.session)?;
+        self.cached_branches.get_or_open(folder)
     }
 
     /// Lists the calls from a week on, with their line numbers.
-    fn decisions_from(&mut self, week: u32) -> Answer {
-        let calls = self.what_if_of_run().and_then(|own| Ok((own.decisions(week)?, own.days_per_week())));
+    fn list_decisions(&mut self, week: u32) -> CommandResponse {
+        let calls = self.prepare_what_if().and_then(|own| Ok((own.decisions(week)?, own.days_per_week())));
         let (calls, days) = match calls {
             Ok(calls) => calls,
-            Err(refusal) => return Answer::refused("whatif", refusal),
+            Err(refusal) => return CommandResponse::rejected("whatif", refusal),
         };
-        self.note_look("whatif", &[]);
+        self.record_view("whatif", &[]);
         let rows = decision_rows(&calls, days);
         let headers = ["line", "week", "decision", "arguments", ""].map(str::to_owned);
         let text = match rows.is_empty() {
             true => format!("no decisions from week {week} on; {USAGE}"),
-            false => format!("{}{USAGE}", aligned(&headers, &rows)),
+            false => format!("{}{USAGE}", align_columns(&headers, &rows)),
         };
         let (mut made, mut set) = (Vec::new(), Vec::new());
         for decision in &calls {
             let week = decision.day() / days + 1;
             match decision {
-                PastDecision::Call(call) => made.push(json!({
+                RecordedDecision::Call(call) => made.push(json!({
                     "line": call.seq, "week": week, "day": call.day, "tool": call.tool.name(), "args": call.args,
                     "ok": call.accepted,
                 })),
-                PastDecision::Parameter { seq, day, key, value, from_day } => set.push(json!({
+                RecordedDecision::Parameter { seq, day, key, value, from_day } => set.push(json!({
                     "line": seq, "week": week, "day": day, "key": key, "value": value, "from_day": from_day,
                 })),
             }
         }
-        Answer::done("whatif", text, json!({ "calls": made, "parameters": set }))
+        CommandResponse::success("whatif", text, json!({ "calls": made, "parameters": set }))
     }
 
-    fn compare(&mut self, question: &Question) -> Answer {
+    fn compare(&mut self, question: &WhatIfQuestion) -> CommandResponse {
         let stop = self.watch.enter_stoppable();
-        let go_on = |_, _| unless_stopped(&stop);
-        let Question { from, until, futures, alternatives } = question;
-        let is_recorded = look_at_what_if(&mut self.session, *from);
-        let answer = self.what_if_of_run().and_then(|own| {
-            own.tell_hidden(is_recorded);
-            let found = own.answer((*from, *until), alternatives, *futures, &go_on)?;
+        let go_on = |_, _| continue_unless_stopped(&stop);
+        let WhatIfQuestion { from, until, futures, alternatives } = question;
+        let is_recorded = record_what_if_inspection(&mut self.session, *from);
+        let answer = self.prepare_what_if().and_then(|own| {
+            own.set_shows_hidden(is_recorded);
+            let found = own.compare_with_futures((*from, *until), alternatives, *futures, &go_on)?;
             Ok(found.map(|(comparison, drawn)| (comparison, drawn, own.days_per_week())))
         });
-        self.watch.enter(Phase::Working);
-        self.note_look("whatif", &[]);
+        self.watch.set_phase(Phase::Working);
+        self.record_view("whatif", &[]);
         match answer {
             Ok(Some((comparison, futures, days))) => {
-                let text = as_text(&comparison, futures.as_ref(), days);
-                Answer::done("whatif", text, as_data(&comparison, futures.as_ref(), days))
+                let text = comparison_to_text(&comparison, futures.as_ref(), days);
+                CommandResponse::success(
+                    "whatif",
+                    text,
+                    comparison_to_json(&comparison, futures.as_ref(), days),
+                )
             }
-            Ok(None) => {
-                Answer::refused("whatif", Refusal::new("stopped", "stopped before the answer was found"))
-            }
-            Err(refusal) => Answer::refused("whatif", refusal),
+            Ok(None) => CommandResponse::rejected(
+                "whatif",
+                Rejection::new("stopped", "stopped before the answer was found"),
+            ),
+            Err(refusal) => CommandResponse::rejected("whatif", refusal),
         }
     }
 
     /// Plays the only alternative of a question in a new branch and continues in it.
-    fn adopt(&mut self, question: &Question, column: usize) -> Result<Answer, Problem> {
+    fn adopt(&mut self, question: &WhatIfQuestion, column: usize) -> Result<CommandResponse, ParseError> {
         if question.futures.is_some() || question.until.is_some() {
             let text =
                 "adopt cannot be combined with until or futures: the branch is played to the day of this run"
                     .to_owned();
-            return Err(Problem { text, column });
+            return Err(ParseError { text, column });
         }
         let decided = match &question.alternatives[..] {
             [] => Vec::new(),
             [only] => only.clone(),
             _ => {
                 let text = "adopt takes one alternative; give only its edits".to_owned();
-                return Err(Problem { text, column });
+                return Err(ParseError { text, column });
             }
         };
-        Ok(self.branch_keeping(question.from, &decided))
+        Ok(self.branch_keeping_decisions(question.from, &decided))
     }
 
-    /// `branch WEEK [keep]`
-    pub(super) fn branch(&mut self, arguments: &[Argument]) -> Result<Answer, Problem> {
+    /// `branch NEXT_WEEK_KEYS [keep]`
+    pub(super) fn branch(&mut self, arguments: &[Argument]) -> Result<CommandResponse, ParseError> {
         let (last, first) =
             arguments.split_last().map_or((None, arguments), |(last, first)| (Some(last), first));
         let keeps = last.is_some_and(|last| last.key.is_none() && last.value == "keep");
-        let week = count(if keeps { first } else { arguments })?
-            .ok_or_else(|| problem(arguments, "branch needs the number of a week, for example branch 4"))?;
+        let week = optional_count(if keeps { first } else { arguments })?.ok_or_else(|| {
+            argument_error(arguments, "branch needs the number of a week, for example branch 4")
+        })?;
         if keeps {
-            return Ok(self.branch_keeping(week, &[]));
+            return Ok(self.branch_keeping_decisions(week, &[]));
         }
-        let mode = self.session.manifest().mode.of_branch();
+        let mode = self.session.manifest().mode.branch_mode();
         Ok(match self.session.branch(week, mode) {
             Ok(branch) => {
-                let (run, day) = self.go_on_in(branch);
+                let (run, day) = self.switch_to_run(branch);
                 let text = format!("run {run} continues from day {day} · {mode}");
-                Answer::done("branch", text, json!({ "run": run, "day": day, "mode": mode }))
+                CommandResponse::success("branch", text, json!({ "run": run, "day": day, "mode": mode }))
             }
-            Err(refusal) => Answer::refused("branch", refusal),
+            Err(refusal) => CommandResponse::rejected("branch", refusal),
         })
     }
 
     /// Continues in a branch with the decisions of this run and some edits.
-    fn branch_keeping(&mut self, week: u32, decided: &[DecisionEdit]) -> Answer {
-        let mode = self.session.manifest().mode.of_branch();
+    fn branch_keeping_decisions(&mut self, week: u32, decided: &[DecisionEdit]) -> CommandResponse {
+        let mode = self.session.manifest().mode.branch_mode();
         let stop = self.watch.enter_stoppable();
-        let mut go_on = |_| unless_stopped(&stop);
-        let adopted = branch_with_decisions(&self.session, week, decided, mode, &mut go_on);
-        self.watch.enter(Phase::Working);
+        let mut go_on = |_| continue_unless_stopped(&stop);
+        let adopted = create_branch_with_decisions(&self.session, week, decided, mode, &mut go_on);
+        self.watch.set_phase(Phase::Working);
         let adopted = match adopted {
             Ok(adopted) => adopted,
-            Err(refusal) => return Answer::refused("branch", refusal),
+            Err(refusal) => return CommandResponse::rejected("branch", refusal),
         };
-        let (run, day) = self.go_on_in(adopted.session);
+        let (run, day) = self.switch_to_run(adopted.session);
         let refused: Vec<Value> = adopted
-            .refused
+            .rejected
             .iter()
             .map(|(day, what, refusal)| json!({ "day": day, "what": what, "error": refusal }))
             .collect();
         let told = adopted
-            .refused
+            .rejected
             .iter()
             .map(|(day, what, refusal)| format!("\nday {day}: {what} was rejected: {}", refusal.message));
         let stands = match self.session.ended() {
@@ -203,69 +210,79 @@ impl Interpreter {
         };
         let text = format!(
             "{stands}with the decisions of its parent · {mode} · {}{}",
-            name(decided),
+            branch_name(decided),
             told.collect::<String>()
         );
-        Answer::done("branch", text, json!({ "run": run, "day": day, "mode": mode, "refused": refused }))
+        CommandResponse::success(
+            "branch",
+            text,
+            json!({ "run": run, "day": day, "mode": mode, "refused": refused }),
+        )
     }
 
     /// Leaves this run for another one. Returns the id and the day of that run.
-    pub(super) fn go_on_in(&mut self, other: Session) -> (String, u32) {
-        self.session.activity().leave(LeavingCause::Quit);
+    pub(super) fn switch_to_run(&mut self, other: Session) -> (String, u32) {
+        self.session.activity().detach(LeavingCause::Quit);
         let _ = self.session.save();
         self.session = other;
-        self.session.answer_companies_by(answers_to_companies);
-        self.session.activity().take_up(Interface { name: "plain", window: None });
+        self.session.set_rule_evaluator(calls_for_waiting_threads);
+        self.session.activity().attach(Interface { name: "plain", window: None });
         (self.session.manifest().id.clone(), self.session.day())
     }
 
     /// `branches`: the tree of branches that contains the run.
-    pub(super) fn branches(&self) -> Answer {
+    pub(super) fn branches(&self) -> CommandResponse {
         let id = &self.session.manifest().id;
         let Some(runs) = self.session.folder().and_then(Path::parent) else {
-            return Answer::refused(
+            return CommandResponse::rejected(
                 "branches",
-                Refusal::new("not_possible", "a run in memory has no branches"),
+                Rejection::new("not_possible", "a run in memory has no branches"),
             );
         };
-        let tree = branches_of(runs, id);
-        let lines: Vec<String> = tree.iter().map(|kin| kin_line(kin, id)).collect();
-        let one = |kin: &novamind_insight::Kin| {
+        let tree = related_runs(runs, id);
+        let lines: Vec<String> = tree.iter().map(|kin| related_run_line(kin, id)).collect();
+        let one = |kin: &novamind_insight::RelatedRun| {
             json!({
-                "run": kin.run.id, "depth": kin.depth, "left_in_week": kin.left_in_week,
+                "run": kin.run.id, "depth": kin.depth, "left_in_week": kin.branched_in_week,
                 "first_change": kin.first_change,
                 "day": kin.run.day, "cash": kin.run.cash, "ended": kin.run.ended,
             })
         };
         let data: Vec<Value> = tree.iter().map(one).collect();
-        Answer::done("branches", lines.join("\n"), json!({ "runs": data }))
+        CommandResponse::success("branches", lines.join("\n"), json!({ "runs": data }))
     }
 }
 
 /// Returns a row for each decision: line, week, tool or key, arguments or value, and whether it was rejected.
-fn decision_rows(decisions: &[PastDecision], days: u32) -> Vec<Vec<String>> {
-    let row = |own: &PastDecision| {
+fn decision_rows(decisions: &[RecordedDecision], days: u32) -> Vec<Vec<String>> {
+    let row = |own: &RecordedDecision| {
         let (what, arguments) = match own {
-            PastDecision::Call(call) => (call.tool.name().to_owned(), call.args.to_string()),
-            PastDecision::Parameter { key, value, .. } => (format!("set {key}"), value.to_string()),
+            RecordedDecision::Call(call) => (call.tool.name().to_owned(), call.args.to_string()),
+            RecordedDecision::Parameter { key, value, .. } => (format!("set {key}"), value.to_string()),
         };
-        vec![own.seq().to_string(), (own.day() / days + 1).to_string(), what, arguments, own.remark()]
+        vec![
+            own.seq().to_string(),
+            (own.day() / days + 1).to_string(),
+            what,
+            arguments,
+            own.describe_status(),
+        ]
     };
     decisions.iter().map(row).collect()
 }
 
 /// Converts a file, which holds the words before the colon in its first line and an alternative in each of the others.
-fn as_question(text: &str) -> String {
+fn question_from_file(text: &str) -> String {
     let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#'));
     let first = lines.next().unwrap_or_default().trim_end_matches(':');
     format!("{first}: {}", lines.collect::<Vec<_>>().join(" | "))
 }
 
 /// Parses a question that begins at a column.
-fn read(words: &str, column: usize) -> Result<Question, Problem> {
-    let problem = |text: String, at: usize| Problem { text, column: column + words[..at].chars().count() };
+fn parse_question(words: &str, column: usize) -> Result<WhatIfQuestion, ParseError> {
+    let problem = |text: String, at: usize| ParseError { text, column: column + words[..at].chars().count() };
     let (head, rest) = words.split_once(':').unwrap_or((words, ""));
-    let mut question = Question { from: 0, until: None, futures: None, alternatives: Vec::new() };
+    let mut question = WhatIfQuestion { from: 0, until: None, futures: None, alternatives: Vec::new() };
     let mut named = head.split_whitespace().peekable();
     while let Some(word) = named.next() {
         let at = word.as_ptr() as usize - words.as_ptr() as usize;
@@ -276,11 +293,11 @@ fn read(words: &str, column: usize) -> Result<Question, Problem> {
         match (word, number) {
             ("from", Some(week)) => question.from = week,
             ("until", Some(week)) => question.until = Some(week),
-            ("futures", Some(count)) if (2..=MOST_FUTURES).contains(&count) => question.futures = Some(count),
+            ("futures", Some(count)) if (2..=MAX_FUTURES).contains(&count) => question.futures = Some(count),
             ("futures", Some(_)) => {
-                return Err(problem(format!("the number of futures must be 2 to {MOST_FUTURES}"), at));
+                return Err(problem(format!("the number of futures must be 2 to {MAX_FUTURES}"), at));
             }
-            ("futures", None) => question.futures = Some(FUTURES),
+            ("futures", None) => question.futures = Some(DEFAULT_FUTURES),
             ("from" | "until", None) => {
                 return Err(problem(format!("{word} needs a week number; {USAGE}"), at));
             }
@@ -307,18 +324,19 @@ fn read(words: &str, column: usize) -> Result<Question, Problem> {
     Ok(question)
 }
 
-fn as_text(comparison: &BranchComparison, futures: Option<&Futures>, days: u32) -> String {
+fn comparison_to_text(comparison: &BranchComparison, futures: Option<&Futures>, days: u32) -> String {
     let mut text = heading(comparison, days);
     for (number, branch) in comparison.branches.iter().enumerate() {
         text += &format!("\n{}", branch_line(number, branch));
-        text.extend(decisions(branch, days).iter().map(|line| format!("\n     {line}")));
+        text.extend(describe_decisions(branch, days).iter().map(|line| format!("\n     {line}")));
     }
-    let (headers, rows) = table(comparison, days);
-    text += &format!("\n\n{}", aligned(&headers, &rows));
+    let (headers, rows) = comparison_table(comparison, days);
+    text += &format!("\n\n{}", align_columns(&headers, &rows));
     let Some(futures) = futures else { return text };
     let (headers, rows) = futures_table(comparison, futures, days);
-    text += &format!("\n{}\n{}", futures_heading(futures), aligned(&headers, &rows));
-    let early: Vec<String> = (0..comparison.branches.len()).filter_map(|at| bankrupt(futures, at)).collect();
+    text += &format!("\n{}\n{}", futures_heading(futures), align_columns(&headers, &rows));
+    let early: Vec<String> =
+        (0..comparison.branches.len()).filter_map(|at| describe_bankruptcies(futures, at)).collect();
     text += &early.join("\n");
     for number in 1..comparison.branches.len() {
         text += &format!(
@@ -332,21 +350,21 @@ fn as_text(comparison: &BranchComparison, futures: Option<&Futures>, days: u32) 
     text
 }
 
-fn as_data(comparison: &BranchComparison, futures: Option<&Futures>, days: u32) -> Value {
+fn comparison_to_json(comparison: &BranchComparison, futures: Option<&Futures>, days: u32) -> Value {
     let number = |value: f64| if value.is_nan() { Value::Null } else { json!(value) };
     let branch = |own: &BranchFigures| {
         let curves = comparison.figures.iter().map(|figure| {
-            let values: Vec<Value> = own.curve(*figure).map(|(_, value)| number(value)).collect();
+            let values: Vec<Value> = own.values_by_week(*figure).map(|(_, value)| number(value)).collect();
             (figure.id(), Value::Array(values))
         });
         let days_of: Vec<u32> = comparison
             .figures
             .first()
-            .map_or(Vec::new(), |one| own.curve(*one).map(|(day, _)| day).collect());
+            .map_or(Vec::new(), |one| own.values_by_week(*one).map(|(day, _)| day).collect());
         json!({
-            "name": name(&own.edits),
-            "differs_on": own.differs_on,
-            "decisions": decisions(own, days),
+            "name": branch_name(&own.edits),
+            "differs_on": own.first_different_day,
+            "decisions": describe_decisions(own, days),
             "days": days_of,
             "figures": Value::Object(curves.collect()),
         })
@@ -356,20 +374,20 @@ fn as_data(comparison: &BranchComparison, futures: Option<&Futures>, days: u32) 
         "until": comparison.until,
         "recorded_until": comparison.recorded_until,
         "branches": comparison.branches.iter().map(branch).collect::<Vec<_>>(),
-        "futures": futures.map(|futures| futures_as_data(comparison, futures)),
+        "futures": futures.map(|futures| futures_to_json(comparison, futures)),
     })
 }
 
-fn futures_as_data(comparison: &BranchComparison, futures: &Futures) -> Value {
+fn futures_to_json(comparison: &BranchComparison, futures: &Futures) -> Value {
     let branch = |at: usize| {
         let figures = comparison.figures.iter().map(|figure| {
             let bands: Vec<Value> = futures
-                .bands(at, *figure)
+                .intervals(at, *figure)
                 .map(|(day, band)| json!({ "day": day, "low": band.low, "median": band.median, "high": band.high }))
                 .collect();
             let difference = futures.difference(at, *figure, comparison.until).map(|own| {
                 let interval = own.interval.map(|own| [own.low, own.high]);
-                json!({ "mean": own.mean, "interval": interval, "more": own.more, "of": own.of })
+                json!({ "mean": own.mean, "interval": interval, "more": own.first_greater, "of": own.pair_count })
             });
             (figure.id(), json!({ "bands": bands, "difference_at_the_end": difference }))
         });
@@ -389,29 +407,29 @@ mod tests {
     #[test]
     fn a_question_names_weeks_futures_and_alternatives() {
         let edit = |text: &str| text.parse::<DecisionEdit>().expect(text);
-        let asked = read("from 20 until 40 futures: set_prices * 0.9; drop 7 | keep set_prices", 1);
-        let expected = Question {
+        let asked = parse_question("from 20 until 40 futures: set_prices * 0.9; drop 7 | keep set_prices", 1);
+        let expected = WhatIfQuestion {
             from: 20,
             until: Some(40),
-            futures: Some(FUTURES),
+            futures: Some(DEFAULT_FUTURES),
             alternatives: vec![vec![edit("set_prices * 0.9"), edit("drop 7")], vec![edit("keep set_prices")]],
         };
         assert_eq!(asked, Ok(expected.clone()));
         let file = "# cheaper\nfrom 20 until 40 futures:\nset_prices * 0.9; drop 7\n\nkeep set_prices\n";
-        assert_eq!(read(&as_question(file), 1), Ok(expected));
-        assert_eq!(read("from 3", 1).map(|own| own.alternatives), Ok(Vec::new()));
+        assert_eq!(parse_question(&question_from_file(file), 1), Ok(expected));
+        assert_eq!(parse_question("from 3", 1).map(|own| own.alternatives), Ok(Vec::new()));
     }
 
     #[test]
-    fn what_is_no_question_is_refused_where_it_goes_wrong() {
-        let said = |words: &str| read(words, 8).expect_err(words);
+    fn parse_question_errors_name_the_column() {
+        let said = |words: &str| parse_question(words, 8).expect_err(words);
         assert_eq!(said("").column, 8);
         assert!(said("from: set_prices * 2").text.starts_with("from needs a week number"));
         let wrong = said("from 20 to 30: drop 1");
         assert_eq!((wrong.column, wrong.text.starts_with("to is not understood")), (16, true));
         assert!(said("adopt 5").text.starts_with("adopt needs from and a week"));
         assert!(said("file").text.starts_with("file needs"));
-        assert_eq!(read("from week 3", 1).map(|own| own.from), Ok(3));
+        assert_eq!(parse_question("from week 3", 1).map(|own| own.from), Ok(3));
         assert!(said("from 20 futures 1: drop 1").text.starts_with("the number of futures"));
         let wrong = said("from 20: set_price * 2");
         assert_eq!((wrong.column, wrong.text.contains("did you mean set_prices")), (17, true));

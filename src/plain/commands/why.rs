@@ -1,56 +1,61 @@
-//! `why FIGURE [WEEK]`: the change of a figure in a week, and the contribution of each cause.
+//! `why FIGURE [NEXT_WEEK_KEYS]`: the change of a figure in a week, and the contribution of each cause.
 
 use serde_json::{Value, json};
 
-use super::super::answers::Answer;
-use super::super::grammar::Problem;
+use super::super::grammar::ParseError;
+use super::super::response::CommandResponse;
 use super::Interpreter;
-use novamind_database::text::aligned;
-use novamind_insight::{ConditionProblem, WeekQuestion, Why, begin_why, folder_of_causes, unless_stopped};
-use novamind_report::why::{equation, heading, lines};
+use novamind_database::text::align_columns;
+use novamind_insight::{
+    ChangeExplanation, ConditionParseError, WeekQuestion, begin_cause_analysis, cause_analysis_folder,
+    continue_unless_stopped,
+};
+use novamind_report::why::{cause_lines, equation, heading};
 use novamind_session::identifiers::Group;
-use novamind_tools::Refusal;
+use novamind_tools::Rejection;
 
 impl Interpreter {
-    pub(super) fn why(&mut self, words: &str, column: usize) -> Result<Answer, Problem> {
-        if let Err(refusal) = folder_of_causes(&self.session) {
-            return Ok(Answer::refused("why", refusal));
+    pub(super) fn why(&mut self, words: &str, column: usize) -> Result<CommandResponse, ParseError> {
+        if let Err(refusal) = cause_analysis_folder(&self.session) {
+            return Ok(CommandResponse::rejected("why", refusal));
         }
-        let asked: WeekQuestion = words.parse().map_err(|problem: ConditionProblem| Problem {
+        let asked: WeekQuestion = words.parse().map_err(|problem: ConditionParseError| ParseError {
             text: problem.message,
             column: column + problem.column - 1,
         })?;
-        self.note_look(&format!("why {words}"), &[]);
+        self.record_view(&format!("why {words}"), &[]);
         let stop = self.watch.enter_stoppable();
-        let folder = begin_why(&mut self.session, &asked);
-        let answer =
-            folder.and_then(|folder| self.causes_kept.of(folder)?.why(asked, &|_| unless_stopped(&stop)));
-        self.watch.enter(super::Phase::Working);
+        let folder = begin_cause_analysis(&mut self.session, &asked);
+        let answer = folder.and_then(|folder| {
+            self.cached_causes.get_or_open(folder)?.explain(asked, &|_| continue_unless_stopped(&stop))
+        });
+        self.watch.set_phase(super::Phase::Working);
         Ok(match answer {
-            Ok(Some(why)) => Answer::done("why", as_text(&why), as_data(&why)),
-            Ok(None) => {
-                Answer::refused("why", Refusal::new("stopped", "stopped before the answer was found"))
-            }
-            Err(refusal) => Answer::refused("why", refusal),
+            Ok(Some(why)) => CommandResponse::success("why", why_to_text(&why), why_to_json(&why)),
+            Ok(None) => CommandResponse::rejected(
+                "why",
+                Rejection::new("stopped", "stopped before the answer was found"),
+            ),
+            Err(refusal) => CommandResponse::rejected("why", refusal),
         })
     }
 }
 
-fn as_text(why: &Why) -> String {
+fn why_to_text(why: &ChangeExplanation) -> String {
     let row = |line: novamind_report::why::CauseLine| {
-        vec![line.name.to_owned(), line.written, line.details.join(" · ")]
+        vec![line.name.to_owned(), line.amount_text, line.details.join(" · ")]
     };
-    let rows: Vec<Vec<String>> = lines(why).into_iter().map(row).collect();
-    let table = aligned(&["cause", "share", "what differed"].map(str::to_owned), &rows);
+    let rows: Vec<Vec<String>> = cause_lines(why).into_iter().map(row).collect();
+    let table = align_columns(&["cause", "share", "what differed"].map(str::to_owned), &rows);
     format!(
         "{}\n{}\n{table}the week was simulated {} more times",
         heading(why),
         equation(why),
-        why.simulations
+        why.simulation_count
     )
 }
 
-fn as_data(why: &Why) -> Value {
+fn why_to_json(why: &ChangeExplanation) -> Value {
     let cause = |line: &novamind_report::why::CauseLine| json!({ "cause": line.name, "amount": line.amount, "details": line.details });
     json!({
         "figure": why.quantity.figure().id(),
@@ -59,7 +64,7 @@ fn as_data(why: &Why) -> Value {
         "before": why.before,
         "after": why.after,
         "change": why.change(),
-        "causes": lines(why).iter().map(cause).collect::<Vec<_>>(),
-        "simulations": why.simulations,
+        "causes": cause_lines(why).iter().map(cause).collect::<Vec<_>>(),
+        "simulations": why.simulation_count,
     })
 }

@@ -8,7 +8,7 @@ pub fn churn(cancellations: f64, subscribers_before: f64) -> Option<f64> {
 }
 
 /// Returns the churn of individuals in the last week, or `None` without subscribers before it.
-pub fn churn_of_last_week(weeks: &[WeekFigures]) -> Option<f64> {
+pub fn last_week_churn(weeks: &[WeekFigures]) -> Option<f64> {
     let [.., before, last] = weeks else { return None };
     churn(last.cancellations.into(), before.individual_subscribers.into())
 }
@@ -18,7 +18,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn churn_is_a_share_of_those_who_were_there_before() {
+    fn churn_divides_by_subscribers_before() {
         assert_eq!(churn(5.0, 200.0), Some(0.025));
         assert_eq!((churn(0.0, 3.0), churn(0.0, 0.0)), (Some(0.0), None));
     }

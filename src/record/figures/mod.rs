@@ -1,15 +1,15 @@
 //! Figures of a week: those in its trajectory line, and those that lessons and explanations use.
 
-mod booked;
+mod category_totals;
 mod churn;
-mod measured_group;
+mod group_figures;
 mod simulated_week;
 mod week;
 mod week_figure;
 
-pub use booked::Booked;
-pub use churn::{churn, churn_of_last_week};
-pub use measured_group::MeasuredGroup;
-pub use simulated_week::{GroupOfWeek, SimulatedWeek};
+pub use category_totals::CategoryTotals;
+pub use churn::{churn, last_week_churn};
+pub use group_figures::GroupFigures;
+pub use simulated_week::{SimulatedWeek, WeekGroupFigures};
 pub use week::WeekFigures;
 pub use week_figure::{FigureUnit, WeekFigure};

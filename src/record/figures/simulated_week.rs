@@ -1,32 +1,32 @@
 //! Figures of a simulated week for the company and for each group.
 
 use super::churn::churn;
-use super::measured_group::MeasuredGroup;
+use super::group_figures::GroupFigures;
 use super::week::WeekFigures;
 use novamind_world::events::Category;
 use novamind_world::identifiers::{ByGroup, Group};
 
-const PURCHASES: [Category; 3] =
+const PURCHASE_CATEGORIES: [Category; 3] =
     [Category::ResearchProject, Category::MarketResearch, Category::GroupResearch];
 
 /// Figures of a group in a week.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct GroupOfWeek {
+pub struct WeekGroupFigures {
     /// Figures of the group.
-    pub measured: MeasuredGroup,
+    pub figures: GroupFigures,
     /// Active subscriptions before its first day.
     pub subscribers_before: u32,
 }
 
-impl GroupOfWeek {
+impl WeekGroupFigures {
     /// Returns sign-ups as a share of leads; NaN without leads.
     pub fn conversion(&self) -> f64 {
-        f64::from(self.measured.signed) / f64::from(self.measured.leads)
+        f64::from(self.figures.signed) / f64::from(self.figures.leads)
     }
 
     /// Returns cancellations as a share of the subscribers before; NaN without subscribers.
     pub fn churn(&self) -> f64 {
-        churn(self.measured.left.into(), self.subscribers_before.into()).unwrap_or(f64::NAN)
+        churn(self.figures.left.into(), self.subscribers_before.into()).unwrap_or(f64::NAN)
     }
 }
 
@@ -38,15 +38,15 @@ pub struct SimulatedWeek {
     /// Mean satisfaction of individuals at its end; NaN without subscribers.
     pub satisfaction: f64,
     /// Figures by group.
-    pub groups: ByGroup<GroupOfWeek>,
+    pub groups: ByGroup<WeekGroupFigures>,
 }
 
 impl SimulatedWeek {
     /// Returns the week without its one-time purchases.
     pub fn without_purchases(&self) -> SimulatedWeek {
         let mut figures = self.figures;
-        for category in PURCHASES {
-            let paid = figures.booked.of(category);
+        for category in PURCHASE_CATEGORIES {
+            let paid = figures.booked.total_of(category);
             figures.booked.add(category, -paid);
             figures.cash_change -= paid;
         }
@@ -54,17 +54,17 @@ impl SimulatedWeek {
     }
 
     /// Returns a week with company figures only.
-    pub fn without_groups(figures: WeekFigures) -> SimulatedWeek {
+    pub fn from_company_figures(figures: WeekFigures) -> SimulatedWeek {
         SimulatedWeek { figures, satisfaction: f64::NAN, groups: ByGroup::default() }
     }
 
     /// Returns the leads of all groups.
-    pub fn leads(&self) -> f64 {
-        Group::all().map(|group| f64::from(self.groups[group].measured.leads)).sum()
+    pub fn total_leads(&self) -> f64 {
+        Group::all().map(|group| f64::from(self.groups[group].figures.leads)).sum()
     }
 
     /// Returns the churn of individuals; NaN without subscribers.
-    pub fn churn(&self) -> f64 {
+    pub fn individual_churn(&self) -> f64 {
         let individuals = Group::all().filter(|group| !group.is_enterprise());
         let before: u32 = individuals.map(|group| self.groups[group].subscribers_before).sum();
         churn(self.figures.cancellations.into(), before.into()).unwrap_or(f64::NAN)
@@ -81,8 +81,8 @@ impl SimulatedWeek {
     }
 
     /// Returns the costs of a category as a positive amount, in dollars.
-    pub fn spent(&self, category: Category) -> f64 {
+    pub fn costs_of(&self, category: Category) -> f64 {
         // Avoids negative zero.
-        0.0 - self.figures.booked.of(category)
+        0.0 - self.figures.booked.total_of(category)
     }
 }

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
-use super::booked::Booked;
-use novamind_base::notation::json_number;
+use super::category_totals::CategoryTotals;
+use novamind_base::formatting::json_number;
 use novamind_world::events::{
     Category, DayFigures, Facts, LedgerEntry, Notice, Sender, SubscriptionEnded, SubscriptionStatus,
 };
@@ -62,7 +62,7 @@ pub struct WeekFigures {
     /// Highest error rate.
     pub error_rate_peak: f64,
     /// Ledger totals by category since the end of the previous week.
-    pub booked: Booked,
+    pub booked: CategoryTotals,
     /// Payments of subscribers, dollars.
     pub payments: f64,
     /// Running costs, dollars.
@@ -91,8 +91,14 @@ impl WeekFigures {
     }
 
     /// Adds a simulated day: its figures, its facts, and the ledger entries of calls before it.
-    pub fn count(&mut self, figures: &DayFigures, facts: &Facts, called: &[LedgerEntry], params: &Params) {
-        self.add(figures);
+    pub fn add_simulated_day(
+        &mut self,
+        figures: &DayFigures,
+        facts: &Facts,
+        called: &[LedgerEntry],
+        params: &Params,
+    ) {
+        self.add_day_figures(figures);
         let leads = f64::from(figures.new_leads) * params.leads.lead_acquisition_cost;
         self.booked.add(Category::LeadAcquisitionCost, -leads);
         self.booked.add(Category::SubscriptionPayment, figures.payments_received);
@@ -120,7 +126,7 @@ impl WeekFigures {
     }
 
     /// Adds the figures of a day: sums are added, peaks are maxima, stocks are those of the last day.
-    pub fn add(&mut self, day: &DayFigures) {
+    pub fn add_day_figures(&mut self, day: &DayFigures) {
         self.day = day.day;
         self.days_run += 1;
         self.cash = day.cash;
@@ -146,7 +152,7 @@ impl WeekFigures {
     }
 
     /// Returns the figures of `week` lines and JSON output by their keys.
-    pub fn as_json(&self) -> Map<String, Value> {
+    pub fn to_json(&self) -> Map<String, Value> {
         let figures = json!({
             "cash": json_number(self.cash),
             "individual_subscribers": self.individual_subscribers,
@@ -180,11 +186,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_week_sums_usage_and_keeps_peaks() {
+    fn week_figures_sum_usage_and_keep_peaks() {
         let mut week = WeekFigures::default();
         for day in 1..=7u32 {
             let outage = day == 3;
-            week.add(&DayFigures {
+            week.add_day_figures(&DayFigures {
                 day,
                 total_usage: u64::from(day) * 10,
                 outage,

@@ -1,6 +1,6 @@
 //! Figures of a week that explanations and lessons can name.
 
-use super::simulated_week::{GroupOfWeek, SimulatedWeek};
+use super::simulated_week::{SimulatedWeek, WeekGroupFigures};
 use super::week::WeekFigures;
 use novamind_world::events::Category;
 
@@ -14,17 +14,17 @@ pub enum FigureUnit {
     /// A share; 1 is 100 %.
     Share,
     /// A share that is shown with hundredths of a percent.
-    FineShare,
+    PreciseShare,
     /// A level that is shown with thousandths.
     Level,
 }
 
 /// Reads the figure of the company; `None` for a figure of groups only. NaN if it has no value.
-pub type OfCompany = Option<fn(&SimulatedWeek) -> f64>;
+pub type CompanyReader = Option<fn(&SimulatedWeek) -> f64>;
 /// Reads the figure of a group; `None` for a figure of the company only.
-pub type OfGroup = Option<fn(&GroupOfWeek) -> f64>;
+pub type GroupReader = Option<fn(&WeekGroupFigures) -> f64>;
 
-macro_rules! figures {
+macro_rules! define_figures {
     ($($figure:ident = $name:literal, $unit:ident, $company:expr, $group:expr;)*) => {
         /// A figure of a week.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -46,12 +46,12 @@ macro_rules! figures {
             }
 
             /// Returns the reader for the company.
-            pub fn of_company(self) -> OfCompany {
+            pub fn company_reader(self) -> CompanyReader {
                 match self { $(WeekFigure::$figure => $company),* }
             }
 
             /// Returns the reader for a group.
-            pub fn of_group(self) -> OfGroup {
+            pub fn group_reader(self) -> GroupReader {
                 match self { $(WeekFigure::$figure => $group),* }
             }
         }
@@ -59,21 +59,21 @@ macro_rules! figures {
 }
 
 // Costs are positive, unlike in the ledger.
-figures! {
+define_figures! {
     CashChange = "cash change", Dollars, Some(|week| week.figures.cash_change), None;
     RecurringRevenue = "recurring revenue", Dollars, Some(|week| week.figures.recurring_revenue), None;
     Payments = "payments", Dollars, Some(|week| week.figures.payments), None;
     RunningCosts = "running costs", Dollars, Some(|week| week.figures.costs), None;
     Subscribers = "subscribers", Count,
-        Some(|week| week.figures.individual_subscribers.into()), Some(|own| own.measured.subscribers.into());
-    Leads = "leads", Count, Some(SimulatedWeek::leads), Some(|own| own.measured.leads.into());
+        Some(|week| week.figures.individual_subscribers.into()), Some(|own| own.figures.subscribers.into());
+    Leads = "leads", Count, Some(SimulatedWeek::total_leads), Some(|own| own.figures.leads.into());
     IndividualLeads = "individual leads", Count, Some(|week| week.figures.new_individual_leads.into()), None;
     NewSubscribers = "new subscribers", Count,
-        Some(|week| week.figures.new_individual_subscribers.into()), Some(|own| own.measured.signed.into());
-    Conversion = "conversion", FineShare, Some(|week| week.figures.conversion()), Some(GroupOfWeek::conversion);
+        Some(|week| week.figures.new_individual_subscribers.into()), Some(|own| own.figures.signed.into());
+    Conversion = "conversion", PreciseShare, Some(|week| week.figures.conversion()), Some(WeekGroupFigures::conversion);
     Cancellations = "cancellations", Count,
-        Some(|week| week.figures.cancellations.into()), Some(|own| own.measured.left.into());
-    Churn = "churn", FineShare, Some(SimulatedWeek::churn), Some(GroupOfWeek::churn);
+        Some(|week| week.figures.cancellations.into()), Some(|own| own.figures.left.into());
+    Churn = "churn", PreciseShare, Some(SimulatedWeek::individual_churn), Some(WeekGroupFigures::churn);
     Upgrades = "upgrades", Count, Some(|week| week.figures.upgrades.into()), None;
     Downgrades = "downgrades", Count, Some(|week| week.figures.downgrades.into()), None;
     Seats = "seats", Count, Some(|week| week.figures.enterprise_seats.into()), None;
@@ -81,33 +81,33 @@ figures! {
     NewSeats = "new seats", Count, Some(|week| week.figures.new_enterprise_seats.into()), None;
     SeatsLost = "seats lost", Count, Some(|week| week.figures.seats_lost.into()), None;
     CompaniesLost = "companies lost", Count, Some(|week| week.figures.companies_lost.into()), None;
-    Usage = "usage", Count, Some(|week| week.figures.usage as f64), Some(|own| own.measured.usage as f64);
+    Usage = "usage", Count, Some(|week| week.figures.usage as f64), Some(|own| own.figures.usage as f64);
     OverloadPeak = "overload", Share, Some(|week| week.figures.overload_peak), None;
     Outage = "outage", Count, Some(|week| week.figures.downtime_minutes.into()), None;
     LatencyPeak = "latency", Count, Some(|week| week.figures.p95_ms_peak), None;
-    ErrorRatePeak = "error rate", FineShare, Some(|week| week.figures.error_rate_peak), None;
+    ErrorRatePeak = "error rate", PreciseShare, Some(|week| week.figures.error_rate_peak), None;
     OpenIssues = "open issues", Count,
-        Some(|week| week.figures.open_issues.into()), Some(|own| own.measured.open_issues.into());
+        Some(|week| week.figures.open_issues.into()), Some(|own| own.figures.open_issues.into());
     Satisfaction = "satisfaction", Level,
-        Some(|week| week.satisfaction), Some(|own| own.measured.satisfaction.unwrap_or(f64::NAN));
-    Reputation = "reputation", Level, None, Some(|own| own.measured.reputation);
+        Some(|week| week.satisfaction), Some(|own| own.figures.satisfaction.unwrap_or(f64::NAN));
+    Reputation = "reputation", Level, None, Some(|own| own.figures.reputation);
     Income = "income", Dollars, Some(SimulatedWeek::income), None;
     Costs = "costs", Dollars, Some(SimulatedWeek::costs), None;
-    AdRevenue = "ad revenue", Dollars, Some(|week| week.figures.booked.of(Category::AdRevenue)), None;
-    Compute = "compute", Dollars, Some(|week| week.spent(Category::Compute)), None;
-    Capacity = "capacity", Dollars, Some(|week| week.spent(Category::Capacity)), None;
-    Advertising = "advertising", Dollars, Some(|week| week.spent(Category::Advertising)), None;
-    LeadCosts = "lead costs", Dollars, Some(|week| week.spent(Category::LeadAcquisitionCost)), None;
-    Operations = "operations", Dollars, Some(|week| week.spent(Category::Operations)), None;
-    Development = "development", Dollars, Some(|week| week.spent(Category::Development)), None;
-    Research = "R&D", Dollars, Some(|week| week.spent(Category::ResearchProject)), None;
-    MarketResearch = "market research", Dollars, Some(|week| week.spent(Category::MarketResearch)), None;
-    GroupStudies = "group studies", Dollars, Some(|week| week.spent(Category::GroupResearch)), None;
+    AdRevenue = "ad revenue", Dollars, Some(|week| week.figures.booked.total_of(Category::AdRevenue)), None;
+    Compute = "compute", Dollars, Some(|week| week.costs_of(Category::Compute)), None;
+    Capacity = "capacity", Dollars, Some(|week| week.costs_of(Category::Capacity)), None;
+    Advertising = "advertising", Dollars, Some(|week| week.costs_of(Category::Advertising)), None;
+    LeadCosts = "lead costs", Dollars, Some(|week| week.costs_of(Category::LeadAcquisitionCost)), None;
+    Operations = "operations", Dollars, Some(|week| week.costs_of(Category::Operations)), None;
+    Development = "development", Dollars, Some(|week| week.costs_of(Category::Development)), None;
+    Research = "R&D", Dollars, Some(|week| week.costs_of(Category::ResearchProject)), None;
+    MarketResearch = "market research", Dollars, Some(|week| week.costs_of(Category::MarketResearch)), None;
+    GroupStudies = "group studies", Dollars, Some(|week| week.costs_of(Category::GroupResearch)), None;
 }
 
 impl WeekFigure {
     /// Returns the figure with a name on screens, which a unit or `peak` may follow.
-    pub fn named(name: &str) -> Option<WeekFigure> {
+    pub fn parse_label(name: &str) -> Option<WeekFigure> {
         let own = |figure: &WeekFigure| name.split(',').next().is_some_and(|name| name == figure.name());
         let longer = match name {
             "enterprise seats" => Some(WeekFigure::Seats),
@@ -118,7 +118,7 @@ impl WeekFigure {
     }
 
     /// Returns the figure that sums a ledger category; `None` for the initial funding.
-    pub fn of_category(category: Category) -> Option<WeekFigure> {
+    pub fn for_category(category: Category) -> Option<WeekFigure> {
         Some(match category {
             Category::SubscriptionPayment => WeekFigure::Payments,
             Category::AdRevenue => WeekFigure::AdRevenue,
@@ -147,21 +147,21 @@ impl WeekFigure {
 
     /// Returns the value from the visible figures of a week, or `None` if the figure needs group data or is hidden. NaN if it
     /// has no value.
-    pub fn of_week(self, figures: &WeekFigures) -> Option<f64> {
+    pub fn company_value(self, figures: &WeekFigures) -> Option<f64> {
         use WeekFigure::{Churn, Leads, Reputation, Satisfaction};
         if matches!(self, Leads | Churn | Satisfaction | Reputation) {
             return None;
         }
-        Some(self.of_company()?(&SimulatedWeek::without_groups(*figures)))
+        Some(self.company_reader()?(&SimulatedWeek::from_company_figures(*figures)))
     }
 
     /// Returns whether the company has this figure.
-    pub fn is_of_company(self) -> bool {
-        self.of_company().is_some()
+    pub fn has_company_value(self) -> bool {
+        self.company_reader().is_some()
     }
 
     /// Returns whether each group has this figure.
-    pub fn is_of_group(self) -> bool {
-        self.of_group().is_some()
+    pub fn has_group_values(self) -> bool {
+        self.group_reader().is_some()
     }
 }

@@ -8,7 +8,7 @@ use toml::Table;
 
 use crate::error::RunError;
 use novamind_voice::model::settings::ModelSettings;
-use novamind_world::params::{ParameterError, ParameterSource, Params, line_of_key, shipped_sources};
+use novamind_world::params::{ParameterError, ParameterSource, Params, bundled_sources, line_of_key};
 
 /// Configuration of the user.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -37,7 +37,7 @@ pub struct Scenario {
     /// Source file.
     source: ParameterSource,
     /// Whether it is bundled with the program.
-    pub shipped: bool,
+    pub is_bundled: bool,
 }
 
 #[derive(Deserialize)]
@@ -56,7 +56,7 @@ pub const DEFAULT_SCENARIO: &str = "default";
 
 impl Configuration {
     /// Returns the configuration in `NOVAMIND_CONFIG`, or in the platform's configuration folder.
-    pub fn of_user() -> Configuration {
+    pub fn from_environment() -> Configuration {
         let from_environment = std::env::var_os("NOVAMIND_CONFIG").map(PathBuf::from);
         let platform =
             || directories::ProjectDirs::from("", "", "novamind").map(|dirs| dirs.config_dir().to_owned());
@@ -64,12 +64,12 @@ impl Configuration {
     }
 
     /// Returns a configuration with bundled files only.
-    pub fn shipped() -> Configuration {
+    pub fn bundled() -> Configuration {
         Configuration { folder: None, voice: None }
     }
 
     /// Returns the folder of runs: `NOVAMIND_RUNS`, or a folder in the platform's data folder.
-    pub fn runs_folder() -> Option<PathBuf> {
+    pub fn default_runs_folder() -> Option<PathBuf> {
         let from_environment = std::env::var_os("NOVAMIND_RUNS").map(PathBuf::from);
         let platform =
             || directories::ProjectDirs::from("", "", "novamind").map(|dirs| dirs.data_dir().join("runs"));
@@ -80,7 +80,7 @@ impl Configuration {
     ///
     /// # Errors
     /// The file exists and cannot be read.
-    pub fn file(&self, relative: impl AsRef<Path>) -> Result<Option<ParameterSource>, RunError> {
+    pub fn read_file(&self, relative: impl AsRef<Path>) -> Result<Option<ParameterSource>, RunError> {
         let Some(folder) = &self.folder else { return Ok(None) };
         let path = folder.join(relative);
         match std::fs::read_to_string(&path) {
@@ -91,12 +91,12 @@ impl Configuration {
     }
 
     /// Returns the names of the TOML files in a folder of the configuration, without their ending, sorted.
-    pub fn names(&self, folder: &str) -> Vec<String> {
-        self.names_ending(folder, ".toml")
+    pub fn toml_names(&self, folder: &str) -> Vec<String> {
+        self.file_names(folder, ".toml")
     }
 
     /// Returns the names of the files with an ending in a folder of the configuration, without the ending, sorted.
-    pub fn names_ending(&self, folder: &str, ending: &str) -> Vec<String> {
+    pub fn file_names(&self, folder: &str, ending: &str) -> Vec<String> {
         let Some(own) = &self.folder else { return Vec::new() };
         let entries = std::fs::read_dir(own.join(folder)).into_iter().flatten().flatten();
         let mut names: Vec<String> = entries
@@ -107,12 +107,12 @@ impl Configuration {
     }
 
     /// Returns the names of all scenarios: bundled ones, then those of the user.
-    pub fn scenarios(&self) -> Vec<String> {
+    pub fn scenario_names(&self) -> Vec<String> {
         let mut names: Vec<String> =
             novamind_assets::scenarios().into_iter().map(|(name, _)| name.to_owned()).collect();
         // The default scenario comes first.
         names.sort_by_key(|name| name != DEFAULT_SCENARIO);
-        let own = self.names("scenarios").into_iter().filter(|own| !names.contains(own));
+        let own = self.toml_names("scenarios").into_iter().filter(|own| !names.contains(own));
         let own: Vec<String> = own.collect();
         names.extend(own);
         names
@@ -122,25 +122,28 @@ impl Configuration {
     ///
     /// # Errors
     /// The scenario does not exist, or its file is invalid.
-    pub fn scenario(&self, name: &str) -> Result<Scenario, RunError> {
-        if let Some(source) = self.file(format!("scenarios/{name}.toml"))? {
-            return Ok(read_scenario(name, source, false)?);
+    pub fn load_scenario(&self, name: &str) -> Result<Scenario, RunError> {
+        if let Some(source) = self.read_file(format!("scenarios/{name}.toml"))? {
+            return Ok(parse_scenario(name, source, false)?);
         }
         match novamind_assets::scenarios().into_iter().find(|(shipped, _)| *shipped == name) {
             Some((_, text)) => {
                 let file = format!("configs/scenarios/{name}.toml");
-                Ok(read_scenario(name, ParameterSource { name: file, text: text.to_owned() }, true)?)
+                Ok(parse_scenario(name, ParameterSource { name: file, text: text.to_owned() }, true)?)
             }
-            None => Err(RunError::NoScenario { name: name.to_owned(), known: self.scenarios().join(", ") }),
+            None => Err(RunError::UnknownScenario {
+                name: name.to_owned(),
+                known: self.scenario_names().join(", "),
+            }),
         }
     }
 
-    /// Returns days and starting cash of a scenario; `own` as in [`Configuration::parameters`].
+    /// Returns days and starting cash of a scenario; `own` as in [`Configuration::load_parameters`].
     ///
     /// # Errors
     /// The first invalid value, with its position.
-    pub fn terms(&self, scenario: &Scenario, own: bool) -> Result<(u32, f64), RunError> {
-        Ok(scenario.terms(&self.parameters(scenario, &[], own)?))
+    pub fn days_and_cash(&self, scenario: &Scenario, own: bool) -> Result<(u32, f64), RunError> {
+        Ok(scenario.days_and_cash_with(&self.load_parameters(scenario, &[], own)?))
     }
 
     /// Loads the parameters of a scenario and applies single overrides, each `(table.key, value as TOML)`.
@@ -149,7 +152,7 @@ impl Configuration {
     ///
     /// # Errors
     /// The first invalid value, with its position.
-    pub fn parameters(
+    pub fn load_parameters(
         &self,
         scenario: &Scenario,
         overrides: &[(String, String)],
@@ -157,31 +160,31 @@ impl Configuration {
     ) -> Result<Params, RunError> {
         let mut sources = Vec::new();
         if own {
-            for name in self.names("world") {
-                sources.extend(self.file(format!("world/{name}.toml"))?);
+            for name in self.toml_names("world") {
+                sources.extend(self.read_file(format!("world/{name}.toml"))?);
             }
         }
-        sources.push(scenario.as_overrides());
+        sources.push(scenario.to_parameter_source());
         for (key, value) in overrides {
-            sources.push(single_override(key, value)?);
+            sources.push(parse_override(key, value)?);
         }
-        Ok(Params::load(&shipped_sources(), &sources).map_err(|error| scenario.located(error))?)
+        Ok(Params::load(&bundled_sources(), &sources).map_err(|error| scenario.with_scenario_line(error))?)
     }
 }
 
 impl Scenario {
-    fn as_overrides(&self) -> ParameterSource {
+    fn to_parameter_source(&self) -> ParameterSource {
         let text = toml::to_string(&self.world).expect("a table that was read can be written");
         ParameterSource { name: self.source.name.clone(), text }
     }
 
     /// Returns days and starting cash, with defaults from the parameters.
-    pub fn terms(&self, params: &Params) -> (u32, f64) {
+    pub fn days_and_cash_with(&self, params: &Params) -> (u32, f64) {
         (self.days.unwrap_or(params.run.total_days), self.cash.unwrap_or(params.initial.initial_cash))
     }
 
     /// Adds the line in the scenario's file to an error.
-    fn located(&self, error: ParameterError) -> ParameterError {
+    fn with_scenario_line(&self, error: ParameterError) -> ParameterError {
         if error.source != self.source.name {
             return error;
         }
@@ -189,10 +192,11 @@ impl Scenario {
     }
 }
 
-fn read_scenario(name: &str, source: ParameterSource, shipped: bool) -> Result<Scenario, ParameterError> {
+fn parse_scenario(name: &str, source: ParameterSource, shipped: bool) -> Result<Scenario, ParameterError> {
     let file: ScenarioFile = toml::from_str(&source.text)
-        .map_err(|error| ParameterError::of_toml(&source.name, &source.text, &error))?;
-    let wrong = |key: &str, problem: String| ParameterError::of_key(&source.name, &source.text, key, problem);
+        .map_err(|error| ParameterError::from_toml(&source.name, &source.text, &error))?;
+    let wrong =
+        |key: &str, problem: String| ParameterError::for_key(&source.name, &source.text, key, problem);
     file.days.map_or(Ok(()), check_days).map_err(|problem| wrong("days", problem))?;
     file.cash.map_or(Ok(()), check_cash).map_err(|problem| wrong("cash", problem))?;
     Ok(Scenario {
@@ -203,12 +207,12 @@ fn read_scenario(name: &str, source: ParameterSource, shipped: bool) -> Result<S
         cash: file.cash,
         world: file.world,
         source,
-        shipped,
+        is_bundled: shipped,
     })
 }
 
 /// Returns a source that sets one parameter from `table.key` and a TOML value; a bare word is read as text.
-fn single_override(key: &str, value: &str) -> Result<ParameterSource, ParameterError> {
+fn parse_override(key: &str, value: &str) -> Result<ParameterSource, ParameterError> {
     let name = format!("--set {key}={value}");
     let wrong = |problem: &str| ParameterError {
         source: name.clone(),
@@ -227,17 +231,17 @@ fn single_override(key: &str, value: &str) -> Result<ParameterSource, ParameterE
     Ok(ParameterSource { name, text })
 }
 
-const FEWEST_DAYS: u32 = 7;
+const MIN_RUN_DAYS: u32 = 7;
 
 /// Checks the number of days of a run.
 ///
 /// # Errors
 /// A message with the allowed range.
 pub fn check_days(days: u32) -> Result<(), String> {
-    if (FEWEST_DAYS..=100_000).contains(&days) {
+    if (MIN_RUN_DAYS..=100_000).contains(&days) {
         return Ok(());
     }
-    Err(format!("a run has between {FEWEST_DAYS} and 100,000 days, not {days}"))
+    Err(format!("a run has between {MIN_RUN_DAYS} and 100,000 days, not {days}"))
 }
 
 /// Checks the starting cash of a run, in dollars.
@@ -259,21 +263,22 @@ impl Configuration {
     ///
     /// # Errors
     /// The file exists and cannot be read.
-    pub fn consent(&self) -> Result<Option<ConsentText>, RunError> {
-        let source = self.file(CONSENT_FILE)?.filter(|source| !source.text.trim().is_empty());
+    pub fn load_consent_text(&self) -> Result<Option<ConsentText>, RunError> {
+        let source = self.read_file(CONSENT_FILE)?.filter(|source| !source.text.trim().is_empty());
         Ok(source.map(|source| ConsentText { file: source.name, text: source.text }))
     }
 
     /// Returns the path of a user lesson, or `None` without a configuration folder.
-    pub fn own_lesson(&self, name: &str) -> Option<PathBuf> {
+    pub fn user_lesson_file(&self, name: &str) -> Option<PathBuf> {
         Some(self.folder.as_ref()?.join("lessons").join(format!("{name}.toml")))
     }
 
     /// Returns the names of all lessons: bundled ones in the order of the course, then those of the user.
-    pub fn lessons(&self) -> Vec<String> {
+    pub fn lesson_names(&self) -> Vec<String> {
         let mut names: Vec<String> =
             novamind_assets::lessons().into_iter().map(|(name, _)| name.to_owned()).collect();
-        let own: Vec<String> = self.names("lessons").into_iter().filter(|own| !names.contains(own)).collect();
+        let own: Vec<String> =
+            self.toml_names("lessons").into_iter().filter(|own| !names.contains(own)).collect();
         names.extend(own);
         names
     }
@@ -284,12 +289,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn all_shipped_scenarios_have_parameters() {
-        let configuration = Configuration::shipped();
+    fn bundled_scenarios_have_valid_parameters() {
+        let configuration = Configuration::bundled();
         let mut digests: Vec<String> = Vec::new();
-        for name in configuration.scenarios() {
-            let scenario = configuration.scenario(&name).expect("a bundled scenario");
-            let params = configuration.parameters(&scenario, &[], false).expect("its parameters");
+        for name in configuration.scenario_names() {
+            let scenario = configuration.load_scenario(&name).expect("a bundled scenario");
+            let params = configuration.load_parameters(&scenario, &[], false).expect("its parameters");
             assert!(!scenario.title.is_empty() && scenario.description.ends_with('.'));
             digests.push(params.digest());
         }
@@ -300,11 +305,11 @@ mod tests {
     }
 
     #[test]
-    fn single_overrides_take_numbers_words_and_tables() {
-        let configuration = Configuration::shipped();
-        let scenario = configuration.scenario("default").expect("default");
+    fn overrides_accept_numbers_words_and_lists() {
+        let configuration = Configuration::bundled();
+        let scenario = configuration.load_scenario("default").expect("default");
         let set = |key: &str, value: &str| {
-            configuration.parameters(&scenario, &[(key.to_owned(), value.to_owned())], true)
+            configuration.load_parameters(&scenario, &[(key.to_owned(), value.to_owned())], true)
         };
         assert_eq!(
             set("quality.base_product_quality", "0.3").expect("a number").quality.base_product_quality,
@@ -325,23 +330,23 @@ mod tests {
     }
 
     #[test]
-    fn a_wrong_scenario_of_a_person_names_its_line() {
+    fn user_scenario_errors_name_the_line() {
         let folder = tempfile::tempdir().expect("a folder");
         std::fs::create_dir(folder.path().join("scenarios")).expect("a folder");
         let file = folder.path().join("scenarios/mine.toml");
         let text = "title = \"Mine\"\ndescription = \"x.\"\n\n[world.quality]\nbase_product_quality = -1.0\n";
         std::fs::write(&file, text).expect("a file");
         let configuration = Configuration { folder: Some(folder.path().to_owned()), voice: None };
-        let scenario = configuration.scenario("mine").expect("it reads");
+        let scenario = configuration.load_scenario("mine").expect("it reads");
         let error =
-            configuration.parameters(&scenario, &[], true).expect_err("a negative quality").to_string();
+            configuration.load_parameters(&scenario, &[], true).expect_err("a negative quality").to_string();
         assert!(error.contains("mine.toml, line 5, quality.base_product_quality"), "{error}");
         std::fs::write(&file, "title = \"Mine\"\nwrong = 1\n").expect("a file");
-        let error = configuration.scenario("mine").expect_err("an unknown key").to_string();
+        let error = configuration.load_scenario("mine").expect_err("an unknown key").to_string();
         assert!(error.contains("line 2") && error.contains("wrong"), "{error}");
         assert!(
             configuration
-                .scenario("none")
+                .load_scenario("none")
                 .expect_err("no such")
                 .to_string()
                 .contains("reference-seed42, short, mine")

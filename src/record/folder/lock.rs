@@ -9,7 +9,7 @@ use std::time::Duration;
 use crate::error::RunError;
 
 /// Returns whether a program has the run open for play.
-pub fn is_being_played(folder: &Path) -> bool {
+pub fn is_locked(folder: &Path) -> bool {
     let file = File::open(folder.join("lock"));
     file.is_ok_and(|file| matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)))
 }
@@ -19,7 +19,7 @@ pub const SERVER_FILE: &str = "server.json";
 
 /// Returns whether a server has the run open. A killed server leaves its file but not its lock.
 pub fn is_served(folder: &Path) -> bool {
-    folder.join(SERVER_FILE).exists() && is_being_played(folder)
+    folder.join(SERVER_FILE).exists() && is_locked(folder)
 }
 
 /// Locks a run for writing. The operating system releases the lock when the process ends.
@@ -32,7 +32,7 @@ pub fn lock_run(folder: &Path, id: &str) -> Result<File, RunError> {
         }
         _ => RunError::Io { path: path.clone(), error },
     })?;
-    match lock_past_looks(&file) {
+    match lock_with_retries(&file) {
         Ok(()) => {
             // For information only; the lock on the file decides.
             let _ = file.set_len(0).and_then(|()| writeln!(file, "process {}", std::process::id()));
@@ -47,12 +47,12 @@ pub fn lock_run(folder: &Path, id: &str) -> Result<File, RunError> {
 }
 
 /// Maximum attempts, 2 ms apart, while only shared locks are held.
-const ATTEMPTS: u32 = 500;
+const MAX_LOCK_ATTEMPTS: u32 = 500;
 
-/// Takes the exclusive lock. Waits for the brief shared locks of [`is_being_played`], but not for an exclusive lock of a
+/// Takes the exclusive lock. Waits for the brief shared locks of [`is_locked`], but not for an exclusive lock of a
 /// program that plays the run.
-fn lock_past_looks(file: &File) -> Result<(), TryLockError> {
-    for _ in 0..ATTEMPTS {
+fn lock_with_retries(file: &File) -> Result<(), TryLockError> {
+    for _ in 0..MAX_LOCK_ATTEMPTS {
         match file.try_lock() {
             Err(TryLockError::WouldBlock) => {}
             other => return other,
@@ -71,37 +71,37 @@ mod tests {
     use super::*;
 
     /// Stops the probing threads, also when an assertion fails.
-    struct EndLooks<'a>(&'a AtomicBool);
+    struct StopProbes<'a>(&'a AtomicBool);
 
-    impl Drop for EndLooks<'_> {
+    impl Drop for StopProbes<'_> {
         fn drop(&mut self) {
             self.0.store(true, Ordering::Relaxed);
         }
     }
 
     #[test]
-    fn lock_run_succeeds_while_others_look_and_fails_while_the_run_is_played() {
+    fn lock_run_waits_for_probes_and_fails_while_locked() {
         let folder = tempfile::tempdir().expect("a folder");
         drop(lock_run(folder.path(), "0123abcd").expect("free"));
         let is_over = AtomicBool::new(false);
         std::thread::scope(|scope| {
-            let _end = EndLooks(&is_over);
+            let _end = StopProbes(&is_over);
             for _ in 0..3 {
                 scope.spawn(|| {
                     while !is_over.load(Ordering::Relaxed) {
-                        is_being_played(folder.path());
+                        is_locked(folder.path());
                     }
                 });
             }
             for attempt in 0..300 {
                 let lock = lock_run(folder.path(), "0123abcd")
                     .unwrap_or_else(|error| panic!("attempt {attempt}: {error}"));
-                assert!(is_being_played(folder.path()), "attempt {attempt}");
+                assert!(is_locked(folder.path()), "attempt {attempt}");
                 let second = lock_run(folder.path(), "0123abcd");
                 assert!(matches!(second, Err(RunError::InUse { .. })), "attempt {attempt}: {second:?}");
                 drop(lock);
             }
         });
-        assert!(!is_being_played(folder.path()));
+        assert!(!is_locked(folder.path()));
     }
 }

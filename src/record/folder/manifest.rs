@@ -8,7 +8,7 @@ use toml::{Table, Value};
 use super::configuration::Configuration;
 use crate::consent::Consent;
 use crate::error::RunError;
-use crate::files::write_whole;
+use crate::files::write_atomically;
 use crate::mode::Mode;
 use crate::rules::{ResultsShown, SessionRules};
 use crate::stamp::HandoutStamp;
@@ -19,7 +19,7 @@ use crate::trajectory::{Line, Record};
 use novamind_voice::model::settings::ModelStamp;
 use novamind_world::MECHANICS;
 use novamind_world::fault::Fault;
-use novamind_world::params::{ParameterError, ParameterSource, Params, shipped_sources};
+use novamind_world::params::{ParameterError, ParameterSource, Params, bundled_sources};
 
 /// Format of trajectories and manifests that this program writes.
 pub const FORMAT: u32 = 2;
@@ -90,7 +90,7 @@ pub struct Manifest {
 
 impl Manifest {
     /// Returns the id as a number, or 0 if it is not hexadecimal.
-    pub fn number(&self) -> u32 {
+    pub fn id_number(&self) -> u32 {
         u32::from_str_radix(&self.id, 16).unwrap_or(0)
     }
 
@@ -110,14 +110,14 @@ impl Manifest {
         let manifest: Manifest = toml::from_str(&text).map_err(|error| RunError::Damaged {
             line: error.span().map_or(1, |span| text[..span.start].matches('\n').count() + 1),
             problem: error.message().to_owned(),
-            safe: "The trajectory was not touched; restore run.toml from a copy to open the run".to_owned(),
+            remedy: "The trajectory was not touched; restore run.toml from a copy to open the run".to_owned(),
             path,
         })?;
-        manifest.understood()
+        manifest.check_compatible()
     }
 
     /// Returns the manifest if this program supports its mechanics and format.
-    fn understood(self) -> Result<Manifest, RunError> {
+    fn check_compatible(self) -> Result<Manifest, RunError> {
         if self.format > FORMAT {
             return Err(RunError::OtherFormat { id: self.id, format: self.format, known: FORMAT });
         }
@@ -126,12 +126,12 @@ impl Manifest {
                 id: self.id,
                 version: self.version,
                 recorded: self.mechanics,
-                own: MECHANICS,
+                expected: MECHANICS,
             });
         }
         if self.fault.is_some() && self.mode != Mode::Debug {
             let message = format!("run {} names a seeded fault, which only a debug run can have", self.id);
-            return Err(RunError::NotPossible(message));
+            return Err(RunError::InvalidRequest(message));
         }
         Ok(self)
     }
@@ -140,18 +140,18 @@ impl Manifest {
     ///
     /// # Errors
     /// The line does not start a run.
-    pub fn of_start(path: &Path, line: Option<&Line>) -> Result<Manifest, RunError> {
+    pub fn from_start_line(path: &Path, line: Option<&Line>) -> Result<Manifest, RunError> {
         let damaged = |problem: &str| RunError::Damaged {
             path: path.to_owned(),
             line: 1,
             problem: problem.to_owned(),
-            safe: "Nothing was changed".to_owned(),
+            remedy: "Nothing was changed".to_owned(),
         };
         let Some((line, Record::Start(start))) = line.map(|line| (line, &line.record)) else {
             return Err(damaged("the trajectory does not begin with the start of a run"));
         };
         let start = start.as_ref().clone();
-        let earlier_runs = same_world(&start.earlier_runs, start.seed, &start.scenario);
+        let earlier_runs = count_same_world(&start.earlier_runs, start.seed, &start.scenario);
         Manifest {
             format: start.format,
             version: start.version,
@@ -177,7 +177,7 @@ impl Manifest {
             fault: start.fault,
             parameters: start.overrides,
         }
-        .understood()
+        .check_compatible()
     }
 
     /// Writes the manifest to a run folder atomically.
@@ -186,11 +186,11 @@ impl Manifest {
     /// The folder cannot be written.
     pub fn write(&self, folder: &Path) -> Result<(), RunError> {
         let path = folder.join("run.toml");
-        write_whole(&path, self.text().as_bytes())
+        write_atomically(&path, self.to_toml().as_bytes())
     }
 
     /// Returns the text of `run.toml`.
-    pub fn text(&self) -> String {
+    pub fn to_toml(&self) -> String {
         toml::to_string(self).expect("a manifest holds plain values")
     }
 
@@ -206,7 +206,7 @@ impl Manifest {
 
     /// Returns the recorded rules, or those of the mode if none are recorded.
     pub fn recorded_rules(&self) -> SessionRules {
-        self.rules.clone().unwrap_or_else(|| SessionRules::of_mode(self.mode))
+        self.rules.clone().unwrap_or_else(|| SessionRules::for_mode(self.mode))
     }
 
     /// Returns whether the run is the practice of a study.
@@ -215,9 +215,10 @@ impl Manifest {
     }
 
     /// Returns whether parameters or a seeded fault differ from the bundled scenario with the run's scenario name.
-    pub fn has_own_parameters(&self) -> bool {
-        let shipped = Configuration::shipped();
-        let as_shipped = || shipped.parameters(&shipped.scenario(&self.scenario).ok()?, &[], false).ok();
+    pub fn has_changed_parameters(&self) -> bool {
+        let shipped = Configuration::bundled();
+        let as_shipped =
+            || shipped.load_parameters(&shipped.load_scenario(&self.scenario).ok()?, &[], false).ok();
         match self.scenario.as_str() {
             // A shortcut for lists of runs: most runs use this scenario.
             "default" => !self.parameters.is_empty() || self.fault.is_some(),
@@ -232,16 +233,16 @@ impl Manifest {
     ///
     /// # Errors
     /// The bundled parameters of this program differ from those of the recording version.
-    pub fn params(&self) -> Result<Params, RunError> {
+    pub fn load_params(&self) -> Result<Params, RunError> {
         let other = |own: String| RunError::OtherParameters {
             id: self.id.clone(),
             version: self.version.clone(),
             recorded: self.parameters_digest.clone(),
-            own,
+            expected: own,
         };
         let text = toml::to_string(&self.parameters).expect("a table reads back");
         let over = ParameterSource { name: "run.toml".to_owned(), text };
-        let loaded = Params::load(&shipped_sources(), &[over])
+        let loaded = Params::load(&bundled_sources(), &[over])
             .map_err(|error: ParameterError| other(format!("none that fit: {error}")))?;
         let params = Params { fault: self.fault, ..loaded };
         let own = params.digest();
@@ -250,25 +251,25 @@ impl Manifest {
 }
 
 /// Returns how many of the earlier runs have this seed and scenario.
-pub fn same_world(earlier: &[EarlierRun], seed: u64, scenario: &str) -> u32 {
+pub fn count_same_world(earlier: &[EarlierRun], seed: u64, scenario: &str) -> u32 {
     earlier.iter().filter(|run| run.seed == seed && run.scenario == scenario).count() as u32
 }
 
 /// Returns the parameters that differ from the bundled ones, as a table of tables.
-pub fn differences(params: &Params) -> Table {
+pub fn changed_parameters(params: &Params) -> Table {
     let as_table = |params: &Params| match Value::try_from(params) {
         Ok(Value::Table(table)) => table,
         _ => Table::new(),
     };
-    differing(&as_table(params), &as_table(&Params::shipped()))
+    changed_entries(&as_table(params), &as_table(&Params::bundled()))
 }
 
-fn differing(own: &Table, shipped: &Table) -> Table {
+fn changed_entries(own: &Table, shipped: &Table) -> Table {
     own.iter()
         .filter_map(|(key, value)| match (value, shipped.get(key)) {
             (value, Some(same)) if value == same => None,
             (Value::Table(own), Some(Value::Table(shipped))) => {
-                Some((key.clone(), Value::Table(differing(own, shipped))))
+                Some((key.clone(), Value::Table(changed_entries(own, shipped))))
             }
             (value, _) => Some((key.clone(), value.clone())),
         })
@@ -276,7 +277,7 @@ fn differing(own: &Table, shipped: &Table) -> Table {
 }
 
 /// Returns the first line of a trajectory for a manifest.
-pub fn start_of(manifest: &Manifest) -> Record {
+pub fn to_start_record(manifest: &Manifest) -> Record {
     let manifest = manifest.clone();
     Record::Start(Box::new(Start {
         format: manifest.format,
@@ -309,7 +310,7 @@ mod tests {
     use super::*;
     use crate::folder::configuration::Configuration;
 
-    fn manifest(params: &Params) -> Manifest {
+    fn test_manifest(params: &Params) -> Manifest {
         Manifest {
             format: FORMAT,
             version: "0.1.0".to_owned(),
@@ -333,32 +334,32 @@ mod tests {
             rules: None,
             earlier: Vec::new(),
             fault: None,
-            parameters: differences(params),
+            parameters: changed_parameters(params),
         }
     }
 
     #[test]
-    fn every_scenario_comes_back_from_its_differences() {
+    fn scenario_parameters_round_trip_through_the_manifest() {
         let folder = tempfile::tempdir().expect("a folder");
-        let configuration = Configuration::shipped();
-        for name in configuration.scenarios() {
-            let scenario = configuration.scenario(&name).expect("a scenario");
-            let params = configuration.parameters(&scenario, &[], false).expect("its parameters");
-            let own = manifest(&params);
+        let configuration = Configuration::bundled();
+        for name in configuration.scenario_names() {
+            let scenario = configuration.load_scenario(&name).expect("a scenario");
+            let params = configuration.load_parameters(&scenario, &[], false).expect("its parameters");
+            let own = test_manifest(&params);
             own.write(folder.path()).expect("it is written");
             let read = Manifest::read(folder.path()).expect("it is read");
             assert_eq!(read, own);
-            assert_eq!(read.params().expect("its parameters"), params);
+            assert_eq!(read.load_params().expect("its parameters"), params);
         }
-        assert!(differences(&Params::shipped()).is_empty());
+        assert!(changed_parameters(&Params::bundled()).is_empty());
     }
 
     #[test]
-    fn other_parameters_and_formats_are_refused() {
+    fn other_parameters_mechanics_and_formats_are_rejected() {
         let folder = tempfile::tempdir().expect("a folder");
-        let mut own = manifest(&Params::shipped());
+        let mut own = test_manifest(&Params::bundled());
         own.parameters_digest = "0000000000000000".to_owned();
-        assert!(own.params().expect_err("another digest").to_string().contains("Nothing was changed"));
+        assert!(own.load_params().expect_err("another digest").to_string().contains("Nothing was changed"));
         own.mechanics = MECHANICS + 1;
         own.write(folder.path()).expect("it is written");
         let error = Manifest::read(folder.path()).expect_err("other mechanics").to_string();

@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::Serialize;
 use serde_json::Value;
 
-use super::derived::Derived;
+use super::manifest_check::ManifestCheck;
 use super::runs::run_folder;
 use crate::error::RunError;
 use crate::files::open_regular_file;
@@ -29,9 +29,9 @@ pub struct RunPreview {
 ///
 /// # Errors
 /// The run or its files do not exist.
-pub fn run_preview(runs: &Path, id: &str) -> Result<RunPreview, RunError> {
+pub fn read_preview(runs: &Path, id: &str) -> Result<RunPreview, RunError> {
     let folder = run_folder(runs, id);
-    let Derived { manifest, .. } = Derived::of(&folder)?;
+    let ManifestCheck { manifest, .. } = ManifestCheck::read(&folder)?;
     let path = folder.join("trajectory.jsonl");
     let file = open_regular_file(&path).map_err(RunError::io(&path))?;
     let mut preview = RunPreview { cash: vec![(0, manifest.cash)], ..RunPreview::default() };
@@ -41,16 +41,16 @@ pub fn run_preview(runs: &Path, id: &str) -> Result<RunPreview, RunError> {
         let text = String::from_utf8_lossy(&line);
         // Most lines are calls; parse only those that look like the end of a week.
         if closing.iter().any(|kind| text.contains(kind))
-            && let Some(line) = Line::unchecked(text.as_bytes())
+            && let Some(line) = Line::parse_unchecked(text.as_bytes())
         {
-            preview.add(line.day, &line.record);
+            preview.add_closing(line.day, &line.record);
         }
     }
     Ok(preview)
 }
 
 impl RunPreview {
-    fn add(&mut self, day: u32, record: &Record) {
+    fn add_closing(&mut self, day: u32, record: &Record) {
         let cash = match record {
             Record::Week(closing) | Record::Step(closing) => closing.cash,
             Record::End(end) => end.cash,

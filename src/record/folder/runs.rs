@@ -5,15 +5,15 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::derived::Derived;
 use super::lock::{is_served, lock_run};
 use super::manifest::Manifest;
+use super::manifest_check::ManifestCheck;
 use crate::error::RunError;
 use crate::files::{open_regular_file, read_regular_file};
 use crate::mode::Mode;
 use crate::stamp::EarlierRun;
-use crate::trajectory::policy_of;
-use crate::trajectory::record::Ended;
+use crate::trajectory::find_policy;
+use crate::trajectory::record::RunEndReason;
 use crate::trajectory::{Line, Record};
 
 /// A run in a list.
@@ -53,7 +53,7 @@ pub struct RunSummary {
     /// Cash after the last week, dollars.
     pub cash: f64,
     /// How it ended; `None` if it is unfinished.
-    pub ended: Option<Ended>,
+    pub ended: Option<RunEndReason>,
     /// Whether a server has it open.
     pub is_served: bool,
     /// Id of the run of which this folder is a copy under another name, if it is one.
@@ -69,7 +69,7 @@ pub fn run_folder(runs: &Path, id: &str) -> PathBuf {
 }
 
 /// Subfolder of the common folder of runs with one folder per participant.
-pub const PARTICIPANTS: &str = "participants";
+pub const PARTICIPANTS_FOLDER: &str = "participants";
 
 /// Returns the folder of a participant's runs. Separate folders keep participants on one machine apart.
 ///
@@ -83,34 +83,34 @@ pub fn participant_folder(runs: &Path, label: &str) -> Result<PathBuf, String> {
              dots, not beginning with a dot"
         ));
     }
-    Ok(runs.join(PARTICIPANTS).join(label))
+    Ok(runs.join(PARTICIPANTS_FOLDER).join(label))
 }
 
 /// Prefix of staging folders, which hold branches that are not complete yet.
-pub const UNNAMED: &str = ".branch-";
+pub const STAGING_PREFIX: &str = ".branch-";
 
 /// Returns whether a folder is a staging folder. It is not a run.
-pub fn is_unnamed(folder: &Path) -> bool {
-    folder.file_name().is_some_and(|name| name.to_string_lossy().starts_with(UNNAMED))
+pub fn is_staging_folder(folder: &Path) -> bool {
+    folder.file_name().is_some_and(|name| name.to_string_lossy().starts_with(STAGING_PREFIX))
 }
 
 /// Returns the label of the participant whose runs a folder holds, if any.
-pub fn label_of(runs: &Path) -> Option<String> {
-    let own = runs.parent()?.file_name()? == PARTICIPANTS;
+pub fn participant_of_folder(runs: &Path) -> Option<String> {
+    let own = runs.parent()?.file_name()? == PARTICIPANTS_FOLDER;
     runs.file_name().filter(|_| own).map(|label| label.to_string_lossy().into_owned())
 }
 
 /// Returns the common folder of runs for a folder of runs, and the label of the participant if it is a participant's folder.
-pub fn base_of_runs(runs: &Path) -> (&Path, Option<String>) {
-    let label = label_of(runs);
+pub fn common_runs_folder(runs: &Path) -> (&Path, Option<String>) {
+    let label = participant_of_folder(runs);
     let base = label.as_ref().and_then(|_| runs.parent()?.parent());
     (base.unwrap_or(runs), label)
 }
 
 /// Returns all related folders of runs: the common one, then those of the participants by label.
 pub fn all_run_folders(runs: &Path) -> Vec<PathBuf> {
-    let (base, _) = base_of_runs(runs);
-    let entries = std::fs::read_dir(base.join(PARTICIPANTS)).into_iter().flatten().flatten();
+    let (base, _) = common_runs_folder(runs);
+    let entries = std::fs::read_dir(base.join(PARTICIPANTS_FOLDER)).into_iter().flatten().flatten();
     let mut own: Vec<PathBuf> = entries.map(|entry| entry.path()).filter(|path| path.is_dir()).collect();
     own.sort_unstable();
     own.insert(0, base.to_owned());
@@ -130,21 +130,21 @@ pub fn list_runs(runs: &Path) -> Result<Vec<RunSummary>, RunError> {
     let mut list: Vec<RunSummary> = entries
         .flatten()
         .map(|entry| entry.path())
-        .filter(|folder| !is_unnamed(folder))
+        .filter(|folder| !is_staging_folder(folder))
         .filter(|folder| folder.join("run.toml").exists() || folder.join("trajectory.jsonl").exists())
-        .map(|folder| summarise(&folder))
+        .map(|folder| summarize_run(&folder))
         .collect();
     list.sort_by(|left, right| right.played.cmp(&left.played).then_with(|| left.id.cmp(&right.id)));
     Ok(list)
 }
 
-fn summarise(folder: &Path) -> RunSummary {
+fn summarize_run(folder: &Path) -> RunSummary {
     let id = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    let manifest = match Derived::of(folder) {
-        Ok(Derived { manifest, .. }) => manifest,
-        Err(error) => return unreadable(id, error.to_string()),
+    let manifest = match ManifestCheck::read(folder) {
+        Ok(ManifestCheck { manifest, .. }) => manifest,
+        Err(error) => return unreadable_summary(id, error.to_string()),
     };
-    let (last, problem) = match last_lines(&folder.join("trajectory.jsonl")) {
+    let (last, problem) = match read_last_lines(&folder.join("trajectory.jsonl")) {
         Ok(lines) => (lines, None),
         Err(problem) => (Vec::new(), Some(problem)),
     };
@@ -161,11 +161,11 @@ fn summarise(folder: &Path) -> RunSummary {
     RunSummary {
         copy_of: (manifest.id != id).then(|| manifest.id.clone()),
         id,
-        has_own_parameters: manifest.has_own_parameters()
-            || (may_set_parameters(&manifest) && sets_parameters(&folder.join("trajectory.jsonl"))),
+        has_own_parameters: manifest.has_changed_parameters()
+            || (may_set_parameters(&manifest) && has_override_lines(&folder.join("trajectory.jsonl"))),
         judged_by_model: manifest.voice.as_ref().is_some_and(|model| model.judge),
         is_branch: manifest.parent.is_some(),
-        policy: policy_of(&last).map(str::to_owned),
+        policy: find_policy(&last).map(str::to_owned),
         created: manifest.created.clone(),
         played: last.last().map_or(manifest.created, |line| line.at.clone()),
         mode: Some(manifest.mode),
@@ -192,13 +192,13 @@ fn may_set_parameters(manifest: &Manifest) -> bool {
     manifest.mode == Mode::Debug || manifest.lesson.is_some() || manifest.parent.is_some()
 }
 
-fn sets_parameters(trajectory: &Path) -> bool {
+fn has_override_lines(trajectory: &Path) -> bool {
     let Ok(bytes) = read_regular_file(trajectory) else { return false };
     let kind = br#""kind":"override""#;
     bytes.windows(kind.len()).any(|window| window == kind)
 }
 
-fn unreadable(id: String, problem: String) -> RunSummary {
+fn unreadable_summary(id: String, problem: String) -> RunSummary {
     RunSummary {
         id,
         created: String::new(),
@@ -226,11 +226,13 @@ fn unreadable(id: String, problem: String) -> RunSummary {
 ///
 /// # Errors
 /// The file cannot be read, or has no readable line.
-pub fn last_lines(path: &Path) -> Result<Vec<Line>, String> {
+pub fn read_last_lines(path: &Path) -> Result<Vec<Line>, String> {
     let mut window: u64 = 64 << 10;
     loop {
-        let (text, whole) = tail(path, window).map_err(|error| format!("{}: {error}", path.display()))?;
-        let lines: Vec<Line> = text.lines().filter_map(|line| Line::unchecked(line.as_bytes())).collect();
+        let (text, whole) =
+            read_tail(path, window).map_err(|error| format!("{}: {error}", path.display()))?;
+        let lines: Vec<Line> =
+            text.lines().filter_map(|line| Line::parse_unchecked(line.as_bytes())).collect();
         let has_week = lines.iter().any(Line::closes_days);
         let begins = || lines.iter().any(|line| matches!(line.record, Record::Start(_)));
         match (has_week, whole) {
@@ -242,7 +244,7 @@ pub fn last_lines(path: &Path) -> Result<Vec<Line>, String> {
     }
 }
 
-fn tail(path: &Path, window: u64) -> std::io::Result<(String, bool)> {
+fn read_tail(path: &Path, window: u64) -> std::io::Result<(String, bool)> {
     let mut file = open_regular_file(path)?;
     let length = file.metadata()?.len();
     file.seek(SeekFrom::Start(length.saturating_sub(window)))?;
@@ -256,7 +258,7 @@ fn tail(path: &Path, window: u64) -> std::io::Result<(String, bool)> {
 /// # Errors
 /// No run matches, or several do.
 pub fn find_run(runs: &Path, id: &str) -> Result<PathBuf, RunError> {
-    find(runs, id, |run| run.ended.is_none())
+    find_matching_run(runs, id, |run| run.ended.is_none())
 }
 
 /// Returns the folder of a run to read by id, unique prefix, or `latest`: the newest run.
@@ -264,13 +266,18 @@ pub fn find_run(runs: &Path, id: &str) -> Result<PathBuf, RunError> {
 /// # Errors
 /// No run matches, or several do.
 pub fn find_run_to_read(runs: &Path, id: &str) -> Result<PathBuf, RunError> {
-    find(runs, id, |_| true)
+    find_matching_run(runs, id, |_| true)
 }
 
 /// Searches the runs of all participants if the folder is the common one.
-fn find(runs: &Path, id: &str, wanted: impl Fn(&RunSummary) -> bool) -> Result<PathBuf, RunError> {
+fn find_matching_run(
+    runs: &Path,
+    id: &str,
+    wanted: impl Fn(&RunSummary) -> bool,
+) -> Result<PathBuf, RunError> {
     let missing = || RunError::NotFound { id: id.to_owned(), folder: runs.to_owned() };
-    let folders = if label_of(runs).is_some() { vec![runs.to_owned()] } else { all_run_folders(runs) };
+    let folders =
+        if participant_of_folder(runs).is_some() { vec![runs.to_owned()] } else { all_run_folders(runs) };
     let mut list: Vec<(PathBuf, RunSummary)> = Vec::new();
     for folder in folders {
         list.extend(list_runs(&folder)?.into_iter().map(|run| (folder.join(&run.id), run)));
@@ -288,7 +295,7 @@ fn find(runs: &Path, id: &str, wanted: impl Fn(&RunSummary) -> bool) -> Result<P
     match (fitting.next(), fitting.next()) {
         (Some((folder, _)), None) => Ok(folder.clone()),
         (Some(_), Some(_)) => {
-            Err(RunError::NotPossible(format!("several run ids begin with {id}; type more of the id")))
+            Err(RunError::InvalidRequest(format!("several run ids begin with {id}; type more of the id")))
         }
         _ => Err(missing()),
     }
@@ -307,11 +314,11 @@ pub fn delete_run(runs: &Path, id: &str) -> Result<(), RunError> {
 
 /// Returns the earlier runs of a participant: those with the label in all related folders. Without a label, those in this
 /// folder.
-pub fn earlier_runs_of(runs: &Path, participant: Option<&str>) -> Vec<EarlierRun> {
+pub fn earlier_runs(runs: &Path, participant: Option<&str>) -> Vec<EarlierRun> {
     let folders = if participant.is_some() { all_run_folders(runs) } else { vec![runs.to_owned()] };
     let entries = folders.iter().flat_map(|folder| std::fs::read_dir(folder).into_iter().flatten().flatten());
-    let whole = entries.map(|entry| entry.path()).filter(|folder| !is_unnamed(folder));
-    let manifests = whole.filter_map(|folder| Derived::of(&folder).ok());
+    let whole = entries.map(|entry| entry.path()).filter(|folder| !is_staging_folder(folder));
+    let manifests = whole.filter_map(|folder| ManifestCheck::read(&folder).ok());
     let manifests = manifests.map(|derived| derived.manifest);
     let own = manifests.filter(|manifest| manifest.participant.as_deref() == participant);
     let mut earlier: Vec<EarlierRun> = own

@@ -46,27 +46,27 @@ pub struct LessonAccess {
     /// Screens besides the Overview; `None` for all.
     pub screens: Option<Vec<String>>,
     /// Whether forecasts are required.
-    pub forecasts: ForecastsAsked,
+    pub forecasts: ForecastRequirement,
     /// Whether a rationale is required.
-    pub rationale: RationaleAsked,
+    pub rationale: RationaleRequirement,
 }
 
 impl LessonAccess {
     /// Returns whether the lesson submits naive forecasts.
-    pub fn fills_forecasts(&self) -> bool {
-        self.forecasts == ForecastsAsked::Naive
+    pub fn uses_naive_forecasts(&self) -> bool {
+        self.forecasts == ForecastRequirement::Naive
     }
 
     /// Returns whether weeks need no rationale.
-    pub fn asks_no_rationale(&self) -> bool {
-        self.rationale == RationaleAsked::Off
+    pub fn is_rationale_off(&self) -> bool {
+        self.rationale == RationaleRequirement::Off
     }
 }
 
 /// Forecasts before a week.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum ForecastsAsked {
+pub enum ForecastRequirement {
     /// The student enters them.
     Required,
     /// The lesson fills in naive forecasts.
@@ -77,7 +77,7 @@ pub enum ForecastsAsked {
 /// Rationale before a week.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum RationaleAsked {
+pub enum RationaleRequirement {
     /// The student writes it.
     Required,
     /// Not required.
@@ -106,7 +106,7 @@ pub struct LessonPart {
     pub surges: bool,
     /// Control of the capacity tier.
     #[serde(default)]
-    pub capacity: CapacityMover,
+    pub capacity: CapacityControl,
     /// Parameters in force from day 0, by their full keys.
     #[serde(default)]
     pub parameters: BTreeMap<String, Value>,
@@ -123,14 +123,14 @@ pub struct LessonPart {
 
 impl LessonPart {
     /// Returns whether the capacity tier follows usage automatically.
-    pub fn moves_capacity(&self) -> bool {
-        self.capacity == CapacityMover::FollowsUsage
+    pub fn has_automatic_capacity(&self) -> bool {
+        self.capacity == CapacityControl::FollowsUsage
     }
 }
 
 /// Control of the capacity tier.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
-pub enum CapacityMover {
+pub enum CapacityControl {
     /// The student.
     #[default]
     #[serde(rename = "manual")]
@@ -176,13 +176,13 @@ pub struct Guess {
     /// Kind of the answer.
     pub form: GuessForm,
     /// When the outcome is shown.
-    pub told: GuessTold,
+    pub told: OutcomeTiming,
 }
 
 /// When the outcome of a guess is measured and shown.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum GuessTold {
+pub enum OutcomeTiming {
     /// At the end of its step.
     #[default]
     Step,
@@ -220,7 +220,7 @@ struct GuessFile {
     choices: Option<Vec<String>>,
     answer: Option<usize>,
     #[serde(default)]
-    told: GuessTold,
+    told: OutcomeTiming,
 }
 
 impl TryFrom<GuessFile> for Guess {
@@ -270,20 +270,20 @@ pub enum GoalBound {
     /// At most this value.
     AtMost(f64),
     /// At least this multiple of the reference play's value on the same seed.
-    OfGoodPlay(f64),
+    RelativeToReferencePlay(f64),
 }
 
 impl GoalBound {
     /// Returns whether the bound depends on the reference play.
     pub fn is_relative(self) -> bool {
-        matches!(self, GoalBound::OfGoodPlay(_))
+        matches!(self, GoalBound::RelativeToReferencePlay(_))
     }
 
     /// Returns the value to reach, given that of the reference play. Returns `None` if that is needed and missing.
     pub fn value(self, good: Option<f64>) -> Option<f64> {
         match self {
             GoalBound::AtLeast(bound) | GoalBound::AtMost(bound) => Some(bound),
-            GoalBound::OfGoodPlay(share) => good.map(|good| share * good),
+            GoalBound::RelativeToReferencePlay(share) => good.map(|good| share * good),
         }
     }
 
@@ -314,7 +314,7 @@ impl TryFrom<GoalFile> for LessonGoal {
         let bounds = [
             at_least.map(GoalBound::AtLeast),
             at_most.map(GoalBound::AtMost),
-            relative.map(GoalBound::OfGoodPlay),
+            relative.map(GoalBound::RelativeToReferencePlay),
         ];
         let mut bounds = bounds.into_iter().flatten();
         let (Some(bound), None) = (bounds.next(), bounds.next()) else {
@@ -322,7 +322,7 @@ impl TryFrom<GoalFile> for LessonGoal {
         };
         let measurement = Measurement::try_from(MeasurementFile { figure, sql, over })?;
         let in_dollars = match unit.as_deref() {
-            None => measurement.counts_dollars(),
+            None => measurement.is_in_dollars(),
             Some("$") if measurement.needs_database() => true,
             Some(_) => return Err("the unit of a goal must be $, and needs sql".to_owned()),
         };
@@ -364,7 +364,7 @@ impl PitfallBound {
     }
 
     /// Returns whether a value triggers the pitfall.
-    pub fn is_met_by(self, value: f64) -> bool {
+    pub fn is_exceeded_by(self, value: f64) -> bool {
         match self {
             PitfallBound::Above(limit) => value > limit,
             PitfallBound::Below(limit) => value < limit,
@@ -395,7 +395,7 @@ impl TryFrom<PitfallFile> for Pitfall {
             _ => return Err("a pitfall needs either above or below".to_owned()),
         };
         let measurement = Measurement::try_from(MeasurementFile { figure, sql, over: None })?;
-        Ok(Pitfall { name, part: from_one(part)?, measurement, bound, say })
+        Ok(Pitfall { name, part: part_index(part)?, measurement, bound, say })
     }
 }
 
@@ -422,7 +422,7 @@ impl ReferencePlay {
     }
 
     /// Returns whether it has calls in a part.
-    pub fn plays_in(&self, part: usize) -> bool {
+    pub fn has_calls_in(&self, part: usize) -> bool {
         self.plays.iter().any(|own| own.part == part)
     }
 }
@@ -482,7 +482,7 @@ impl TryFrom<MeasuredFile> for MeasuredFigure {
         let MeasuredFile { name, part, text, week, value, unit, play, scenario, parameters, .. } = file;
         let MeasuredFile { figure, sql, over, .. } = file;
         let measurement = Measurement::try_from(MeasurementFile { figure, sql, over })?;
-        let (part, unit) = (from_one(part)?, unit.unwrap_or_default());
+        let (part, unit) = (part_index(part)?, unit.unwrap_or_default());
         if !matches!(unit.as_str(), "" | "$" | "%" | "day") {
             return Err(format!("the unit must be $, % or day, not {unit}"));
         }
@@ -525,7 +525,7 @@ impl TryFrom<ScheduleFile> for ScheduledCalls {
         if every == Some(0) || (every.is_none() && until.is_some()) {
             return Err("every must be at least 1 week, and until needs every".to_owned());
         }
-        Ok(ScheduledCalls { part: from_one(part)?, week, every, until, calls })
+        Ok(ScheduledCalls { part: part_index(part)?, week, every, until, calls })
     }
 }
 
@@ -539,6 +539,6 @@ impl ScheduledCalls {
 }
 
 /// Returns the index of a part, which files count from 1; defaults to the first.
-fn from_one(part: Option<usize>) -> Result<usize, String> {
+fn part_index(part: Option<usize>) -> Result<usize, String> {
     part.unwrap_or(1).checked_sub(1).ok_or_else(|| "parts are counted from 1".to_owned())
 }

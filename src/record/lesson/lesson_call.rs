@@ -30,7 +30,7 @@ impl TryFrom<String> for LessonCall {
                 .map_err(|error| format!("the arguments of {name} are not valid JSON: {error}"))?,
         };
         // A student would run a program of the lesson's author.
-        if args["code"].as_str().is_some_and(|code| Language::of(code) == Language::Python) {
+        if args["code"].as_str().is_some_and(|code| Language::detect(code) == Language::Python) {
             return Err(format!("{name} in a lesson takes SQL statements, not Python"));
         }
         Ok(LessonCall::Tool(tool.spec().id, args))
@@ -42,7 +42,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn calls_are_read_and_wrong_ones_say_why() {
+    fn lesson_calls_parse_or_report_the_error() {
         let read = |text: &str| LessonCall::try_from(text.to_owned());
         let call = read(r#"set_prices {"A": 12}"#).expect("a call");
         assert_eq!(call, LessonCall::Tool(ToolId::SetPrices, serde_json::json!({ "A": 12 })));

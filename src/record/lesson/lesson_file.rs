@@ -5,12 +5,12 @@ use std::sync::Arc;
 
 use super::definition::{GuessForm, LessonPlan, MeasuredFigure};
 use super::measurement::NumberSource;
-use super::soundness::unsound;
+use super::validation::find_defect;
 use crate::error::RunError;
 use crate::figures::FigureUnit;
-use crate::files::write_whole;
+use crate::files::write_atomically;
 use crate::folder::configuration::Configuration;
-use novamind_base::notation::{cents, grouped, percent, short_dollars};
+use novamind_base::formatting::{cents, grouped_number, percent, short_dollars};
 use novamind_world::params::{ParameterError, ParameterSource};
 
 /// File name of the plan in a run folder.
@@ -28,11 +28,11 @@ pub struct Lesson {
     /// Debrief for students, in Markdown; `{name}` stands for a measured figure.
     pub debrief: String,
     /// Notes for instructors, in Markdown.
-    pub for_teachers: String,
+    pub instructor_notes: String,
     /// BLAKE3 digest of plan and texts, in hexadecimal digits.
     pub digest: String,
     /// Whether it is bundled with the program.
-    pub shipped: bool,
+    pub is_bundled: bool,
     plan_text: String,
     texts: String,
 }
@@ -42,49 +42,51 @@ impl Lesson {
     ///
     /// # Errors
     /// The lesson does not exist, or one of its files is invalid.
-    pub fn named(name: &str, configuration: &Configuration) -> Result<Lesson, RunError> {
-        if let Some(plan) = configuration.file(format!("lessons/{name}.toml"))? {
-            let texts =
-                configuration.file(format!("lessons/{name}.md"))?.map(|texts| texts.text).unwrap_or_default();
-            return Ok(Lesson::read(name, plan, texts, false)?);
+    pub fn load(name: &str, configuration: &Configuration) -> Result<Lesson, RunError> {
+        if let Some(plan) = configuration.read_file(format!("lessons/{name}.toml"))? {
+            let texts = configuration
+                .read_file(format!("lessons/{name}.md"))?
+                .map(|texts| texts.text)
+                .unwrap_or_default();
+            return Ok(Lesson::parse(name, plan, texts, false)?);
         }
         let found = novamind_assets::lessons().into_iter().find(|(shipped, _)| *shipped == name);
         let Some((_, plan)) = found else {
-            return Err(RunError::NoLesson {
+            return Err(RunError::UnknownLesson {
                 name: name.to_owned(),
-                known: configuration.lessons().join(", "),
+                known: configuration.lesson_names().join(", "),
             });
         };
         let plan = ParameterSource { name: format!("configs/lessons/{name}.toml"), text: plan.to_owned() };
         let texts = novamind_assets::lesson_texts(name).unwrap_or_default().to_owned();
-        Ok(Lesson::read(name, plan, texts, true)?)
+        Ok(Lesson::parse(name, plan, texts, true)?)
     }
 
     /// Parses a lesson from its plan and its texts.
     ///
     /// # Errors
     /// The first defect, with file, line and key.
-    pub(super) fn read(
+    pub(super) fn parse(
         name: &str,
         plan: ParameterSource,
         texts: String,
         shipped: bool,
     ) -> Result<Lesson, ParameterError> {
         let read: LessonPlan = toml::from_str(&plan.text)
-            .map_err(|error| ParameterError::of_toml(&plan.name, &plan.text, &error))?;
+            .map_err(|error| ParameterError::from_toml(&plan.name, &plan.text, &error))?;
         let mut hasher = blake3::Hasher::new();
         hasher.update(plan.text.as_bytes()).update(b"\0").update(texts.as_bytes());
         let lesson = Lesson {
             name: name.to_owned(),
-            debrief: section(&texts, "Debrief"),
-            for_teachers: section(&texts, "For the teacher"),
+            debrief: extract_section(&texts, "Debrief"),
+            instructor_notes: extract_section(&texts, "For the teacher"),
             digest: hasher.finalize().to_hex().to_string(),
-            shipped,
+            is_bundled: shipped,
             plan: read,
             plan_text: plan.text,
             texts,
         };
-        match unsound(&lesson) {
+        match find_defect(&lesson) {
             None => Ok(lesson),
             Some(found) => Err(ParameterError {
                 source: plan.name,
@@ -99,33 +101,33 @@ impl Lesson {
     ///
     /// # Errors
     /// A file cannot be read, or is invalid.
-    pub fn of_file(path: &Path) -> Result<Lesson, RunError> {
+    pub fn from_file(path: &Path) -> Result<Lesson, RunError> {
         let text = std::fs::read_to_string(path).map_err(RunError::io(path))?;
         let texts = std::fs::read_to_string(path.with_extension("md")).unwrap_or_default();
         let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-        Ok(Lesson::read(&name, ParameterSource { name: path.display().to_string(), text }, texts, false)?)
+        Ok(Lesson::parse(&name, ParameterSource { name: path.display().to_string(), text }, texts, false)?)
     }
 
     /// Reads the lesson from a run folder.
     ///
     /// # Errors
     /// A file is missing or invalid.
-    pub fn of_run(folder: &Path, name: &str) -> Result<Lesson, RunError> {
+    pub fn from_run(folder: &Path, name: &str) -> Result<Lesson, RunError> {
         let text = |file| {
             let path = folder.join(file);
             std::fs::read_to_string(&path).map_err(RunError::io(&path))
         };
         let source =
             ParameterSource { name: folder.join(PLAN_FILE).display().to_string(), text: text(PLAN_FILE)? };
-        Ok(Lesson::read(name, source, text(TEXTS_FILE)?, false)?)
+        Ok(Lesson::parse(name, source, text(TEXTS_FILE)?, false)?)
     }
 
     /// Parses a lesson from texts that are not in files.
     ///
     /// # Errors
     /// The first defect, with line and key.
-    pub fn of_texts(name: &str, plan: ParameterSource, texts: String) -> Result<Lesson, RunError> {
-        Ok(Lesson::read(name, plan, texts, false)?)
+    pub fn from_texts(name: &str, plan: ParameterSource, texts: String) -> Result<Lesson, RunError> {
+        Ok(Lesson::parse(name, plan, texts, false)?)
     }
 
     /// Returns the source texts of plan and texts.
@@ -154,13 +156,13 @@ impl Lesson {
     ///
     /// # Errors
     /// The folder cannot be written.
-    pub fn keep_with(&self, folder: &Path) -> Result<(), RunError> {
-        write_whole(&folder.join(PLAN_FILE), self.plan_text.as_bytes())?;
-        write_whole(&folder.join(TEXTS_FILE), self.texts.as_bytes())
+    pub fn write_to_run(&self, folder: &Path) -> Result<(), RunError> {
+        write_atomically(&folder.join(PLAN_FILE), self.plan_text.as_bytes())?;
+        write_atomically(&folder.join(TEXTS_FILE), self.texts.as_bytes())
     }
 
     /// Returns the lesson with the scenario and parameters of a measured figure in the figure's part.
-    pub fn in_world_of(self: &Arc<Lesson>, figure: &MeasuredFigure) -> Arc<Lesson> {
+    pub fn with_world_of(self: &Arc<Lesson>, figure: &MeasuredFigure) -> Arc<Lesson> {
         if figure.scenario.is_none() && figure.parameters.is_empty() {
             return self.clone();
         }
@@ -175,7 +177,7 @@ impl Lesson {
     }
 
     /// Returns whether a goal, guess or pitfall is measured by an SQL statement.
-    pub fn asks_database(&self) -> bool {
+    pub fn needs_database(&self) -> bool {
         let steps = self.plan.parts.iter().flat_map(|part| &part.steps);
         let goals = steps.clone().flat_map(|step| step.goals.iter().map(|goal| &goal.measurement));
         let guesses = steps.filter_map(|step| match &step.guess.as_ref()?.form {
@@ -187,38 +189,39 @@ impl Lesson {
     }
 
     /// Replaces the names of measured figures in a text by their values.
-    pub fn filled(&self, text: &str) -> String {
-        let written =
-            |text: String, own: &MeasuredFigure| text.replace(&format!("{{{}}}", own.name), &own.written());
+    pub fn fill_figures(&self, text: &str) -> String {
+        let written = |text: String, own: &MeasuredFigure| {
+            text.replace(&format!("{{{}}}", own.name), &own.formatted_value())
+        };
         self.plan.measured.iter().fold(text.to_owned(), written)
     }
 }
 
 impl MeasuredFigure {
     /// Returns the formatted value.
-    pub fn written(&self) -> String {
-        self.write(self.value)
+    pub fn formatted_value(&self) -> String {
+        self.format_value(self.value)
     }
 
     /// Formats a value of this figure.
-    pub fn write(&self, value: f64) -> String {
+    pub fn format_value(&self, value: f64) -> String {
         match &self.measurement.source {
             NumberSource::Cash => short_dollars(value),
             NumberSource::Figure(figure) => match figure.unit() {
                 FigureUnit::Dollars => short_dollars(value),
-                FigureUnit::Share | FigureUnit::FineShare => percent(value, 0),
-                FigureUnit::Count | FigureUnit::Level => grouped(value, 0),
+                FigureUnit::Share | FigureUnit::PreciseShare => percent(value, 0),
+                FigureUnit::Count | FigureUnit::Level => grouped_number(value, 0),
             },
             NumberSource::Sql(_) if self.unit == "$" && value.abs() < 1000.0 => cents(value),
             NumberSource::Sql(_) if self.unit == "$" => short_dollars(value),
             NumberSource::Sql(_) if self.unit == "%" => percent(value, 0),
-            NumberSource::Sql(_) if self.unit == "day" => grouped(value, 0),
-            NumberSource::Sql(_) => grouped(value, if value.fract() == 0.0 { 0 } else { 2 }),
+            NumberSource::Sql(_) if self.unit == "day" => grouped_number(value, 0),
+            NumberSource::Sql(_) => grouped_number(value, if value.fract() == 0.0 { 0 } else { 2 }),
         }
     }
 }
 
-fn section(texts: &str, heading: &str) -> String {
+fn extract_section(texts: &str, heading: &str) -> String {
     let mut lines =
         texts.lines().skip_while(|line| line.trim() != format!("## {heading}")).skip(1).peekable();
     let mut own = Vec::new();
@@ -233,10 +236,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sections_of_texts_are_found() {
+    fn extract_section_finds_headings() {
         let texts = "# A\n\n## Debrief\n\nOne.\n\nTwo.\n\n## For the teacher\nThree.\n";
-        assert_eq!(section(texts, "Debrief"), "One.\n\nTwo.");
-        assert_eq!(section(texts, "For the teacher"), "Three.");
-        assert_eq!(section(texts, "Nothing"), "");
+        assert_eq!(extract_section(texts, "Debrief"), "One.\n\nTwo.");
+        assert_eq!(extract_section(texts, "For the teacher"), "Three.");
+        assert_eq!(extract_section(texts, "Nothing"), "");
     }
 }

@@ -10,7 +10,7 @@ pub struct Measurement {
     /// Source of the numbers.
     pub source: NumberSource,
     /// Aggregation over the weeks.
-    pub over: Over,
+    pub aggregation: WeekAggregation,
 }
 
 /// Source of a number.
@@ -26,10 +26,10 @@ pub enum NumberSource {
 
 /// Aggregation over weeks.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum Over {
+pub enum WeekAggregation {
     /// Last value.
     #[default]
-    End,
+    Last,
     /// Sum.
     Sum,
     /// Mean.
@@ -50,8 +50,9 @@ impl TryFrom<MeasurementFile> for Measurement {
         let source = match (file.figure.as_deref(), file.sql) {
             (Some("cash"), None) => NumberSource::Cash,
             (Some(name), None) => {
-                let figure = WeekFigure::named(name).ok_or_else(|| format!("there is no figure {name}"))?;
-                if figure.of_week(&WeekFigures::default()).is_none() {
+                let figure =
+                    WeekFigure::parse_label(name).ok_or_else(|| format!("there is no figure {name}"))?;
+                if figure.company_value(&WeekFigures::default()).is_none() {
                     return Err(format!("{name} is not measured in lessons; use sql"));
                 }
                 NumberSource::Figure(figure)
@@ -60,21 +61,21 @@ impl TryFrom<MeasurementFile> for Measurement {
             _ => return Err("a measurement needs either figure or sql".to_owned()),
         };
         let over = match file.over.as_deref() {
-            None | Some("end") => Over::End,
-            Some("sum") => Over::Sum,
-            Some("mean") => Over::Mean,
+            None | Some("end") => WeekAggregation::Last,
+            Some("sum") => WeekAggregation::Sum,
+            Some("mean") => WeekAggregation::Mean,
             Some(other) => return Err(format!("over must be end, sum or mean, not {other}")),
         };
-        if over != Over::End && matches!(source, NumberSource::Sql(_)) {
+        if over != WeekAggregation::Last && matches!(source, NumberSource::Sql(_)) {
             return Err("remove over: an SQL statement selects its days itself".to_owned());
         }
-        Ok(Measurement { source, over })
+        Ok(Measurement { source, aggregation: over })
     }
 }
 
 impl Measurement {
     /// Returns whether it is a figure in dollars.
-    pub fn counts_dollars(&self) -> bool {
+    pub fn is_in_dollars(&self) -> bool {
         match &self.source {
             NumberSource::Cash => true,
             NumberSource::Figure(figure) => figure.unit() == FigureUnit::Dollars,
@@ -85,24 +86,24 @@ impl Measurement {
     /// Returns the statement for the days from `from_day` to `to_day`, or `None` for a figure.
     pub fn statement(&self, from_day: u32, to_day: u32) -> Option<String> {
         match &self.source {
-            NumberSource::Sql(sql) => Some(filled(sql, from_day, to_day)),
+            NumberSource::Sql(sql) => Some(substitute_days(sql, from_day, to_day)),
             NumberSource::Cash | NumberSource::Figure(_) => None,
         }
     }
 
     /// Returns the value of a figure over weeks, or `None` if no week has it or the source is a statement.
-    pub fn of_weeks<'a>(&self, weeks: impl Iterator<Item = &'a WeekFigures>) -> Option<f64> {
+    pub fn aggregate<'a>(&self, weeks: impl Iterator<Item = &'a WeekFigures>) -> Option<f64> {
         let value = |week: &WeekFigures| match &self.source {
             NumberSource::Cash => Some(week.cash),
-            NumberSource::Figure(figure) => figure.of_week(week),
+            NumberSource::Figure(figure) => figure.company_value(week),
             NumberSource::Sql(_) => None,
         };
         let values: Vec<f64> = weeks.filter_map(value).filter(|value| value.is_finite()).collect();
         let sum: f64 = values.iter().sum();
-        match self.over {
-            Over::End => values.last().copied(),
-            Over::Sum => Some(sum),
-            Over::Mean => (!values.is_empty()).then(|| sum / values.len() as f64),
+        match self.aggregation {
+            WeekAggregation::Last => values.last().copied(),
+            WeekAggregation::Sum => Some(sum),
+            WeekAggregation::Mean => (!values.is_empty()).then(|| sum / values.len() as f64),
         }
     }
 
@@ -112,7 +113,7 @@ impl Measurement {
     }
 }
 
-fn filled(sql: &str, from_day: u32, to_day: u32) -> String {
+fn substitute_days(sql: &str, from_day: u32, to_day: u32) -> String {
     sql.replace("{from_day}", &from_day.to_string()).replace("{to_day}", &to_day.to_string())
 }
 
@@ -121,20 +122,23 @@ mod tests {
     use super::*;
 
     #[test]
-    fn days_stand_in_for_their_names() {
-        assert_eq!(filled("x > {from_day} and x <= {to_day}", 8, 14), "x > 8 and x <= 14");
+    fn substitute_days_replaces_both_placeholders() {
+        assert_eq!(substitute_days("x > {from_day} and x <= {to_day}", 8, 14), "x > 8 and x <= 14");
     }
 
-    fn read(figure: Option<&str>, sql: Option<&str>, over: Option<&str>) -> Result<Measurement, String> {
+    fn parse(figure: Option<&str>, sql: Option<&str>, over: Option<&str>) -> Result<Measurement, String> {
         let own = |text: Option<&str>| text.map(str::to_owned);
         Measurement::try_from(MeasurementFile { figure: own(figure), sql: own(sql), over: own(over) })
     }
 
     #[test]
-    fn a_measurement_is_a_figure_or_a_statement() {
-        assert_eq!(read(Some("cash"), None, None).expect("cash").source, NumberSource::Cash);
-        let sum = read(Some("payments"), None, Some("sum")).expect("payments");
-        assert_eq!((sum.source, sum.over), (NumberSource::Figure(WeekFigure::Payments), Over::Sum));
+    fn measurement_is_a_figure_or_a_statement() {
+        assert_eq!(parse(Some("cash"), None, None).expect("cash").source, NumberSource::Cash);
+        let sum = parse(Some("payments"), None, Some("sum")).expect("payments");
+        assert_eq!(
+            (sum.source, sum.aggregation),
+            (NumberSource::Figure(WeekFigure::Payments), WeekAggregation::Sum)
+        );
         for (figure, sql, over) in [
             (None, None, None),
             (Some("cash"), Some("SELECT 1"), None),
@@ -142,7 +146,7 @@ mod tests {
             (Some("cash"), None, Some("top")),
             (None, Some("SELECT 1"), Some("sum")),
         ] {
-            assert!(read(figure, sql, over).is_err(), "{figure:?} {sql:?} {over:?}");
+            assert!(parse(figure, sql, over).is_err(), "{figure:?} {sql:?} {over:?}");
         }
     }
 }

@@ -3,21 +3,21 @@
 //! A lesson has parts. Each part is a separate company that is recorded as a run. A part has steps of some weeks, with a
 //! question before they are simulated, goals, and hints. Lines of kind `lesson` record the progress of a student.
 
+mod completion;
 mod definition;
 mod lesson_call;
 mod lesson_file;
 mod measurement;
-mod over;
-mod soundness;
-mod standing;
+mod progress;
+mod validation;
 
+pub use completion::is_lesson_over;
 pub use definition::{
-    CapacityMover, ForecastsAsked, GoalBound, Guess, GuessForm, GuessTold, LessonAccess, LessonGoal,
-    LessonPart, LessonPlan, LessonStep, MEASURED_SEEDS, MeasuredFigure, Pitfall, PitfallBound,
-    RationaleAsked, ReferencePlay, ScheduledCalls,
+    CapacityControl, ForecastRequirement, GoalBound, Guess, GuessForm, LessonAccess, LessonGoal, LessonPart,
+    LessonPlan, LessonStep, MEASURED_SEEDS, MeasuredFigure, OutcomeTiming, Pitfall, PitfallBound,
+    RationaleRequirement, ReferencePlay, ScheduledCalls,
 };
 pub use lesson_call::LessonCall;
 pub use lesson_file::{Lesson, PLAN_FILE, TEXTS_FILE};
-pub use measurement::{Measurement, NumberSource, Over};
-pub use over::is_lesson_over;
-pub use standing::LessonStanding;
+pub use measurement::{Measurement, NumberSource, WeekAggregation};
+pub use progress::LessonProgress;

@@ -8,10 +8,10 @@ use serde::Deserialize;
 use serde_json::{Map, Value};
 
 use super::record::Record;
-use crate::clock::{nanoseconds, seconds};
+use crate::clock::{parse_nanoseconds, parse_seconds};
 use crate::files::open_regular_file;
-use crate::trajectory::DOES_NOT_FOLLOW;
-use novamind_database::Position;
+use crate::trajectory::CHAIN_BROKEN_MESSAGE;
+use novamind_database::ProjectionPosition;
 
 /// A parsed line.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,47 +44,47 @@ struct Frame<'a> {
     line_sums: bool,
 }
 
-const FRAME: [&str; 6] = ["seq", "kind", "day", "at", "prev", "sum"];
+const FRAME_FIELDS: [&str; 6] = ["seq", "kind", "day", "at", "prev", "sum"];
 
 impl Line {
     /// Parses and checks a line. Lines of the first builds have no sums; a first line declares itself whether it has one.
-    pub(super) fn read(text: &[u8], seq: u64, previous: &str, summed: bool) -> Result<Line, String> {
+    pub(super) fn parse(text: &[u8], seq: u64, previous: &str, summed: bool) -> Result<Line, String> {
         let unreadable = |error: serde_json::Error| format!("this is not a line of a trajectory ({error})");
         let frame: Frame<'_> = serde_json::from_slice(text).map_err(unreadable)?;
         let summed = summed && (seq > 0 || frame.line_sums);
-        if sum_of(text).map_or(summed, |fits| !fits) {
+        if check_sum(text).map_or(summed, |fits| !fits) {
             return Err("the line does not match its sum: it was changed".to_owned());
         }
         if frame.seq != Some(seq) {
             return Err(format!("the line should have number {seq}: lines are missing or out of order"));
         }
         if frame.prev.as_deref() != Some(previous) {
-            return Err(DOES_NOT_FOLLOW.to_owned());
+            return Err(CHAIN_BROKEN_MESSAGE.to_owned());
         }
         let (Some(kind), Some(at), Some(day)) = (frame.kind, frame.at, frame.day) else {
             return Err("the line has no kind, moment or day".to_owned());
         };
         let record =
-            Record::read(&kind, text).map_err(|error| format!("the {kind} cannot be read ({error})"))?;
+            Record::parse(&kind, text).map_err(|error| format!("the {kind} cannot be read ({error})"))?;
         Ok(Line { seq, day, at, record, hash: line_hash(text), text: text.into() })
     }
 
     /// Parses the first line of a file. Returns `None` if it is invalid.
-    pub fn first(text: &[u8]) -> Option<Line> {
-        Line::read(text, 0, &line_hash(b""), true).ok()
+    pub fn parse_first(text: &[u8]) -> Option<Line> {
+        Line::parse(text, 0, &line_hash(b""), true).ok()
     }
 
     /// Parses a line without checking its position and sum. Returns `None` if it cannot be parsed.
-    pub fn unchecked(text: &[u8]) -> Option<Line> {
+    pub fn parse_unchecked(text: &[u8]) -> Option<Line> {
         let frame: Frame<'_> = serde_json::from_slice(text).ok()?;
         let (seq, day, at) = (frame.seq.unwrap_or(0), frame.day?, frame.at.unwrap_or_default());
-        let record = Record::read(&frame.kind?, text).ok()?;
+        let record = Record::parse(&frame.kind?, text).ok()?;
         Some(Line { seq, day, at, record, hash: line_hash(text), text: text.into() })
     }
 
     /// Returns number and hash.
-    pub fn position(&self) -> Position {
-        Position { seq: self.seq, line_hash: self.hash.clone() }
+    pub fn position(&self) -> ProjectionPosition {
+        ProjectionPosition { seq: self.seq, line_hash: self.hash.clone() }
     }
 
     /// Returns whether the line closes simulated days: a week or single steps.
@@ -93,30 +93,30 @@ impl Line {
     }
 
     /// Returns whether the line declares that every line of the run has a sum.
-    pub fn promises_sums(&self) -> bool {
+    pub fn declares_sums(&self) -> bool {
         matches!(&self.record, Record::Start(start) if start.line_sums)
     }
 
     /// Returns the moment of writing in seconds since 1970, or 0 if it cannot be parsed.
-    pub fn moment(&self) -> f64 {
-        seconds(&self.at)
+    pub fn at_seconds(&self) -> f64 {
+        parse_seconds(&self.at)
     }
 
     /// Returns the moment of writing in nanoseconds since 1970, or 0 if it cannot be parsed.
-    pub fn nanoseconds(&self) -> i64 {
-        nanoseconds(&self.at)
+    pub fn at_nanoseconds(&self) -> i64 {
+        parse_nanoseconds(&self.at)
     }
 
     /// Returns the fields of the event, including fields that this version does not know.
-    pub fn own_fields(&self) -> Map<String, Value> {
+    pub fn record_fields(&self) -> Map<String, Value> {
         let mut fields: Map<String, Value> = serde_json::from_slice(&self.text).unwrap_or_default();
-        fields.retain(|name, _| !FRAME.contains(&name.as_str()));
+        fields.retain(|name, _| !FRAME_FIELDS.contains(&name.as_str()));
         fields
     }
 
     /// Returns a line that is not in a file.
     #[cfg(any(test, feature = "test-kit"))]
-    pub fn alone(seq: u64, day: u32, at: &str, record: Record) -> Line {
+    pub fn detached(seq: u64, day: u32, at: &str, record: Record) -> Line {
         let text = Value::Object(record.fields()).to_string().into_bytes();
         Line { seq, day, at: at.to_owned(), record, hash: line_hash(&text), text: text.into() }
     }
@@ -128,29 +128,29 @@ pub(super) fn line_hash(bytes: &[u8]) -> String {
 }
 
 /// Returns the hash of the first line of a file, or `None` if it cannot be read or has no complete line.
-pub fn hash_of_first_line(path: &Path) -> Option<String> {
+pub fn first_line_hash(path: &Path) -> Option<String> {
     let mut line = Vec::new();
     BufReader::new(open_regular_file(path).ok()?).read_until(b'\n', &mut line).ok()?;
     line.pop_if(|last| *last == b'\n').map(|_| line_hash(&line))
 }
 
-const SUM: &[u8] = b",\"sum\":\"";
+const SUM_PREFIX: &[u8] = b",\"sum\":\"";
 const SUM_DIGITS: usize = 16;
 
 /// Appends the sum of a line's bytes as its last field.
 pub(super) fn with_sum(mut line: Vec<u8>) -> Vec<u8> {
     let sum = line_hash(&line);
     line.pop();
-    line.extend_from_slice(SUM);
+    line.extend_from_slice(SUM_PREFIX);
     line.extend_from_slice(&sum.as_bytes()[..SUM_DIGITS]);
     line.extend_from_slice(b"\"}");
     line
 }
 
 /// Returns `None` if a line has no sum, otherwise whether the sum is correct.
-fn sum_of(line: &[u8]) -> Option<bool> {
-    let (own, tail) = line.split_at_checked(line.len().checked_sub(SUM.len() + SUM_DIGITS + 2)?)?;
-    let sum = tail.strip_prefix(SUM)?.strip_suffix(b"\"}")?;
+fn check_sum(line: &[u8]) -> Option<bool> {
+    let (own, tail) = line.split_at_checked(line.len().checked_sub(SUM_PREFIX.len() + SUM_DIGITS + 2)?)?;
+    let sum = tail.strip_prefix(SUM_PREFIX)?.strip_suffix(b"\"}")?;
     let without: Vec<u8> = own.iter().copied().chain([b'}']).collect();
     Some(line_hash(&without).as_bytes().starts_with(sum))
 }

@@ -12,24 +12,24 @@ pub trait Medium: Send {
     /// success does not cover them: the kernel may have marked the pages clean.
     fn sync(&self) -> io::Result<()>;
     /// Truncates to a length in bytes.
-    fn cut(&mut self, length: u64) -> io::Result<()>;
+    fn truncate(&mut self, length: u64) -> io::Result<()>;
     /// Returns whether this is still the file at a path, with the expected length if it is known.
-    fn is_ours(&self, path: &Path, length: Option<u64>) -> bool;
+    fn is_file_at(&self, path: &Path, length: Option<u64>) -> bool;
     /// Returns the first bytes, even if the file was moved.
-    fn beginning(&mut self, length: u64) -> io::Result<Vec<u8>>;
+    fn read_prefix(&mut self, length: u64) -> io::Result<Vec<u8>>;
 }
 
 /// A file with the number of its hard links when it was opened.
 pub(super) struct NamedFile {
     file: File,
-    names: u64,
+    link_count: u64,
 }
 
 impl NamedFile {
     /// Wraps an open file.
-    pub(super) fn of(file: File) -> io::Result<NamedFile> {
-        let names = names_of(&file.metadata()?);
-        Ok(NamedFile { file, names })
+    pub(super) fn open(file: File) -> io::Result<NamedFile> {
+        let names = count_links(&file.metadata()?);
+        Ok(NamedFile { file, link_count: names })
     }
 }
 
@@ -42,19 +42,19 @@ impl Medium for NamedFile {
         self.file.sync_data()
     }
 
-    fn cut(&mut self, length: u64) -> io::Result<()> {
+    fn truncate(&mut self, length: u64) -> io::Result<()> {
         self.file.set_len(length)?;
         self.file.seek(SeekFrom::Start(length)).map(|_| ())
     }
 
-    fn is_ours(&self, path: &Path, length: Option<u64>) -> bool {
+    fn is_file_at(&self, path: &Path, length: Option<u64>) -> bool {
         let (Ok(own), Ok(there)) = (self.file.metadata(), std::fs::metadata(path)) else { return false };
         length.is_none_or(|length| own.len() == length)
-            && is_same(&own, &there)
-            && names_of(&own) == self.names
+            && is_same_file(&own, &there)
+            && count_links(&own) == self.link_count
     }
 
-    fn beginning(&mut self, length: u64) -> io::Result<Vec<u8>> {
+    fn read_prefix(&mut self, length: u64) -> io::Result<Vec<u8>> {
         let mut bytes = Vec::new();
         self.file.seek(SeekFrom::Start(0))?;
         let read = (&mut self.file).take(length).read_to_end(&mut bytes);
@@ -65,7 +65,7 @@ impl Medium for NamedFile {
 
 /// Returns the number of hard links: a new link is another way to change the file.
 #[cfg(unix)]
-fn names_of(file: &Metadata) -> u64 {
+fn count_links(file: &Metadata) -> u64 {
     use std::os::unix::fs::MetadataExt;
     file.nlink()
 }
@@ -76,7 +76,7 @@ fn names_of(_file: &Metadata) -> u64 {
 }
 
 #[cfg(unix)]
-fn is_same(one: &Metadata, other: &Metadata) -> bool {
+fn is_same_file(one: &Metadata, other: &Metadata) -> bool {
     use std::os::unix::fs::MetadataExt;
     (one.dev(), one.ino()) == (other.dev(), other.ino())
 }

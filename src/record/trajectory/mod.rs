@@ -14,7 +14,7 @@ mod writer;
 use std::path::Path;
 
 pub use line::Line;
-pub use line::hash_of_first_line;
+pub use line::first_line_hash;
 #[cfg(any(test, feature = "test-kit"))]
 pub use medium::Medium;
 #[cfg(any(test, feature = "test-kit"))]
@@ -25,25 +25,25 @@ pub use writer::{Durability, TrajectoryWriter};
 use crate::error::RunError;
 use crate::files::read_regular_file;
 use line::line_hash;
-use novamind_database::Position;
+use novamind_database::ProjectionPosition;
 use record::Via;
 
 /// Prefix of the rationale of a policy's week; the name of the policy follows.
-const BEFORE_NAME: &str = "policy ";
+const POLICY_RATIONALE_PREFIX: &str = "policy ";
 
 /// Returns the `end` among lines, or `None` for an unfinished run.
-pub fn end_of(lines: &[Line]) -> Option<&Line> {
+pub fn find_end(lines: &[Line]) -> Option<&Line> {
     lines.iter().rev().find(|line| matches!(line.record, Record::End(_)))
 }
 
 /// Returns the rationale of a week that a policy decides.
 pub fn policy_rationale(name: &str) -> String {
-    format!("{BEFORE_NAME}{name}")
+    format!("{POLICY_RATIONALE_PREFIX}{name}")
 }
 
 /// Returns the policy that decided all weeks among lines, according to their rationales, or `None` without such a policy or
 /// without weeks.
-pub fn policy_of(lines: &[Line]) -> Option<&str> {
+pub fn find_policy(lines: &[Line]) -> Option<&str> {
     let mut weeks = lines.iter().filter_map(|line| match &line.record {
         Record::Advance(week) => Some(week),
         _ => None,
@@ -51,7 +51,7 @@ pub fn policy_of(lines: &[Line]) -> Option<&str> {
     let first = weeks.next()?;
     let is_one = first.via == Via::Policy
         && weeks.all(|week| week.via == Via::Policy && week.rationale == first.rationale);
-    first.rationale.strip_prefix(BEFORE_NAME).filter(|_| is_one)
+    first.rationale.strip_prefix(POLICY_RATIONALE_PREFIX).filter(|_| is_one)
 }
 
 /// A parsed trajectory.
@@ -62,9 +62,9 @@ pub struct Trajectory {
     /// Length of the lines in the file, in bytes.
     pub length: u64,
     /// Bytes after the last complete line, which were never confirmed.
-    pub unfinished: usize,
+    pub unfinished_bytes: usize,
     /// Position that the first line continues, if the file continues another one.
-    goes_on_from: Option<Position>,
+    continued_position: Option<ProjectionPosition>,
 }
 
 impl Trajectory {
@@ -73,96 +73,100 @@ impl Trajectory {
     /// # Errors
     /// The file cannot be read, or a line is damaged; the error names the line and the valid lines before it.
     pub fn read(path: &Path) -> Result<Trajectory, RunError> {
-        Trajectory::of_file(path, &read_regular_file(path).map_err(RunError::io(path))?)
+        Trajectory::from_bytes(path, &read_regular_file(path).map_err(RunError::io(path))?)
     }
 
     /// Returns the `end`, or `None` for an unfinished run. In format 1, lines can follow it.
-    pub fn end(&self) -> Option<&Line> {
-        end_of(&self.lines)
+    pub fn end_line(&self) -> Option<&Line> {
+        find_end(&self.lines)
     }
 
-    /// Parses the bytes of a file as [`Trajectory::read`] does.
+    /// Parses the bytes of a file as [`Trajectory::parse`] does.
     ///
     /// # Errors
     /// A line is damaged; the error names the line and the valid lines before it.
-    pub fn of_file(path: &Path, bytes: &[u8]) -> Result<Trajectory, RunError> {
-        Trajectory::parse(bytes).map_err(damaged_at(path))
+    pub fn from_bytes(path: &Path, bytes: &[u8]) -> Result<Trajectory, RunError> {
+        Trajectory::parse(bytes).map_err(damaged_line_error(path))
     }
 
-    /// Parses bytes as [`Trajectory::read`] does.
+    /// Parses bytes as [`Trajectory::parse`] does.
     ///
     /// # Errors
     /// Line number from 1, and the problem.
     pub fn parse(bytes: &[u8]) -> Result<Trajectory, (usize, String)> {
         let mut trajectory = Trajectory::default();
-        trajectory.extend(bytes).map(|()| trajectory)
+        trajectory.append_bytes(bytes).map(|()| trajectory)
     }
 
     /// Parses the bytes of a file that continues another one.
     ///
     /// # Errors
     /// A line is damaged; the error names the line and the valid lines before it.
-    pub fn of_file_after(path: &Path, last: Position, bytes: &[u8]) -> Result<Trajectory, RunError> {
-        let mut trajectory = Trajectory { goes_on_from: Some(last), ..Trajectory::default() };
-        trajectory.extend(bytes).map_err(damaged_at(path))?;
+    pub fn from_bytes_after(
+        path: &Path,
+        last: ProjectionPosition,
+        bytes: &[u8],
+    ) -> Result<Trajectory, RunError> {
+        let mut trajectory = Trajectory { continued_position: Some(last), ..Trajectory::default() };
+        trajectory.append_bytes(bytes).map_err(damaged_line_error(path))?;
         Ok(trajectory)
     }
 
     /// Returns the number of the next line.
     pub fn next_seq(&self) -> u64 {
-        self.goes_on_from.as_ref().map_or(0, |last| last.seq + 1) + self.lines.len() as u64
+        self.continued_position.as_ref().map_or(0, |last| last.seq + 1) + self.lines.len() as u64
     }
 
     /// Returns the hash that the next line must have as `prev`.
     pub fn last_hash(&self) -> String {
         let before =
-            || self.goes_on_from.as_ref().map_or_else(|| line_hash(b""), |last| last.line_hash.clone());
+            || self.continued_position.as_ref().map_or_else(|| line_hash(b""), |last| last.line_hash.clone());
         self.lines.last().map_or_else(before, |line| line.hash.clone())
     }
 
     /// Returns whether every line has a sum; true before the first line.
     fn has_sums(&self) -> bool {
-        self.goes_on_from.is_some() || self.lines.first().is_none_or(Line::promises_sums)
+        self.continued_position.is_some() || self.lines.first().is_none_or(Line::declares_sums)
     }
 
     /// Parses further bytes of the file.
     ///
     /// # Errors
     /// Line number from 1, and the problem. The lines before it are kept.
-    pub fn extend(&mut self, bytes: &[u8]) -> Result<(), (usize, String)> {
+    pub fn append_bytes(&mut self, bytes: &[u8]) -> Result<(), (usize, String)> {
         let end = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
         for text in bytes[..end].split_inclusive(|byte| *byte == b'\n') {
             let line = &text[..text.len() - 1];
             let number = self.lines.len() + 1;
-            let line = Line::read(line, self.next_seq(), &self.last_hash(), self.has_sums())
+            let line = Line::parse(line, self.next_seq(), &self.last_hash(), self.has_sums())
                 .map_err(|problem| (number, problem))?;
             self.lines.push(line);
             self.length += text.len() as u64;
         }
-        self.unfinished = bytes.len() - end;
+        self.unfinished_bytes = bytes.len() - end;
         Ok(())
     }
 }
 
 /// Returns a function that converts a damaged line of a file to an error.
-pub fn damaged_at(path: &Path) -> impl Fn((usize, String)) -> RunError + '_ {
+pub fn damaged_line_error(path: &Path) -> impl Fn((usize, String)) -> RunError + '_ {
     move |(line, problem)| RunError::Damaged {
         path: path.to_owned(),
         line,
-        safe: match line.saturating_sub(if problem == DOES_NOT_FOLLOW { 2 } else { 1 }) {
+        remedy: match line.saturating_sub(if problem == CHAIN_BROKEN_MESSAGE { 2 } else { 1 }) {
             0 => "There are no valid lines before it".to_owned(),
-            good => format!("Lines 1 to {good} are good; nothing was changed{BRANCH_THEM}"),
+            good => format!("Lines 1 to {good} are good; nothing was changed{RECOVERY_HINT}"),
         },
         problem,
     }
 }
 
 /// Message for a line that has a correct sum but not the hash of the previous line.
-pub const DOES_NOT_FOLLOW: &str =
+pub const CHAIN_BROKEN_MESSAGE: &str =
     "the line does not have the hash of the previous line: one of the two was changed";
 
 /// Hint for recovering the lines before a damaged one.
-pub const BRANCH_THEM: &str = ": `novamind runs recover` creates a branch from them";
+pub const RECOVERY_HINT: &str = ": `novamind runs recover` creates a branch from them";
 
 #[cfg(test)]
 mod tests {
@@ -170,7 +174,7 @@ mod tests {
 
     use serde_json::{Value, json};
 
-    fn examples() -> Vec<(String, Value)> {
+    fn schema_examples() -> Vec<(String, Value)> {
         let schema: Value =
             serde_json::from_str(include_str!("../../../assets/trajectory.schema.json")).expect("JSON");
         let kinds = schema["$defs"].as_object().expect("definitions");
@@ -179,11 +183,11 @@ mod tests {
     }
 
     #[test]
-    fn every_kind_is_read_and_written_as_the_schema_shows_it() {
-        let examples = examples();
+    fn every_kind_round_trips_its_schema_example() {
+        let examples = schema_examples();
         for (kind, example) in &examples {
             let text = example.to_string();
-            let record = Record::read(kind, text.as_bytes()).expect(kind);
+            let record = Record::parse(kind, text.as_bytes()).expect(kind);
             assert_eq!(record.kind(), kind);
             let fields = example.as_object().expect("an object").iter();
             let own = fields
@@ -198,16 +202,16 @@ mod tests {
     }
 
     #[test]
-    fn a_field_that_is_missing_is_an_error_and_one_that_is_unknown_is_kept() {
-        for (kind, example) in examples() {
+    fn missing_fields_fail_and_unknown_fields_are_kept() {
+        for (kind, example) in schema_examples() {
             let (seq, previous) =
                 (example["seq"].as_u64().expect("a number"), example["prev"].as_str().expect("a hash"));
-            let read = |fields: &Value| Line::read(fields.to_string().as_bytes(), seq, previous, false);
+            let read = |fields: &Value| Line::parse(fields.to_string().as_bytes(), seq, previous, false);
             let mut without_sum = example.clone();
             let fields = without_sum.as_object_mut().expect("an object");
             fields.remove("sum");
             fields.insert("later".to_owned(), json!([1, "two"]));
-            assert_eq!(read(&without_sum).expect(&kind).own_fields()["later"], json!([1, "two"]));
+            assert_eq!(read(&without_sum).expect(&kind).record_fields()["later"], json!([1, "two"]));
             let needed = match kind.as_str() {
                 "start" => "seed",
                 "call" => "tool",
@@ -239,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn recorded_lines_are_written_again_with_the_same_bytes() {
+    fn recorded_lines_serialize_to_the_same_bytes() {
         let recorded = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/recorded");
         let mut count = 0;
         for folder in std::fs::read_dir(recorded).expect("a folder").flatten() {
@@ -251,7 +255,7 @@ mod tests {
             let lines = Trajectory::read(&path).expect("it reads").lines;
             for (line, text) in lines.iter().zip(text.lines()) {
                 let fields = Value::Object(line.record.fields()).to_string();
-                let own = Value::Object(line.own_fields()).to_string();
+                let own = Value::Object(line.record_fields()).to_string();
                 assert_eq!(fields, own, "{}: line {}", path.display(), line.seq + 1);
                 assert!(text.contains(&own[1..own.len() - 1]), "{}: line {}", path.display(), line.seq + 1);
                 count += 1;

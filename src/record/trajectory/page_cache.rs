@@ -28,7 +28,7 @@ struct CachedBytes {
 
 impl PageCache {
     /// Returns a file with synced bytes.
-    pub fn holding(bytes: Vec<u8>) -> PageCache {
+    pub fn with_synced_bytes(bytes: Vec<u8>) -> PageCache {
         PageCache(Arc::new(Mutex::new(CachedBytes {
             disk: bytes.clone(),
             cache: bytes,
@@ -37,7 +37,7 @@ impl PageCache {
     }
 
     /// Lets the next `count` syncs fail.
-    pub fn fail_syncs(&self, count: u32) {
+    pub fn fail_next_syncs(&self, count: u32) {
         self.pages().failing_syncs = count;
     }
 
@@ -47,12 +47,12 @@ impl PageCache {
     }
 
     /// Returns the bytes that survive a power cut.
-    pub fn after_a_power_cut(&self) -> Vec<u8> {
+    pub fn bytes_after_power_cut(&self) -> Vec<u8> {
         self.pages().disk.clone()
     }
 
     /// Returns the bytes that survive if only the program is killed.
-    pub fn after_a_kill(&self) -> Vec<u8> {
+    pub fn bytes_after_kill(&self) -> Vec<u8> {
         self.pages().cache.clone()
     }
 
@@ -87,7 +87,7 @@ impl Medium for PageCache {
         Ok(())
     }
 
-    fn cut(&mut self, length: u64) -> io::Result<()> {
+    fn truncate(&mut self, length: u64) -> io::Result<()> {
         let pages = &mut *self.pages();
         let length = length as usize;
         pages.cache.truncate(length);
@@ -97,11 +97,11 @@ impl Medium for PageCache {
         Ok(())
     }
 
-    fn is_ours(&self, _path: &Path, length: Option<u64>) -> bool {
+    fn is_file_at(&self, _path: &Path, length: Option<u64>) -> bool {
         length.is_none_or(|length| length == self.pages().cache.len() as u64)
     }
 
-    fn beginning(&mut self, length: u64) -> io::Result<Vec<u8>> {
+    fn read_prefix(&mut self, length: u64) -> io::Result<Vec<u8>> {
         Ok(self.pages().cache[..length as usize].to_vec())
     }
 }

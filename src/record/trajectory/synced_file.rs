@@ -27,13 +27,13 @@ impl SyncedFile {
     }
 
     /// Returns whether this is still the unchanged file at a path.
-    pub fn is_ours(&self, path: &Path) -> bool {
+    pub fn is_file_at(&self, path: &Path) -> bool {
         let known_length = (!self.needs_rewrite).then_some(self.length());
-        self.medium.is_ours(path, known_length)
+        self.medium.is_file_at(path, known_length)
     }
 
     /// Returns whether the file has all accepted bytes.
-    pub fn is_intact(&self) -> bool {
+    pub fn is_complete(&self) -> bool {
         !self.needs_rewrite
     }
 
@@ -46,8 +46,8 @@ impl SyncedFile {
     ///
     /// # Errors
     /// The file cannot be read.
-    pub fn accepted(&mut self) -> io::Result<Vec<u8>> {
-        let mut bytes = self.medium.beginning(self.synced)?;
+    pub fn accepted_bytes(&mut self) -> io::Result<Vec<u8>> {
+        let mut bytes = self.medium.read_prefix(self.synced)?;
         bytes.extend_from_slice(&self.unsynced);
         Ok(bytes)
     }
@@ -62,11 +62,11 @@ impl SyncedFile {
     /// The file cannot be written. It then does not have the bytes, or is rewritten without them before more are accepted.
     pub fn append(&mut self, bytes: &[u8], durability: Durability) -> io::Result<()> {
         if self.needs_rewrite {
-            self.rewrite()?;
+            self.rewrite_unsynced()?;
         }
         if let Err(error) = self.medium.append(bytes) {
             // No sync has failed, so the bytes accepted before are intact.
-            self.needs_rewrite = self.medium.cut(self.length()).is_err();
+            self.needs_rewrite = self.medium.truncate(self.length()).is_err();
             return Err(error);
         }
         let accepted = self.unsynced.len();
@@ -87,20 +87,20 @@ impl SyncedFile {
     /// The file cannot be written or synced.
     pub fn sync(&mut self) -> io::Result<()> {
         match self.needs_rewrite {
-            true => self.rewrite(),
-            false => self.sync_once().or_else(|_| self.rewrite()),
+            true => self.rewrite_unsynced(),
+            false => self.sync_once().or_else(|_| self.rewrite_unsynced()),
         }
     }
 
     /// Uses the same descriptor, which reports each write-back error since it was opened. A descriptor opened after such an
     /// error would not report it.
-    fn rewrite(&mut self) -> io::Result<()> {
+    fn rewrite_unsynced(&mut self) -> io::Result<()> {
         self.restore_unsynced()?;
         self.sync_once()
     }
 
     fn restore_unsynced(&mut self) -> io::Result<()> {
-        self.medium.cut(self.synced)?;
+        self.medium.truncate(self.synced)?;
         self.medium.append(&self.unsynced)
     }
 

@@ -13,10 +13,10 @@ use super::record::Record;
 use super::synced_file::SyncedFile;
 use crate::clock::now;
 use crate::error::RunError;
-use crate::files::{create_folder, folder_of, sync_folder, write_whole};
-use crate::files::{read_regular_file, write_to_regular_file};
+use crate::files::{create_folder, parent_folder, sync_folder, write_atomically};
+use crate::files::{open_regular_file_for_write, read_regular_file};
 use crate::trajectory::Trajectory;
-use novamind_database::Position;
+use novamind_database::ProjectionPosition;
 
 /// When a line must be on the disk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -39,9 +39,9 @@ pub struct TrajectoryWriter {
     /// Moment of the last line.
     last_at: String,
     /// Why lines are no longer saved.
-    loss: Option<String>,
+    loss_reason: Option<String>,
     /// Path of the copy that was written after the file disappeared.
-    aside: Option<PathBuf>,
+    saved_copy: Option<PathBuf>,
 }
 
 impl TrajectoryWriter {
@@ -54,8 +54,8 @@ impl TrajectoryWriter {
             next_seq: 0,
             last_hash: line_hash(b""),
             last_at: String::new(),
-            loss: None,
-            aside: None,
+            loss_reason: None,
+            saved_copy: None,
         }
     }
 
@@ -65,8 +65,8 @@ impl TrajectoryWriter {
     /// The file exists, or cannot be created. The file is removed if its folder cannot be synced.
     pub fn create(path: &Path) -> Result<TrajectoryWriter, RunError> {
         let file = File::options().create_new(true).read(true).append(true).open(path);
-        let file = file.and_then(NamedFile::of).map_err(RunError::io(path))?;
-        sync_folder(folder_of(path)).inspect_err(|_| drop(std::fs::remove_file(path)))?;
+        let file = file.and_then(NamedFile::open).map_err(RunError::io(path))?;
+        sync_folder(parent_folder(path)).inspect_err(|_| drop(std::fs::remove_file(path)))?;
         let file = Some(RefCell::new(SyncedFile::new(Box::new(file), 0)));
         Ok(TrajectoryWriter { file, path: path.to_owned(), ..TrajectoryWriter::in_memory() })
     }
@@ -75,9 +75,9 @@ impl TrajectoryWriter {
     ///
     /// # Errors
     /// The file cannot be read or created, or is damaged.
-    pub fn open_after(path: &Path, last: Position) -> Result<TrajectoryWriter, RunError> {
+    pub fn open_after(path: &Path, last: ProjectionPosition) -> Result<TrajectoryWriter, RunError> {
         match read_regular_file(path) {
-            Ok(bytes) => TrajectoryWriter::resume(path, &Trajectory::of_file_after(path, last, &bytes)?),
+            Ok(bytes) => TrajectoryWriter::resume(path, &Trajectory::from_bytes_after(path, last, &bytes)?),
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
                 let (next_seq, last_hash) = (last.seq + 1, last.line_hash);
                 Ok(TrajectoryWriter { next_seq, last_hash, ..TrajectoryWriter::create(path)? })
@@ -92,8 +92,9 @@ impl TrajectoryWriter {
     /// # Errors
     /// The file cannot be written or synced.
     pub fn resume(path: &Path, read: &Trajectory) -> Result<TrajectoryWriter, RunError> {
-        let mut file = write_to_regular_file(path).and_then(NamedFile::of).map_err(RunError::io(path))?;
-        file.cut(read.length).and_then(|()| file.sync()).map_err(RunError::io(path))?;
+        let mut file =
+            open_regular_file_for_write(path).and_then(NamedFile::open).map_err(RunError::io(path))?;
+        file.truncate(read.length).and_then(|()| file.sync()).map_err(RunError::io(path))?;
         Ok(TrajectoryWriter {
             file: Some(RefCell::new(SyncedFile::new(Box::new(file), read.length))),
             path: path.to_owned(),
@@ -105,8 +106,8 @@ impl TrajectoryWriter {
     }
 
     /// Returns number and hash of the last line.
-    pub fn position(&self) -> Position {
-        Position { seq: self.next_seq.saturating_sub(1), line_hash: self.last_hash.clone() }
+    pub fn last_position(&self) -> ProjectionPosition {
+        ProjectionPosition { seq: self.next_seq.saturating_sub(1), line_hash: self.last_hash.clone() }
     }
 
     /// Returns the moment of the last line; empty before the first.
@@ -125,9 +126,9 @@ impl TrajectoryWriter {
     /// Appends a copy of another line's event and day.
     ///
     /// # Errors
-    /// As [`TrajectoryWriter::append`].
-    pub fn copy(&mut self, line: &Line) -> Result<(), RunError> {
-        let fields = line.own_fields();
+    /// As [`TrajectoryWriter::append_line`].
+    pub fn append_copy(&mut self, line: &Line) -> Result<(), RunError> {
+        let fields = line.record_fields();
         self.append_fields(line.record.kind(), line.day, fields, Durability::Written).map(|_| ())
     }
 
@@ -138,10 +139,10 @@ impl TrajectoryWriter {
         fields: Map<String, Value>,
         durability: Durability,
     ) -> Result<String, RunError> {
-        let (bytes, hash, at) = self.line(kind, day, fields);
-        let written = self.write(&bytes, durability).map_err(|error| self.set_aside(error));
+        let (bytes, hash, at) = self.build_line(kind, day, fields);
+        let written = self.write_bytes(&bytes, durability).map_err(|error| self.save_copy_if_replaced(error));
         if written.is_ok() {
-            self.accept(hash, &at);
+            self.advance_position(hash, &at);
         }
         written.map(|()| at)
     }
@@ -151,34 +152,34 @@ impl TrajectoryWriter {
     ///
     /// # Errors
     /// The line cannot be written yet.
-    pub fn append_done(&mut self, day: u32, record: &Record) -> Result<(), RunError> {
-        let (bytes, hash, at) = self.line(record.kind(), day, record.fields());
-        let written = self.write(&bytes, Durability::Synced);
-        self.accept(hash, &at);
+    pub fn append_irrevocable(&mut self, day: u32, record: &Record) -> Result<(), RunError> {
+        let (bytes, hash, at) = self.build_line(record.kind(), day, record.fields());
+        let written = self.write_bytes(&bytes, Durability::Synced);
+        self.advance_position(hash, &at);
         if written.is_err() {
             self.backlog.extend_from_slice(&bytes);
         }
-        written.map_err(|error| self.set_aside(error))
+        written.map_err(|error| self.save_copy_if_replaced(error))
     }
 
     /// If the file disappeared, writes a copy of all confirmed lines next to its path and adds the copy to the error.
-    fn set_aside(&mut self, error: RunError) -> RunError {
-        let RunError::Astray { path, .. } = error else { return error };
-        let aside = self.aside.get_or_insert_with(|| unsaved_file(&path)).clone();
-        let error = RunError::Astray { kept: self.write_aside(&aside).map(|()| aside), path };
-        self.loss = Some(error.to_string());
+    fn save_copy_if_replaced(&mut self, error: RunError) -> RunError {
+        let RunError::FileReplaced { path, .. } = error else { return error };
+        let aside = self.saved_copy.get_or_insert_with(|| copy_path(&path)).clone();
+        let error = RunError::FileReplaced { saved_copy: self.write_copy(&aside).map(|()| aside), path };
+        self.loss_reason = Some(error.to_string());
         error
     }
 
     /// Writes a copy of all confirmed lines. An earlier copy is replaced only by a complete one.
-    fn write_aside(&mut self, aside: &Path) -> Result<(), String> {
+    fn write_copy(&mut self, aside: &Path) -> Result<(), String> {
         let Some(file) = &mut self.file else { return Ok(()) };
-        let accepted = file.get_mut().accepted().map_err(RunError::io(&self.path));
+        let accepted = file.get_mut().accepted_bytes().map_err(RunError::io(&self.path));
         let written = accepted.and_then(|mut bytes| {
             bytes.extend_from_slice(&self.backlog);
             // The folder may be missing, too.
-            create_folder(folder_of(aside))?;
-            write_whole(aside, &bytes)
+            create_folder(parent_folder(aside))?;
+            write_atomically(aside, &bytes)
         });
         written.map_err(|error| match aside.exists() {
             true => format!("{error}; {} has an earlier copy", aside.display()),
@@ -187,17 +188,17 @@ impl TrajectoryWriter {
     }
 
     /// Returns why lines are no longer saved, once the writer has noticed.
-    pub fn loss(&self) -> Option<&str> {
-        self.loss.as_deref()
+    pub fn loss_reason(&self) -> Option<&str> {
+        self.loss_reason.as_deref()
     }
 
-    fn accept(&mut self, hash: String, at: &str) {
+    fn advance_position(&mut self, hash: String, at: &str) {
         self.next_seq += 1;
         self.last_hash = hash;
         at.clone_into(&mut self.last_at);
     }
 
-    fn line(&self, kind: &str, day: u32, fields: Map<String, Value>) -> (Vec<u8>, String, String) {
+    fn build_line(&self, kind: &str, day: u32, fields: Map<String, Value>) -> (Vec<u8>, String, String) {
         let at = now();
         let mut line = Map::new();
         line.insert("seq".to_owned(), self.next_seq.into());
@@ -216,18 +217,18 @@ impl TrajectoryWriter {
         (bytes, hash, at)
     }
 
-    fn write(&mut self, bytes: &[u8], durability: Durability) -> Result<(), RunError> {
+    fn write_bytes(&mut self, bytes: &[u8], durability: Durability) -> Result<(), RunError> {
         let Some(file) = &mut self.file else { return Ok(()) };
         let file = file.get_mut();
-        if !file.is_ours(&self.path) {
+        if !file.is_file_at(&self.path) {
             // Never overwrite lines of another program, and never confirm lines that the user cannot find.
-            return Err(RunError::Astray { path: self.path.clone(), kept: Err(String::new()) });
+            return Err(RunError::FileReplaced { path: self.path.clone(), saved_copy: Err(String::new()) });
         }
         // Waiting lines are about irrevocable events.
         let durability = if self.backlog.is_empty() { durability } else { Durability::Synced };
         file.append(&[&self.backlog, bytes].concat(), durability).map_err(RunError::io(&self.path))?;
         self.backlog.clear();
-        self.loss = None;
+        self.loss_reason = None;
         Ok(())
     }
 
@@ -247,13 +248,13 @@ impl TrajectoryWriter {
 
     /// Returns whether the file is still at its path and has all accepted lines.
     pub fn is_complete(&self) -> bool {
-        let is_whole = |file: &SyncedFile| file.is_ours(&self.path) && file.is_intact();
+        let is_whole = |file: &SyncedFile| file.is_file_at(&self.path) && file.is_complete();
         self.backlog.is_empty() && self.file.as_ref().is_none_or(|file| is_whole(&file.borrow()))
     }
 
     /// Replaces the medium.
     #[cfg(any(test, feature = "test-kit"))]
-    pub fn write_to(&mut self, medium: Box<dyn Medium>) {
+    pub fn replace_medium(&mut self, medium: Box<dyn Medium>) {
         self.file.as_mut().expect("a file").get_mut().replace_medium(medium);
     }
 
@@ -262,12 +263,12 @@ impl TrajectoryWriter {
     /// # Errors
     /// The file cannot be written or synced.
     pub fn sync(&mut self) -> Result<(), RunError> {
-        self.write(b"", Durability::Synced).map_err(|error| self.set_aside(error))
+        self.write_bytes(b"", Durability::Synced).map_err(|error| self.save_copy_if_replaced(error))
     }
 }
 
 /// Returns the path of the copy next to a trajectory.
-fn unsaved_file(path: &Path) -> PathBuf {
+fn copy_path(path: &Path) -> PathBuf {
     let moment: String = now().chars().take(19).filter(|letter| letter.is_ascii_alphanumeric()).collect();
     path.with_file_name(format!("trajectory-unsaved-{moment}Z.jsonl"))
 }

@@ -4,15 +4,15 @@
 mod svg;
 mod text;
 
+use super::formatting::{format_money, format_whole};
 use super::highlights::{highest_cash, lowest_cash, peak_week};
-use super::story::Story;
-use super::words::{money, whole};
-use novamind_base::notation::printable;
+use super::run_report::RunReport;
+use novamind_base::formatting::escape_control_characters;
 use novamind_record::figures::WeekFigures;
-use novamind_record::trajectory::record::Ended;
+use novamind_record::trajectory::record::RunEndReason;
 
 #[derive(Debug, Clone, PartialEq, Eq)]
-struct CardFigure {
+struct LabeledFigure {
     /// Formatted value.
     value: String,
     name: String,
@@ -26,72 +26,75 @@ struct Card {
     cash_by_day: Vec<f64>,
     /// Days of the highest and the lowest cash.
     marks: Vec<u32>,
-    turning_points: Vec<CardFigure>,
-    numbers: [CardFigure; 3],
+    turning_points: Vec<LabeledFigure>,
+    numbers: [LabeledFigure; 3],
     /// Remark about a language model used as voice.
     voice: Option<&'static str>,
     /// Scenario, seed, version.
     source: String,
 }
 
-pub fn as_text(story: &Story) -> String {
-    text::write(&Card::of(story))
+pub fn to_text(story: &RunReport) -> String {
+    text::to_text(&Card::from_report(story))
 }
 
-pub fn as_svg(story: &Story) -> String {
-    svg::draw(&Card::of(story))
+pub fn to_svg(story: &RunReport) -> String {
+    svg::draw(&Card::from_report(story))
 }
 
 impl Card {
-    fn of(story: &Story) -> Card {
+    fn from_report(story: &RunReport) -> Card {
         let (highest, lowest) = (highest_cash(&story.cash_by_day), lowest_cash(&story.cash_by_day));
-        let fact = |value: String, name: String| CardFigure { value, name };
+        let fact = |value: String, name: String| LabeledFigure { value, name };
         let mut turning_points = Vec::new();
         if let Some((day, cash)) = highest {
-            turning_points.push(fact(money(cash), format!("highest cash, day {day}")));
+            turning_points.push(fact(format_money(cash), format!("highest cash, day {day}")));
         }
         if let Some((day, cash)) = lowest {
-            turning_points.push(fact(money(cash), format!("lowest cash, day {day}")));
+            turning_points.push(fact(format_money(cash), format!("lowest cash, day {day}")));
         }
         if let Some(week) = peak_week(&story.weeks, |week| week.individual_subscribers) {
-            let count = whole(f64::from(week.individual_subscribers));
+            let count = format_whole(f64::from(week.individual_subscribers));
             turning_points.push(fact(count, format!("peak subscribers, day {}", week.day)));
         }
         let last = story.weeks.last().copied().unwrap_or_default();
         let grew = story.weeks.iter().filter(|week: &&WeekFigures| week.cash_change > 0.0).count();
         Card {
             headline: headline(story),
-            rank: story.standing.rank.map(|_| story.standing.in_words()),
+            rank: story.ranking.rank.map(|_| story.ranking.describe()),
             cash_by_day: story.cash_by_day.clone(),
             marks: [highest, lowest].into_iter().flatten().map(|(day, _)| day).collect(),
             turning_points,
             numbers: [
                 fact(
-                    whole(f64::from(last.individual_subscribers)),
-                    format!("subscribers, day {}", story.seen.day),
+                    format_whole(f64::from(last.individual_subscribers)),
+                    format!("subscribers, day {}", story.observation.day),
                 ),
-                fact(whole(f64::from(last.enterprise_seats)), format!("seats, day {}", story.seen.day)),
+                fact(
+                    format_whole(f64::from(last.enterprise_seats)),
+                    format!("seats, day {}", story.observation.day),
+                ),
                 fact(format!("{grew} of {}", story.weeks.len()), "weeks that raised cash".to_owned()),
             ],
-            voice: voice(story),
-            source: source(story),
+            voice: describe_voice(story),
+            source: describe_source(story),
         }
     }
 }
 
-fn headline(story: &Story) -> String {
-    let (day, cash) = (story.seen.day, money(story.seen.cash));
-    match story.seen.ended {
-        Some(Ended::Horizon) => format!("{cash} after {day} days"),
-        Some(Ended::Bankruptcy) => format!("Bankrupt on day {day}"),
-        Some(Ended::Abandoned) => format!("Abandoned on day {day} with {cash}, without a score"),
-        Some(Ended::Lesson) => format!("{cash} at the end of the lesson on day {day}"),
-        None => format!("{cash} on day {day} of {}", story.seen.last_day),
+fn headline(story: &RunReport) -> String {
+    let (day, cash) = (story.observation.day, format_money(story.observation.cash));
+    match story.observation.ended {
+        Some(RunEndReason::Horizon) => format!("{cash} after {day} days"),
+        Some(RunEndReason::Bankruptcy) => format!("Bankrupt on day {day}"),
+        Some(RunEndReason::Abandoned) => format!("Abandoned on day {day} with {cash}, without a score"),
+        Some(RunEndReason::Lesson) => format!("{cash} at the end of the lesson on day {day}"),
+        None => format!("{cash} on day {day} of {}", story.observation.last_day),
     }
 }
 
-fn voice(story: &Story) -> Option<&'static str> {
-    let model = story.seen.voice.as_ref()?;
+fn describe_voice(story: &RunReport) -> Option<&'static str> {
+    let model = story.observation.voice.as_ref()?;
     Some(match (model.words, model.judge) {
         (true, true) => "A language model worded customers' posts and judged the player's posts.",
         (_, false) => "A language model worded customers' posts.",
@@ -99,11 +102,11 @@ fn voice(story: &Story) -> Option<&'static str> {
     })
 }
 
-fn source(story: &Story) -> String {
-    let seed = story.seen.seed.map_or(String::new(), |seed| format!(" · seed {seed}"));
-    let changed = if story.seen.has_own_parameters { " · changed parameters" } else { "" };
-    let scenario: String = printable(&story.seen.scenario).chars().take(24).collect();
-    format!("scenario {scenario}{seed}{changed} · version {}", printable(&story.version))
+fn describe_source(story: &RunReport) -> String {
+    let seed = story.observation.seed.map_or(String::new(), |seed| format!(" · seed {seed}"));
+    let changed = if story.observation.has_own_parameters { " · changed parameters" } else { "" };
+    let scenario: String = escape_control_characters(&story.observation.scenario).chars().take(24).collect();
+    format!("scenario {scenario}{seed}{changed} · version {}", escape_control_characters(&story.version))
 }
 
 #[cfg(test)]
@@ -115,7 +118,7 @@ mod tests {
     use novamind_database::Cell;
     use novamind_session::Session;
 
-    fn number(session: &mut Session, sql: &str) -> f64 {
+    fn query_number(session: &mut Session, sql: &str) -> f64 {
         let rows = session.query(sql).expect(sql);
         match rows.rows[0][0] {
             Cell::Integer(value) => value as f64,
@@ -126,14 +129,14 @@ mod tests {
 
     fn cash_of_ledger(session: &mut Session, last: u32) -> Vec<f64> {
         let until = |day| format!("SELECT total(amount) FROM ledger WHERE day <= {day}");
-        (0..=last).map(|day| number(session, &until(day))).collect()
+        (0..=last).map(|day| query_number(session, &until(day))).collect()
     }
 
     #[test]
-    fn its_figures_are_those_of_the_database() {
-        let mut session = test_kit::finished();
-        let story = Story::of(&session);
-        let card = Card::of(&story);
+    fn card_figures_match_the_database() {
+        let mut session = test_kit::finished_run();
+        let story = RunReport::from_session(&session);
+        let card = Card::from_report(&story);
         let cash = cash_of_ledger(&mut session, 35);
         assert_eq!(card.cash_by_day.len(), cash.len());
         for (day, (shown, booked)) in card.cash_by_day.iter().zip(&cash).enumerate() {
@@ -142,67 +145,67 @@ mod tests {
         let best = cash.iter().copied().fold(f64::MIN, f64::max);
         let day = cash.iter().position(|own| *own == best).expect("a day");
         assert_eq!(card.turning_points[0].name, format!("highest cash, day {day}"));
-        assert_eq!(card.turning_points[0].value, money(best));
+        assert_eq!(card.turning_points[0].value, format_money(best));
         let least = cash.iter().copied().fold(f64::MAX, f64::min);
         let day = cash.iter().position(|own| *own == least).expect("a day");
         assert_eq!(card.turning_points[1].name, format!("lowest cash, day {day}"));
-        assert_eq!(card.turning_points[1].value, money(least));
+        assert_eq!(card.turning_points[1].value, format_money(least));
         let mut active = |day: usize| {
             let sql = format!(
                 "SELECT count(*) FROM subscriptions s JOIN customers c USING (customer_id) WHERE c.customer_type = 'small' AND \
                  s.status IN ('subscribed', 'cancelled') AND s.start_day <= {day} AND \
                  (s.end_day IS NULL OR s.end_day > {day})"
             );
-            number(&mut session, &sql)
+            query_number(&mut session, &sql)
         };
         let by_week: Vec<f64> = (1..=5).map(|week| active(week * 7)).collect();
         let most = by_week.iter().copied().fold(0.0, f64::max);
         let day = 7 * (1 + by_week.iter().position(|own| *own == most).expect("a week"));
-        assert_eq!(card.turning_points[2].value, whole(most));
+        assert_eq!(card.turning_points[2].value, format_whole(most));
         assert_eq!(card.turning_points[2].name, format!("peak subscribers, day {day}"));
-        assert_eq!(card.numbers[0].value, whole(by_week[4]));
+        assert_eq!(card.numbers[0].value, format_whole(by_week[4]));
         let seats = "SELECT total(seat_count) FROM subscriptions s JOIN customers c USING (customer_id) \
                      WHERE c.customer_type = 'large' AND s.status = 'subscribed'";
-        let seats = number(&mut session, seats);
-        assert_eq!(card.numbers[1].value, whole(seats));
+        let seats = query_number(&mut session, seats);
+        assert_eq!(card.numbers[1].value, format_whole(seats));
         let grew = (1..=5).filter(|week| cash[week * 7] > cash[week * 7 - 7]).count();
         assert_eq!(card.numbers[2].value, format!("{grew} of 5"));
-        assert_eq!(card.headline, format!("{} after 35 days", money(cash[35])));
+        assert_eq!(card.headline, format!("{} after 35 days", format_money(cash[35])));
         assert_eq!(card.rank, None, "35 days instead of 500");
     }
 
     #[test]
-    fn it_fits_80_columns_and_tells_how_it_ended() {
+    fn card_fits_80_columns_and_states_the_outcome() {
         for (session, part) in [
-            (test_kit::finished(), "after 35 days"),
-            (test_kit::ruined(), "Bankrupt on day "),
-            (test_kit::played(0), "on day 0 of 200"),
-            (test_kit::played(2), "on day 14 of 200"),
+            (test_kit::finished_run(), "after 35 days"),
+            (test_kit::bankrupt_run(), "Bankrupt on day "),
+            (test_kit::play_weeks(0), "on day 0 of 200"),
+            (test_kit::play_weeks(2), "on day 14 of 200"),
         ] {
-            let card = as_text(&Story::of(&session));
+            let card = to_text(&RunReport::from_session(&session));
             assert!(card.contains(part) && card.contains("seed 7"), "{card}");
             assert!(card.lines().all(|line| line.width() <= 80), "{card}");
         }
     }
 
     #[test]
-    fn what_people_wrote_cannot_act_and_names_are_escaped() {
-        let mut story = Story::of(&test_kit::finished());
-        story.seen.scenario = "<script>\u{1b}[31m\u{202e}&".to_owned();
+    fn user_text_is_escaped() {
+        let mut story = RunReport::from_session(&test_kit::finished_run());
+        story.observation.scenario = "<script>\u{1b}[31m\u{202e}&".to_owned();
         story.version = "\u{1b}]0;x\u{7}".to_owned();
-        let text = as_text(&story);
+        let text = to_text(&story);
         assert!(!text.contains('\u{1b}') && !text.contains('\u{202e}') && !text.contains('\u{7}'), "{text}");
         assert!(text.lines().all(|line| line.width() <= 80), "{text}");
-        let svg = as_svg(&story);
+        let svg = to_svg(&story);
         assert!(svg.contains("&lt;script&gt;") && !svg.contains("<script"), "{svg}");
     }
 
     #[test]
-    fn a_rank_stands_on_it_only_where_runs_can_be_compared() {
-        let mut story = Story::of(&test_kit::finished());
-        assert!(!as_text(&story).contains("rank"));
-        (story.seen.last_day, story.seen.seed) = (500, Some(42));
-        story.standing = crate::ranking::standing(Some(14_208_331.0), &story.seen);
-        assert!(as_text(&story).contains("rank 2 of 18") && as_svg(&story).contains("rank 2 of 18"));
+    fn card_shows_a_rank_only_for_comparable_runs() {
+        let mut story = RunReport::from_session(&test_kit::finished_run());
+        assert!(!to_text(&story).contains("rank"));
+        (story.observation.last_day, story.observation.seed) = (500, Some(42));
+        story.ranking = crate::ranking::rank_score(Some(14_208_331.0), &story.observation);
+        assert!(to_text(&story).contains("rank 2 of 18") && to_svg(&story).contains("rank 2 of 18"));
     }
 }

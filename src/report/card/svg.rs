@@ -2,21 +2,21 @@
 
 use std::fmt::Write;
 
-use super::{Card, CardFigure};
-use crate::words::dollar_tick;
-use novamind_base::notation::escaped_html;
+use super::{Card, LabeledFigure};
+use crate::formatting::format_dollar_tick;
+use novamind_base::formatting::escape_html;
 
 /// Common size of shared pictures.
 const SIZE: (f64, f64) = (1200.0, 630.0);
-const EDGE: f64 = 60.0;
-const CURVE: (f64, f64) = (200.0, 400.0);
-const POINTS: usize = 360;
+const MARGIN: f64 = 60.0;
+const CURVE_TOP_AND_BOTTOM: (f64, f64) = (200.0, 400.0);
+const MAX_CURVE_POINTS: usize = 360;
 
-const PAPER: &str = "#14171c";
-const INK: &str = "#eceff3";
-const DIM: &str = "#9aa3ae";
-const LINE: &str = "#2fa3b5";
-const MARK: &str = "#e0b04a";
+const BACKGROUND_COLOR: &str = "#14171c";
+const TEXT_COLOR: &str = "#eceff3";
+const SECONDARY_COLOR: &str = "#9aa3ae";
+const CURVE_COLOR: &str = "#2fa3b5";
+const MARK_COLOR: &str = "#e0b04a";
 
 pub fn draw(card: &Card) -> String {
     let (width, height) = SIZE;
@@ -24,58 +24,61 @@ pub fn draw(card: &Card) -> String {
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" \
          role=\"img\" aria-labelledby=\"t d\" font-family=\"'Segoe UI','Helvetica Neue',Arial,sans-serif\">\n\
          <title id=\"t\">{}</title>\n<desc id=\"d\">{}</desc>\n\
-         <rect width=\"{width}\" height=\"{height}\" fill=\"{PAPER}\"/>\n",
-        escaped_html(&card.headline),
-        escaped_html(&described(card))
+         <rect width=\"{width}\" height=\"{height}\" fill=\"{BACKGROUND_COLOR}\"/>\n",
+        escape_html(&card.headline),
+        escape_html(&describe_card(card))
     );
-    text(&mut svg, (EDGE, 62.0), 24.0, LINE, true, "NovaMind");
+    draw_text(&mut svg, (MARGIN, 62.0), 24.0, CURVE_COLOR, true, "NovaMind");
     if let Some(voice) = card.voice {
-        text(&mut svg, (EDGE + 150.0, 62.0), 18.0, DIM, false, voice);
+        draw_text(&mut svg, (MARGIN + 150.0, 62.0), 18.0, SECONDARY_COLOR, false, voice);
     }
-    text(&mut svg, (EDGE, 132.0), 54.0, INK, true, &card.headline);
+    draw_text(&mut svg, (MARGIN, 132.0), 54.0, TEXT_COLOR, true, &card.headline);
     if let Some(rank) = &card.rank {
-        text(&mut svg, (EDGE, 170.0), 24.0, DIM, false, rank);
+        draw_text(&mut svg, (MARGIN, 170.0), 24.0, SECONDARY_COLOR, false, rank);
     }
-    curve(&mut svg, card);
-    row(&mut svg, 462.0, &card.turning_points);
-    row(&mut svg, 538.0, &card.numbers);
-    text(&mut svg, (EDGE, 610.0), 18.0, DIM, false, &card.source);
+    draw_curve(&mut svg, card);
+    draw_figures(&mut svg, 462.0, &card.turning_points);
+    draw_figures(&mut svg, 538.0, &card.numbers);
+    draw_text(&mut svg, (MARGIN, 610.0), 18.0, SECONDARY_COLOR, false, &card.source);
     svg.push_str("</svg>\n");
     svg
 }
 
-fn described(card: &Card) -> String {
+fn describe_card(card: &Card) -> String {
     let facts = card.turning_points.iter().chain(&card.numbers);
     facts.map(|fact| format!("{}: {}", fact.name, fact.value)).collect::<Vec<_>>().join("; ")
 }
 
-fn text(svg: &mut String, (x, y): (f64, f64), size: f64, colour: &str, bold: bool, words: &str) {
+fn draw_text(svg: &mut String, (x, y): (f64, f64), size: f64, colour: &str, bold: bool, words: &str) {
     let weight = if bold { " font-weight=\"bold\"" } else { "" };
     let _ = writeln!(
         svg,
         "<text x=\"{x:.0}\" y=\"{y:.0}\" font-size=\"{size:.0}\" fill=\"{colour}\"{weight}>{}</text>",
-        escaped_html(words)
+        escape_html(words)
     );
 }
 
-fn row(svg: &mut String, y: f64, facts: &[CardFigure]) {
+fn draw_figures(svg: &mut String, y: f64, facts: &[LabeledFigure]) {
     for (at, fact) in facts.iter().enumerate() {
-        let x = EDGE + at as f64 * 370.0;
-        text(svg, (x, y), 30.0, INK, true, &fact.value);
-        text(svg, (x, y + 26.0), 18.0, DIM, false, &fact.name);
+        let x = MARGIN + at as f64 * 370.0;
+        draw_text(svg, (x, y), 30.0, TEXT_COLOR, true, &fact.value);
+        draw_text(svg, (x, y + 26.0), 18.0, SECONDARY_COLOR, false, &fact.name);
     }
 }
 
-fn place(card: &Card, day: usize, most: f64) -> (f64, f64) {
+fn point_position(card: &Card, day: usize, most: f64) -> (f64, f64) {
     let last = card.cash_by_day.len().saturating_sub(1).max(1) as f64;
     let share = (card.cash_by_day[day] / most).clamp(0.0, 1.0);
-    (EDGE + day as f64 / last * (SIZE.0 - 2.0 * EDGE), CURVE.1 - share * (CURVE.1 - CURVE.0))
+    (
+        MARGIN + day as f64 / last * (SIZE.0 - 2.0 * MARGIN),
+        CURVE_TOP_AND_BOTTOM.1 - share * (CURVE_TOP_AND_BOTTOM.1 - CURVE_TOP_AND_BOTTOM.0),
+    )
 }
 
-fn curve(svg: &mut String, card: &Card) {
+fn draw_curve(svg: &mut String, card: &Card) {
     let most = card.cash_by_day.iter().copied().fold(1.0, f64::max);
     let last = card.cash_by_day.len().saturating_sub(1);
-    let step = card.cash_by_day.len().div_ceil(POINTS).max(1);
+    let step = card.cash_by_day.len().div_ceil(MAX_CURVE_POINTS).max(1);
     let mut days: Vec<usize> = (0..card.cash_by_day.len()).step_by(step).collect();
     if days.last().is_some_and(|own| *own < last) {
         days.push(last);
@@ -83,31 +86,41 @@ fn curve(svg: &mut String, card: &Card) {
     let points: Vec<String> = days
         .into_iter()
         .map(|day| {
-            let (x, y) = place(card, day, most);
+            let (x, y) = point_position(card, day, most);
             format!("{x:.1},{y:.1}")
         })
         .collect();
-    let (left, right) = (EDGE, SIZE.0 - EDGE);
+    let (left, right) = (MARGIN, SIZE.0 - MARGIN);
     let points = points.join(" ");
-    let _ =
-        writeln!(svg, "<line x1=\"{left}\" y1=\"{0}\" x2=\"{right}\" y2=\"{0}\" stroke=\"{DIM}\"/>", CURVE.1);
     let _ = writeln!(
         svg,
-        "<polyline points=\"{points}\" fill=\"none\" stroke=\"{LINE}\" stroke-width=\"4\" stroke-linejoin=\"round\"/>"
+        "<line x1=\"{left}\" y1=\"{0}\" x2=\"{right}\" y2=\"{0}\" stroke=\"{SECONDARY_COLOR}\"/>",
+        CURVE_TOP_AND_BOTTOM.1
+    );
+    let _ = writeln!(
+        svg,
+        "<polyline points=\"{points}\" fill=\"none\" stroke=\"{CURVE_COLOR}\" stroke-width=\"4\" stroke-linejoin=\"round\"/>"
     );
     for day in card.marks.iter().map(|day| *day as usize).filter(|day| *day <= last) {
         if card.cash_by_day.is_empty() {
             break;
         }
-        let (x, y) = place(card, day, most);
-        let _ = writeln!(svg, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"7\" fill=\"{MARK}\"/>");
+        let (x, y) = point_position(card, day, most);
+        let _ = writeln!(svg, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"7\" fill=\"{MARK_COLOR}\"/>");
     }
-    text(svg, (left, CURVE.0 - 8.0), 16.0, DIM, false, &dollar_tick(most));
-    text(svg, (left, CURVE.1 + 20.0), 16.0, DIM, false, "day 0");
+    draw_text(
+        svg,
+        (left, CURVE_TOP_AND_BOTTOM.0 - 8.0),
+        16.0,
+        SECONDARY_COLOR,
+        false,
+        &format_dollar_tick(most),
+    );
+    draw_text(svg, (left, CURVE_TOP_AND_BOTTOM.1 + 20.0), 16.0, SECONDARY_COLOR, false, "day 0");
     let _ = writeln!(
         svg,
-        "<text x=\"{right}\" y=\"{}\" font-size=\"16\" fill=\"{DIM}\" text-anchor=\"end\">day {last}</text>",
-        CURVE.1 + 20.0
+        "<text x=\"{right}\" y=\"{}\" font-size=\"16\" fill=\"{SECONDARY_COLOR}\" text-anchor=\"end\">day {last}</text>",
+        CURVE_TOP_AND_BOTTOM.1 + 20.0
     );
 }
 
@@ -116,7 +129,7 @@ mod tests {
     use super::*;
 
     fn card(cash: &[f64], marks: &[u32]) -> Card {
-        let fact = |value: &str| CardFigure { value: value.to_owned(), name: "n".to_owned() };
+        let fact = |value: &str| LabeledFigure { value: value.to_owned(), name: "n".to_owned() };
         Card {
             headline: "h".to_owned(),
             rank: None,
@@ -130,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn the_curve_passes_where_the_cash_was() {
+    fn curve_follows_cash() {
         let svg = draw(&card(&[100.0, 50.0, 0.0, 25.0], &[0, 2]));
         assert!(svg.contains("points=\"60.0,200.0 420.0,300.0 780.0,400.0 1140.0,350.0\""), "{svg}");
         assert!(

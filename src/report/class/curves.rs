@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::{CASH, ClassView, RankedStudent};
+use super::{ClassView, DEFAULT_FIGURE, RankedStudent};
 use novamind_course::ClassRun;
 
 /// The line or point of a student in a drawing.
@@ -14,14 +14,14 @@ pub struct StudentPoints<'a> {
 }
 
 /// Returns cash by day in a part, for the reference play and every ranked student.
-pub fn curves<'a>(
+pub fn student_curves<'a>(
     view: &'a ClassView<'a>,
     ranking: &[RankedStudent<'a>],
     part: u32,
 ) -> Vec<StudentPoints<'a>> {
     let points = |cash: &[(u32, f64)]| cash.iter().map(|(day, cash)| (f64::from(*day), *cash)).collect();
-    let own = runs_of(ranking, part);
-    let good = own.first().and_then(|(_, run)| view.good(run));
+    let own = runs_in_part(ranking, part);
+    let good = own.first().and_then(|(_, run)| view.reference_play(run));
     let good = good.map(|good| StudentPoints { label: None, points: points(&good.cash) });
     let students = own
         .iter()
@@ -39,7 +39,7 @@ pub struct Scatter<'a> {
     pub points: Vec<StudentPoints<'a>>,
 }
 
-fn runs_of<'a>(ranking: &[RankedStudent<'a>], part: u32) -> Vec<(&'a str, &'a ClassRun)> {
+fn runs_in_part<'a>(ranking: &[RankedStudent<'a>], part: u32) -> Vec<(&'a str, &'a ClassRun)> {
     let of_part = |student: &RankedStudent<'a>| {
         let run = student.runs.iter().find(|run| run.evidence.part == part).copied()?;
         Some((student.label, run))
@@ -48,23 +48,24 @@ fn runs_of<'a>(ranking: &[RankedStudent<'a>], part: u32) -> Vec<(&'a str, &'a Cl
 }
 
 /// Returns the decisions of a part in which students differ, most different first. Parts are numbered from 1.
-pub fn decisions(ranking: &[RankedStudent<'_>], part: u32) -> Vec<String> {
-    let runs = runs_of(ranking, part);
-    by_difference(&runs.iter().map(|(_, run)| &run.evidence.decisions).collect::<Vec<_>>())
+pub fn differing_decisions(ranking: &[RankedStudent<'_>], part: u32) -> Vec<String> {
+    let runs = runs_in_part(ranking, part);
+    names_by_difference(&runs.iter().map(|(_, run)| &run.evidence.decisions).collect::<Vec<_>>())
 }
 
 /// Returns the figures of a part in which students differ: cash first, then the most different.
-pub fn figures(ranking: &[RankedStudent<'_>], part: u32) -> Vec<String> {
-    let runs = runs_of(ranking, part);
-    let all = by_difference(&runs.iter().map(|(_, run)| &run.evidence.figures).collect::<Vec<_>>());
-    let others = all.into_iter().filter(|name| name != CASH);
-    std::iter::once(CASH.to_owned()).chain(others).collect()
+pub fn differing_figures(ranking: &[RankedStudent<'_>], part: u32) -> Vec<String> {
+    let runs = runs_in_part(ranking, part);
+    let all = names_by_difference(&runs.iter().map(|(_, run)| &run.evidence.figures).collect::<Vec<_>>());
+    let others = all.into_iter().filter(|name| name != DEFAULT_FIGURE);
+    std::iter::once(DEFAULT_FIGURE.to_owned()).chain(others).collect()
 }
 
 /// Returns the scatter plot of a part; `None` if students do not differ in any decision.
 pub fn scatter<'a>(view: &ClassView<'a>, ranking: &[RankedStudent<'a>], part: u32) -> Option<Scatter<'a>> {
-    let decision = view.shown.decision.clone().or_else(|| decisions(ranking, part).into_iter().next())?;
-    let figure = view.shown.figure.clone().unwrap_or_else(|| CASH.to_owned());
+    let decision =
+        view.display.decision.clone().or_else(|| differing_decisions(ranking, part).into_iter().next())?;
+    let figure = view.display.figure.clone().unwrap_or_else(|| DEFAULT_FIGURE.to_owned());
     let point = |(label, run): (&'a str, &'a ClassRun)| {
         let across = run.evidence.decisions.get(&decision).copied().unwrap_or(0.0);
         Some(StudentPoints {
@@ -72,13 +73,13 @@ pub fn scatter<'a>(view: &ClassView<'a>, ranking: &[RankedStudent<'a>], part: u3
             points: vec![(across, *run.evidence.figures.get(&figure)?)],
         })
     };
-    let points: Vec<StudentPoints<'a>> = runs_of(ranking, part).into_iter().filter_map(point).collect();
+    let points: Vec<StudentPoints<'a>> = runs_in_part(ranking, part).into_iter().filter_map(point).collect();
     Some(Scatter { decision, figure, points })
 }
 
 /// Returns the values in which students differ: those with more distinct values first, then those with the larger
 /// range relative to the maximum.
-fn by_difference(all: &[&BTreeMap<String, f64>]) -> Vec<String> {
+fn names_by_difference(all: &[&BTreeMap<String, f64>]) -> Vec<String> {
     let spread = |name: &String| {
         let values = || all.iter().map(|own| own.get(name).copied().unwrap_or(0.0));
         let (least, most) = values()

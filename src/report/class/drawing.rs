@@ -3,9 +3,9 @@
 use std::fmt::Write;
 
 use super::curves::StudentPoints;
+use crate::formatting::format_tick;
 use crate::svg::Scale;
-use crate::words::tick;
-use novamind_base::notation::escaped_html;
+use novamind_base::formatting::escape_html;
 
 const WIDTH: f64 = 760.0;
 const HEIGHT: f64 = 340.0;
@@ -14,10 +14,10 @@ const RIGHT: f64 = 14.0;
 const TOP: f64 = 12.0;
 const BOTTOM: f64 = 44.0;
 
-pub(super) struct Drawing<'a> {
+pub(super) struct PointDrawing<'a> {
     pub title: String,
     /// Label of the horizontal axis.
-    pub across: String,
+    pub x_label: String,
     /// Lines or points.
     pub points: &'a [StudentPoints<'a>],
     /// Whether the points of a student are connected.
@@ -27,15 +27,18 @@ pub(super) struct Drawing<'a> {
 }
 
 /// Draws the points. `class_of` returns the CSS class and the title of a student's marks.
-pub(super) fn draw(drawing: &Drawing<'_>, class_of: &dyn Fn(&str) -> Option<(String, String)>) -> String {
+pub(super) fn draw(
+    drawing: &PointDrawing<'_>,
+    class_of: &dyn Fn(&str) -> Option<(String, String)>,
+) -> String {
     let all = || drawing.points.iter().flat_map(|own| &own.points).copied();
     let both = drawing.has_diagonal;
     let across = all().flat_map(|(x, y)| if both { vec![x, y] } else { vec![x] });
     let up = all().flat_map(|(x, y)| if both { vec![x, y] } else { vec![y] });
-    let (x, y) = (Scale::of(across, 8.0, both || !drawing.is_line), Scale::of(up, 5.0, true));
+    let (x, y) = (Scale::new(across, 8.0, both || !drawing.is_line), Scale::new(up, 5.0, true));
     let column = |value: f64| LEFT + x.share(value) * (WIDTH - LEFT - RIGHT);
     let row = |value: f64| TOP + (1.0 - y.share(value)) * (HEIGHT - TOP - BOTTOM);
-    let title = escaped_html(&drawing.title);
+    let title = escape_html(&drawing.title);
     let mut svg = format!("<svg viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-label=\"{title}\">\n");
     for value in y.ticks() {
         let at = row(value);
@@ -46,7 +49,7 @@ pub(super) fn draw(drawing: &Drawing<'_>, class_of: &dyn Fn(&str) -> Option<(Str
             WIDTH - RIGHT,
             LEFT - 8.0,
             at + 4.0,
-            escaped_html(&tick(value))
+            escape_html(&format_tick(value))
         );
     }
     let below = HEIGHT - BOTTOM + 16.0;
@@ -55,7 +58,7 @@ pub(super) fn draw(drawing: &Drawing<'_>, class_of: &dyn Fn(&str) -> Option<(Str
             svg,
             "<text class=\"label middle\" x=\"{:.1}\" y=\"{below:.1}\">{}</text>",
             column(value),
-            escaped_html(&tick(value))
+            escape_html(&format_tick(value))
         );
     }
     let _ = writeln!(
@@ -63,7 +66,7 @@ pub(super) fn draw(drawing: &Drawing<'_>, class_of: &dyn Fn(&str) -> Option<(Str
         "<text class=\"label middle\" x=\"{:.1}\" y=\"{:.1}\">{}</text>",
         LEFT + (WIDTH - LEFT - RIGHT) / 2.0,
         below + 18.0,
-        escaped_html(&drawing.across)
+        escape_html(&drawing.x_label)
     );
     if both {
         let (from, to) = (x.from.max(y.from), x.to.min(y.to));
@@ -87,7 +90,7 @@ pub(super) fn draw(drawing: &Drawing<'_>, class_of: &dyn Fn(&str) -> Option<(Str
             },
         };
         let finite = || own.points.iter().filter(|(x, y)| x.is_finite() && y.is_finite());
-        let name = escaped_html(&name);
+        let name = escape_html(&name);
         if drawing.is_line {
             let points: Vec<String> =
                 finite().map(|(x, y)| format!("{:.1},{:.1}", column(*x), row(*y))).collect();

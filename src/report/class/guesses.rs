@@ -5,7 +5,7 @@ use super::curves::StudentPoints;
 use novamind_course::{ClassRun, GuessForm};
 
 /// A question of the lesson with the answers of the class.
-pub struct AskedClass<'a> {
+pub struct ClassQuestion<'a> {
     /// Part, numbered from 1.
     pub part: u32,
     /// The question.
@@ -16,7 +16,7 @@ pub struct AskedClass<'a> {
     pub answers: Vec<(&'a str, f64, f64)>,
 }
 
-impl<'a> AskedClass<'a> {
+impl<'a> ClassQuestion<'a> {
     /// Returns a point for each student: guess horizontally, outcome vertically.
     pub fn points(&self) -> Vec<StudentPoints<'a>> {
         let answers = self.answers.iter();
@@ -30,7 +30,7 @@ impl<'a> AskedClass<'a> {
 }
 
 /// Returns the questions of the lesson, in order.
-pub fn asked<'a>(view: &'a ClassView<'a>) -> Vec<AskedClass<'a>> {
+pub fn class_questions<'a>(view: &'a ClassView<'a>) -> Vec<ClassQuestion<'a>> {
     let parts = view.lesson.map(|lesson| lesson.plan.parts.as_slice()).unwrap_or_default();
     let mut all = Vec::new();
     for (part, own) in (1..).zip(parts) {
@@ -40,27 +40,27 @@ pub fn asked<'a>(view: &'a ClassView<'a>) -> Vec<AskedClass<'a>> {
                 GuessForm::Choice { choices, .. } => choices,
                 GuessForm::Number { .. } => &[],
             };
-            let answers = first_tries(view, part).filter_map(|run| {
+            let answers = first_attempts(view, part).filter_map(|run| {
                 let step = run.evidence.steps.get(step)?;
                 Some((run.label.as_str(), step.guess?, step.outcome?))
             });
-            all.push(AskedClass { part, question: &guess.question, choices, answers: answers.collect() });
+            all.push(ClassQuestion { part, question: &guess.question, choices, answers: answers.collect() });
         }
     }
     all
 }
 
 /// Returns the first run of each student in a part, because later tries know the outcome.
-fn first_tries<'a>(view: &'a ClassView<'a>, part: u32) -> impl Iterator<Item = &'a ClassRun> {
-    let of_part: Vec<&ClassRun> = view.whole().filter(|run| run.evidence.part == part).collect();
+fn first_attempts<'a>(view: &'a ClassView<'a>, part: u32) -> impl Iterator<Item = &'a ClassRun> {
+    let of_part: Vec<&ClassRun> = view.undamaged_runs().filter(|run| run.evidence.part == part).collect();
     let is_first = |at: usize| at == 0 || of_part[at - 1].label != of_part[at].label;
     let firsts: Vec<&ClassRun> =
         (0..of_part.len()).filter(|at| is_first(*at)).map(|at| of_part[at]).collect();
     firsts.into_iter()
 }
 
-pub(super) fn right(view: &ClassView<'_>, run: &ClassRun) -> usize {
-    let part = view.part_of(run);
+pub(super) fn count_correct_guesses(view: &ClassView<'_>, run: &ClassRun) -> usize {
+    let part = view.part_of_run(run);
     let steps = part.map(|part| part.steps.as_slice()).unwrap_or_default();
     let is_choice = |step: &novamind_course::LessonStep| {
         step.guess.as_ref().is_some_and(|guess| matches!(guess.form, GuessForm::Choice { .. }))
@@ -71,33 +71,33 @@ pub(super) fn right(view: &ClassView<'_>, run: &ClassRun) -> usize {
 
 /// A pitfall that at least one student triggered.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct PitfallMet<'a> {
+pub struct PitfallCount<'a> {
     /// Name of the pitfall.
     pub name: &'a str,
     /// Its explanation.
-    pub say: String,
+    pub explanation: String,
     /// Number of students who triggered it.
     pub students: usize,
 }
 
 /// Returns the triggered pitfalls, most frequent first.
-pub fn pitfalls<'a>(view: &'a ClassView<'a>) -> Vec<PitfallMet<'a>> {
+pub fn pitfall_counts<'a>(view: &'a ClassView<'a>) -> Vec<PitfallCount<'a>> {
     let known = view.lesson.map(|lesson| lesson.plan.pitfalls.as_slice()).unwrap_or_default();
     let met_by = |name: &str| {
         let labels: std::collections::BTreeSet<&str> = view
-            .whole()
+            .undamaged_runs()
             .filter(|run| run.evidence.pitfalls.iter().any(|own| own == name))
             .map(|run| run.label.as_str())
             .collect();
         labels.len()
     };
-    let say = |text: &str| view.lesson.map(|lesson| lesson.filled(text)).unwrap_or_default();
-    let counted = known.iter().map(|own| PitfallMet {
+    let say = |text: &str| view.lesson.map(|lesson| lesson.fill_figures(text)).unwrap_or_default();
+    let counted = known.iter().map(|own| PitfallCount {
         name: &own.name,
-        say: say(&own.say),
+        explanation: say(&own.say),
         students: met_by(&own.name),
     });
-    let mut all: Vec<PitfallMet<'a>> = counted.filter(|own| own.students > 0).collect();
+    let mut all: Vec<PitfallCount<'a>> = counted.filter(|own| own.students > 0).collect();
     all.sort_by(|one, other| other.students.cmp(&one.students).then_with(|| one.name.cmp(other.name)));
     all
 }

@@ -3,39 +3,39 @@
 
 use std::fmt::Write;
 
-use super::curves::{curves, scatter};
-use super::drawing::{Drawing, draw};
-use super::guesses::{asked, pitfalls};
-use super::ranking::{RankedStudent, ranked};
-use super::words::finding_in_words;
+use super::curves::{scatter, student_curves};
+use super::drawing::{PointDrawing, draw};
+use super::guesses::{class_questions, pitfall_counts};
+use super::ranking::{RankedStudent, rank_students};
+use super::text::describe_finding;
 use super::{ClassView, RunVerdict};
+use crate::formatting::{format_money, pluralize};
 use crate::html::STYLE;
-use crate::words::{count, money};
-use novamind_base::notation::{escaped_html, percent};
+use novamind_base::formatting::{escape_html, percent};
 
-const OWN_STYLE: &str = include_str!("../../../assets/class.css");
+const CLASS_STYLE: &str = include_str!("../../../assets/class.css");
 
 /// Returns the page.
-pub fn as_html(view: &ClassView<'_>) -> String {
-    let ranking = ranked(view);
-    let lit = view.shown.lit.as_deref().or(ranking.first().map(|first| first.label));
+pub fn class_to_html(view: &ClassView<'_>) -> String {
+    let ranking = rank_students(view);
+    let lit = view.display.highlighted_student.as_deref().or(ranking.first().map(|first| first.label));
     let finished = view.collection.runs.iter().filter(|run| run.verdict == RunVerdict::Finished).count();
-    let title = escaped_html(&view.title());
+    let title = escape_html(&view.title());
     let mut page = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n\
-         <meta name=\"color-scheme\" content=\"light dark\"/>\n<title>{title}</title>\n<style>\n{STYLE}{OWN_STYLE}{}</style>\n\
+         <meta name=\"color-scheme\" content=\"light dark\"/>\n<title>{title}</title>\n<style>\n{STYLE}{CLASS_STYLE}{}</style>\n\
          </head>\n<body>\n<main>\n<header>\n<p class=\"brand\">NovaMind class</p>\n<h1>{title}</h1>\n<ul class=\"tags\">\
          <li>{}</li><li>{} finished</li></ul>\n<p class=\"note\">Ranked by {}.</p>\n</header>\n",
-        lighting(ranking.len()),
-        count(view.class.students.len() as u32, "student"),
-        count(finished as u32, "run"),
-        escaped_html(&view.measure())
+        highlight_style(ranking.len()),
+        pluralize(view.class.students.len() as u32, "student"),
+        pluralize(finished as u32, "run"),
+        escape_html(&view.describe_measure())
     );
     // CSS can only style elements after the buttons, so the buttons come first.
     for (at, student) in ranking.iter().enumerate() {
         let checked = if Some(student.label) == lit { " checked=\"checked\"" } else { "" };
-        let name = escaped_html(&student.name);
+        let name = escape_html(&student.name);
         let _ = writeln!(
             page,
             "<input class=\"pick\" type=\"radio\" name=\"lit\" id=\"r{at}\" aria-label=\"{name}\"{checked}/>"
@@ -43,23 +43,21 @@ pub fn as_html(view: &ClassView<'_>) -> String {
     }
     let names = ranking.iter().enumerate();
     let names: String = names
-        .map(|(at, own)| {
-            format!("<label class=\"n{at}\" for=\"r{at}\">{}</label>\n", escaped_html(&own.name))
-        })
+        .map(|(at, own)| format!("<label class=\"n{at}\" for=\"r{at}\">{}</label>\n", escape_html(&own.name)))
         .collect();
     let _ = write!(page, "<div class=\"names\">\n{names}</div>\n");
-    for part in 1..=view.parts() {
-        page += &drawings(view, &ranking, part);
+    for part in 1..=view.part_count() {
+        page += &part_drawings(view, &ranking, part);
     }
-    page += &table(view, &ranking);
-    page += &guesses(view, &ranking);
-    page += &pitfalls_met(view);
-    if !view.shown.hides_names && !view.collection.findings.is_empty() {
+    page += &ranking_table(view, &ranking);
+    page += &guesses_html(view, &ranking);
+    page += &pitfalls_html(view);
+    if !view.display.hides_names && !view.collection.findings.is_empty() {
         let wrong = view
             .collection
             .findings
             .iter()
-            .map(|own| format!("<li>{}</li>\n", escaped_html(&finding_in_words(own))));
+            .map(|own| format!("<li>{}</li>\n", escape_html(&describe_finding(own))));
         let _ = write!(
             page,
             "<section>\n<h2>Not counted or missing</h2>\n<ul>\n{}</ul>\n</section>\n",
@@ -69,7 +67,7 @@ pub fn as_html(view: &ClassView<'_>) -> String {
     page + "</main>\n</body>\n</html>\n"
 }
 
-fn lighting(students: usize) -> String {
+fn highlight_style(students: usize) -> String {
     let rule = |at: usize| {
         format!(
             "#r{at}:checked~section .c{at}{{stroke:var(--c2);stroke-opacity:1;stroke-width:4;fill-opacity:1}}\
@@ -81,40 +79,46 @@ fn lighting(students: usize) -> String {
     (0..students).map(rule).collect()
 }
 
-fn marks<'a>(ranking: &'a [RankedStudent<'a>]) -> impl Fn(&str) -> Option<(String, String)> + 'a {
+fn student_marks<'a>(ranking: &'a [RankedStudent<'a>]) -> impl Fn(&str) -> Option<(String, String)> + 'a {
     |label| {
         let at = ranking.iter().position(|own| own.label == label)?;
         Some((format!("c{at}"), ranking[at].name.clone()))
     }
 }
 
-fn figure(caption: &str, drawing: &Drawing<'_>, ranking: &[RankedStudent<'_>]) -> String {
+fn figure_html(caption: &str, drawing: &PointDrawing<'_>, ranking: &[RankedStudent<'_>]) -> String {
     format!(
         "<figure>\n<figcaption>{}</figcaption>\n{}</figure>\n",
-        escaped_html(caption),
-        draw(drawing, &marks(ranking))
+        escape_html(caption),
+        draw(drawing, &student_marks(ranking))
     )
 }
 
-fn drawings(view: &ClassView<'_>, ranking: &[RankedStudent<'_>], part: u32) -> String {
+fn part_drawings(view: &ClassView<'_>, ranking: &[RankedStudent<'_>], part: u32) -> String {
     let heading = view.part_title(part).unwrap_or("Curves");
-    let all = curves(view, ranking, part);
-    let title = format!("Cash by day of {}", count(ranking.len() as u32, "student"));
+    let all = student_curves(view, ranking, part);
+    let title = format!("Cash by day of {}", pluralize(ranking.len() as u32, "student"));
     let curves =
-        Drawing { title, across: "day".to_owned(), points: &all, is_line: true, has_diagonal: false };
-    let mut text = format!("<section>\n<h2>{}</h2>\n", escaped_html(heading));
-    text += &figure("Cash, dollars; the dashed curve is the reference play", &curves, ranking);
+        PointDrawing { title, x_label: "day".to_owned(), points: &all, is_line: true, has_diagonal: false };
+    let mut text = format!("<section>\n<h2>{}</h2>\n", escape_html(heading));
+    text += &figure_html("Cash, dollars; the dashed curve is the reference play", &curves, ranking);
     if let Some(scatter) = scatter(view, ranking, part) {
         let caption = format!("Final {} by {}", scatter.figure, scatter.decision);
         let across = format!("{}, mean over the weeks", scatter.decision);
         let points = &scatter.points;
-        let drawing = Drawing { title: caption.clone(), across, points, is_line: false, has_diagonal: false };
-        text += &figure(&caption, &drawing, ranking);
+        let drawing = PointDrawing {
+            title: caption.clone(),
+            x_label: across,
+            points,
+            is_line: false,
+            has_diagonal: false,
+        };
+        text += &figure_html(&caption, &drawing, ranking);
     }
     text + "</section>\n"
 }
 
-fn table(view: &ClassView<'_>, ranking: &[RankedStudent<'_>]) -> String {
+fn ranking_table(view: &ClassView<'_>, ranking: &[RankedStudent<'_>]) -> String {
     let score = if view.lesson.is_some() { "Of reference" } else { "Cash" };
     let mut text = format!(
         "<section>\n<h2>Ranking</h2>\n<div class=\"wide\"><table>\n<thead><tr><th scope=\"col\" class=\"number\">Rank</th>\
@@ -123,62 +127,64 @@ fn table(view: &ClassView<'_>, ranking: &[RankedStudent<'_>]) -> String {
          Pitfalls</th></tr></thead>\n<tbody>\n"
     );
     for (at, student) in ranking.iter().enumerate() {
-        let score = if view.lesson.is_some() { percent(student.score, 0) } else { money(student.score) };
+        let score =
+            if view.lesson.is_some() { percent(student.score, 0) } else { format_money(student.score) };
         let _ = writeln!(
             text,
             "<tr class=\"t{at}\"><td class=\"number\">{}</td><td>{}</td><td class=\"number\">{score}</td><td class=\"number\">{}\
              </td><td class=\"number\">{}</td><td class=\"number\">{}</td><td>{}</td></tr>",
             at + 1,
-            escaped_html(&student.name),
-            student.tries(),
-            student.hints(),
-            student.goals(),
-            escaped_html(&student.pitfalls())
+            escape_html(&student.name),
+            student.max_attempt(),
+            student.hint_count(),
+            student.format_goals(),
+            escape_html(&student.format_pitfalls())
         );
     }
     text + "</tbody>\n</table></div>\n</section>\n"
 }
 
-fn guesses(view: &ClassView<'_>, ranking: &[RankedStudent<'_>]) -> String {
+fn guesses_html(view: &ClassView<'_>, ranking: &[RankedStudent<'_>]) -> String {
     let mut text = String::new();
-    for asked in asked(view).into_iter().filter(|asked| !asked.answers.is_empty()) {
+    for asked in class_questions(view).into_iter().filter(|asked| !asked.answers.is_empty()) {
         if asked.choices.is_empty() {
             let points = asked.points();
             let title = format!("{} Outcome by guess", asked.question);
             let across = "guess; points on the line were exact".to_owned();
-            let drawing = Drawing { title, across, points: &points, is_line: false, has_diagonal: true };
-            text += &figure(asked.question, &drawing, ranking);
+            let drawing =
+                PointDrawing { title, x_label: across, points: &points, is_line: false, has_diagonal: true };
+            text += &figure_html(asked.question, &drawing, ranking);
             continue;
         }
-        text += &format!("<h3>{}</h3>\n", escaped_html(asked.question));
+        text += &format!("<h3>{}</h3>\n", escape_html(asked.question));
         let bar = |(number, choice): (u32, &String)| {
             let taken = asked.answers.iter().filter(|answer| answer.1 == f64::from(number)).count();
             let is_right = asked.answers.iter().any(|answer| answer.2 == f64::from(number));
             (choice.clone(), taken, is_right)
         };
-        text += &bars((1..).zip(asked.choices).map(bar), asked.answers.len());
+        text += &bars_html((1..).zip(asked.choices).map(bar), asked.answers.len());
     }
     if text.is_empty() { text } else { format!("<section>\n<h2>Guesses</h2>\n{text}</section>\n") }
 }
 
-fn pitfalls_met(view: &ClassView<'_>) -> String {
-    let met = pitfalls(view);
+fn pitfalls_html(view: &ClassView<'_>) -> String {
+    let met = pitfall_counts(view);
     let Some(most) = met.first() else { return String::new() };
     let rows = met.iter().enumerate().map(|(at, own)| (own.name.to_owned(), own.students, at == 0));
     format!(
         "<section>\n<h2>Pitfalls</h2>\n<p>{}</p>\n{}</section>\n",
-        escaped_html(&most.say),
-        bars(rows, view.class.students.len())
+        escape_html(&most.explanation),
+        bars_html(rows, view.class.students.len())
     )
 }
 
-fn bars(rows: impl Iterator<Item = (String, usize, bool)>, all: usize) -> String {
+fn bars_html(rows: impl Iterator<Item = (String, usize, bool)>, all: usize) -> String {
     let bar = |(name, count, own): (String, usize, bool)| {
         format!(
             "<li{}><span class=\"name\">{}</span><span class=\"amount\">{count}</span><span class=\"track\"><span \
              style=\"width:{:.1}%\"></span></span></li>\n",
             if own { " class=\"own\"" } else { "" },
-            escaped_html(&name),
+            escape_html(&name),
             100.0 * count as f64 / all.max(1) as f64
         )
     };

@@ -6,24 +6,24 @@ mod guesses;
 mod html;
 mod ranking;
 mod table;
-mod words;
+mod text;
 
 use std::sync::Arc;
 
-pub use curves::{Scatter, StudentPoints, curves, decisions, figures, scatter};
-pub use guesses::{AskedClass, PitfallMet, asked, pitfalls};
-pub use html::as_html;
-pub use ranking::{RankedStudent, ranked};
-pub use table::{columns_table, rows};
-pub use words::{collected_in_words, score_in_words, shown_in_words, state_in_words};
+pub use curves::{Scatter, StudentPoints, differing_decisions, differing_figures, scatter, student_curves};
+pub use guesses::{ClassQuestion, PitfallCount, class_questions, pitfall_counts};
+pub use html::class_to_html;
+pub use ranking::{RankedStudent, rank_students};
+pub use table::{column_descriptions, rows};
+pub use text::{class_to_text, describe_collection, describe_state, format_score};
 
-use novamind_base::nearest;
+use novamind_base::similar_names;
 use novamind_course::{
     Class, ClassCollection, ClassRun, CollectedClass, Evidence, GoalBound, Lesson, LessonPart, RunVerdict,
-    ranked_goal, share_of_good,
+    ranked_goal, share_of_reference,
 };
 
-const CASH: &str = "cash";
+const DEFAULT_FIGURE: &str = "cash";
 
 /// A class with its submissions and display options.
 pub struct ClassView<'a> {
@@ -34,16 +34,16 @@ pub struct ClassView<'a> {
     /// The submissions.
     pub collection: &'a ClassCollection,
     /// Display options.
-    pub shown: Shown,
+    pub display: ClassDisplayOptions,
 }
 
 /// Display options of a class.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Shown {
+pub struct ClassDisplayOptions {
     /// Shows ranks in place of labels.
     pub hides_names: bool,
     /// Highlighted student; `None` for the first of the ranking.
-    pub lit: Option<String>,
+    pub highlighted_student: Option<String>,
     /// Decision of the scatter plot; `None` for the one in which students differ most.
     pub decision: Option<String>,
     /// Figure of the scatter plot; `None` for cash.
@@ -52,9 +52,9 @@ pub struct Shown {
 
 impl<'a> ClassView<'a> {
     /// Returns a view of a class.
-    pub fn of(class: &'a CollectedClass, shown: Shown) -> ClassView<'a> {
+    pub fn new(class: &'a CollectedClass, shown: ClassDisplayOptions) -> ClassView<'a> {
         let CollectedClass { class, lesson, collection } = class;
-        ClassView { class, lesson: lesson.as_ref(), collection, shown }
+        ClassView { class, lesson: lesson.as_ref(), collection, display: shown }
     }
 }
 
@@ -64,28 +64,32 @@ impl ClassView<'_> {
     /// # Errors
     /// Returns an error if no student has the label, or no run has the decision or the figure.
     pub fn check(&self) -> Result<(), String> {
-        if let Some(label) = &self.shown.lit
+        if let Some(label) = &self.display.highlighted_student
             && self.class.student(label).is_none()
         {
             let labels = self.class.students.iter().map(|student| student.label.as_str());
-            return Err(unknown("student", label, nearest(label, labels)));
+            return Err(unknown_name_message("student", label, similar_names(label, labels)));
         }
-        if let Some(name) = &self.shown.decision
-            && !self.whole().any(|run| run.evidence.decisions.contains_key(name))
+        if let Some(name) = &self.display.decision
+            && !self.undamaged_runs().any(|run| run.evidence.decisions.contains_key(name))
         {
-            let known = self.whole().flat_map(|run| run.evidence.decisions.keys());
-            return Err(unknown("decision", name, nearest(name, known.map(String::as_str))));
+            let known = self.undamaged_runs().flat_map(|run| run.evidence.decisions.keys());
+            return Err(unknown_name_message(
+                "decision",
+                name,
+                similar_names(name, known.map(String::as_str)),
+            ));
         }
-        if let Some(name) = &self.shown.figure
-            && !self.whole().any(|run| run.evidence.figures.contains_key(name))
+        if let Some(name) = &self.display.figure
+            && !self.undamaged_runs().any(|run| run.evidence.figures.contains_key(name))
         {
-            let known = self.whole().flat_map(|run| run.evidence.figures.keys());
-            return Err(unknown("figure", name, nearest(name, known.map(String::as_str))));
+            let known = self.undamaged_runs().flat_map(|run| run.evidence.figures.keys());
+            return Err(unknown_name_message("figure", name, similar_names(name, known.map(String::as_str))));
         }
         Ok(())
     }
 
-    fn whole(&self) -> impl Iterator<Item = &ClassRun> {
+    fn undamaged_runs(&self) -> impl Iterator<Item = &ClassRun> {
         self.collection
             .runs
             .iter()
@@ -93,14 +97,14 @@ impl ClassView<'_> {
     }
 
     /// Returns the number of parts.
-    pub fn parts(&self) -> u32 {
+    pub fn part_count(&self) -> u32 {
         self.lesson.map_or(1, |lesson| lesson.plan.parts.len() as u32)
     }
 
     /// Returns the title of a part if there are several. Parts are numbered from 1.
     pub fn part_title(&self, part: u32) -> Option<&str> {
         let own = self.lesson?.plan.parts.get((part as usize).checked_sub(1)?)?;
-        (self.parts() > 1).then_some(own.title.as_str())
+        (self.part_count() > 1).then_some(own.title.as_str())
     }
 
     /// Returns a short title: the lesson or the run.
@@ -112,20 +116,20 @@ impl ClassView<'_> {
         }
     }
 
-    fn part_of(&self, run: &ClassRun) -> Option<&LessonPart> {
+    fn part_of_run(&self, run: &ClassRun) -> Option<&LessonPart> {
         self.lesson?.plan.parts.get((run.evidence.part as usize).checked_sub(1)?)
     }
 
     /// Returns the value of a goal relative to the reference play on the same seed. Steps and goals are numbered from
     /// 0.
-    fn share_of_goal(&self, run: &ClassRun, step: usize, goal: usize) -> Option<f64> {
+    fn goal_share(&self, run: &ClassRun, step: usize, goal: usize) -> Option<f64> {
         let value = |own: &Evidence| own.steps.get(step)?.goals.get(goal)?.value;
-        let part = self.part_of(run)?;
+        let part = self.part_of_run(run)?;
         let bound: GoalBound = part.steps.get(step)?.goals.get(goal)?.bound;
-        share_of_good(Some(bound), value(&run.evidence)?, value(self.good(run)?)?)
+        share_of_reference(Some(bound), value(&run.evidence)?, value(self.reference_play(run)?)?)
     }
 
-    fn good(&self, run: &ClassRun) -> Option<&Evidence> {
+    fn reference_play(&self, run: &ClassRun) -> Option<&Evidence> {
         let of = &run.evidence;
         let all = self.collection.references.iter().map(|reference| &reference.evidence);
         all.into_iter().find(|good| (good.part, good.seed) == (of.part, of.seed))
@@ -133,23 +137,27 @@ impl ClassView<'_> {
 
     /// Returns the lesson's measure of a finished run relative to the reference play on the same seed: the last goal,
     /// or cash if it has none.
-    fn share(&self, run: &ClassRun) -> Option<f64> {
-        let part = self.part_of(run)?;
+    fn score_share(&self, run: &ClassRun) -> Option<f64> {
+        let part = self.part_of_run(run)?;
         match ranked_goal(part) {
-            Some((step, goal)) => self.share_of_goal(run, step, goal),
-            None => share_of_good(None, run.evidence.cash.last()?.1, self.good(run)?.cash.last()?.1),
+            Some((step, goal)) => self.goal_share(run, step, goal),
+            None => share_of_reference(
+                None,
+                run.evidence.cash.last()?.1,
+                self.reference_play(run)?.cash.last()?.1,
+            ),
         }
     }
 
     /// Describes the measure of the ranking.
-    pub fn measure(&self) -> String {
+    pub fn describe_measure(&self) -> String {
         let Some(lesson) = self.lesson else {
             return "cash on the last day that every run has reached".to_owned();
         };
         let of_part = |part: &LessonPart| match ranked_goal(part) {
             Some((step, goal)) => {
                 // The goal's target, after the colon, is not part of the measure.
-                let text = lesson.filled(&part.steps[step].goals[goal].text);
+                let text = lesson.fill_figures(&part.steps[step].goals[goal].text);
                 text.split_once(": ").map_or(text.clone(), |(measure, _)| measure.to_owned())
             }
             None => "final cash".to_owned(),
@@ -160,7 +168,7 @@ impl ClassView<'_> {
     }
 }
 
-fn unknown(what: &str, name: &str, near: Vec<&str>) -> String {
+fn unknown_name_message(what: &str, name: &str, near: Vec<&str>) -> String {
     match near.is_empty() {
         true => format!("the class has no {what} {name}"),
         false => format!("the class has no {what} {name}; similar: {}", near.join(", ")),

@@ -17,12 +17,12 @@ pub struct RankedStudent<'a> {
 }
 
 /// Returns students by score, the best first. Omits students without a counted run.
-pub fn ranked<'a>(view: &'a ClassView<'a>) -> Vec<RankedStudent<'a>> {
+pub fn rank_students<'a>(view: &'a ClassView<'a>) -> Vec<RankedStudent<'a>> {
     let day = common_day(view);
     let of_student = |label: &'a str| {
         let (score, runs) = match view.lesson {
-            Some(_) => score_in_lesson(view, label)?,
-            None => score_of_run(view, label, day)?,
+            Some(_) => score_by_parts(view, label)?,
+            None => score_by_cash(view, label, day)?,
         };
         Some(RankedStudent { label, name: String::new(), score, runs })
     };
@@ -31,35 +31,37 @@ pub fn ranked<'a>(view: &'a ClassView<'a>) -> Vec<RankedStudent<'a>> {
     all.sort_by(|one, other| other.score.total_cmp(&one.score).then_with(|| one.label.cmp(other.label)));
     for (at, student) in all.iter_mut().enumerate() {
         student.name =
-            if view.shown.hides_names { format!("no. {}", at + 1) } else { student.label.to_owned() };
+            if view.display.hides_names { format!("no. {}", at + 1) } else { student.label.to_owned() };
     }
     all
 }
 
-fn score_in_lesson<'a>(view: &'a ClassView<'a>, label: &str) -> Option<(f64, Vec<&'a ClassRun>)> {
-    let own: Vec<&ClassRun> =
-        view.whole().filter(|run| run.label == label && run.verdict == RunVerdict::Finished).collect();
+fn score_by_parts<'a>(view: &'a ClassView<'a>, label: &str) -> Option<(f64, Vec<&'a ClassRun>)> {
+    let own: Vec<&ClassRun> = view
+        .undamaged_runs()
+        .filter(|run| run.label == label && run.verdict == RunVerdict::Finished)
+        .collect();
     let best = |part: u32| {
         let scored = own
             .iter()
             .filter(|run| run.evidence.part == part)
-            .map(|run| (view.share(run).unwrap_or(0.0), *run));
+            .map(|run| (view.score_share(run).unwrap_or(0.0), *run));
         scored.max_by(|(one, _), (other, _)| one.total_cmp(other))
     };
-    let found: Vec<(f64, &ClassRun)> = (1..=view.parts()).filter_map(best).collect();
+    let found: Vec<(f64, &ClassRun)> = (1..=view.part_count()).filter_map(best).collect();
     if found.is_empty() {
         return None;
     }
     let sum: f64 = found.iter().map(|(share, _)| share).sum();
-    Some((sum / f64::from(view.parts()), found.into_iter().map(|(_, run)| run).collect()))
+    Some((sum / f64::from(view.part_count()), found.into_iter().map(|(_, run)| run).collect()))
 }
 
-fn score_of_run<'a>(view: &'a ClassView<'a>, label: &str, day: u32) -> Option<(f64, Vec<&'a ClassRun>)> {
-    let run = view.whole().find(|run| run.label == label)?;
+fn score_by_cash<'a>(view: &'a ClassView<'a>, label: &str, day: u32) -> Option<(f64, Vec<&'a ClassRun>)> {
+    let run = view.undamaged_runs().find(|run| run.label == label)?;
     let cash = run.evidence.cash.iter().rev().find(|(own, _)| *own <= day)?.1;
     Some((cash, vec![run]))
 }
 
 fn common_day(view: &ClassView<'_>) -> u32 {
-    view.whole().map(|run| run.evidence.day).min().unwrap_or(0)
+    view.undamaged_runs().map(|run| run.evidence.day).min().unwrap_or(0)
 }

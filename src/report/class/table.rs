@@ -11,7 +11,7 @@ struct ClassRow<'a> {
 
 impl ClassRow<'_> {
     fn steps(&self) -> &[LessonStep] {
-        self.view.part_of(self.run).map_or(&[], |part| &part.steps)
+        self.view.part_of_run(self.run).map_or(&[], |part| &part.steps)
     }
 
     fn step(&self, number: usize) -> Option<&StepEvidence> {
@@ -36,35 +36,35 @@ fn columns<'a>(view: &ClassView<'_>) -> Vec<Column<ClassRow<'a>>> {
         "hints", "", "hints used" => row.run.evidence.hints;
         "goals", "", "goals of the part" => row.steps().iter().map(|step| step.goals.len()).sum::<usize>();
         "goals_reached", "", "goals reached" => row.run.evidence.steps.iter().map(goals_met).sum::<usize>();
-        "guesses_right", "", "correct guesses among choices" => super::guesses::right(row.view, row.run);
+        "guesses_right", "", "correct guesses among choices" => super::guesses::count_correct_guesses(row.view, row.run);
         "pitfalls", "", "names of the pitfalls triggered, in order" => row.run.evidence.pitfalls.join(" ");
-        "cash", "", "final cash, dollars" => written(row.run.evidence.cash.last().map(|(_, cash)| *cash));
+        "cash", "", "final cash, dollars" => format_optional(row.run.evidence.cash.last().map(|(_, cash)| *cash));
         "of_good", "", "the measure of the lesson relative to the reference play on the same seed: 1 is equal; empty if \
-         there is none" => written(row.view.share(row.run));
+         there is none" => format_optional(row.view.score_share(row.run));
         "verdict", "", "finished, not finished, altered, twice, other lesson, other hand-out or unknown; only finished runs \
-         are ranked" => row.run.verdict.id();
+         are ranked" => row.run.verdict.label();
     };
-    for step in 0..most_steps(view) {
+    for step in 0..max_steps(view) {
         columns.extend(columns! { row: ClassRow<'a>;
             format!("guess_{}", step + 1), "", "guess before the step; for choices, the number of the selected one"
-                => written(row.step(step).and_then(|own| own.guess));
+                => format_optional(row.step(step).and_then(|own| own.guess));
             format!("outcome_{}", step + 1), "", "outcome; for choices, the number of the correct one"
-                => written(row.step(step).and_then(|own| own.outcome));
+                => format_optional(row.step(step).and_then(|own| own.outcome));
         });
     }
-    for (step, goal) in goals(view) {
+    for (step, goal) in all_goals(view) {
         columns.extend(columns! { row: ClassRow<'a>;
             format!("goal_{}_{}", step + 1, goal + 1), "", "measured value of the goal"
-                => written(row.step(step).and_then(|own| own.goals.get(goal)?.value));
+                => format_optional(row.step(step).and_then(|own| own.goals.get(goal)?.value));
             format!("goal_of_good_{}_{}", step + 1, goal + 1), "", "measured value relative to the reference play on the same seed"
-                => written(row.view.share_of_goal(row.run, step, goal));
+                => format_optional(row.view.goal_share(row.run, step, goal));
         });
     }
     columns
 }
 
 /// Returns the descriptions of the columns, with a header.
-pub fn columns_table(view: &ClassView<'_>) -> Vec<Vec<String>> {
+pub fn column_descriptions(view: &ClassView<'_>) -> Vec<Vec<String>> {
     let heading = vec!["column".to_owned(), "meaning".to_owned()];
     let all = columns(view)
         .into_iter()
@@ -82,18 +82,18 @@ pub fn rows(view: &ClassView<'_>) -> Vec<Vec<String>> {
         .collect()
 }
 
-fn written(value: Option<f64>) -> Option<String> {
+fn format_optional(value: Option<f64>) -> Option<String> {
     value.map(|value| value.to_string())
 }
 
-fn most_steps(view: &ClassView<'_>) -> usize {
+fn max_steps(view: &ClassView<'_>) -> usize {
     view.lesson.map_or(0, |lesson| lesson.plan.parts.iter().map(|part| part.steps.len()).max().unwrap_or(0))
 }
 
-fn goals(view: &ClassView<'_>) -> Vec<(usize, usize)> {
+fn all_goals(view: &ClassView<'_>) -> Vec<(usize, usize)> {
     let parts = view.lesson.map(|lesson| lesson.plan.parts.as_slice()).unwrap_or_default();
     let most = |step: usize| {
         parts.iter().filter_map(|part| Some(part.steps.get(step)?.goals.len())).max().unwrap_or(0)
     };
-    (0..most_steps(view)).flat_map(|step| (0..most(step)).map(move |goal| (step, goal))).collect()
+    (0..max_steps(view)).flat_map(|step| (0..most(step)).map(move |goal| (step, goal))).collect()
 }

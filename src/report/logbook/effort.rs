@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 
 use serde::{Serialize, Serializer};
 
-use novamind_record::trajectory::record::{Activity, DialogOutcome, DraftOutcome};
+use novamind_record::trajectory::record::{Activity, DialogOutcome, TextEditOutcome};
 use novamind_session::TimeSpent;
 
 /// Counts and times of a player's actions between two weeks.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
-pub struct Effort {
+pub struct PlayerEffort {
     /// Time by class: active, idle, away.
     #[serde(flatten)]
     pub time: TimeSpent,
@@ -52,8 +52,8 @@ pub struct Effort {
     pub memos: u32,
 }
 
-impl Effort {
-    pub(super) fn count(&mut self, activity: &Activity) {
+impl PlayerEffort {
+    pub(super) fn add_activity(&mut self, activity: &Activity) {
         match activity {
             Activity::View(_) => self.views += 1,
             Activity::Select(_) => self.selects += 1,
@@ -63,7 +63,7 @@ impl Effort {
             },
             Activity::Help(_) => self.helps += 1,
             Activity::Draft(draft) => {
-                self.drafts_left += u32::from(draft.outcome == DraftOutcome::Left);
+                self.drafts_left += u32::from(draft.outcome == TextEditOutcome::Left);
                 self.typed += draft.typed;
                 self.deleted += draft.deleted;
                 self.pasted += draft.pasted;
@@ -74,12 +74,12 @@ impl Effort {
             | Activity::Question(_)
             | Activity::Answer(_)
             | Activity::Lesson(_)
-            | Activity::Look(_)
-            | Activity::Xray(_) => {}
+            | Activity::ExternalRead(_)
+            | Activity::Inspection(_) => {}
         }
     }
 
-    pub(super) fn add(&mut self, other: &Effort) {
+    pub(super) fn add(&mut self, other: &PlayerEffort) {
         self.time += other.time;
         self.breaks += other.breaks;
         self.calls += other.calls;

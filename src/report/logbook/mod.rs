@@ -1,6 +1,6 @@
 //! Log of a run for researchers: times, screens, queries and calls by week.
 //!
-//! Everything is derived from the lines of the trajectory and from the replayed run. Only [`Measures::truly_best`]
+//! Everything is derived from the lines of the trajectory and from the replayed run. Only [`BehaviorMeasures::truly_best`]
 //! uses hidden state, and only for finished runs.
 
 mod effort;
@@ -10,20 +10,20 @@ mod timeline;
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-pub use effort::Effort;
-pub use summary::page_of;
-pub use timeline::Pause;
+pub use effort::PlayerEffort;
+pub use summary::session_page;
+pub use timeline::PlayBreak;
 
-use super::books::{Books, ChannelRow};
-use super::chapters::change_in_words;
-use super::measures::{Measures, Wording};
+use super::database_figures::{ChannelRow, DatabaseFigures};
+use super::decision_periods::describe_change;
+use super::measures::{BehaviorMeasures, WordCounts};
 use novamind_record::consent::Consent;
 use novamind_record::mode::Mode;
 use novamind_record::stamp::StudyStamp;
-use novamind_record::trajectory::record::{Ended, FiledForecast};
-use novamind_record::trajectory::{Line, Record, end_of, policy_of};
-use novamind_session::{Attendance, ModelStamp, ScoredForecast, Session, SittingCount, TimeSpent};
-use timeline::{Span, Timeline};
+use novamind_record::trajectory::record::{FiledForecast, RunEndReason};
+use novamind_record::trajectory::{Line, Record, find_end, find_policy};
+use novamind_session::{Attendance, ModelStamp, ScoredForecast, Session, SessionCount, TimeSpent};
+use timeline::{Timeline, WeekSpan};
 
 /// Log of how a run was played.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -69,7 +69,7 @@ pub struct Logbook {
     /// Time of its end, RFC 3339.
     pub ended_at: Option<String>,
     /// Reason for its end.
-    pub ended: Option<Ended>,
+    pub ended: Option<RunEndReason>,
     /// Last simulated day.
     pub day: u32,
     /// Cash after the last simulated day, dollars.
@@ -77,29 +77,29 @@ pub struct Logbook {
     /// Final score, dollars.
     pub score: Option<f64>,
     /// Simulated weeks.
-    pub weeks: Vec<WeekLog>,
+    pub weeks: Vec<WeekRecord>,
     /// Actions after the last week.
-    pub open_week: Effort,
+    pub open_week: PlayerEffort,
     /// Breaks: more than ten minutes without play.
-    pub breaks: Vec<Pause>,
+    pub breaks: Vec<PlayBreak>,
     /// Number of times that the system clock was set back during the run.
     pub clock_set_back: u32,
     /// Number of times that the run was opened, from its lines.
-    pub sittings: SittingCount,
+    pub sittings: SessionCount,
     /// Notes of the run.
-    pub notes: NotesLog,
+    pub notes: NotesSummary,
     /// Number of weeks decided in less than ten active seconds.
     pub fast_weeks: u32,
     /// Sums over the whole run.
-    pub total: Effort,
+    pub total: PlayerEffort,
     /// Median of the seconds for deciding a week, without breaks; `None` before the first week.
     pub median_week_seconds: Option<f64>,
     /// Time from the end of the run to the last line recorded after it; `None` before the end.
     pub after_end: Option<TimeSpent>,
     /// Word counts of all rationales.
-    pub wording: Wording,
+    pub wording: WordCounts,
     /// Behavior measures.
-    pub measures: Measures,
+    pub measures: BehaviorMeasures,
     /// Advertising by group and channel.
     pub ads: Vec<ChannelRow>,
     /// State hash after the last week.
@@ -112,16 +112,16 @@ pub struct Logbook {
 
 /// The notes of a run.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
-pub struct NotesLog {
+pub struct NotesSummary {
     /// Number of times that notes were saved.
     pub versions: u32,
     /// Words of the last saved text; `None` if the record does not contain it.
-    pub wording: Option<Wording>,
+    pub wording: Option<WordCounts>,
 }
 
 /// A week, or single days, with the actions before it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct WeekLog {
+pub struct WeekRecord {
     /// Number of the week, from 1.
     pub week: u32,
     /// Decision day.
@@ -140,9 +140,9 @@ pub struct WeekLog {
     pub decided_at: String,
     /// Actions before the week.
     #[serde(flatten)]
-    pub effort: Effort,
+    pub effort: PlayerEffort,
     /// Number of words in the rationale.
-    pub wording: Wording,
+    pub wording: WordCounts,
     /// Descriptions of the decisions.
     pub decisions: Vec<String>,
     /// Forecasts.
@@ -161,27 +161,27 @@ pub struct WeekLog {
 
 impl Logbook {
     /// Returns the label of the participant, or the policy; `None` for an unnamed player.
-    pub fn player(&self) -> Option<String> {
+    pub fn player_name(&self) -> Option<String> {
         let policy = || self.policy.as_ref().map(|name| format!("policy {name}"));
         self.participant.clone().or_else(policy)
     }
 
     /// Builds the logbook from the lines of a run, the lines recorded after its end, and the replayed session.
     /// Queries the database for advertising results.
-    pub fn of(session: &Session, lines: &[Line], afterwards: &[Line]) -> Logbook {
-        let timeline = Timeline::of(lines);
-        let weeks: Vec<WeekLog> =
-            timeline.spans.iter().enumerate().map(|(at, span)| week_of_span(session, span, at)).collect();
+    pub fn new(session: &Session, lines: &[Line], afterwards: &[Line]) -> Logbook {
+        let timeline = Timeline::from_lines(lines);
+        let weeks: Vec<WeekRecord> =
+            timeline.spans.iter().enumerate().map(|(at, span)| week_record(session, span, at)).collect();
         let mut total = timeline.open.effort.clone();
-        let mut wording = Wording::default();
+        let mut wording = WordCounts::default();
         for week in &weeks {
             total.add(&week.effort);
             wording += week.wording;
         }
         let own = weeks.iter().filter(|week| !week.inherited).map(|week| week.effort.time.active_seconds());
-        let ads = Books::channels_of(session);
+        let ads = DatabaseFigures::load_channels(session);
         let (manifest, last) = (session.manifest(), lines.last());
-        let end = end_of(lines);
+        let end = find_end(lines);
         Logbook {
             run: manifest.id.clone(),
             participant: manifest.participant.clone(),
@@ -197,7 +197,7 @@ impl Logbook {
             voice: manifest.voice.clone(),
             earlier_runs: manifest.earlier_runs,
             parent: manifest.parent.as_ref().map(|parent| parent.run.clone()),
-            policy: policy_of(lines).map(str::to_owned),
+            policy: find_policy(lines).map(str::to_owned),
             created: lines.first().map_or_else(|| manifest.created.clone(), |line| line.at.clone()),
             last_at: last.map(|line| line.at.clone()).unwrap_or_default(),
             ended_at: end.map(|line| line.at.clone()),
@@ -209,15 +209,15 @@ impl Logbook {
             open_week: timeline.open.effort,
             format: manifest.format,
             study: manifest.study.clone(),
-            sittings: SittingCount::of(lines),
-            notes: NotesLog::of(lines),
+            sittings: SessionCount::from_lines(lines),
+            notes: NotesSummary::from_lines(lines),
             fast_weeks: weeks.iter().filter(|week| week.implausibly_fast).count() as u32,
-            after_end: end.map(|_| time_after(lines, afterwards)),
+            after_end: end.map(|_| time_after_end(lines, afterwards)),
             breaks: timeline.breaks,
             clock_set_back: timeline.clock_set_back,
             total,
             wording,
-            measures: Measures::of(session, &ads),
+            measures: BehaviorMeasures::from_session(session, &ads),
             ads,
             state_hash: weeks.last().map(|week| week.state_hash.clone()),
             weeks,
@@ -227,36 +227,36 @@ impl Logbook {
     }
 }
 
-impl NotesLog {
-    fn of(lines: &[Line]) -> NotesLog {
+impl NotesSummary {
+    fn from_lines(lines: &[Line]) -> NotesSummary {
         let kept = lines.iter().filter(|line| line.record.notes_digest().is_some());
         let text = kept.clone().next_back().and_then(|line| match &line.record {
             Record::Note(note) => note.text.as_deref(),
             _ => None,
         });
-        NotesLog { versions: kept.count() as u32, wording: text.map(Wording::of) }
+        NotesSummary { versions: kept.count() as u32, wording: text.map(WordCounts::from_text) }
     }
 }
 
-fn week_of_span(session: &Session, span: &Span, at: usize) -> WeekLog {
+fn week_record(session: &Session, span: &WeekSpan, at: usize) -> WeekRecord {
     let decided = session.company().decisions().get(at);
     let mut decisions: Vec<String> =
-        decided.iter().flat_map(|own| own.changes.iter().map(change_in_words)).collect();
+        decided.iter().flat_map(|own| own.changes.iter().map(describe_change)).collect();
     decisions.extend(decided.iter().flat_map(|own| own.purchases.iter().cloned()));
     let cash = session.cash_by_day();
     let own_rationale = span.rationale.as_deref().filter(|_| !span.filed_at_limit);
-    let scored = |filed: &FiledForecast| ScoredForecast::of(span.decision_day, &filed.said(), cash);
-    WeekLog {
+    let scored = |filed: &FiledForecast| ScoredForecast::new(span.decision_day, &filed.to_forecast(), cash);
+    WeekRecord {
         week: novamind_session::week_of(span.day),
         decision_day: span.decision_day,
         day: span.day,
         days_run: span.days_run,
-        inherited: span.attended.inherited,
+        inherited: span.attended.is_inherited,
         implausibly_fast: span.attended.is_implausibly_fast(&span.effort.time),
         began_at: span.began_at.clone(),
         decided_at: span.decided_at.clone(),
         effort: span.effort.clone(),
-        wording: own_rationale.map(Wording::of).unwrap_or_default(),
+        wording: own_rationale.map(WordCounts::from_text).unwrap_or_default(),
         decisions,
         forecasts: span.forecasts.iter().map(scored).collect(),
         naive_forecasts: span.forecasts.iter().map(|forecast| forecast.filled_naively).collect(),
@@ -268,11 +268,11 @@ fn week_of_span(session: &Session, span: &Span, at: usize) -> WeekLog {
 }
 
 /// Returns the time after the last line of a run, up to the last line recorded after its end.
-fn time_after(lines: &[Line], afterwards: &[Line]) -> TimeSpent {
-    let mut attendance = Attendance::of(lines);
-    let end = attendance.place();
-    afterwards.iter().for_each(|line| attendance.note(line.nanoseconds(), &line.record));
-    attendance.between(end, attendance.place())
+fn time_after_end(lines: &[Line], afterwards: &[Line]) -> TimeSpent {
+    let mut attendance = Attendance::from_lines(lines);
+    let end = attendance.end_ns();
+    afterwards.iter().for_each(|line| attendance.add_line(line.at_nanoseconds(), &line.record));
+    attendance.spent_between(end, attendance.end_ns())
 }
 
 fn median(mut values: Vec<f64>) -> Option<f64> {
@@ -291,9 +291,9 @@ mod tests {
     use crate::test_kit;
 
     #[test]
-    fn a_logbook_counts_what_was_done() {
-        let (session, lines) = test_kit::recorded();
-        let book = Logbook::of(&session, &lines, &[]);
+    fn logbook_counts_activity() {
+        let (session, lines) = test_kit::recorded_run();
+        let book = Logbook::new(&session, &lines, &[]);
         assert_eq!((book.weeks.len(), book.day, book.participant.as_deref()), (2, 14, Some("P 07")));
         let first = &book.weeks[0];
         let effort = &first.effort;
@@ -314,7 +314,7 @@ mod tests {
     }
 
     #[test]
-    fn the_middle_is_found() {
+    fn median_is_computed() {
         assert_eq!(median(vec![]), None);
         assert_eq!(median(vec![3.0, 1.0, 2.0]), Some(2.0));
         assert_eq!(median(vec![4.0, 1.0]), Some(2.5));

@@ -2,50 +2,50 @@
 
 use std::collections::BTreeMap;
 
-use super::{Effort, Logbook, WeekLog};
-use crate::page::{Block, Fact, Page, Table};
-use crate::words::{count, money, whole};
-use novamind_record::trajectory::record::Ended;
-use novamind_session::{BREAK_SECONDS, ModelStamp, TimeSpent};
+use super::{Logbook, PlayerEffort, WeekRecord};
+use crate::formatting::{format_money, format_whole, pluralize};
+use crate::page::{Block, NamedValue, Page, Table};
+use novamind_record::trajectory::record::RunEndReason;
+use novamind_session::{MIN_BREAK_SECONDS, ModelStamp, TimeSpent};
 
 /// Returns the page about a session.
-pub fn page_of(book: &Logbook) -> Page {
-    let mut blocks = vec![Block::Facts(facts(book))];
+pub fn session_page(book: &Logbook) -> Page {
+    let mut blocks = vec![Block::Facts(summary_facts(book))];
     if book.clock_set_back > 0 {
         blocks.push(Block::Warning(format!(
             "The system clock was set back {} during the run; the time around it is not counted.",
-            count(book.clock_set_back, "time")
+            pluralize(book.clock_set_back, "time")
         )));
     }
     blocks.push(Block::Heading("Weeks"));
-    blocks.push(weeks(book));
+    blocks.push(weeks_block(book));
     blocks.push(Block::Note(format!(
         "Time is the active time before each week was run. A break is more than {:.0} minutes \
          without play.",
-        BREAK_SECONDS / 60.0
+        MIN_BREAK_SECONDS / 60.0
     )));
     blocks.push(Block::Heading("Breaks"));
-    blocks.push(breaks(book));
+    blocks.push(breaks_block(book));
     blocks.push(Block::Heading("Screens"));
-    blocks.push(screens(&book.total));
+    blocks.push(screens_block(&book.total));
     blocks.push(Block::Heading("Tools"));
-    blocks.push(tools(&book.total.tools));
+    blocks.push(tools_block(&book.total.tools));
     blocks.push(Block::Heading("Decisions"));
-    blocks.extend(decisions(book));
+    blocks.extend(decision_blocks(book));
     let mut tags = vec![
         format!("run {}", book.run),
         format!("{} mode", book.mode),
         format!("scenario {}", book.scenario),
         format!("seed {}", book.seed),
     ];
-    tags.extend(book.voice.iter().map(ModelStamp::in_words));
+    tags.extend(book.voice.iter().map(ModelStamp::describe));
     tags.extend(book.parent.iter().map(|parent| format!("branch of {parent}")));
     Page {
         title: format!("NovaMind · session {}", book.run),
         headline: headline(book),
         tags,
         blocks,
-        foot: format!(
+        footer: format!(
             "Recorded by NovaMind console {}. Line {} of the trajectory has the hash {}.",
             book.version, book.last_seq, book.last_hash
         ),
@@ -54,57 +54,69 @@ pub fn page_of(book: &Logbook) -> Page {
 
 fn headline(book: &Logbook) -> String {
     let who = book.participant.as_deref().unwrap_or("An unnamed participant");
-    let weeks = count(book.weeks.iter().filter(|week| !week.inherited).count() as u32, "week");
-    let minutes = whole(book.total.time.active_seconds() / 60.0);
+    let weeks = pluralize(book.weeks.iter().filter(|week| !week.inherited).count() as u32, "week");
+    let minutes = format_whole(book.total.time.active_seconds() / 60.0);
     let how = match book.ended {
-        Some(Ended::Horizon) => "to the last day",
-        Some(Ended::Bankruptcy) => "into bankruptcy",
-        Some(Ended::Abandoned) => "and abandoned the run",
-        Some(Ended::Lesson) => "to the end of the lesson",
+        Some(RunEndReason::Horizon) => "to the last day",
+        Some(RunEndReason::Bankruptcy) => "into bankruptcy",
+        Some(RunEndReason::Abandoned) => "and abandoned the run",
+        Some(RunEndReason::Lesson) => "to the end of the lesson",
         None => "and has not finished",
     };
-    format!("{who} played {weeks} in {minutes} minutes, {how}; cash is {}.", money(book.cash))
+    format!("{who} played {weeks} in {minutes} minutes, {how}; cash is {}.", format_money(book.cash))
 }
 
-fn facts(book: &Logbook) -> Vec<Fact> {
+fn summary_facts(book: &Logbook) -> Vec<NamedValue> {
     let total = &book.total;
     let failed = |number: u32, how: &str| if number == 0 { String::new() } else { format!("{number} {how}") };
     let (consent, text) = match &book.consent {
         Some(consent) => {
-            (minute(&consent.at), format!("text {}", consent.digest.get(..16).unwrap_or_default()))
+            (format_minute(&consent.at), format!("text {}", consent.digest.get(..16).unwrap_or_default()))
         }
         None => ("not required".to_owned(), String::new()),
     };
     let ended = book.ended.map_or(String::new(), |ended| ended.id().to_owned());
     vec![
-        Fact::new("Participant", book.participant.as_deref().unwrap_or("no label"), ""),
-        Fact::new("Consent", consent, text),
-        Fact::new("Started", minute(&book.created), ""),
-        Fact::new("Ended", book.ended_at.as_deref().map_or("not yet".to_owned(), minute), ended),
-        Fact::new("Last line", minute(&book.last_at), ""),
-        Fact::new(
+        NamedValue::new("Participant", book.participant.as_deref().unwrap_or("no label"), ""),
+        NamedValue::new("Consent", consent, text),
+        NamedValue::new("Started", format_minute(&book.created), ""),
+        NamedValue::new("Ended", book.ended_at.as_deref().map_or("not yet".to_owned(), format_minute), ended),
+        NamedValue::new("Last line", format_minute(&book.last_at), ""),
+        NamedValue::new(
             "Time played",
-            time(total.time.active_seconds()),
+            format_duration(total.time.active_seconds()),
             format!(
                 "idle {}, away {}; {}",
-                time(total.time.idle_seconds()),
-                time(total.time.away_seconds()),
-                count(book.breaks.len() as u32, "break")
+                format_duration(total.time.idle_seconds()),
+                format_duration(total.time.away_seconds()),
+                pluralize(book.breaks.len() as u32, "break")
             ),
         ),
-        Fact::new("Time per week", book.median_week_seconds.map_or("none".to_owned(), time), "median"),
-        Fact::new("Calls", whole(f64::from(total.calls)), failed(total.refused, "rejected")),
-        Fact::new("Queries", whole(f64::from(total.queries)), failed(total.queries_failed, "failed")),
-        Fact::new(
+        NamedValue::new(
+            "Time per week",
+            book.median_week_seconds.map_or("none".to_owned(), format_duration),
+            "median",
+        ),
+        NamedValue::new("Calls", format_whole(f64::from(total.calls)), failed(total.refused, "rejected")),
+        NamedValue::new(
+            "Queries",
+            format_whole(f64::from(total.queries)),
+            failed(total.queries_failed, "failed"),
+        ),
+        NamedValue::new(
             "Words in rationales",
-            whole(book.wording.words as f64),
+            format_whole(book.wording.words as f64),
             failed(book.wording.ifs as u32, "if"),
         ),
-        Fact::new("Earlier runs with this seed", book.earlier_runs.to_string(), "in the same runs folder"),
+        NamedValue::new(
+            "Earlier runs with this seed",
+            book.earlier_runs.to_string(),
+            "in the same runs folder",
+        ),
     ]
 }
 
-fn weeks(book: &Logbook) -> Block {
+fn weeks_block(book: &Logbook) -> Block {
     if book.weeks.is_empty() {
         return Block::Text("No week has run yet.".to_owned());
     }
@@ -125,30 +137,35 @@ fn weeks(book: &Logbook) -> Block {
     })
 }
 
-fn week_row(week: &WeekLog) -> Vec<String> {
+fn week_row(week: &WeekRecord) -> Vec<String> {
     let effort = &week.effort;
     let cash = week.figures.get("cash").and_then(serde_json::Value::as_f64).unwrap_or(0.0);
     let played = |text: String| if week.inherited { String::new() } else { text };
     vec![
         week.week.to_string(),
-        if week.inherited { "in the parent run".to_owned() } else { minute(&week.decided_at) },
-        played(time(effort.time.active_seconds())),
+        if week.inherited { "in the parent run".to_owned() } else { format_minute(&week.decided_at) },
+        played(format_duration(effort.time.active_seconds())),
         played(effort.breaks.to_string()),
         effort.calls.to_string(),
         played(effort.refused.to_string()),
         played(effort.queries.to_string()),
-        longest(&effort.screens, 3),
+        longest_screens(&effort.screens, 3),
         week.wording.words.to_string(),
-        money(cash),
+        format_money(cash),
     ]
 }
 
-fn breaks(book: &Logbook) -> Block {
+fn breaks_block(book: &Logbook) -> Block {
     if book.breaks.is_empty() {
         return Block::Text("None.".to_owned());
     }
-    let row = |pause: &super::Pause| {
-        vec![minute(&pause.from), minute(&pause.to), time(pause.seconds), pause.day.to_string()]
+    let row = |pause: &super::PlayBreak| {
+        vec![
+            format_minute(&pause.from),
+            format_minute(&pause.to),
+            format_duration(pause.seconds),
+            pause.day.to_string(),
+        ]
     };
     Block::Table(Table {
         columns: vec![("from", false), ("to", false), ("duration", true), ("day of the run", true)],
@@ -156,15 +173,15 @@ fn breaks(book: &Logbook) -> Block {
     })
 }
 
-fn screens(total: &Effort) -> Block {
+fn screens_block(total: &PlayerEffort) -> Block {
     if total.screens.is_empty() {
         return Block::Text("None recorded. Only the console has screens.".to_owned());
     }
-    let sorted = by_length(&total.screens);
+    let sorted = screens_by_time(&total.screens);
     let all: f64 = sorted.iter().map(|(_, seconds)| seconds).sum();
     let row = |(name, seconds): (&str, f64)| {
-        let share = novamind_base::notation::percent(seconds / all.max(f64::MIN_POSITIVE), 0);
-        vec![name.to_owned(), time(seconds), share]
+        let share = novamind_base::formatting::percent(seconds / all.max(f64::MIN_POSITIVE), 0);
+        vec![name.to_owned(), format_duration(seconds), share]
     };
     Block::Table(Table {
         columns: vec![("screen", false), ("time", true), ("share", true)],
@@ -172,7 +189,7 @@ fn screens(total: &Effort) -> Block {
     })
 }
 
-fn tools(tools: &BTreeMap<String, u32>) -> Block {
+fn tools_block(tools: &BTreeMap<String, u32>) -> Block {
     if tools.is_empty() {
         return Block::Text("No tool calls.".to_owned());
     }
@@ -184,12 +201,12 @@ fn tools(tools: &BTreeMap<String, u32>) -> Block {
     })
 }
 
-fn decisions(book: &Logbook) -> Vec<Block> {
+fn decision_blocks(book: &Logbook) -> Vec<Block> {
     let told = book.weeks.iter().filter(|week| !week.decisions.is_empty());
     let blocks: Vec<Block> = told
         .map(|week| Block::Folded {
             title: format!("Week {}", week.week),
-            note: count(week.decisions.len() as u32, "decision"),
+            note: pluralize(week.decisions.len() as u32, "decision"),
             lines: Vec::new(),
             points: week.decisions.clone(),
         })
@@ -197,13 +214,14 @@ fn decisions(book: &Logbook) -> Vec<Block> {
     if blocks.is_empty() { vec![Block::Text("No decisions.".to_owned())] } else { blocks }
 }
 
-fn longest(screens: &BTreeMap<String, TimeSpent>, most: usize) -> String {
-    let sorted = by_length(screens);
-    let told = sorted.iter().take(most).map(|(name, seconds)| format!("{name} {}", time(*seconds)));
+fn longest_screens(screens: &BTreeMap<String, TimeSpent>, most: usize) -> String {
+    let sorted = screens_by_time(screens);
+    let told =
+        sorted.iter().take(most).map(|(name, seconds)| format!("{name} {}", format_duration(*seconds)));
     told.collect::<Vec<_>>().join(", ")
 }
 
-fn by_length(screens: &BTreeMap<String, TimeSpent>) -> Vec<(&str, f64)> {
+fn screens_by_time(screens: &BTreeMap<String, TimeSpent>) -> Vec<(&str, f64)> {
     let mut sorted: Vec<(&str, f64)> =
         screens.iter().map(|(name, spent)| (name.as_str(), spent.active_seconds())).collect();
     sorted.sort_by(|left, right| right.1.total_cmp(&left.1).then(left.0.cmp(right.0)));
@@ -211,7 +229,7 @@ fn by_length(screens: &BTreeMap<String, TimeSpent>) -> Vec<(&str, f64)> {
 }
 
 /// Formats a duration: `45 s`, `12:05`, `1:02:05`.
-fn time(seconds: f64) -> String {
+fn format_duration(seconds: f64) -> String {
     let all = seconds.max(0.0).round() as u64;
     let (hours, minutes, seconds) = (all / 3600, all / 60 % 60, all % 60);
     match (hours, minutes) {
@@ -221,7 +239,7 @@ fn time(seconds: f64) -> String {
     }
 }
 
-fn minute(at: &str) -> String {
+fn format_minute(at: &str) -> String {
     at.get(..16).unwrap_or(at).replace('T', " ")
 }
 
@@ -230,10 +248,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_session_is_told_on_a_page() {
-        let (session, lines) = crate::test_kit::recorded();
-        let book = Logbook::of(&session, &lines, &[]);
-        let text = crate::markdown::write(&page_of(&book));
+    fn session_page_has_all_sections() {
+        let (session, lines) = crate::test_kit::recorded_run();
+        let book = Logbook::new(&session, &lines, &[]);
+        let text = crate::markdown::to_markdown(&session_page(&book));
         for part in
             ["P 07 played 2 weeks", "not required", "cash 0 s", "set\\_prices", "None.", "price A: 0 → 12"]
         {
@@ -245,8 +263,11 @@ mod tests {
     }
 
     #[test]
-    fn times_read_well() {
-        assert_eq!([time(45.2), time(725.0), time(3725.0)], ["45 s", "12:05", "1:02:05"]);
-        assert_eq!(minute("2026-11-21T10:00:07.5Z"), "2026-11-21 10:00");
+    fn durations_are_formatted() {
+        assert_eq!(
+            [format_duration(45.2), format_duration(725.0), format_duration(3725.0)],
+            ["45 s", "12:05", "1:02:05"]
+        );
+        assert_eq!(format_minute("2026-11-21T10:00:07.5Z"), "2026-11-21 10:00");
     }
 }

@@ -3,17 +3,17 @@
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-use super::Effort;
-use novamind_record::clock::written_moment;
+use super::PlayerEffort;
+use novamind_record::clock::format_moment;
 use novamind_record::trajectory::record::{
-    Activity, Closing, FiledForecast, LimitEvent, Outcome, Reversal, View,
+    Activity, Closing, FiledForecast, LimitEvent, Outcome, Reversal, ScreenView,
 };
 use novamind_record::trajectory::{Line, Record};
-use novamind_session::{Attendance, AttendedWeek, Attention, BREAK_SECONDS};
+use novamind_session::{Attendance, AttendedWeek, Attention, MIN_BREAK_SECONDS};
 
 /// A break: more than ten minutes without play.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Pause {
+pub struct PlayBreak {
     /// Day of the run.
     pub day: u32,
     /// Start, RFC 3339.
@@ -25,13 +25,13 @@ pub struct Pause {
 }
 
 #[derive(Debug, Clone, Default)]
-pub(super) struct Span {
+pub(super) struct WeekSpan {
     pub decision_day: u32,
     pub day: u32,
     pub days_run: u32,
     pub began_at: String,
     pub decided_at: String,
-    pub effort: Effort,
+    pub effort: PlayerEffort,
     pub rationale: Option<String>,
     pub forecasts: Vec<FiledForecast>,
     /// Whether any forecast is naive; `None` if none was filed.
@@ -47,15 +47,15 @@ pub(super) struct Span {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Timeline {
     /// One span for each line that closes days.
-    pub spans: Vec<Span>,
-    pub open: Span,
-    pub breaks: Vec<Pause>,
+    pub spans: Vec<WeekSpan>,
+    pub open: WeekSpan,
+    pub breaks: Vec<PlayBreak>,
     pub clock_set_back: u32,
 }
 
 impl Timeline {
     /// Reads lines in order.
-    pub fn of(lines: &[Line]) -> Timeline {
+    pub fn from_lines(lines: &[Line]) -> Timeline {
         let mut timeline = Timeline::default();
         let mut before: Option<&Line> = None;
         let mut attendance = Attendance::default();
@@ -66,33 +66,34 @@ impl Timeline {
                 timeline.open.began_at = before.unwrap_or(line).at.clone();
                 timeline.open.decision_day = before.unwrap_or(line).day;
             }
-            attendance.note(line.nanoseconds(), &line.record);
-            places.push(attendance.place());
+            attendance.add_line(line.at_nanoseconds(), &line.record);
+            places.push(attendance.end_ns());
             if let Record::Activity(Activity::View(view)) = &line.record {
-                views.push((timeline.spans.len(), attendance.place(), view));
+                views.push((timeline.spans.len(), attendance.end_ns(), view));
             }
-            timeline.count(line);
+            timeline.add_line(line);
             before = Some(line);
         }
-        timeline.clock_set_back = attendance.clock_set_back();
+        timeline.clock_set_back = attendance.clock_set_back_count();
         // A later line reports when idleness began, so times can be classified only after all lines are read.
-        let last = AttendedWeek { from: attendance.week_from(), to: attendance.place(), inherited: false };
+        let last =
+            AttendedWeek { from: attendance.week_start_ns(), to: attendance.end_ns(), is_inherited: false };
         let spans = timeline.spans.iter_mut().chain([&mut timeline.open]);
         for (span, week) in spans.zip(attendance.weeks().iter().chain([&last])) {
             span.attended = *week;
-            span.effort.time = attendance.between(week.from, week.to);
+            span.effort.time = attendance.spent_between(week.from, week.to);
         }
-        timeline.tell_breaks(&attendance, lines, &places);
+        timeline.add_breaks(&attendance, lines, &places);
         for (week, place, view) in views {
-            timeline.share_view(week, place, view, &attendance);
+            timeline.distribute_view_time(week, place, view, &attendance);
         }
         timeline
     }
 
     /// Records times without play that are longer than ten minutes. Each belongs to the week in which it ended.
-    fn tell_breaks(&mut self, attendance: &Attendance, lines: &[Line], places: &[i64]) {
+    fn add_breaks(&mut self, attendance: &Attendance, lines: &[Line], places: &[i64]) {
         let mut apart: Vec<(i64, i64)> = Vec::new();
-        for time in attendance.times() {
+        for time in attendance.spans() {
             match (time.attention, apart.last_mut()) {
                 (Attention::Active | Attention::Answering | Attention::Simulating, _) => {}
                 (_, Some((_, to))) if *to == time.from => *to = time.to,
@@ -100,15 +101,15 @@ impl Timeline {
             }
         }
         for (from, to) in apart {
-            let seconds = attendance.between(from, to).elapsed_seconds();
+            let seconds = attendance.spent_between(from, to).elapsed_seconds();
             let last = places.partition_point(|place| *place < to).min(lines.len() - 1);
-            if seconds <= BREAK_SECONDS {
+            if seconds <= MIN_BREAK_SECONDS {
                 continue;
             }
             let began = places.partition_point(|place| *place <= from).saturating_sub(1);
-            self.breaks.push(Pause {
+            self.breaks.push(PlayBreak {
                 day: lines[last].day,
-                from: written_moment(lines[began].nanoseconds() + from - places[began]),
+                from: format_moment(lines[began].at_nanoseconds() + from - places[began]),
                 to: lines[last].at.clone(),
                 seconds,
             });
@@ -119,18 +120,18 @@ impl Timeline {
 
     /// Distributes the active time of a view over the weeks that it overlaps. A view ends at the position of its
     /// line.
-    fn share_view(&mut self, week: usize, place: i64, view: &View, attendance: &Attendance) {
+    fn distribute_view_time(&mut self, week: usize, place: i64, view: &ScreenView, attendance: &Attendance) {
         let length = i64::try_from(view.for_ms).unwrap_or(i64::MAX).saturating_mul(1_000_000);
         let began = place.saturating_sub(length).max(0);
         let spans = self.spans.iter_mut().chain([&mut self.open]).take(week + 1);
-        for span in spans.filter(|span| span.attended.to > began && !span.attended.inherited) {
+        for span in spans.filter(|span| span.attended.to > began && !span.attended.is_inherited) {
             let AttendedWeek { from, to, .. } = span.attended;
-            let time = attendance.between(began.max(from), place.min(to));
+            let time = attendance.spent_between(began.max(from), place.min(to));
             *span.effort.screens.entry(view.screen.clone()).or_default() += time;
         }
     }
 
-    fn count(&mut self, line: &Line) {
+    fn add_line(&mut self, line: &Line) {
         let effort = &mut self.open.effort;
         match &line.record {
             Record::Call(call) if matches!(call.outcome, Outcome::Accepted(_)) => {
@@ -144,7 +145,7 @@ impl Timeline {
                 effort.queries_failed += u32::from(query.error.is_some());
             }
             Record::Activity(activity) => {
-                effort.count(activity);
+                effort.add_activity(activity);
                 let limit = if let Activity::Limit(limit) = activity { Some(limit.event) } else { None };
                 self.open.filed_at_limit |= limit == Some(LimitEvent::FiledNaively);
             }
@@ -153,9 +154,9 @@ impl Timeline {
                 self.open.decided_at.clone_from(&line.at);
                 self.open.rationale = Some(filed.rationale.clone());
                 self.open.forecasts.clone_from(&filed.forecasts);
-                self.open.filled_naively = filed.filled_naively();
+                self.open.filled_naively = filed.has_naive_forecasts();
             }
-            Record::Week(closing) | Record::Step(closing) => self.close(line, closing),
+            Record::Week(closing) | Record::Step(closing) => self.close_week(line, closing),
             Record::Start(_)
             | Record::Branch(_)
             | Record::Override(_)
@@ -165,7 +166,7 @@ impl Timeline {
         }
     }
 
-    fn close(&mut self, line: &Line, closing: &Closing) {
+    fn close_week(&mut self, line: &Line, closing: &Closing) {
         let mut span = std::mem::take(&mut self.open);
         span.day = line.day;
         span.days_run = closing.days_run;
@@ -187,7 +188,7 @@ mod tests {
 
     fn lines(all: &[(&str, Record)]) -> Vec<Line> {
         let line = |(at, (moment, record)): (usize, &(&str, Record))| {
-            Line::alone(at as u64, 0, &format!("2026-11-21T{moment}Z"), record.clone())
+            Line::detached(at as u64, 0, &format!("2026-11-21T{moment}Z"), record.clone())
         };
         all.iter().enumerate().map(line).collect()
     }
@@ -224,8 +225,8 @@ mod tests {
     }
 
     #[test]
-    fn breaks_are_counted_apart_and_the_simulator_takes_no_time_of_the_player() {
-        let view = View { screen: "cash".to_owned(), from: String::new(), for_ms: 1_560_000 };
+    fn breaks_and_simulation_time_are_not_player_time() {
+        let view = ScreenView { screen: "cash".to_owned(), from: String::new(), for_ms: 1_560_000 };
         let sql = "x".to_owned();
         let query = Query {
             sql,
@@ -237,7 +238,7 @@ mod tests {
             via: None,
             took_ms: 1.0,
         };
-        let timeline = Timeline::of(&lines(&[
+        let timeline = Timeline::from_lines(&lines(&[
             ("10:00:00", start()),
             ("10:05:00", call()),
             ("10:30:00", Record::Activity(Activity::View(view))),
@@ -256,25 +257,29 @@ mod tests {
     }
 
     #[test]
-    fn a_view_belongs_to_the_weeks_in_which_it_was_open() {
+    fn view_time_is_split_by_week() {
         let view = |for_ms| {
-            Record::Activity(Activity::View(View { screen: "cash".to_owned(), from: String::new(), for_ms }))
+            Record::Activity(Activity::View(ScreenView {
+                screen: "cash".to_owned(),
+                from: String::new(),
+                for_ms,
+            }))
         };
-        let timeline = Timeline::of(&lines(&[
+        let timeline = Timeline::from_lines(&lines(&[
             ("10:00:00", start()),
             ("10:01:00", advance()),
             ("10:01:30", week()),
             ("10:03:30", view(180_000)),
             ("10:04:00", view(20_000)),
         ]));
-        let seconds = |effort: &Effort| effort.screens["cash"].active_seconds();
+        let seconds = |effort: &PlayerEffort| effort.screens["cash"].active_seconds();
         assert_eq!(seconds(&timeline.spans[0].effort), 30.0, "simulation time is not counted");
         assert_eq!(seconds(&timeline.open.effort), 120.0 + 20.0);
     }
 
     #[test]
-    fn a_clock_that_was_set_back_takes_no_time_away() {
-        let timeline = Timeline::of(&lines(&[
+    fn clock_set_back_does_not_reduce_time() {
+        let timeline = Timeline::from_lines(&lines(&[
             ("10:00:00", start()),
             ("10:01:00", memo()),
             ("09:00:00", memo()),
@@ -284,8 +289,8 @@ mod tests {
     }
 
     #[test]
-    fn weeks_of_a_parent_are_marked_and_take_no_time() {
-        let timeline = Timeline::of(&lines(&[
+    fn inherited_weeks_are_marked_and_have_no_time() {
+        let timeline = Timeline::from_lines(&lines(&[
             ("10:00:00", start()),
             ("10:00:01", advance()),
             ("10:00:02", week()),
@@ -296,7 +301,7 @@ mod tests {
         let seen: Vec<(bool, f64)> = timeline
             .spans
             .iter()
-            .map(|span| (span.attended.inherited, span.effort.time.active_seconds()))
+            .map(|span| (span.attended.is_inherited, span.effort.time.active_seconds()))
             .collect();
         assert_eq!(seen, [(true, 0.0), (false, 60.0)]);
     }

@@ -1,15 +1,15 @@
 //! Charts of a run report.
 
-use crate::page::{Band, Block, Chart, Curve, Part, Plot};
-use crate::story::Story;
-use crate::turn::{COSTS, INCOME};
-use crate::words::{count, money, whole};
+use crate::bankruptcy::{COST_CATEGORIES, INCOME_CATEGORIES};
+use crate::formatting::{format_money, format_whole, pluralize};
+use crate::page::{Band, Block, Chart, Curve, Plot, StackSeries};
+use crate::run_report::RunReport;
 use novamind_session::ScoredForecast;
 
-const MOST_GROUPS: usize = 6;
+const MAX_GROUPS: usize = 6;
 
 /// Charts cash by day, with the last forecasts until they are due.
-pub fn cash(story: &Story) -> Option<Block> {
+pub fn cash_chart(story: &RunReport) -> Option<Block> {
     let points: Vec<(f64, f64)> =
         story.cash_by_day.iter().enumerate().map(|(day, cash)| (day as f64, *cash)).collect();
     if points.len() < 2 {
@@ -19,65 +19,65 @@ pub fn cash(story: &Story) -> Option<Block> {
     let low = story.cash_by_day.iter().copied().fold(story.start_cash, f64::min);
     let high = story.cash_by_day.iter().copied().fold(story.start_cash, f64::max);
     let mut curves = vec![Curve { name: "cash".to_owned(), points }];
-    let fan = open_fan(story);
+    let fan = pending_forecast_fan(story);
     let band = fan.map(|(band, expected)| {
         curves.push(expected);
         band
     });
     let summary = format!(
         "Cash starts at {}, ranges from {} to {}, and is {} on day {}.",
-        money(story.start_cash),
-        money(low),
-        money(high),
-        money(story.seen.cash),
-        story.seen.day
+        format_money(story.start_cash),
+        format_money(low),
+        format_money(high),
+        format_money(story.observation.cash),
+        story.observation.day
     );
     let reach = (high - low).max(1.0);
     Some(Block::Chart(Chart {
         title: "Cash by day".to_owned(),
         summary,
-        across: "day",
-        dollars: true,
-        within: band.as_ref().map(|_| (low.min(0.0), high + reach)),
+        x_label: "day",
+        is_in_dollars: true,
+        y_limits: band.as_ref().map(|_| (low.min(0.0), high + reach)),
         plot: Plot::Lines { curves, band },
     }))
 }
 
 /// Returns the open forecasts as a fan from today's cash, and the predicted values; `None` after the end of the run.
-fn open_fan(story: &Story) -> Option<(Band, Curve)> {
-    let filed_last = story.filed.last().filter(|_| story.seen.ended.is_none())?.day;
-    let (day, cash) = (f64::from(story.seen.day), story.seen.cash);
+fn pending_forecast_fan(story: &RunReport) -> Option<(Band, Curve)> {
+    let filed_last = story.forecasts.last().filter(|_| story.observation.ended.is_none())?.day;
+    let (day, cash) = (f64::from(story.observation.day), story.observation.cash);
     let open = || {
-        let last = story.filed.iter().filter(move |filed| filed.day == filed_last);
-        last.filter(|filed| filed.due() > story.seen.day)
+        let last = story.forecasts.iter().filter(move |filed| filed.day == filed_last);
+        last.filter(|filed| filed.due_day() > story.observation.day)
     };
     let (mut band, mut expected) = (vec![(day, cash, cash)], vec![(day, cash)]);
-    band.extend(open().map(|filed| (f64::from(filed.due()), filed.forecast.lower, filed.forecast.upper)));
-    expected.extend(open().map(|filed| (f64::from(filed.due()), filed.forecast.point)));
+    band.extend(open().map(|filed| (f64::from(filed.due_day()), filed.forecast.lower, filed.forecast.upper)));
+    expected.extend(open().map(|filed| (f64::from(filed.due_day()), filed.forecast.point)));
     (band.len() > 1).then(|| {
         let band = Band { name: "95 % interval of the last forecasts".to_owned(), points: band };
         (band, Curve { name: "predicted".to_owned(), points: expected })
     })
 }
 
-fn by_kind(story: &Story) -> Vec<Part> {
-    let weeks: Vec<u32> = story.books.ledger.keys().copied().filter(|week| *week > 0).collect();
+fn cash_by_category(story: &RunReport) -> Vec<StackSeries> {
+    let weeks: Vec<u32> = story.database.ledger.keys().copied().filter(|week| *week > 0).collect();
     let of = |week: u32, held: &[&str]| -> f64 {
-        let amounts = story.books.ledger.get(&week);
+        let amounts = story.database.ledger.get(&week);
         amounts.map_or(0.0, |amounts| held.iter().filter_map(|name| amounts.get(*name)).sum())
     };
-    let part = |(name, held): &(&str, &[&str])| Part {
+    let part = |(name, held): &(&str, &[&str])| StackSeries {
         name: (*name).to_owned(),
         values: weeks.iter().map(|week| of(*week, held)).collect(),
     };
-    let parts = INCOME.iter().chain(COSTS.iter()).map(part);
+    let parts = INCOME_CATEGORIES.iter().chain(COST_CATEGORIES.iter()).map(part);
     parts.filter(|part| part.values.iter().any(|value| *value != 0.0)).collect()
 }
 
-pub fn income_and_costs(story: &Story) -> Option<Block> {
+pub fn income_and_cost_chart(story: &RunReport) -> Option<Block> {
     let at: Vec<f64> =
-        story.books.ledger.keys().filter(|week| **week > 0).map(|week| f64::from(*week)).collect();
-    let parts = by_kind(story);
+        story.database.ledger.keys().filter(|week| **week > 0).map(|week| f64::from(*week)).collect();
+    let parts = cash_by_category(story);
     if at.is_empty() || parts.is_empty() {
         return None;
     }
@@ -86,21 +86,21 @@ pub fn income_and_costs(story: &Story) -> Option<Block> {
     };
     let summary = format!(
         "In {}, income was {} and costs {}.",
-        count(at.len() as u32, "week"),
-        money(sum(true)),
-        money(-sum(false))
+        pluralize(at.len() as u32, "week"),
+        format_money(sum(true)),
+        format_money(-sum(false))
     );
     Some(Block::Chart(Chart {
         title: "Income and costs by week".to_owned(),
         summary,
-        across: "week",
-        dollars: true,
-        within: None,
-        plot: Plot::Stacks { at, parts },
+        x_label: "week",
+        is_in_dollars: true,
+        y_limits: None,
+        plot: Plot::Stacks { positions: at, series: parts },
     }))
 }
 
-pub fn people(story: &Story) -> Option<Block> {
+pub fn subscriber_chart(story: &RunReport) -> Option<Block> {
     if story.weeks.len() < 2 {
         return None;
     }
@@ -114,73 +114,74 @@ pub fn people(story: &Story) -> Option<Block> {
         curves.push(Curve { name: "enterprise seats".to_owned(), points: seats });
     }
     let summary = curves.iter().map(|curve| {
-        let (week, most) = highest(&curve.points);
+        let (week, most) = highest_point(&curve.points);
         format!(
             "{}: peak {} in week {week:.0}, {} at the end.",
             curve.name,
-            whole(most),
-            whole(last(&curve.points))
+            format_whole(most),
+            format_whole(last_point(&curve.points))
         )
     });
     Some(Block::Chart(Chart {
         title: "Subscribers and seats by week".to_owned(),
         summary: summary.collect::<Vec<_>>().join(" "),
-        across: "week",
-        dollars: false,
-        within: None,
+        x_label: "week",
+        is_in_dollars: false,
+        y_limits: None,
         plot: Plot::Lines { curves, band: None },
     }))
 }
 
-fn highest(points: &[(f64, f64)]) -> (f64, f64) {
+fn highest_point(points: &[(f64, f64)]) -> (f64, f64) {
     points.iter().copied().rev().max_by(|left, right| left.1.total_cmp(&right.1)).unwrap_or((0.0, 0.0))
 }
 
-fn last(points: &[(f64, f64)]) -> f64 {
+fn last_point(points: &[(f64, f64)]) -> f64 {
     points.last().map_or(0.0, |point| point.1)
 }
 
 /// Charts the customers of the largest groups by week, if there are several.
-pub fn groups(story: &Story) -> Option<Block> {
+pub fn group_chart(story: &RunReport) -> Option<Block> {
     let weight = |active: &[f64]| active.iter().copied().fold(0.0, f64::max);
     let mut largest: Vec<_> = story
-        .books
+        .database
         .groups
         .iter()
         .filter(|book| weight(&book.active) > 0.0 && book.active.len() > 2)
         .collect();
     largest.sort_by(|left, right| weight(&right.active).total_cmp(&weight(&left.active)));
-    largest.truncate(MOST_GROUPS);
+    largest.truncate(MAX_GROUPS);
     // Skips groups that are too small to be visible.
     let most = largest.first().map_or(0.0, |book| weight(&book.active));
     largest.retain(|book| weight(&book.active) >= 0.01 * most);
     if largest.len() < 2 {
         return None;
     }
-    let curve = |book: &&super::super::books::GroupBook| Curve {
+    let curve = |book: &&super::super::database_figures::GroupHistory| Curve {
         name: book.group.to_string(),
         points: book.active.iter().enumerate().map(|(week, active)| (week as f64, *active)).collect(),
     };
     let curves: Vec<Curve> = largest.iter().map(curve).collect();
-    let summary = curves.iter().map(|curve| format!("{} {}", curve.name, whole(last(&curve.points))));
+    let summary =
+        curves.iter().map(|curve| format!("{} {}", curve.name, format_whole(last_point(&curve.points))));
     Some(Block::Chart(Chart {
         title: "Customers by group and week".to_owned(),
         summary: format!("At the end: {}.", summary.collect::<Vec<_>>().join(", ")),
-        across: "week",
-        dollars: false,
-        within: None,
+        x_label: "week",
+        is_in_dollars: false,
+        y_limits: None,
         plot: Plot::Lines { curves, band: None },
     }))
 }
 
-pub fn forecasts(story: &Story) -> Vec<Block> {
+pub fn forecast_charts(story: &RunReport) -> Vec<Block> {
     let horizons = story.measures.forecasts.iter().map(|score| score.horizon_days);
     horizons.filter_map(|horizon| forecast_chart(story, horizon)).collect()
 }
 
-fn forecast_chart(story: &Story, horizon: u32) -> Option<Block> {
+fn forecast_chart(story: &RunReport, horizon: u32) -> Option<Block> {
     let due: Vec<&ScoredForecast> = story
-        .filed
+        .forecasts
         .iter()
         .filter(|filed| filed.forecast.horizon_days == horizon && filed.outcome.is_some())
         .collect();
@@ -188,15 +189,15 @@ fn forecast_chart(story: &Story, horizon: u32) -> Option<Block> {
         return None;
     }
     let through = |value: &dyn Fn(&ScoredForecast) -> f64| -> Vec<(f64, f64)> {
-        due.iter().map(|filed| (f64::from(filed.due()), value(filed))).collect()
+        due.iter().map(|filed| (f64::from(filed.due_day()), value(filed))).collect()
     };
     let came = through(&|filed| filed.outcome.unwrap_or(filed.forecast.point));
     let band = due
         .iter()
-        .map(|filed| (f64::from(filed.due()), filed.forecast.lower, filed.forecast.upper))
+        .map(|filed| (f64::from(filed.due_day()), filed.forecast.lower, filed.forecast.upper))
         .collect();
-    let inside = due.iter().filter(|filed| filed.is_inside());
-    let ahead = count(horizon / 7, "week");
+    let inside = due.iter().filter(|filed| filed.is_covered());
+    let ahead = pluralize(horizon / 7, "week");
     let summary = format!(
         "{} forecasts made {ahead} ahead came due; {} of their intervals contain the outcome.",
         due.len(),
@@ -209,9 +210,9 @@ fn forecast_chart(story: &Story, horizon: u32) -> Option<Block> {
     Some(Block::Chart(Chart {
         title: format!("Cash forecast {ahead} ahead, and the outcome"),
         summary,
-        across: "day",
-        dollars: true,
-        within: Some((low - reach, high + reach)),
+        x_label: "day",
+        is_in_dollars: true,
+        y_limits: Some((low - reach, high + reach)),
         plot: Plot::Lines {
             curves: vec![
                 Curve { name: "actual".to_owned(), points: came },
@@ -225,12 +226,14 @@ fn forecast_chart(story: &Story, horizon: u32) -> Option<Block> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_kit::finished;
+    use crate::test_kit::finished_run;
 
     #[test]
-    fn people_stand_at_the_end_of_their_week() {
-        let session = finished();
-        let Some(Block::Chart(chart)) = people(&Story::of(&session)) else { panic!("a chart") };
+    fn subscriber_points_are_at_week_ends() {
+        let session = finished_run();
+        let Some(Block::Chart(chart)) = subscriber_chart(&RunReport::from_session(&session)) else {
+            panic!("a chart")
+        };
         let Plot::Lines { curves, .. } = &chart.plot else { panic!("{chart:?}") };
         let told: Vec<(f64, f64)> = (1..)
             .zip(session.weeks())
@@ -238,7 +241,7 @@ mod tests {
             .collect();
         assert_eq!(curves[0].points, told);
         let (week, most) = told.iter().rev().max_by(|one, other| one.1.total_cmp(&other.1)).expect("weeks");
-        let peak = format!("subscribers: peak {} in week {week:.0},", whole(*most));
+        let peak = format!("subscribers: peak {} in week {week:.0},", format_whole(*most));
         assert!(*most > 0.0 && chart.summary.starts_with(&peak), "{}", chart.summary);
     }
 }

@@ -1,44 +1,47 @@
 //! Gross margins in sentences, for screen readers: the current model tier first, the others in one line.
 
-use super::{Lever, NOTHING_MEASURED, PlanTerms, PlanUse, Sales, differs, margin};
-use crate::words::whole;
-use novamind_base::notation::{cents, grouped, percent};
+use super::{
+    DraftPlanTerms, MarginSetting, NO_USAGE_MESSAGE, PlanSales, PlanUsage, differs_by_a_cent, margin,
+};
+use crate::formatting::format_whole;
+use novamind_base::formatting::{cents, grouped_number, percent};
 use novamind_session::identifiers::{ByPlan, Plan};
 
 /// Returns the margins of every plan under its terms as sentences.
 pub fn margin_sentences(
-    sales: &Sales,
-    terms: &ByPlan<PlanTerms>,
-    lever: Lever,
+    sales: &PlanSales,
+    terms: &ByPlan<DraftPlanTerms>,
+    lever: MarginSetting,
     models: &[(u8, f64)],
     day: u32,
 ) -> Vec<String> {
     if !sales.is_measured() {
-        return vec![NOTHING_MEASURED.to_owned()];
+        return vec![NO_USAGE_MESSAGE.to_owned()];
     }
     let mut lines =
         vec![format!("gross margins at day-{day} usage: the share of a price left after compute")];
-    lines
-        .extend(Plan::ALL.into_iter().flat_map(|plan| of_plan(sales, plan, terms[plan], lever, models, day)));
+    lines.extend(
+        Plan::ALL.into_iter().flat_map(|plan| plan_sentences(sales, plan, terms[plan], lever, models, day)),
+    );
     lines
 }
 
-fn of_plan(
-    sales: &Sales,
+fn plan_sentences(
+    sales: &PlanSales,
     plan: Plan,
-    set: PlanTerms,
-    lever: Lever,
+    set: DraftPlanTerms,
+    lever: MarginSetting,
     models: &[(u8, f64)],
     day: u32,
 ) -> Vec<String> {
-    let own = sales.of_plan(plan);
-    let Some(paid) = own.measured_revenue() else {
+    let own = sales.usage_of_plan(plan);
+    let Some(paid) = own.measured_revenue_per_seat() else {
         return vec![format!("plan {plan}: no usage on day {day}")];
     };
     let unit_cost = set.unit_cost(models);
-    let on_own = |told: &dyn Fn(f64) -> Option<f64>, of: &str| in_words(unit_cost.and_then(told), of);
-    let at_list = |unit_cost: f64| margin(set.price, own.compute(unit_cost)?);
-    let is_at_list = lever == Lever::Price && differs(set.price, paid);
+    let on_own = |told: &dyn Fn(f64) -> Option<f64>, of: &str| describe_margin(unit_cost.and_then(told), of);
+    let at_list = |unit_cost: f64| margin(set.price, own.compute_cost(unit_cost)?);
+    let is_at_list = lever == MarginSetting::Price && differs_by_a_cent(set.price, paid);
     let mut line = format!(
         "plan {plan} on model tier {}: {}",
         set.tier,
@@ -47,28 +50,29 @@ fn of_plan(
     if is_at_list {
         line += &format!("; {}", on_own(&at_list, &format!("the list price of {}", cents(set.price))));
     }
-    if lever == Lever::Quota {
-        let full = on_own(&|unit_cost| own.margin_of_full_quota(set.quota, unit_cost), "the price paid");
-        line += &format!("; at full quota of {} units, {full}", whole(set.quota));
+    if lever == MarginSetting::Quota {
+        let full = on_own(&|unit_cost| own.margin_at_full_quota(set.quota, unit_cost), "the price paid");
+        line += &format!("; at full quota of {} units, {full}", format_whole(set.quota));
     }
     let mut lines = vec![line];
-    lines.extend(by_group(sales, plan, unit_cost));
+    lines.extend(group_sentence(sales, plan, unit_cost));
     let told = |unit_cost: f64| if is_at_list { at_list(unit_cost) } else { own.margin(unit_cost) };
     let others = models.iter().filter(|(tier, _)| *tier != set.tier);
     let others: Vec<(u8, f64)> =
         others.filter_map(|(tier, unit_cost)| Some((*tier, told(*unit_cost)?))).collect();
     let basis = if is_at_list { "at that list price" } else { "of the price paid now" };
     lines.extend(
-        on_others(&others).map(|words| format!("plan {plan} on other model tiers, {basis}: {words}")),
+        other_models_sentence(&others)
+            .map(|words| format!("plan {plan} on other model tiers, {basis}: {words}")),
     );
     lines
 }
 
-fn by_group(sales: &Sales, plan: Plan, unit_cost: Option<f64>) -> Option<String> {
+fn group_sentence(sales: &PlanSales, plan: Plan, unit_cost: Option<f64>) -> Option<String> {
     let groups = sales.by_group(plan);
-    let told = |(group, own): &(_, PlanUse)| {
-        let paid = own.revenue().map_or("nothing".to_owned(), cents);
-        format!("{group} {}", in_words(unit_cost.and_then(|unit_cost| own.margin(unit_cost)), &paid))
+    let told = |(group, own): &(_, PlanUsage)| {
+        let paid = own.revenue_per_seat().map_or("nothing".to_owned(), cents);
+        format!("{group} {}", describe_margin(unit_cost.and_then(|unit_cost| own.margin(unit_cost)), &paid))
     };
     (groups.len() > 1).then(|| {
         let told: Vec<String> = groups.iter().map(told).collect();
@@ -77,7 +81,7 @@ fn by_group(sales: &Sales, plan: Plan, unit_cost: Option<f64>) -> Option<String>
 }
 
 /// Lists profitable tiers one by one and combines those with a loss.
-fn on_others(margins: &[(u8, f64)]) -> Option<String> {
+fn other_models_sentence(margins: &[(u8, f64)]) -> Option<String> {
     let (earns, loses): (Vec<_>, Vec<_>) = margins.iter().partition(|(_, margin)| *margin >= 0.0);
     let mut parts: Vec<String> =
         earns.iter().map(|(tier, margin)| format!("tier {tier} {}", percent(*margin, 0))).collect();
@@ -91,11 +95,11 @@ fn on_others(margins: &[(u8, f64)]) -> Option<String> {
 }
 
 /// Describes a margin as a share of the price; a loss as the ratio of compute to price.
-fn in_words(margin: Option<f64>, of: &str) -> String {
+fn describe_margin(margin: Option<f64>, of: &str) -> String {
     match margin {
         None => format!("an unknown share of {of}"),
         Some(margin) if margin < 0.0 => {
-            format!("a loss, compute costs {} times {of}", grouped(1.0 - margin, 2))
+            format!("a loss, compute costs {} times {of}", grouped_number(1.0 - margin, 2))
         }
         Some(margin) => format!("{} of {of}", percent(margin, 0)),
     }
@@ -106,27 +110,27 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::test_kit::played;
+    use crate::test_kit::play_weeks;
 
     #[test]
-    fn margins_are_told_without_places_and_brackets() {
-        let session = played(6);
-        let sales = Sales::of(&session).expect("a database");
+    fn sentences_have_no_columns_or_brackets() {
+        let session = play_weeks(6);
+        let sales = PlanSales::load(&session).expect("a database");
         let core = &session.settings().core;
-        let now = ByPlan::from_fn(|plan| PlanTerms {
+        let now = ByPlan::from_fn(|plan| DraftPlanTerms {
             price: core.prices[plan],
             tier: core.tiers[plan],
             quota: core.quotas[plan].units(),
         });
         let models = session.company().tool_limits().unit_costs();
-        let own = sales.of_plan(Plan::B);
+        let own = sales.usage_of_plan(Plan::B);
         let unit_cost = models.iter().find(|(tier, _)| *tier == now[Plan::B].tier).expect("its model").1;
-        let dear = Lever::Price.apply(now, &json!({"B": 250}));
-        let lines = margin_sentences(&sales, &dear, Lever::Price, &models, 42);
+        let dear = MarginSetting::Price.apply(now, &json!({"B": 250}));
+        let lines = margin_sentences(&sales, &dear, MarginSetting::Price, &models, 42);
         let line = lines.iter().find(|line| line.starts_with("plan B on model tier 2: ")).expect("plan B");
-        let paid = in_words(own.margin(unit_cost), "the ");
-        let list = margin(250.0, own.compute(unit_cost).expect("compute"));
-        let list = in_words(list, "the list price of $250.00");
+        let paid = describe_margin(own.margin(unit_cost), "the ");
+        let list = margin(250.0, own.compute_cost(unit_cost).expect("compute"));
+        let list = describe_margin(list, "the list price of $250.00");
         assert!(line.contains(&format!("tier 2: {paid}")), "{line} without {paid}");
         assert!(line.ends_with(&list), "{line} without {list}");
         let text = lines.join("\n");
@@ -135,10 +139,10 @@ mod tests {
     }
 
     #[test]
-    fn losses_are_told_together() {
-        let told = on_others(&[(1, 0.5), (3, -0.2), (4, -30.0), (5, -90.0)]);
+    fn losses_are_combined_in_one_sentence() {
+        let told = other_models_sentence(&[(1, 0.5), (3, -0.2), (4, -30.0), (5, -90.0)]);
         assert_eq!(told.as_deref(), Some("tier 1 50%, a loss on tiers 3, 4 and 5"));
-        assert_eq!(on_others(&[]), None);
-        assert_eq!(in_words(Some(-11.4), "$14.00"), "a loss, compute costs 12.40 times $14.00");
+        assert_eq!(other_models_sentence(&[]), None);
+        assert_eq!(describe_margin(Some(-11.4), "$14.00"), "a loss, compute costs 12.40 times $14.00");
     }
 }

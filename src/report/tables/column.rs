@@ -6,7 +6,7 @@ use serde::Serialize;
 
 /// Name of a column, and unit and meaning of its values.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Heading {
+pub struct ColumnHeading {
     /// Name, as in the header line.
     pub name: Cow<'static, str>,
     /// Unit or kind of the values.
@@ -17,7 +17,7 @@ pub struct Heading {
 
 pub(crate) struct Column<Row> {
     /// Name, unit and meaning.
-    pub heading: Heading,
+    pub heading: ColumnHeading,
     pub cell: Box<dyn Fn(&Row) -> String>,
 }
 
@@ -29,7 +29,7 @@ impl<Row> Column<Row> {
         meaning: &'static str,
         cell: impl Fn(&Row) -> String + 'static,
     ) -> Column<Row> {
-        Column { heading: Heading { name: name.into(), unit, meaning }, cell: Box::new(cell) }
+        Column { heading: ColumnHeading { name: name.into(), unit, meaning }, cell: Box::new(cell) }
     }
 }
 
@@ -38,7 +38,7 @@ macro_rules! columns {
     ($row:ident: $Row:ty; $($name:expr, $unit:literal, $meaning:expr => $value:expr;)*) => {
         vec![$($crate::tables::column::Column::<$Row>::new($name, $unit, $meaning, move |$row| {
             let _ = $row;
-            $crate::tables::column::Value::cell(&$value)
+            $crate::tables::column::CellValue::to_cell(&$value)
         })),*]
     };
 }
@@ -46,28 +46,28 @@ macro_rules! columns {
 pub(crate) use columns;
 
 /// A value of a cell.
-pub(crate) trait Value {
+pub(crate) trait CellValue {
     /// Returns the cell: texts unchanged, flags as 0 and 1, numbers in the shortest form that parses to the same value,
     /// and an empty string for a missing value.
-    fn cell(&self) -> String;
+    fn to_cell(&self) -> String;
 }
 
-impl<T: Value> Value for Option<T> {
-    fn cell(&self) -> String {
-        self.as_ref().map(Value::cell).unwrap_or_default()
+impl<T: CellValue> CellValue for Option<T> {
+    fn to_cell(&self) -> String {
+        self.as_ref().map(CellValue::to_cell).unwrap_or_default()
     }
 }
 
-impl<T: Value + ?Sized> Value for &T {
-    fn cell(&self) -> String {
-        (*self).cell()
+impl<T: CellValue + ?Sized> CellValue for &T {
+    fn to_cell(&self) -> String {
+        (*self).to_cell()
     }
 }
 
 macro_rules! values {
     ($($kind:ty: $cell:expr;)*) => {
-        $(impl Value for $kind {
-            fn cell(&self) -> String {
+        $(impl CellValue for $kind {
+            fn to_cell(&self) -> String {
                 $cell(self)
             }
         })*
@@ -77,8 +77,8 @@ macro_rules! values {
 values! {
     str: str::to_owned;
     String: String::clone;
-    bool: |own: &bool| super::flag(*own);
-    f64: |own: &f64| super::number(*own);
+    bool: |own: &bool| super::format_flag(*own);
+    f64: |own: &f64| super::format_number(*own);
     u8: u8::to_string;
     u32: u32::to_string;
     u64: u64::to_string;

@@ -1,38 +1,41 @@
 //! Columns of `runs.csv`: a row for each run.
 
 use super::column::{Column, columns};
-use super::{in_console, pairs, rounded, score, screens, seen, tools};
+use super::{
+    console_only, format_pairs, format_screen_seconds, format_tool_counts, recorded_screens_only, rounded,
+    score_at_horizon,
+};
 use crate::logbook::Logbook;
 use crate::measures::ChannelSkill;
 use novamind_record::consent::{ConsentGiven, ConsentMeans};
 use novamind_session::TimeSpent;
 
-fn scored(run: &Logbook, horizon_days: u32) -> u32 {
-    score(&run.measures.forecasts, horizon_days).map_or(0, |score| score.scored)
+fn scored_forecast_count(run: &Logbook, horizon_days: u32) -> u32 {
+    score_at_horizon(&run.measures.forecasts, horizon_days).map_or(0, |score| score.scored)
 }
 
-fn error(run: &Logbook, horizon_days: u32) -> Option<f64> {
-    score(&run.measures.forecasts, horizon_days).map(|score| score.mean_error)
+fn forecast_error(run: &Logbook, horizon_days: u32) -> Option<f64> {
+    score_at_horizon(&run.measures.forecasts, horizon_days).map(|score| score.mean_error)
 }
 
-fn coverage(run: &Logbook, horizon_days: u32) -> Option<f64> {
-    score(&run.measures.forecasts, horizon_days)
+fn forecast_coverage(run: &Logbook, horizon_days: u32) -> Option<f64> {
+    score_at_horizon(&run.measures.forecasts, horizon_days)
         .map(|score| f64::from(score.covered) / f64::from(score.scored))
 }
 
-fn first_error(run: &Logbook, horizon_days: u32) -> Option<f64> {
-    score(&run.measures.first_forecasts, horizon_days).map(|score| score.mean_error)
+fn first_weeks_error(run: &Logbook, horizon_days: u32) -> Option<f64> {
+    score_at_horizon(&run.measures.first_forecasts, horizon_days).map(|score| score.mean_error)
 }
 
 /// Returns how consent was given, if the program showed the text.
-fn on_screen(run: &Logbook) -> Option<ConsentGiven> {
+fn consent_on_screen(run: &Logbook) -> Option<ConsentGiven> {
     run.consent.as_ref().and_then(|consent| consent.given).filter(|given| given.means != ConsentMeans::Paper)
 }
 
-const FIRST_ERROR: &str =
+const FIRST_ERROR_MEANING: &str =
     "mean of |point - outcome| / max(|outcome|, 1) of forecasts filed before the first four weeks";
-const ERROR: &str = "mean over them of |point - outcome| / max(|outcome|, 1)";
-const COVERAGE: &str = "share of them whose interval contains the outcome";
+const ERROR_MEANING: &str = "mean over them of |point - outcome| / max(|outcome|, 1)";
+const COVERAGE_MEANING: &str = "share of them whose interval contains the outcome";
 
 pub(super) fn columns() -> Vec<Column<Logbook>> {
     columns! { run: Logbook;
@@ -60,9 +63,9 @@ pub(super) fn columns() -> Vec<Column<Logbook>> {
          empty if none was required" => run.consent.as_ref().map(|consent| &consent.at);
         "consent_digest", "hash", "BLAKE3 hash of the consent text" => run.consent.as_ref().map(|consent| &consent.digest);
         "consent_read_ms", "milliseconds", "time from display of that text to consent; this and the next column are empty if none was \
-         required or consent was given on paper" => on_screen(run).map(|given| given.read_ms);
+         required or consent was given on paper" => consent_on_screen(run).map(|given| given.read_ms);
         "consent_scrolled_to_end", "0 or 1", "1: the end of the text was shown before consent"
-            => on_screen(run).map(|given| given.scrolled_to_end);
+            => consent_on_screen(run).map(|given| given.scrolled_to_end);
         "format", "number", "format of the trajectory" => run.format;
         "version", "version", "version of the program that recorded the run" => run.version;
         "created", "RFC 3339", "time of creation" => run.created;
@@ -79,7 +82,7 @@ pub(super) fn columns() -> Vec<Column<Logbook>> {
         "undone", "count", "accepted calls that undid another" => run.total.undone;
         "queries", "count", "SQL queries" => run.total.queries;
         "queries_failed", "count", "queries that were rejected or failed" => run.total.queries_failed;
-        "views", "count", "views of screens (console only)" => seen(run, run.total.views);
+        "views", "count", "views of screens (console only)" => recorded_screens_only(run, run.total.views);
         "memos", "count", "changes of the notes" => run.total.memos;
         "sittings", "count", "number of times the program opened the run; 0 if not recorded (format 1, policies)"
             => run.sittings.opened;
@@ -103,15 +106,15 @@ pub(super) fn columns() -> Vec<Column<Logbook>> {
         "week_seconds_median", "seconds", "median over the weeks of the active seconds before a week"
             => run.median_week_seconds.map(rounded);
         "implausibly_fast_weeks", "count", "weeks decided in less than ten active seconds" => run.fast_weeks;
-        "typed_characters", "count", "characters typed into texts (console only)" => in_console(run, run.total.typed);
-        "deleted_characters", "count", "characters deleted from them (console only)" => in_console(run, run.total.deleted);
+        "typed_characters", "count", "characters typed into texts (console only)" => console_only(run, run.total.typed);
+        "deleted_characters", "count", "characters deleted from them (console only)" => console_only(run, run.total.deleted);
         "pasted_characters", "count", "characters of them that came from the clipboard (console only)"
-            => in_console(run, run.total.pasted);
+            => console_only(run, run.total.pasted);
         "truly_best_channel_share", "share", "share of advertising on the channel of each group with the highest yield of all \
          five at the start of the run, which is hidden from players; random spending reaches 0.2; empty before the end"
             => run.measures.truly_best.as_ref().map(|best| best.share);
         "truly_best_channel_share_by_group", "group=share", "the same by group"
-            => pairs(run.measures.truly_best.iter().flat_map(|best| best.groups.iter().map(|(name, own)| (name, *own))));
+            => format_pairs(run.measures.truly_best.iter().flat_map(|best| best.groups.iter().map(|(name, own)| (name, *own))));
         "channels_tried", "per group", "mean number of paid channels, over the advertised groups"
             => run.measures.channels.as_ref().map(ChannelSkill::channels_tried);
         "best_tried_channel_share", "share", "share of advertising on the paid channel with the most leads per dollar, \
@@ -119,22 +122,22 @@ pub(super) fn columns() -> Vec<Column<Logbook>> {
          players" => run.measures.channels.as_ref().and_then(|skill| skill.share);
         "targeted_development_share", "share", "targeted share of development spending over the simulated days"
             => run.measures.targeted_development;
-        "forecasts_scored_7", "count", "due forecasts with a horizon of 7 days" => scored(run, 7);
-        "forecast_error_7", "share", ERROR => error(run, 7);
-        "forecast_coverage_7", "share", COVERAGE => coverage(run, 7);
-        "forecasts_scored_28", "count", "due forecasts with a horizon of 28 days" => scored(run, 28);
-        "forecast_error_28", "share", ERROR => error(run, 28);
-        "forecast_coverage_28", "share", COVERAGE => coverage(run, 28);
-        "forecasts_scored_84", "count", "due forecasts with a horizon of 84 days" => scored(run, 84);
-        "forecast_error_84", "share", ERROR => error(run, 84);
-        "forecast_coverage_84", "share", COVERAGE => coverage(run, 84);
-        "forecasts_scored_182", "count", "due forecasts with a horizon of 182 days" => scored(run, 182);
-        "forecast_error_182", "share", ERROR => error(run, 182);
-        "forecast_coverage_182", "share", COVERAGE => coverage(run, 182);
-        "first_forecast_error_7", "share", FIRST_ERROR => first_error(run, 7);
-        "first_forecast_error_28", "share", FIRST_ERROR => first_error(run, 28);
-        "first_forecast_error_84", "share", FIRST_ERROR => first_error(run, 84);
-        "first_forecast_error_182", "share", FIRST_ERROR => first_error(run, 182);
+        "forecasts_scored_7", "count", "due forecasts with a horizon of 7 days" => scored_forecast_count(run, 7);
+        "forecast_error_7", "share", ERROR_MEANING => forecast_error(run, 7);
+        "forecast_coverage_7", "share", COVERAGE_MEANING => forecast_coverage(run, 7);
+        "forecasts_scored_28", "count", "due forecasts with a horizon of 28 days" => scored_forecast_count(run, 28);
+        "forecast_error_28", "share", ERROR_MEANING => forecast_error(run, 28);
+        "forecast_coverage_28", "share", COVERAGE_MEANING => forecast_coverage(run, 28);
+        "forecasts_scored_84", "count", "due forecasts with a horizon of 84 days" => scored_forecast_count(run, 84);
+        "forecast_error_84", "share", ERROR_MEANING => forecast_error(run, 84);
+        "forecast_coverage_84", "share", COVERAGE_MEANING => forecast_coverage(run, 84);
+        "forecasts_scored_182", "count", "due forecasts with a horizon of 182 days" => scored_forecast_count(run, 182);
+        "forecast_error_182", "share", ERROR_MEANING => forecast_error(run, 182);
+        "forecast_coverage_182", "share", COVERAGE_MEANING => forecast_coverage(run, 182);
+        "first_forecast_error_7", "share", FIRST_ERROR_MEANING => first_weeks_error(run, 7);
+        "first_forecast_error_28", "share", FIRST_ERROR_MEANING => first_weeks_error(run, 28);
+        "first_forecast_error_84", "share", FIRST_ERROR_MEANING => first_weeks_error(run, 84);
+        "first_forecast_error_182", "share", FIRST_ERROR_MEANING => first_weeks_error(run, 182);
         "weeks_filled_naively", "count", "weeks with at least one naive forecast"
             => run.measures.filled_naively.0;
         "weeks_filed_at_limit", "count", "of them, weeks filed by a time limit; their rationale is not the player's and counts no \
@@ -144,15 +147,15 @@ pub(super) fn columns() -> Vec<Column<Logbook>> {
         "tools_used", "count", "number of different tools among them" => run.measures.tools.tools.len();
         "tool_evenness", "share", "evenness over those tools: entropy of their shares divided by its maximum; \
          empty below two tools" => run.measures.tools.evenness;
-        "tools", "tool=count", "accepted calls by tool, including read-only ones" => tools(&run.total);
-        "screens", "screen=seconds", "active time on each screen (console only)" => screens(&run.total);
+        "tools", "tool=count", "accepted calls by tool, including read-only ones" => format_tool_counts(&run.total);
+        "screens", "screen=seconds", "active time on each screen (console only)" => format_screen_seconds(&run.total);
         "selects", "count", "objects opened: groups, threads, tools, posts, studies" => run.total.selects;
         "dialogs_confirmed", "count", "dialogs confirmed (console only)"
-            => in_console(run, run.total.dialogs_confirmed);
-        "dialogs_cancelled", "count", "dialogs cancelled (console only)" => in_console(run, run.total.dialogs_cancelled);
+            => console_only(run, run.total.dialogs_confirmed);
+        "dialogs_cancelled", "count", "dialogs cancelled (console only)" => console_only(run, run.total.dialogs_cancelled);
         "helps", "count", "explanations of terms opened" => run.total.helps;
         "drafts_left", "count", "texts edited and not submitted (console only)"
-            => in_console(run, run.total.drafts_left);
+            => console_only(run, run.total.drafts_left);
         "rationale_words", "count", "words of all rationales" => run.wording.words;
         "planning_words", "count", "planning words among them: if, unless, until, otherwise, because, therefore, expect, \
          plan, should, would, might, risk, assume, probably, likely, instead" => run.wording.planning;

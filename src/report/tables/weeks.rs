@@ -1,13 +1,13 @@
 //! Columns of `weeks.csv`: a row for each week of a run.
 
 use super::column::{Column, columns};
-use super::{in_console, screens, seen, tools};
-use crate::logbook::{Logbook, WeekLog};
+use super::{console_only, format_screen_seconds, format_tool_counts, recorded_screens_only};
+use crate::logbook::{Logbook, WeekRecord};
 use novamind_session::ScoredForecast;
 
 pub(super) struct WeekRow<'a> {
     pub run: &'a Logbook,
-    pub week: &'a WeekLog,
+    pub week: &'a WeekRecord,
 }
 
 impl WeekRow<'_> {
@@ -16,9 +16,9 @@ impl WeekRow<'_> {
     }
 }
 
-const LOWER: &str = "lower end of its interval";
-const UPPER: &str = "upper end of its interval";
-const OUTCOME: &str = "outcome; empty before its day or if the run ended earlier";
+const LOWER_MEANING: &str = "lower end of its interval";
+const UPPER_MEANING: &str = "upper end of its interval";
+const OUTCOME_MEANING: &str = "outcome; empty before its day or if the run ended earlier";
 
 /// Figures of the closing line: name, unit, meaning. Columns have the same names.
 const FIGURES: [(&str, &str, &str); 19] = [
@@ -69,24 +69,24 @@ pub(super) fn columns<'a>() -> Vec<Column<WeekRow<'a>>> {
         "calls", "count", "accepted tool calls" => row.week.effort.calls;
         "refused", "count", "rejected tool calls" => row.week.effort.refused;
         "undone", "count", "accepted calls that undid another" => row.week.effort.undone;
-        "tools", "tool=count", "accepted calls by tool" => tools(&row.week.effort);
+        "tools", "tool=count", "accepted calls by tool" => format_tool_counts(&row.week.effort);
         "queries", "count", "SQL queries" => row.week.effort.queries;
         "queries_failed", "count", "queries that were rejected or failed" => row.week.effort.queries_failed;
-        "views", "count", "views of screens (console only)" => seen(row.run, row.week.effort.views);
-        "screens", "screen=seconds", "active time on each screen (console only)" => screens(&row.week.effort);
+        "views", "count", "views of screens (console only)" => recorded_screens_only(row.run, row.week.effort.views);
+        "screens", "screen=seconds", "active time on each screen (console only)" => format_screen_seconds(&row.week.effort);
         "selects", "count", "objects opened: groups, threads, tools, posts, studies" => row.week.effort.selects;
         "dialogs_confirmed", "count", "dialogs confirmed (console only)"
-            => in_console(row.run, row.week.effort.dialogs_confirmed);
+            => console_only(row.run, row.week.effort.dialogs_confirmed);
         "dialogs_cancelled", "count", "dialogs cancelled (console only)"
-            => in_console(row.run, row.week.effort.dialogs_cancelled);
+            => console_only(row.run, row.week.effort.dialogs_cancelled);
         "helps", "count", "explanations of terms opened" => row.week.effort.helps;
         "drafts_left", "count", "texts edited and not submitted (console only)"
-            => in_console(row.run, row.week.effort.drafts_left);
-        "typed_characters", "count", "characters typed into texts (console only)" => in_console(row.run, row.week.effort.typed);
+            => console_only(row.run, row.week.effort.drafts_left);
+        "typed_characters", "count", "characters typed into texts (console only)" => console_only(row.run, row.week.effort.typed);
         "deleted_characters", "count", "characters deleted from them (console only)"
-            => in_console(row.run, row.week.effort.deleted);
+            => console_only(row.run, row.week.effort.deleted);
         "pasted_characters", "count", "characters of them that came from the clipboard (console only)"
-            => in_console(row.run, row.week.effort.pasted);
+            => console_only(row.run, row.week.effort.pasted);
         "memos", "count", "changes of the notes" => row.week.effort.memos;
         "decisions", "count", "settings that differ from the week before, purchases, offers and posts"
             => row.week.decisions.len();
@@ -96,21 +96,21 @@ pub(super) fn columns<'a>() -> Vec<Column<WeekRow<'a>>> {
         "filled_naively", "0 or 1", "1: at least one forecast was naive" => row.week.filled_naively;
         "filed_at_limit", "0 or 1", "1: a time limit filed the week" => row.week.filed_at_limit;
         "forecast_7_point", "dollars", "cash predicted for 7 days ahead" => row.forecast(7).map(|own| own.forecast.point);
-        "forecast_7_lower", "dollars", LOWER => row.forecast(7).map(|own| own.forecast.lower);
-        "forecast_7_upper", "dollars", UPPER => row.forecast(7).map(|own| own.forecast.upper);
-        "forecast_7_outcome", "dollars", OUTCOME => row.forecast(7).and_then(|own| own.outcome);
+        "forecast_7_lower", "dollars", LOWER_MEANING => row.forecast(7).map(|own| own.forecast.lower);
+        "forecast_7_upper", "dollars", UPPER_MEANING => row.forecast(7).map(|own| own.forecast.upper);
+        "forecast_7_outcome", "dollars", OUTCOME_MEANING => row.forecast(7).and_then(|own| own.outcome);
         "forecast_28_point", "dollars", "cash predicted for 28 days ahead" => row.forecast(28).map(|own| own.forecast.point);
-        "forecast_28_lower", "dollars", LOWER => row.forecast(28).map(|own| own.forecast.lower);
-        "forecast_28_upper", "dollars", UPPER => row.forecast(28).map(|own| own.forecast.upper);
-        "forecast_28_outcome", "dollars", OUTCOME => row.forecast(28).and_then(|own| own.outcome);
+        "forecast_28_lower", "dollars", LOWER_MEANING => row.forecast(28).map(|own| own.forecast.lower);
+        "forecast_28_upper", "dollars", UPPER_MEANING => row.forecast(28).map(|own| own.forecast.upper);
+        "forecast_28_outcome", "dollars", OUTCOME_MEANING => row.forecast(28).and_then(|own| own.outcome);
         "forecast_84_point", "dollars", "cash predicted for 84 days ahead" => row.forecast(84).map(|own| own.forecast.point);
-        "forecast_84_lower", "dollars", LOWER => row.forecast(84).map(|own| own.forecast.lower);
-        "forecast_84_upper", "dollars", UPPER => row.forecast(84).map(|own| own.forecast.upper);
-        "forecast_84_outcome", "dollars", OUTCOME => row.forecast(84).and_then(|own| own.outcome);
+        "forecast_84_lower", "dollars", LOWER_MEANING => row.forecast(84).map(|own| own.forecast.lower);
+        "forecast_84_upper", "dollars", UPPER_MEANING => row.forecast(84).map(|own| own.forecast.upper);
+        "forecast_84_outcome", "dollars", OUTCOME_MEANING => row.forecast(84).and_then(|own| own.outcome);
         "forecast_182_point", "dollars", "cash predicted for 182 days ahead" => row.forecast(182).map(|own| own.forecast.point);
-        "forecast_182_lower", "dollars", LOWER => row.forecast(182).map(|own| own.forecast.lower);
-        "forecast_182_upper", "dollars", UPPER => row.forecast(182).map(|own| own.forecast.upper);
-        "forecast_182_outcome", "dollars", OUTCOME => row.forecast(182).and_then(|own| own.outcome);
+        "forecast_182_lower", "dollars", LOWER_MEANING => row.forecast(182).map(|own| own.forecast.lower);
+        "forecast_182_upper", "dollars", UPPER_MEANING => row.forecast(182).map(|own| own.forecast.upper);
+        "forecast_182_outcome", "dollars", OUTCOME_MEANING => row.forecast(182).and_then(|own| own.outcome);
     };
     columns.extend(FIGURES.map(|(name, unit, meaning)| {
         Column::new(name, unit, meaning, move |row: &WeekRow<'a>| {

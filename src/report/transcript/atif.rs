@@ -2,23 +2,23 @@
 
 use serde_json::{Map, Value, json};
 
-use super::{Deed, PassedWeek, Surroundings, Transcript, TranscriptAct, predictions};
+use super::{AgentContext, Transcript, TranscriptAction, TranscriptStep, WeekResult, forecasts_as_json};
 
 const VERSION: &str = "ATIF-v1.8";
 
 /// Returns the run in this format.
-pub fn atif(run: &Transcript, told: &Surroundings) -> Value {
+pub fn to_atif(run: &Transcript, told: &AgentContext) -> Value {
     let mut steps = vec![
-        json!({ "source": "system", "message": told.page }),
-        json!({ "source": "user", "message": run.opening }),
+        json!({ "source": "system", "message": told.instructions }),
+        json!({ "source": "user", "message": run.opening_dashboard }),
     ];
-    steps.extend(run.acts.iter().filter_map(step));
+    steps.extend(run.steps.iter().filter_map(step_json));
     for (at, step) in steps.iter_mut().enumerate() {
         step["step_id"] = json!(at + 1);
     }
     let total = steps.len();
     let version = run.manifest.version.clone();
-    let mut agent = json!({ "name": run.player(), "version": version });
+    let mut agent = json!({ "name": run.player_name(), "version": version });
     if !told.tools.is_empty() {
         agent["tool_definitions"] = json!(told.tools);
     }
@@ -27,24 +27,24 @@ pub fn atif(run: &Transcript, told: &Surroundings) -> Value {
         "session_id": run.manifest.id,
         "agent": agent,
         "steps": steps,
-        "final_metrics": { "total_steps": total, "extra": run.facts() },
-        "extra": { "asides": run.asides },
+        "final_metrics": { "total_steps": total, "extra": run.run_facts() },
+        "extra": { "asides": run.other_lines },
     })
 }
 
 /// Returns the step of an action; `None` for actions that no interface offers.
-fn step(act: &TranscriptAct) -> Option<Value> {
+fn step_json(act: &TranscriptStep) -> Option<Value> {
     let id = format!("line-{}", act.seq);
     let called = |name: &str, args: &Value, content: String, extra: &Map<String, Value>| {
         json!({
             "source": "agent",
             "message": "",
-            "tool_calls": [{ "tool_call_id": id, "function_name": name, "arguments": object(args), "extra": extra }],
+            "tool_calls": [{ "tool_call_id": id, "function_name": name, "arguments": as_object(args), "extra": extra }],
             "observation": { "results": [{ "source_call_id": id, "content": content }] },
         })
     };
-    let mut step = match &act.deed {
-        Deed::Call { tool, args, answer, extra } => {
+    let mut step = match &act.action {
+        TranscriptAction::Call { tool, args, answer, extra } => {
             let said = match answer {
                 Ok(data) => json!({ "success": true, "data": data }),
                 Err(refusal) => json!({
@@ -56,28 +56,28 @@ fn step(act: &TranscriptAct) -> Option<Value> {
             };
             called(tool.name(), args, said.to_string(), extra)
         }
-        Deed::Query { sql, answer, extra } => {
+        TranscriptAction::Query { sql, answer, extra } => {
             let said = match answer {
                 Ok(rows) => rows.clone(),
                 Err((code, message)) => json!({ "success": false, "error": message, "code": code }),
             };
             called("query", &json!({ "sql": sql }), said.to_string(), extra)
         }
-        Deed::Note(text) => json!({
+        TranscriptAction::Note(text) => json!({
             "source": "agent",
             "message": text.clone().unwrap_or_default(),
             "extra": { "kind": "note", "text_is_recorded": text.is_some() },
         }),
-        Deed::Week { rationale, forecasts, passed } => {
-            let args = json!({ "rationale": rationale, "predictions": predictions(forecasts) });
+        TranscriptAction::Week { rationale, forecasts, result: passed } => {
+            let args = json!({ "rationale": rationale, "predictions": forecasts_as_json(forecasts) });
             let filled: Vec<u32> =
                 forecasts.iter().filter(|own| own.filled_naively).map(|own| own.horizon_days).collect();
             let extra = Map::from_iter([("naive_horizons_days".to_owned(), json!(filled))]);
-            let mut step = called("next_week", &args, week(passed.as_ref()), &extra);
+            let mut step = called("next_week", &args, describe_week(passed.as_ref()), &extra);
             step["message"] = rationale.clone().into();
             step
         }
-        Deed::Debugging(_) => return None,
+        TranscriptAction::Debugging(_) => return None,
     };
     step["timestamp"] = act.at.clone().into();
     let day = json!(act.day);
@@ -90,7 +90,7 @@ fn step(act: &TranscriptAct) -> Option<Value> {
     Some(step)
 }
 
-fn week(passed: Option<&PassedWeek>) -> String {
+fn describe_week(passed: Option<&WeekResult>) -> String {
     match passed {
         Some(week) => json!({ "day": week.day, "cash": week.cash, "dashboard": week.dashboard }).to_string(),
         None => "the week did not end".to_owned(),
@@ -98,7 +98,7 @@ fn week(passed: Option<&PassedWeek>) -> String {
 }
 
 /// Wraps arguments that are not an object: this format requires one, even for rejected calls.
-fn object(args: &Value) -> Value {
+fn as_object(args: &Value) -> Value {
     match args {
         Value::Object(_) => args.clone(),
         other => json!({ "sent": other }),

@@ -4,11 +4,11 @@ use serde_json::{Value, json};
 use time::OffsetDateTime;
 use time::format_description::well_known::Rfc3339;
 
-use super::atif::atif;
-use super::{Surroundings, Transcript};
-use novamind_base::notation::dollars;
+use super::atif::to_atif;
+use super::{AgentContext, Transcript};
+use novamind_base::formatting::dollars;
 use novamind_record::folder::manifest::Manifest;
-use novamind_record::trajectory::record::Ended;
+use novamind_record::trajectory::record::RunEndReason;
 
 const VERSION: u32 = 2;
 const TASK: &str = "novamind";
@@ -22,15 +22,16 @@ pub fn inspect_file_name(manifest: &Manifest) -> String {
 }
 
 /// Returns the run in this format.
-pub fn inspect(run: &Transcript, told: &Surroundings) -> Value {
-    let steps = atif(run, told);
+pub fn to_inspect(run: &Transcript, told: &AgentContext) -> Value {
+    let steps = to_atif(run, told);
     let steps = steps["steps"].as_array().map(Vec::as_slice).unwrap_or_default();
-    let steps: Vec<Step> = steps.iter().map(|step| Step::of(step, &run.manifest)).collect();
-    let messages: Vec<&Value> = steps.iter().flat_map(Step::messages).collect();
+    let steps: Vec<MessageStep> =
+        steps.iter().map(|step| MessageStep::from_json(step, &run.manifest)).collect();
+    let messages: Vec<&Value> = steps.iter().flat_map(MessageStep::messages).collect();
     let (created, ended) =
-        (&run.manifest.created, run.acts.last().map_or(&run.manifest.created, |act| &act.at));
-    let score = score(run);
-    let model = format!("novamind/{}", run.player());
+        (&run.manifest.created, run.steps.last().map_or(&run.manifest.created, |act| &act.at));
+    let score = sample_score(run);
+    let model = format!("novamind/{}", run.player_name());
     let mut spec = json!({
         "created": created,
         "task": TASK,
@@ -44,55 +45,57 @@ pub fn inspect(run: &Transcript, told: &Surroundings) -> Value {
         "config": { "epochs": 1 },
         "packages": { "novamind": run.manifest.version },
     });
-    spec["metadata"] = run.facts().into();
+    spec["metadata"] = run.run_facts().into();
     json!({
         "version": VERSION,
-        "status": status(run),
+        "status": run_status(run),
         "eval": spec,
         "plan": { "name": "plan", "steps": [], "config": {} },
         "results": {
             "total_samples": 1,
             "completed_samples": usize::from(run.end.is_some()),
-            "scores": score.iter().map(result).collect::<Vec<Value>>(),
+            "scores": score.iter().map(score_result).collect::<Vec<Value>>(),
         },
         "stats": { "started_at": created, "completed_at": ended, "model_usage": {} },
         "samples": [{
             "id": run.manifest.id,
             "uuid": run.manifest.id,
             "epoch": 1,
-            "input": told.page,
+            "input": told.instructions,
             "target": "",
             "messages": messages,
             "output": { "model": model, "choices": [] },
             "scores": score.map_or_else(|| json!({}), |score| json!({ SCORER: score })),
-            "metadata": { "asides": run.asides },
+            "metadata": { "asides": run.other_lines },
             "store": {},
-            "events": events(&steps, &run.manifest.created, &model),
+            "events": step_events(&steps, &run.manifest.created, &model),
             "model_usage": {},
             "attachments": {},
         }],
     })
 }
 
-fn status(run: &Transcript) -> &'static str {
+fn run_status(run: &Transcript) -> &'static str {
     match run.end.as_ref().map(|end| end.reason) {
         None => "started",
-        Some(Ended::Abandoned) => "cancelled",
+        Some(RunEndReason::Abandoned) => "cancelled",
         Some(_) => "success",
     }
 }
 
 /// Returns the score of the sample. `None` for runs without one: unfinished, abandoned, or in a lesson.
-fn score(run: &Transcript) -> Option<Value> {
+fn sample_score(run: &Transcript) -> Option<Value> {
     let end = run.end.as_ref()?;
     let explanation = match end.reason {
-        Ended::Bankruptcy => format!("bankrupt on day {} with cash of {}", run.last.0, dollars(end.cash)),
-        _ => format!("cash on day {}", run.last.0),
+        RunEndReason::Bankruptcy => {
+            format!("bankrupt on day {} with cash of {}", run.last_day_and_cash.0, dollars(end.cash))
+        }
+        _ => format!("cash on day {}", run.last_day_and_cash.0),
     };
     Some(json!({ "value": end.score?, "explanation": explanation }))
 }
 
-fn result(score: &Value) -> Value {
+fn score_result(score: &Value) -> Value {
     json!({
         "name": SCORER,
         "scorer": SCORER,
@@ -102,15 +105,15 @@ fn result(score: &Value) -> Value {
     })
 }
 
-struct Step {
+struct MessageStep {
     at: Option<String>,
     message: Value,
     answer: Option<Value>,
 }
 
-impl Step {
+impl MessageStep {
     /// Reads a step of a trajectory. Identifiers are unique across runs, because Inspect's tables drop duplicates.
-    fn of(step: &Value, manifest: &Manifest) -> Step {
+    fn from_json(step: &Value, manifest: &Manifest) -> MessageStep {
         let role = match step["source"].as_str() {
             Some("agent") => "assistant",
             Some(other) => other,
@@ -123,7 +126,7 @@ impl Step {
         }
         let at = step["timestamp"].as_str().map(str::to_owned);
         let Some(call) = step["tool_calls"].as_array().and_then(|calls| calls.first()) else {
-            return Step { at, message, answer: None };
+            return MessageStep { at, message, answer: None };
         };
         message["source"] = "generate".into();
         message["tool_calls"] = json!([{
@@ -139,7 +142,7 @@ impl Step {
             "tool_call_id": call["tool_call_id"],
             "function": call["function_name"],
         });
-        Step { at, message, answer: Some(answer) }
+        MessageStep { at, message, answer: Some(answer) }
     }
 
     fn messages(&self) -> impl Iterator<Item = &Value> {
@@ -150,14 +153,14 @@ impl Step {
 /// Returns the steps as events, from which Inspect builds its message tables: a model event for each step of the
 /// player, with the messages new to it, and a tool event for each call. The last model event has no output; its input
 /// is the last result.
-fn events(steps: &[Step], created: &str, model: &str) -> Vec<Value> {
+fn step_events(steps: &[MessageStep], created: &str, model: &str) -> Vec<Value> {
     let mut events = Vec::new();
     let (mut input, mut at) = (Vec::new(), created);
     let of_model = |input: &[&Value], at: &str, choices: Value| {
         json!({
             "event": "model",
             "timestamp": at,
-            "working_start": seconds(created, at),
+            "working_start": seconds_between(created, at),
             "model": model,
             "input": input,
             "tools": [],
@@ -180,7 +183,7 @@ fn events(steps: &[Step], created: &str, model: &str) -> Vec<Value> {
             events.push(json!({
                 "event": "tool",
                 "timestamp": at,
-                "working_start": seconds(created, at),
+                "working_start": seconds_between(created, at),
                 "id": call["id"],
                 "function": call["function"],
                 "arguments": call["arguments"],
@@ -196,7 +199,7 @@ fn events(steps: &[Step], created: &str, model: &str) -> Vec<Value> {
 }
 
 /// Returns the seconds between two times; 0 if either cannot be parsed.
-fn seconds(from: &str, to: &str) -> f64 {
+fn seconds_between(from: &str, to: &str) -> f64 {
     let moment = |text: &str| OffsetDateTime::parse(text, &Rfc3339).ok();
     moment(to).zip(moment(from)).map_or(0.0, |(to, from)| (to - from).as_seconds_f64())
 }

@@ -2,12 +2,12 @@
 
 use serde_json::{Value, json};
 
-use super::{Deed, Transcript, TranscriptAct, predictions};
+use super::{Transcript, TranscriptAction, TranscriptStep, forecasts_as_json};
 use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::CalledTool;
 
 /// Returns the script, with the command that runs it in the first lines.
-pub fn plain_script(run: &Transcript) -> String {
+pub fn to_plain_script(run: &Transcript) -> String {
     let own = &run.manifest;
     let head = format!(
         "# Run {} of NovaMind console {}, {} days of which {} passed; last state {}.\n\
@@ -15,19 +15,19 @@ pub fn plain_script(run: &Transcript) -> String {
         own.id,
         own.version,
         own.days,
-        run.last.0,
+        run.last_day_and_cash.0,
         run.state_hash,
-        new_run(run),
+        new_run_options(run),
         // The label must not be the original participant's.
         if own.mode == Mode::Baseline { " --participant again" } else { "" },
     );
-    let head = head + &judge_in_words(run).map(|words| format!("# {words}\n")).unwrap_or_default();
-    let lines: String = run.acts.iter().filter_map(line).map(|line| line + "\n").collect();
+    let head = head + &describe_unreproducible(run).map(|words| format!("# {words}\n")).unwrap_or_default();
+    let lines: String = run.steps.iter().filter_map(step_line).map(|line| line + "\n").collect();
     head + &lines
 }
 
 /// Explains why replaying the run may end in a different state.
-pub(super) fn judge_in_words(run: &Transcript) -> Option<&'static str> {
+pub(super) fn describe_unreproducible(run: &Transcript) -> Option<&'static str> {
     let is_judged = run.manifest.voice.as_ref().is_some_and(|model| model.judge);
     is_judged.then_some(
         "A language model judged its posts. This script uses the built-in judge, so the last state can differ.",
@@ -36,12 +36,12 @@ pub(super) fn judge_in_words(run: &Transcript) -> Option<&'static str> {
 
 /// Writes a rejected call as a comment in one line. Escapes the name of an unknown tool, which can contain any
 /// characters.
-pub(super) fn refused_in_words(tool: &CalledTool, args: &Value, code: &str) -> String {
-    let name = tool.known().map_or_else(|| json!(tool.name()).to_string(), |tool| tool.name().to_owned());
+pub(super) fn rejected_call_comment(tool: &CalledTool, args: &Value, code: &str) -> String {
+    let name = tool.tool_id().map_or_else(|| json!(tool.name()).to_string(), |tool| tool.name().to_owned());
     format!("# refused ({code}): {name} {args}")
 }
 
-pub(super) fn new_run(run: &Transcript) -> String {
+pub(super) fn new_run_options(run: &Transcript) -> String {
     let own = &run.manifest;
     let mut options = format!(
         "--seed {} --scenario {} --days {} --cash {} --mode {}",
@@ -71,17 +71,17 @@ fn collect_parameters(above: &str, table: &toml::Table, all: &mut Vec<(String, S
 }
 
 /// Returns the plain-mode line of an action; `None` if it changes nothing.
-fn line(act: &TranscriptAct) -> Option<String> {
-    match &act.deed {
-        Deed::Call { tool, args, answer: Ok(_), .. } => Some(format!("{tool} {args}")),
-        Deed::Week { rationale, forecasts, .. } => {
-            let filed = json!({ "rationale": rationale, "predictions": predictions(forecasts) });
+fn step_line(act: &TranscriptStep) -> Option<String> {
+    match &act.action {
+        TranscriptAction::Call { tool, args, answer: Ok(_), .. } => Some(format!("{tool} {args}")),
+        TranscriptAction::Week { rationale, forecasts, .. } => {
+            let filed = json!({ "rationale": rationale, "predictions": forecasts_as_json(forecasts) });
             Some(format!("next {filed}"))
         }
-        Deed::Debugging(command) => Some(command.clone()),
-        Deed::Call { tool, args, answer: Err(refusal), .. } => {
-            Some(refused_in_words(tool, args, &refusal.code))
+        TranscriptAction::Debugging(command) => Some(command.clone()),
+        TranscriptAction::Call { tool, args, answer: Err(refusal), .. } => {
+            Some(rejected_call_comment(tool, args, &refusal.code))
         }
-        Deed::Query { .. } | Deed::Note(_) => None,
+        TranscriptAction::Query { .. } | TranscriptAction::Note(_) => None,
     }
 }

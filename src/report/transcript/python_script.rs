@@ -2,15 +2,15 @@
 
 use serde_json::{Value, json};
 
-use super::plain_script::{judge_in_words, new_run, refused_in_words};
-use super::{Deed, Transcript, predictions};
+use super::plain_script::{describe_unreproducible, new_run_options, rejected_call_comment};
+use super::{Transcript, TranscriptAction, forecasts_as_json};
 use novamind_record::error::RunError;
 
 /// Returns the program.
 ///
 /// # Errors
 /// Returns an error if the run has single days or changed parameters, which no server offers.
-pub fn python_script(run: &Transcript) -> Result<String, RunError> {
+pub fn to_python_script(run: &Transcript) -> Result<String, RunError> {
     let own = &run.manifest;
     let mut text = format!(
         "\"\"\"Run {} of NovaMind console {}: {} days of which {} passed; last state {}.\n\n    \
@@ -21,37 +21,38 @@ pub fn python_script(run: &Transcript) -> Result<String, RunError> {
         own.id,
         own.version,
         own.days,
-        run.last.0,
+        run.last_day_and_cash.0,
         run.state_hash,
-        new_run(run),
+        new_run_options(run),
     );
-    text += &judge_in_words(run).map(|words| format!("# {words}\n\n")).unwrap_or_default();
-    for act in &run.acts {
-        match &act.deed {
-            Deed::Call { tool, args, answer: Ok(_), .. } => {
-                text += &format!("call({}, {})\n", python(&json!(tool.name())), python(args));
+    text += &describe_unreproducible(run).map(|words| format!("# {words}\n\n")).unwrap_or_default();
+    for act in &run.steps {
+        match &act.action {
+            TranscriptAction::Call { tool, args, answer: Ok(_), .. } => {
+                text += &format!("call({}, {})\n", python_literal(&json!(tool.name())), python_literal(args));
             }
-            Deed::Week { rationale, forecasts, .. } => {
-                let (why, filed) = (python(&json!(rationale)), python(&predictions(forecasts)));
+            TranscriptAction::Week { rationale, forecasts, .. } => {
+                let (why, filed) =
+                    (python_literal(&json!(rationale)), python_literal(&forecasts_as_json(forecasts)));
                 text += &format!("next_week({why}, {filed})\n");
             }
-            Deed::Debugging(command) => {
-                return Err(RunError::NotPossible(format!(
+            TranscriptAction::Debugging(command) => {
+                return Err(RunError::InvalidRequest(format!(
                     "day {}: `{command}` is not a tool, so no client program can repeat this run; its plain script \
                      does",
                     act.day
                 )));
             }
-            Deed::Call { tool, args, answer: Err(refusal), .. } => {
-                text += &format!("{}\n", refused_in_words(tool, args, &refusal.code));
+            TranscriptAction::Call { tool, args, answer: Err(refusal), .. } => {
+                text += &format!("{}\n", rejected_call_comment(tool, args, &refusal.code));
             }
-            Deed::Query { .. } | Deed::Note(_) => {}
+            TranscriptAction::Query { .. } | TranscriptAction::Note(_) => {}
         }
     }
     Ok(text)
 }
 
-fn python(value: &Value) -> String {
+fn python_literal(value: &Value) -> String {
     let in_order = |parts: Vec<String>| parts.join(", ");
     match value {
         Value::Null => "None".to_owned(),
@@ -60,9 +61,9 @@ fn python(value: &Value) -> String {
         // JSON escapes are valid in Python except for surrogate pairs, so other text is not escaped. `/` is not
         // escaped either.
         Value::String(_) | Value::Number(_) => value.to_string(),
-        Value::Array(all) => format!("[{}]", in_order(all.iter().map(python).collect())),
+        Value::Array(all) => format!("[{}]", in_order(all.iter().map(python_literal).collect())),
         Value::Object(all) => {
-            let fields = all.iter().map(|(key, value)| format!("{}: {}", json!(key), python(value)));
+            let fields = all.iter().map(|(key, value)| format!("{}: {}", json!(key), python_literal(value)));
             format!("{{{}}}", in_order(fields.collect()))
         }
     }
@@ -73,10 +74,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn values_are_written_as_python_reads_them() {
+    fn python_literals_are_valid() {
         let value = json!({ "a": [1, 2.5, null, true], "b\"": "two\nlines \\ and “quotes”" });
         assert_eq!(
-            python(&value),
+            python_literal(&value),
             "{\"a\": [1, 2.5, None, True], \"b\\\"\": \"two\\nlines \\\\ and “quotes”\"}"
         );
     }

@@ -5,10 +5,10 @@ mod module;
 use std::path::{Path, PathBuf};
 
 use novamind_record::error::RunError;
-use novamind_record::files::write_whole;
-use novamind_tools::{Module, Numbers};
+use novamind_record::files::write_atomically;
+use novamind_tools::{ParameterNumbers, ToolModule};
 
-pub use module::name as module_name;
+pub use module::module_name;
 
 const CONNECTION: &str = include_str!("../../../assets/client/connection.py");
 const PACKAGE: &str = include_str!("../../../assets/client/package.py");
@@ -22,7 +22,7 @@ const NOTEBOOK: &str = include_str!("../../../assets/client/twelve-weeks.ipynb")
 pub fn write_client(folder: &Path) -> Result<(), RunError> {
     let package = folder.join("novamind");
     std::fs::create_dir_all(&package).map_err(RunError::io(&package))?;
-    let numbers = Numbers::shipped();
+    let numbers = ParameterNumbers::bundled();
     let mut files = vec![
         (folder.join("pyproject.toml"), PROJECT.replace("{version}", env!("CARGO_PKG_VERSION"))),
         (folder.join("twelve-weeks.ipynb"), NOTEBOOK.to_owned()),
@@ -30,11 +30,11 @@ pub fn write_client(folder: &Path) -> Result<(), RunError> {
         (package.join("connection.py"), CONNECTION.to_owned()),
         (package.join("py.typed"), String::new()),
     ];
-    files.extend(Module::ALL.map(|module| {
-        (package.join(format!("{}.py", module::name(module))), module::text(module, &numbers))
+    files.extend(ToolModule::ALL.map(|module| {
+        (package.join(format!("{}.py", module::module_name(module))), module::module_source(module, &numbers))
     }));
     // Files are replaced atomically, because a program may be reading them.
     let is_new =
         |(path, text): &&(PathBuf, String)| std::fs::read(path).ok().as_deref() != Some(text.as_bytes());
-    files.iter().filter(is_new).try_for_each(|(path, text)| write_whole(path, text.as_bytes()))
+    files.iter().filter(is_new).try_for_each(|(path, text)| write_atomically(path, text.as_bytes()))
 }

@@ -5,31 +5,31 @@ use std::time::Duration;
 use axum::body::{Body, to_bytes};
 use serde_json::{Map, Value};
 
-use crate::not_numbers;
-use crate::request::{Answer, Status};
-use novamind_tools::Refusal;
+use crate::non_finite;
+use crate::request::{ApiResponse, ResponseStatus};
+use novamind_tools::Rejection;
 
 /// Maximum size of a body in bytes.
-const MOST_BYTES: usize = 1024 * 1024;
+const MAX_BODY_BYTES: usize = 1024 * 1024;
 /// Maximum time for a body to arrive.
-const DEADLINE: Duration = Duration::from_secs(30);
+const BODY_DEADLINE: Duration = Duration::from_secs(30);
 
 /// The fields of a body.
 #[derive(Debug)]
-pub struct Fields {
+pub struct BodyFields {
     fields: Map<String, Value>,
     /// Rejection of a body that was read but contains a value that JSON cannot represent.
-    pub refusal: Option<Refusal>,
+    pub rejection: Option<Rejection>,
 }
 
-impl Fields {
+impl BodyFields {
     /// Removes and returns a field, or null if it is missing.
     pub fn take(&mut self, name: &str) -> Value {
         self.fields.remove(name).unwrap_or(Value::Null)
     }
 
     /// Returns the remaining fields.
-    pub fn rest(self) -> Value {
+    pub fn into_remaining(self) -> Value {
         self.fields.into()
     }
 }
@@ -38,25 +38,26 @@ impl Fields {
 ///
 /// # Errors
 /// The body is too large, too slow, not valid JSON, or not an object.
-pub async fn read_object(body: Body) -> Result<Fields, Answer> {
-    let read = tokio::time::timeout(DEADLINE, to_bytes(body, MOST_BYTES)).await;
+pub async fn read_object(body: Body) -> Result<BodyFields, ApiResponse> {
+    let read = tokio::time::timeout(BODY_DEADLINE, to_bytes(body, MAX_BODY_BYTES)).await;
     let bytes = match read {
         Err(_) => {
-            let message = format!("the body did not arrive within {} s", DEADLINE.as_secs());
-            return Err(Answer::wrong(Status::TooSlow, "body_timeout", message));
+            let message = format!("the body did not arrive within {} s", BODY_DEADLINE.as_secs());
+            return Err(ApiResponse::invalid_request(ResponseStatus::TooSlow, "body_timeout", message));
         }
         Ok(Err(_)) => {
-            let message = format!("the body must be complete and have at most {MOST_BYTES} bytes");
-            return Err(Answer::wrong(Status::TooLarge, "body_too_large", message));
+            let message = format!("the body must be complete and have at most {MAX_BODY_BYTES} bytes");
+            return Err(ApiResponse::invalid_request(ResponseStatus::TooLarge, "body_too_large", message));
         }
         Ok(Ok(bytes)) => bytes,
     };
-    let malformed = |message: String| Answer::wrong(Status::Refused, "malformed_json", message);
+    let malformed =
+        |message: String| ApiResponse::invalid_request(ResponseStatus::BadRequest, "malformed_json", message);
     match serde_json::from_slice(&bytes) {
-        Ok(Value::Object(fields)) => Ok(Fields { fields, refusal: None }),
+        Ok(Value::Object(fields)) => Ok(BodyFields { fields, rejection: None }),
         Ok(_) => Err(malformed("the body must be a JSON object".to_owned())),
-        Err(error) => match not_numbers::read(&bytes) {
-            Some((Value::Object(fields), refusal)) => Ok(Fields { fields, refusal: Some(refusal) }),
+        Err(error) => match non_finite::parse_with_literals(&bytes) {
+            Some((Value::Object(fields), refusal)) => Ok(BodyFields { fields, rejection: Some(refusal) }),
             _ => Err(malformed(format!("the body is not valid JSON: {error}"))),
         },
     }

@@ -8,41 +8,41 @@ use std::path::Path;
 use axum::http::HeaderMap;
 use axum::http::header::{AUTHORIZATION, HOST, ORIGIN};
 
-use crate::request::{Answer, Status};
+use crate::request::{ApiResponse, ResponseStatus};
 use novamind_record::error::RunError;
 
 /// Requirements on requests.
 #[derive(Debug, Clone)]
-pub struct Guard {
+pub struct RequestGuard {
     /// The token of `Authorization: Bearer`.
     pub token: Option<String>,
 }
 
-impl Guard {
+impl RequestGuard {
     /// Checks the head of a request. Returns the rejection, or `None` if the request is allowed.
-    pub fn bar(&self, head: &HeaderMap) -> Option<Answer> {
+    pub fn rejection_for(&self, head: &HeaderMap) -> Option<ApiResponse> {
         let text = |name| head.get(name).map(|value| value.to_str().unwrap_or("?"));
         if head.get_all(HOST).iter().count() != 1 || !text(HOST).is_some_and(is_loopback) {
             let message =
                 "a request needs exactly one Host header, which must be 127.0.0.1, localhost or [::1]";
-            return Some(Answer::wrong(Status::Forbidden, "host", message));
+            return Some(ApiResponse::invalid_request(ResponseStatus::Forbidden, "host", message));
         }
         let origin = text(ORIGIN).map(|origin| origin.split_once("://").map_or("?", |(_, place)| place));
         if !origin.is_none_or(is_loopback) {
             let message = "requests from web pages of other sites are rejected";
-            return Some(Answer::wrong(Status::Forbidden, "origin", message));
+            return Some(ApiResponse::invalid_request(ResponseStatus::Forbidden, "origin", message));
         }
         let expected = self.token.as_deref()?;
-        if same(text(AUTHORIZATION).and_then(token_in).unwrap_or_default(), expected) {
+        if constant_time_eq(text(AUTHORIZATION).and_then(bearer_token).unwrap_or_default(), expected) {
             return None;
         }
         let message = "requests must carry the token: Authorization: Bearer TOKEN";
-        Some(Answer::wrong(Status::Unauthorized, "token", message))
+        Some(ApiResponse::invalid_request(ResponseStatus::Unauthorized, "token", message))
     }
 }
 
 /// Returns the token of an `Authorization` header. The scheme is case-insensitive.
-fn token_in(header: &str) -> Option<&str> {
+fn bearer_token(header: &str) -> Option<&str> {
     let (scheme, token) = header.split_once(' ')?;
     scheme.eq_ignore_ascii_case("bearer").then(|| token.trim_start_matches(' '))
 }
@@ -65,7 +65,7 @@ fn is_digits(text: &str) -> bool {
 }
 
 /// Compares in constant time, so that the duration does not reveal a correct prefix.
-fn same(given: &str, expected: &str) -> bool {
+fn constant_time_eq(given: &str, expected: &str) -> bool {
     blake3::hash(given.as_bytes()) == blake3::hash(expected.as_bytes())
 }
 
@@ -85,7 +85,7 @@ pub fn new_token() -> Result<String, RunError> {
 ///
 /// # Errors
 /// The file exists or cannot be written.
-pub fn write_private(path: &Path, text: &str) -> io::Result<()> {
+pub fn write_private_file(path: &Path, text: &str) -> io::Result<()> {
     use std::io::Write;
     let mut options = std::fs::OpenOptions::new();
     options.write(true).create_new(true);
@@ -104,9 +104,9 @@ mod tests {
 
     #[test]
     fn only_this_machine_and_only_with_the_token() {
-        let open = Guard { token: None };
+        let open = RequestGuard { token: None };
         for host in ["127.0.0.1", "127.0.0.1:80", "localhost:1", "LOCALHOST", "[::1]:9", "[::1]"] {
-            assert_eq!(open.bar(&head(&[(HOST, host)])), None, "{host}");
+            assert_eq!(open.rejection_for(&head(&[(HOST, host)])), None, "{host}");
         }
         for host in [
             "",
@@ -117,26 +117,26 @@ mod tests {
             "[::1]x",
             "127.0.0.1@x",
         ] {
-            let barred = open.bar(&head(&[(HOST, host)])).map(|answer| answer.status);
-            assert_eq!(barred, Some(Status::Forbidden), "{host}");
+            let barred = open.rejection_for(&head(&[(HOST, host)])).map(|answer| answer.status);
+            assert_eq!(barred, Some(ResponseStatus::Forbidden), "{host}");
         }
-        assert!(open.bar(&HeaderMap::new()).is_some());
+        assert!(open.rejection_for(&HeaderMap::new()).is_some());
         let mut twice = head(&[(HOST, "127.0.0.1")]);
         twice.append(HOST, "127.0.0.1".parse().expect("a value"));
-        assert!(open.bar(&twice).is_some());
+        assert!(open.rejection_for(&twice).is_some());
         let page = |origin| head(&[(HOST, "127.0.0.1"), (ORIGIN, origin)]);
-        assert!(open.bar(&page("http://localhost:3000")).is_none());
+        assert!(open.rejection_for(&page("http://localhost:3000")).is_none());
         for origin in ["null", "https://example.org", "http://127.0.0.1.evil.net"] {
-            assert!(open.bar(&page(origin)).is_some(), "{origin}");
+            assert!(open.rejection_for(&page(origin)).is_some(), "{origin}");
         }
-        let closed = Guard { token: Some("secret".to_owned()) };
+        let closed = RequestGuard { token: Some("secret".to_owned()) };
         let carrying = |value| head(&[(HOST, "127.0.0.1"), (AUTHORIZATION, value)]);
         for value in ["Bearer secret", "bearer secret", "BEARER  secret"] {
-            assert!(closed.bar(&carrying(value)).is_none(), "{value}");
+            assert!(closed.rejection_for(&carrying(value)).is_none(), "{value}");
         }
         for value in ["Bearer secre", "Bearer ", "Bearer", "secret", "basic secret", "bearer Secret"] {
-            let barred = closed.bar(&carrying(value)).map(|answer| answer.status);
-            assert_eq!(barred, Some(Status::Unauthorized), "{value}");
+            let barred = closed.rejection_for(&carrying(value)).map(|answer| answer.status);
+            assert_eq!(barred, Some(ResponseStatus::Unauthorized), "{value}");
         }
     }
 }

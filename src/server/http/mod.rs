@@ -19,25 +19,25 @@ use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::Semaphore;
 
 use super::announcement::Announcement;
-use super::owner::{Door, OnDefect, Owner};
-use super::request::{Answer, Status};
-use guard::Guard;
+use super::request::{ApiResponse, ResponseStatus};
+use super::worker::{InterfaceInfo, OnDefect, SessionWorker};
+use guard::RequestGuard;
 use novamind_record::error::RunError;
 use novamind_record::trajectory::record::Via;
 use novamind_session::Session;
-use routes::Served;
+use routes::ServedRun;
 use shutdown::Shutdown;
 
 /// Maximum number of open connections. Further ones are rejected with status 503.
 const MAX_CONNECTIONS: usize = 64;
 /// Time after which a rejected connection is closed at the latest.
-const REFUSAL_DEADLINE: Duration = Duration::from_secs(2);
+const REFUSED_CONNECTION_DEADLINE: Duration = Duration::from_secs(2);
 /// Maximum time for the head of a request to arrive.
 const HEAD_DEADLINE: Duration = Duration::from_secs(10);
 /// Time for pending requests to arrive and be answered after a request to stop.
-const LAST_REQUESTS: Duration = Duration::from_secs(60);
+const SHUTDOWN_DEADLINE: Duration = Duration::from_secs(60);
 /// Interval between attempts to stop code that keeps the server from ending.
-const BETWEEN_STOPS: Duration = Duration::from_millis(100);
+const STOP_INTERVAL: Duration = Duration::from_millis(100);
 
 /// Options of the server.
 #[derive(Debug, Clone, Default)]
@@ -48,22 +48,22 @@ pub struct HttpOptions {
 
 /// A bound port. It is bound before the run is created, so that no run is created that cannot be served.
 #[derive(Debug)]
-pub struct HeldPort(std::net::TcpListener);
+pub struct BoundPort(std::net::TcpListener);
 
-impl HeldPort {
+impl BoundPort {
     /// Binds a port of 127.0.0.1, or any free one if `port` is `None`.
     ///
     /// # Errors
     /// The port is in use.
-    pub fn take(port: Option<u16>) -> Result<HeldPort, RunError> {
+    pub fn bind(port: Option<u16>) -> Result<BoundPort, RunError> {
         let address = (Ipv4Addr::LOCALHOST, port.unwrap_or(0));
         let bound = std::net::TcpListener::bind(address).and_then(|listener| {
             listener.set_nonblocking(true)?;
             Ok(listener)
         });
         match bound {
-            Ok(listener) => Ok(HeldPort(listener)),
-            Err(error) => Err(RunError::NotPossible(format!(
+            Ok(listener) => Ok(BoundPort(listener)),
+            Err(error) => Err(RunError::InvalidRequest(format!(
                 "cannot use port {} of 127.0.0.1 ({error}); give another one, or none to use any free port",
                 address.1
             ))),
@@ -78,18 +78,19 @@ impl HeldPort {
 /// The token file cannot be read, or the end of the record cannot be written.
 pub fn serve_http(
     session: Session,
-    held: HeldPort,
+    held: BoundPort,
     options: &HttpOptions,
     ready: impl FnOnce(&Announcement),
     on_defect: OnDefect,
 ) -> Result<(), RunError> {
-    let token = options.token.as_deref().map(token_of).transpose()?;
+    let token = options.token.as_deref().map(read_or_create_token).transpose()?;
     let run = session.manifest().id.clone();
     let folder = session.folder().map(PathBuf::from);
     let numbers = session.numbers();
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let runtime = runtime.map_err(RunError::io(Path::new("the network")))?;
-    let (owner, handle) = Owner::start(session, Door { via: Via::Http, interface: "http", on_defect });
+    let (owner, handle) =
+        SessionWorker::start(session, InterfaceInfo { via: Via::Http, interface: "http", on_defect });
     let served = runtime.block_on(async {
         let failed = || RunError::io(Path::new("the port"));
         let listener = TcpListener::from_std(held.0).map_err(failed())?;
@@ -99,44 +100,48 @@ pub fn serve_http(
             Announcement { run: run.clone(), port: Some(port), pid: std::process::id(), token: file };
         let shutdown = Shutdown::listen().map_err(failed())?;
         if let Some(folder) = &folder {
-            announcement.put_up(folder)?;
+            announcement.write(folder)?;
         }
         ready(&announcement);
-        let router =
-            routes::router(handle, Guard { token }, numbers, Served { run, stop: shutdown.asking() });
-        take_connections(&listener, router, shutdown, &owner).await;
+        let router = routes::router(
+            handle,
+            RequestGuard { token },
+            numbers,
+            ServedRun { run, stop: shutdown.stop_notifier() },
+        );
+        accept_connections(&listener, router, shutdown, &owner).await;
         Ok(())
     });
     // Requests that were cut off still hold handles of the owner.
     drop(runtime);
     // The run is still locked, so no other server can have written an announcement.
     if let Some(folder) = &folder {
-        Announcement::take_down(folder);
+        Announcement::remove(folder);
     }
     owner.finish()?;
     served
 }
 
 /// Reads the token of a file, or creates the file with a new one.
-fn token_of(path: &Path) -> Result<String, RunError> {
+fn read_or_create_token(path: &Path) -> Result<String, RunError> {
     let failed = RunError::io(path);
     match std::fs::read_to_string(path) {
         Ok(text) if !text.trim().is_empty() => Ok(text.trim().to_owned()),
         Ok(_) => Err(failed(io::Error::new(io::ErrorKind::InvalidData, "the token file is empty"))),
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
             let token = guard::new_token()?;
-            guard::write_private(path, &token).map_err(failed)?;
+            guard::write_private_file(path, &token).map_err(failed)?;
             Ok(token)
         }
         Err(error) => Err(failed(error)),
     }
 }
 
-async fn take_connections(
+async fn accept_connections(
     listener: &TcpListener,
     router: axum::Router,
     mut shutdown: Shutdown,
-    owner: &Owner,
+    owner: &SessionWorker,
 ) {
     let (places, refusals) =
         (Arc::new(Semaphore::new(MAX_CONNECTIONS)), Arc::new(Semaphore::new(MAX_CONNECTIONS)));
@@ -153,12 +158,13 @@ async fn take_connections(
                     continue;
                 }
             },
-            () = shutdown.asked() => break,
+            () = shutdown.wait() => break,
         };
         let Ok(place) = places.clone().try_acquire_owned() else {
             if let Ok(place) = refusals.clone().try_acquire_owned() {
                 tokio::spawn(async move {
-                    let _ = tokio::time::timeout(REFUSAL_DEADLINE, refuse(stream)).await;
+                    let _ =
+                        tokio::time::timeout(REFUSED_CONNECTION_DEADLINE, refuse_connection(stream)).await;
                     drop(place);
                 });
             }
@@ -176,23 +182,25 @@ async fn take_connections(
     // Repeated, because a week has several calculations, and a waiting request may contain a script.
     let stop_code = async {
         loop {
-            owner.stop_code();
-            tokio::time::sleep(BETWEEN_STOPS).await;
+            owner.stop_running_code();
+            tokio::time::sleep(STOP_INTERVAL).await;
         }
     };
     tokio::select! {
         () = open.shutdown() => {}
         () = stop_code => {}
-        () = tokio::time::sleep(LAST_REQUESTS) => {}
-        () = shutdown.asked() => {}
+        () = tokio::time::sleep(SHUTDOWN_DEADLINE) => {}
+        () = shutdown.wait() => {}
     }
 }
 
 /// Rejects a connection, and reads its input until it closes. Closing a connection with unread data can lose the response.
-async fn refuse(mut stream: TcpStream) {
+async fn refuse_connection(mut stream: TcpStream) {
     let message =
         format!("the server has {MAX_CONNECTIONS} open connections; send the request again in a second");
-    let body = Answer::wrong(Status::Failed, "too_many_connections", message).body.to_string();
+    let body = ApiResponse::invalid_request(ResponseStatus::Failed, "too_many_connections", message)
+        .body
+        .to_string();
     let head = format!(
         "HTTP/1.1 503 Service Unavailable\r\ncontent-type: application/json\r\ncontent-length: {}\r\nretry-after: 1\r\n\
          connection: close\r\n\r\n",
@@ -200,7 +208,7 @@ async fn refuse(mut stream: TcpStream) {
     );
     // Some clients report a response that arrives before their request as a connection error.
     let mut unread = [0; 4096];
-    let _ = tokio::time::timeout(REFUSAL_DEADLINE / 2, stream.read(&mut unread)).await;
+    let _ = tokio::time::timeout(REFUSED_CONNECTION_DEADLINE / 2, stream.read(&mut unread)).await;
     let answered = stream.write_all(format!("{head}{body}").as_bytes()).await;
     if answered.is_ok() && stream.shutdown().await.is_ok() {
         while matches!(stream.read(&mut unread).await, Ok(1..)) {}

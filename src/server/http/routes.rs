@@ -12,27 +12,27 @@ use axum::routing::{get, post};
 use serde_json::{Value, json};
 use tokio::sync::Notify;
 
-use super::body::{Fields, read_object};
-use super::guard::Guard;
+use super::body::{BodyFields, read_object};
+use super::guard::RequestGuard;
 use crate::openapi;
-use crate::owner::Handle;
-use crate::request::{Answer, Request, Status};
+use crate::request::{ApiRequest, ApiResponse, ResponseStatus};
+use crate::worker::SessionHandle;
 use novamind_database::tables;
-use novamind_tools::describe::{ToolDocument, document};
-use novamind_tools::{CATALOGUE, Numbers, ToolId};
+use novamind_tools::describe::{ToolDocument, document_tool};
+use novamind_tools::{CATALOGUE, ParameterNumbers, ToolId};
 
 /// State of the routes.
 #[derive(Clone)]
-struct Routed {
-    handle: Handle,
-    guard: Arc<Guard>,
-    numbers: Arc<Numbers>,
-    served: Served,
+struct RouteState {
+    handle: SessionHandle,
+    guard: Arc<RequestGuard>,
+    numbers: Arc<ParameterNumbers>,
+    served: ServedRun,
 }
 
 /// The run of the server and its stop notification.
 #[derive(Clone)]
-pub struct Served {
+pub struct ServedRun {
     /// Run id.
     pub run: String,
     /// Notified when a request asks to stop.
@@ -40,90 +40,98 @@ pub struct Served {
 }
 
 /// Returns all routes, protected by the guard.
-pub fn router(handle: Handle, guard: Guard, numbers: Arc<Numbers>, served: Served) -> Router {
-    let door = Routed { handle, guard: Arc::new(guard), numbers, served };
+pub fn router(
+    handle: SessionHandle,
+    guard: RequestGuard,
+    numbers: Arc<ParameterNumbers>,
+    served: ServedRun,
+) -> Router {
+    let door = RouteState { handle, guard: Arc::new(guard), numbers, served };
     Router::new()
         .route("/health", get(health))
-        .route("/vars", get(|door: State<Routed>| ask(door, Request::Vars)))
-        .route("/dashboard", get(|door: State<Routed>| ask(door, Request::Dashboard)))
-        .route("/game-status", get(|door: State<Routed>| ask(door, Request::GameStatus)))
+        .route("/vars", get(|door: State<RouteState>| handle_read(door, ApiRequest::CurrentDay)))
+        .route("/dashboard", get(|door: State<RouteState>| handle_read(door, ApiRequest::Dashboard)))
+        .route("/game-status", get(|door: State<RouteState>| handle_read(door, ApiRequest::GameStatus)))
         .route("/call", post(call))
         .route("/next-week", post(next_week))
         .route("/query", post(query))
         .route(
             "/daily-scripts",
-            get(|door: State<Routed>| ask(door, Request::DailyScripts))
-                .post(keep_script)
-                .delete(forget_script),
+            get(|door: State<RouteState>| handle_read(door, ApiRequest::DailyScripts))
+                .post(save_script)
+                .delete(delete_script),
         )
         .route("/tools", get(tools))
         .route("/tables", get(async || json_response(StatusCode::OK, &json!(tables()))))
-        .route("/openapi.json", get(describe))
+        .route("/openapi.json", get(openapi_document))
         .route("/shutdown", post(shut_down))
-        .fallback(unknown)
-        .method_not_allowed_fallback(unknown)
-        .layer(from_fn_with_state(door.clone(), guarded))
+        .fallback(not_found)
+        .method_not_allowed_fallback(not_found)
+        .layer(from_fn_with_state(door.clone(), check_access))
         .with_state(door)
 }
 
-async fn guarded(State(door): State<Routed>, request: HttpRequest, next: Next) -> Response {
-    match door.guard.bar(request.headers()) {
+async fn check_access(State(door): State<RouteState>, request: HttpRequest, next: Next) -> Response {
+    match door.guard.rejection_for(request.headers()) {
         None => next.run(request).await,
-        Some(answer) => response(&answer),
+        Some(answer) => to_http_response(&answer),
     }
 }
 
-async fn health(State(door): State<Routed>) -> Response {
+async fn health(State(door): State<RouteState>) -> Response {
     json_response(StatusCode::OK, &json!({ "status": "ok", "run": door.served.run }))
 }
 
-async fn shut_down(State(door): State<Routed>) -> Response {
+async fn shut_down(State(door): State<RouteState>) -> Response {
     door.served.stop.notify_one();
     json_response(StatusCode::OK, &json!({ "success": true, "run": door.served.run }))
 }
 
-async fn unknown(request: HttpRequest) -> Response {
+async fn not_found(request: HttpRequest) -> Response {
     let error = format!("there is no route {} {}", request.method(), request.uri().path());
     json_response(StatusCode::NOT_FOUND, &json!({ "error": error }))
 }
 
-async fn tools(State(door): State<Routed>) -> Response {
-    let all: Vec<ToolDocument> = CATALOGUE.iter().map(|tool| document(tool.spec(), &door.numbers)).collect();
+async fn tools(State(door): State<RouteState>) -> Response {
+    let all: Vec<ToolDocument> =
+        CATALOGUE.iter().map(|tool| document_tool(tool.spec(), &door.numbers)).collect();
     json_response(StatusCode::OK, &json!(all))
 }
 
-async fn describe(State(door): State<Routed>) -> Response {
+async fn openapi_document(State(door): State<RouteState>) -> Response {
     json_response(StatusCode::OK, &openapi::document(&door.numbers))
 }
 
-async fn ask(State(door): State<Routed>, request: Request) -> Response {
-    response(&door.handle.ask(request).await)
+async fn handle_read(State(door): State<RouteState>, request: ApiRequest) -> Response {
+    to_http_response(&door.handle.send(request).await)
 }
 
-async fn ask_with(
-    door: &Routed,
+async fn handle_with_body(
+    door: &RouteState,
     tool: ToolId,
     body: Body,
-    request: impl FnOnce(Fields) -> Request,
+    request: impl FnOnce(BodyFields) -> ApiRequest,
 ) -> Response {
     match read_object(body).await {
         Ok(mut fields) => {
-            let request = match fields.refusal.take() {
-                Some(refusal) => {
-                    Request::Refused { tool: tool.name().to_owned(), args: fields.rest(), refusal }
-                }
+            let request = match fields.rejection.take() {
+                Some(refusal) => ApiRequest::RejectedCall {
+                    tool: tool.name().to_owned(),
+                    args: fields.into_remaining(),
+                    refusal,
+                },
                 None => request(fields),
             };
-            response(&door.handle.ask(request).await)
+            to_http_response(&door.handle.send(request).await)
         }
-        Err(wrong) => closing(response(&wrong)),
+        Err(wrong) => close_connection(to_http_response(&wrong)),
     }
 }
 
-async fn call(State(door): State<Routed>, body: Body) -> Response {
+async fn call(State(door): State<RouteState>, body: Body) -> Response {
     let mut fields = match read_object(body).await {
         Ok(fields) => fields,
-        Err(wrong) => return closing(response(&wrong)),
+        Err(wrong) => return close_connection(to_http_response(&wrong)),
     };
     // A name that is not a text cannot be a tool.
     let tool = match fields.take("tool") {
@@ -139,29 +147,29 @@ async fn call(State(door): State<Routed>, body: Body) -> Response {
     if let (Value::Object(args), day @ Value::Number(_)) = (&mut args, fields.take("expected_day")) {
         args.entry("expected_day").or_insert(day);
     }
-    let request = match fields.refusal.take() {
-        Some(refusal) => Request::Refused { tool, args, refusal },
-        None => Request::of_tool(&tool, args, fields.take("request_id")),
+    let request = match fields.rejection.take() {
+        Some(refusal) => ApiRequest::RejectedCall { tool, args, refusal },
+        None => ApiRequest::for_tool(&tool, args, fields.take("request_id")),
     };
-    response(&door.handle.ask(request).await.told_as_call())
+    to_http_response(&door.handle.send(request).await.into_tool_response())
 }
 
-async fn next_week(State(door): State<Routed>, body: Body) -> Response {
-    ask_with(&door, ToolId::NextWeek, body, |fields| {
-        Request::of_tool(ToolId::NextWeek.name(), fields.rest(), Value::Null)
+async fn next_week(State(door): State<RouteState>, body: Body) -> Response {
+    handle_with_body(&door, ToolId::NextWeek, body, |fields| {
+        ApiRequest::for_tool(ToolId::NextWeek.name(), fields.into_remaining(), Value::Null)
     })
     .await
 }
 
-async fn query(State(door): State<Routed>, body: Body) -> Response {
-    ask_with(&door, ToolId::Query, body, |fields| {
-        Request::of_tool(ToolId::Query.name(), fields.rest(), Value::Null)
+async fn query(State(door): State<RouteState>, body: Body) -> Response {
+    handle_with_body(&door, ToolId::Query, body, |fields| {
+        ApiRequest::for_tool(ToolId::Query.name(), fields.into_remaining(), Value::Null)
     })
     .await
 }
 
-async fn keep_script(State(door): State<Routed>, body: Body) -> Response {
-    ask_with(&door, ToolId::RegisterScript, body, |mut fields| Request::KeepDailyScript {
+async fn save_script(State(door): State<RouteState>, body: Body) -> Response {
+    handle_with_body(&door, ToolId::RegisterScript, body, |mut fields| ApiRequest::SaveDailyScript {
         name: fields.take("name"),
         content: fields.take("content"),
         request_id: fields.take("request_id"),
@@ -169,39 +177,39 @@ async fn keep_script(State(door): State<Routed>, body: Body) -> Response {
     .await
 }
 
-async fn forget_script(State(door): State<Routed>, body: Body) -> Response {
-    ask_with(&door, ToolId::DeleteScript, body, |mut fields| Request::ForgetDailyScript {
+async fn delete_script(State(door): State<RouteState>, body: Body) -> Response {
+    handle_with_body(&door, ToolId::DeleteScript, body, |mut fields| ApiRequest::DeleteDailyScript {
         name: fields.take("name"),
         request_id: fields.take("request_id"),
     })
     .await
 }
 
-fn status_code(status: Status) -> StatusCode {
+fn status_code(status: ResponseStatus) -> StatusCode {
     match status {
-        Status::Done => StatusCode::OK,
-        Status::Refused => StatusCode::BAD_REQUEST,
-        Status::Unauthorized => StatusCode::UNAUTHORIZED,
-        Status::Forbidden => StatusCode::FORBIDDEN,
-        Status::Missing => StatusCode::NOT_FOUND,
-        Status::Busy => StatusCode::CONFLICT,
-        Status::Failed => StatusCode::INTERNAL_SERVER_ERROR,
-        Status::TimedOut => StatusCode::GATEWAY_TIMEOUT,
-        Status::TooSlow => StatusCode::REQUEST_TIMEOUT,
-        Status::TooLarge => StatusCode::PAYLOAD_TOO_LARGE,
+        ResponseStatus::Done => StatusCode::OK,
+        ResponseStatus::BadRequest => StatusCode::BAD_REQUEST,
+        ResponseStatus::Unauthorized => StatusCode::UNAUTHORIZED,
+        ResponseStatus::Forbidden => StatusCode::FORBIDDEN,
+        ResponseStatus::NotFound => StatusCode::NOT_FOUND,
+        ResponseStatus::Busy => StatusCode::CONFLICT,
+        ResponseStatus::Failed => StatusCode::INTERNAL_SERVER_ERROR,
+        ResponseStatus::TimedOut => StatusCode::GATEWAY_TIMEOUT,
+        ResponseStatus::TooSlow => StatusCode::REQUEST_TIMEOUT,
+        ResponseStatus::TooLarge => StatusCode::PAYLOAD_TOO_LARGE,
     }
 }
 
-fn response(answer: &Answer) -> Response {
+fn to_http_response(answer: &ApiResponse) -> Response {
     let mut response = json_response(status_code(answer.status), &answer.body);
-    if answer.status == Status::Busy {
+    if answer.status == ResponseStatus::Busy {
         response.headers_mut().insert(header::RETRY_AFTER, header::HeaderValue::from_static("1"));
     }
     response
 }
 
 /// Closes the connection after the response. Otherwise the unread rest of a body would be taken for the next request.
-fn closing(mut response: Response) -> Response {
+fn close_connection(mut response: Response) -> Response {
     response.headers_mut().insert(header::CONNECTION, header::HeaderValue::from_static("close"));
     response
 }

@@ -35,13 +35,13 @@ impl Shutdown {
     }
 
     /// Returns the notification for a request to stop.
-    pub fn asking(&self) -> Arc<Notify> {
+    pub fn stop_notifier(&self) -> Arc<Notify> {
         self.request.clone()
     }
 
     /// Completes when the server is asked to stop.
     #[cfg(unix)]
-    pub async fn asked(&mut self) {
+    pub async fn wait(&mut self) {
         let [interrupt, terminate, hangup] = &mut self.signals;
         tokio::select! {
             _ = interrupt.recv() => {}

@@ -1,11 +1,11 @@
 //! The Model Context Protocol interface on standard input and output.
 
-mod refusal;
 mod resources;
+mod startup_error;
 mod stdio;
 mod tools;
 
-pub use refusal::refuse_mcp;
+pub use startup_error::reject_mcp_client;
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -19,14 +19,14 @@ use rmcp::model::{
 use rmcp::service::RequestContext;
 use rmcp::{ErrorData, RoleServer, ServerHandler, ServiceExt};
 
+use super::agent_page::{PageContext, goal_and_rules};
 use super::announcement::Announcement;
-use super::owner::{Door, Handle, OnDefect, Owner};
-use super::page::{PageOf, goal_and_rules};
-use super::request::Request;
+use super::request::ApiRequest;
+use super::worker::{InterfaceInfo, OnDefect, SessionHandle, SessionWorker};
 use novamind_record::error::RunError;
 use novamind_record::trajectory::record::Via;
 use novamind_session::Session;
-use novamind_tools::Numbers;
+use novamind_tools::ParameterNumbers;
 
 /// Instructions for clients.
 const INSTRUCTIONS: &str = "You run a simulated AI subscription company. Every tool call acts on the same run; time passes only \
@@ -40,17 +40,18 @@ pub fn serve_mcp(session: Session, on_defect: OnDefect) -> Result<(), RunError> 
     let numbers = session.numbers();
     let folder = session.folder().map(PathBuf::from);
     let manifest = session.manifest();
-    let goal = goal_and_rules(&PageOf { days: manifest.days, cash: manifest.cash, numbers: &numbers });
+    let goal = goal_and_rules(&PageContext { days: manifest.days, cash: manifest.cash, numbers: &numbers });
     let run = manifest.id.clone();
     if let Some(folder) = &folder {
-        Announcement { run, port: None, pid: std::process::id(), token: None }.put_up(folder)?;
+        Announcement { run, port: None, pid: std::process::id(), token: None }.write(folder)?;
     }
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let runtime = runtime.map_err(RunError::io(Path::new("standard input")))?;
-    let (owner, handle) = Owner::start(session, Door { via: Via::Mcp, interface: "mcp", on_defect });
+    let (owner, handle) =
+        SessionWorker::start(session, InterfaceInfo { via: Via::Mcp, interface: "mcp", on_defect });
     let served = runtime.block_on(async {
         let (streams, writing) = stdio::open();
-        let running = McpDoor { handle, numbers, goal }.serve(streams).await.map_err(io::Error::other)?;
+        let running = McpServer { handle, numbers, goal }.serve(streams).await.map_err(io::Error::other)?;
         let ended = running.waiting().await.map_err(io::Error::other);
         // The last answer may not have been written yet.
         writing.await.map_err(io::Error::other)?;
@@ -60,21 +61,21 @@ pub fn serve_mcp(session: Session, on_defect: OnDefect) -> Result<(), RunError> 
     runtime.shutdown_background();
     // The run is still locked, so no other server can have written an announcement.
     if let Some(folder) = &folder {
-        Announcement::take_down(folder);
+        Announcement::remove(folder);
     }
     owner.finish()?;
     served.map(drop).map_err(RunError::io(Path::new("standard input")))
 }
 
 /// A client and its run.
-struct McpDoor {
-    handle: Handle,
-    numbers: Arc<Numbers>,
+struct McpServer {
+    handle: SessionHandle,
+    numbers: Arc<ParameterNumbers>,
     /// Goal, calendar and rules of the run.
     goal: String,
 }
 
-impl ServerHandler for McpDoor {
+impl ServerHandler for McpServer {
     fn get_info(&self) -> ServerConfig {
         let capabilities = ServerCapabilities::builder().enable_tools().enable_resources().build();
         ServerConfig::new(capabilities)
@@ -87,11 +88,11 @@ impl ServerHandler for McpDoor {
         _: Option<PaginatedRequestParams>,
         _: RequestContext<RoleServer>,
     ) -> Result<ListToolsResult, ErrorData> {
-        Ok(ListToolsResult::with_all_items(tools::all(&self.numbers)))
+        Ok(ListToolsResult::with_all_items(tools::list(&self.numbers)))
     }
 
     fn get_tool(&self, name: &str) -> Option<Tool> {
-        tools::named(name, &self.numbers)
+        tools::find(name, &self.numbers)
     }
 
     async fn call_tool(
@@ -100,8 +101,8 @@ impl ServerHandler for McpDoor {
         _: RequestContext<RoleServer>,
     ) -> Result<CallToolResponse, ErrorData> {
         let arguments = request.arguments.unwrap_or_default();
-        let request = Request::of_tool(&request.name, arguments.into(), serde_json::Value::Null);
-        Ok(tools::result(self.handle.ask(request).await).into())
+        let request = ApiRequest::for_tool(&request.name, arguments.into(), serde_json::Value::Null);
+        Ok(tools::to_call_result(self.handle.send(request).await).into())
     }
 
     async fn list_resources(
@@ -109,7 +110,7 @@ impl ServerHandler for McpDoor {
         _: Option<PaginatedRequestParams>,
         _: RequestContext<RoleServer>,
     ) -> Result<ListResourcesResult, ErrorData> {
-        Ok(ListResourcesResult::with_all_items(resources::all()))
+        Ok(ListResourcesResult::with_all_items(resources::list()))
     }
 
     async fn read_resource(

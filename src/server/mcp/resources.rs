@@ -3,20 +3,20 @@
 use rmcp::ErrorData;
 use rmcp::model::{ReadResourceResult, Resource, ResourceContents};
 
-use crate::owner::Handle;
-use crate::request::Request;
+use crate::request::ApiRequest;
+use crate::worker::SessionHandle;
 use novamind_database::tables;
-use novamind_tools::describe::manual;
-use novamind_tools::{CATALOGUE, Numbers};
+use novamind_tools::describe::format_manual;
+use novamind_tools::{CATALOGUE, ParameterNumbers};
 
 const GOAL: &str = "novamind://goal";
 const DASHBOARD: &str = "novamind://dashboard";
 const MANUAL: &str = "novamind://manual";
 const TABLES: &str = "novamind://tables";
-const MEMO: &str = "novamind://memo";
+const NOTES: &str = "novamind://memo";
 
 /// Returns all resources.
-pub fn all() -> Vec<Resource> {
+pub fn list() -> Vec<Resource> {
     let one = |uri: &str, name: &str, title: &str| {
         Resource::new(uri, name).with_title(title).with_mime_type("text/plain")
     };
@@ -25,7 +25,7 @@ pub fn all() -> Vec<Resource> {
         one(DASHBOARD, "dashboard", "The dashboard of the last week"),
         one(MANUAL, "manual", "Every tool: arguments, effect, cost, rejections, result"),
         one(TABLES, "tables", "Every table that can be queried, and its columns"),
-        one(MEMO, "memo", "The notes of the run"),
+        one(NOTES, "memo", "The notes of the run"),
     ]
 }
 
@@ -35,15 +35,16 @@ pub fn all() -> Vec<Resource> {
 /// There is no such resource.
 pub async fn read(
     uri: &str,
-    handle: &Handle,
-    (goal, numbers): (&str, &Numbers),
+    handle: &SessionHandle,
+    (goal, numbers): (&str, &ParameterNumbers),
 ) -> Result<ReadResourceResult, ErrorData> {
     let text = match uri {
         GOAL => goal.to_owned(),
-        DASHBOARD => text_of(handle, Request::Dashboard, "/dashboard").await,
-        MEMO => text_of(handle, Request::Memo, "/data/text").await,
+        DASHBOARD => resource_text(handle, ApiRequest::Dashboard, "/dashboard").await,
+        NOTES => resource_text(handle, ApiRequest::Notes, "/data/text").await,
         MANUAL => {
-            let texts: Vec<String> = CATALOGUE.iter().map(|tool| manual(tool.spec(), numbers)).collect();
+            let texts: Vec<String> =
+                CATALOGUE.iter().map(|tool| format_manual(tool.spec(), numbers)).collect();
             texts.join("\n")
         }
         TABLES => {
@@ -58,8 +59,8 @@ pub async fn read(
     Ok(ReadResourceResult::new(vec![ResourceContents::text(text, uri)]))
 }
 
-async fn text_of(handle: &Handle, request: Request, pointer: &str) -> String {
-    let answer = handle.ask(request).await;
+async fn resource_text(handle: &SessionHandle, request: ApiRequest, pointer: &str) -> String {
+    let answer = handle.send(request).await;
     let told = answer.body.pointer(pointer).or_else(|| answer.body.get("error"));
     told.and_then(|text| text.as_str()).unwrap_or_default().to_owned()
 }

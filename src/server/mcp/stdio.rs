@@ -7,7 +7,7 @@ use tokio::io::{AsyncBufReadExt, AsyncReadExt, AsyncWriteExt, BufReader, DuplexS
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 use tokio::task::JoinHandle;
 
-use crate::not_numbers;
+use crate::non_finite;
 
 /// Size of the buffer between the streams and the protocol, in bytes.
 const BUFFER_BYTES: usize = 64 * 1024;
@@ -19,13 +19,13 @@ pub fn open() -> ((DuplexStream, DuplexStream), JoinHandle<()>) {
     let (input, forward) = duplex(BUFFER_BYTES);
     let (output, answers) = duplex(BUFFER_BYTES);
     let (problems, answered) = unbounded_channel();
-    tokio::spawn(read(forward, problems));
-    let writing = tokio::spawn(write(answers, answered));
+    tokio::spawn(forward_lines(forward, problems));
+    let writing = tokio::spawn(write_lines(answers, answered));
     ((input, output), writing)
 }
 
 /// Forwards each line that is JSON, until the input ends.
-async fn read(mut forward: DuplexStream, problems: UnboundedSender<String>) {
+async fn forward_lines(mut forward: DuplexStream, problems: UnboundedSender<String>) {
     let mut input = BufReader::new(tokio::io::stdin());
     let mut line = Vec::new();
     loop {
@@ -51,7 +51,7 @@ async fn read(mut forward: DuplexStream, problems: UnboundedSender<String>) {
                 }
             }
             Err(error) => {
-                let problem = match not_numbers::read(&line) {
+                let problem = match non_finite::parse_with_literals(&line) {
                     Some((message, refusal)) => parse_error(&message["id"], &refusal.message),
                     None => parse_error(&Value::Null, &format!("the message is not valid JSON: {error}")),
                 };
@@ -74,7 +74,7 @@ async fn skip_line(input: &mut BufReader<tokio::io::Stdin>) {
 }
 
 /// Writes protocol messages and parse errors, each as a complete line.
-async fn write(answers: DuplexStream, mut problems: UnboundedReceiver<String>) {
+async fn write_lines(answers: DuplexStream, mut problems: UnboundedReceiver<String>) {
     let mut output = tokio::io::stdout();
     let mut answers = BufReader::new(answers).lines();
     loop {

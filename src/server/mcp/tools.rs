@@ -5,42 +5,42 @@ use std::sync::Arc;
 use rmcp::model::{CallToolResult, Tool, ToolAnnotations};
 use serde_json::Value;
 
-use crate::request::Answer;
+use crate::request::ApiResponse;
 use crate::schema;
-use novamind_tools::describe::manual;
-use novamind_tools::{Kind, Numbers, Spec};
+use novamind_tools::describe::format_manual;
+use novamind_tools::{ParameterNumbers, ToolKind, ToolSpec};
 
 /// Returns all tools.
-pub fn all(numbers: &Numbers) -> Vec<Tool> {
-    schema::specs().map(|spec| tool(spec, numbers)).collect()
+pub fn list(numbers: &ParameterNumbers) -> Vec<Tool> {
+    schema::specs().map(|spec| describe_tool(spec, numbers)).collect()
 }
 
 /// Returns the tool of a name.
-pub fn named(name: &str, numbers: &Numbers) -> Option<Tool> {
-    schema::specs().find(|spec| spec.name() == name).map(|spec| tool(spec, numbers))
+pub fn find(name: &str, numbers: &ParameterNumbers) -> Option<Tool> {
+    schema::specs().find(|spec| spec.name() == name).map(|spec| describe_tool(spec, numbers))
 }
 
-fn tool(spec: &'static Spec, numbers: &Numbers) -> Tool {
-    let mut arguments = schema::arguments(spec, numbers);
+fn describe_tool(spec: &'static ToolSpec, numbers: &ParameterNumbers) -> Tool {
+    let mut arguments = schema::arguments_schema(spec, numbers);
     if let Some(Value::Object(properties)) = arguments.get_mut("properties") {
-        properties.extend(schema::of_retries(spec.id));
+        properties.extend(schema::retry_fields(spec.id));
     }
     let arguments = Arc::new(arguments);
-    Tool::new(spec.name(), manual(spec, numbers), arguments).with_annotations(hints(spec))
+    Tool::new(spec.name(), format_manual(spec, numbers), arguments).with_annotations(tool_annotations(spec))
 }
 
-fn hints(spec: &Spec) -> ToolAnnotations {
-    let settles = matches!(spec.kind, Kind::Read | Kind::Setting);
+fn tool_annotations(spec: &ToolSpec) -> ToolAnnotations {
+    let settles = matches!(spec.kind, ToolKind::Read | ToolKind::Setting);
     ToolAnnotations::new()
-        .read_only(spec.kind == Kind::Read)
-        .destructive(matches!(spec.kind, Kind::Purchase | Kind::Time))
+        .read_only(spec.kind == ToolKind::Read)
+        .destructive(matches!(spec.kind, ToolKind::Purchase | ToolKind::Time))
         .idempotent(settles)
         .open_world(false)
 }
 
 /// Converts an answer to the result of a call. A rejection is an error that the model reads, not a protocol error.
-pub fn result(answer: Answer) -> CallToolResult {
-    if answer.succeeded() {
+pub fn to_call_result(answer: ApiResponse) -> CallToolResult {
+    if answer.is_success() {
         CallToolResult::structured(answer.body)
     } else {
         CallToolResult::structured_error(answer.body)

@@ -9,18 +9,20 @@ use flate2::write::GzEncoder;
 
 use super::lab_key::LabKey;
 use super::seal::{SEAL_FORMAT, Seal, SealedFile};
-use super::workshop::Workshop;
-use crate::archive::{DATABASE, MANIFEST, MEMO, SEAL, SIGNATURE, TRAJECTORY, is_compressed};
+use super::temporary_folder::TemporaryFolder;
+use crate::archive::{
+    DATABASE_FILE, MANIFEST_FILE, NOTES_FILE, SEAL_FILE, SIGNATURE_FILE, TRAJECTORY_FILE, is_compressed,
+};
 use crate::play::Session;
-use crate::play::memo::notes_file;
+use crate::play::notes::current_notes_file;
 use crate::play::open::Access;
-use crate::recording::recorder::{AFTERWARDS, lines_afterwards};
+use crate::recording::recorder::{AFTERWARDS_FILE, read_afterwards};
 use crate::snapshot::integrity::Integrity;
 use crate::snapshot::sealing::SealKey;
 use novamind_record::error::RunError;
-use novamind_record::files::{folder_of, sync_folder};
-use novamind_record::folder::derived::{Derived, check_start};
+use novamind_record::files::{parent_folder, sync_folder};
 use novamind_record::folder::manifest::Manifest;
+use novamind_record::folder::manifest_check::{ManifestCheck, check_start};
 use novamind_record::lesson::{PLAN_FILE, TEXTS_FILE};
 use novamind_record::trajectory::{Line, Trajectory};
 
@@ -30,10 +32,10 @@ use novamind_record::trajectory::{Line, Trajectory};
 pub struct Export {
     session: Session,
     trajectory: Trajectory,
-    afterwards: Vec<Line>,
+    afterwards_lines: Vec<Line>,
     /// Folder with copies of the files; must outlive the session.
-    copies: PathBuf,
-    _workshop: Workshop,
+    copied_folder: PathBuf,
+    _temporary_folder: TemporaryFolder,
 }
 
 impl Export {
@@ -44,10 +46,10 @@ impl Export {
     /// [`RunError::Damaged`] if the run is damaged, with the file, the line and what is safe. Other errors if the run
     /// has another version, or if `beside` cannot be written.
     pub fn prepare(folder: &Path, beside: &Path, key: &SealKey) -> Result<Export, RunError> {
-        let derived = Derived::of(folder)?;
+        let derived = ManifestCheck::read(folder)?;
         let manifest = derived.manifest.clone();
-        let (bytes, mut trajectory) = read_settled(folder, &manifest, key)?;
-        let workshop = Workshop::within(beside)?;
+        let (bytes, mut trajectory) = read_stable_trajectory(folder, &manifest, key)?;
+        let workshop = TemporaryFolder::create_in(beside)?;
         let own = &workshop.path().join(&manifest.id);
         std::fs::create_dir(own).map_err(RunError::io(own))?;
         let put = |name: &str, bytes: &[u8]| {
@@ -56,32 +58,39 @@ impl Export {
         };
         match derived.problem {
             None => {
-                let own = folder.join(MANIFEST);
-                put(MANIFEST, &std::fs::read(&own).map_err(RunError::io(&own))?)?;
+                let own = folder.join(MANIFEST_FILE);
+                put(MANIFEST_FILE, &std::fs::read(&own).map_err(RunError::io(&own))?)?;
             }
             Some(_) => manifest.write(own)?,
         }
         // A line without a line end was never confirmed: another program may be writing it.
-        put(TRAJECTORY, bytes.get(..trajectory.length as usize).unwrap_or(&bytes))?;
-        trajectory.unfinished = 0;
-        let after = lines_afterwards(folder, &trajectory)?;
+        put(TRAJECTORY_FILE, bytes.get(..trajectory.length as usize).unwrap_or(&bytes))?;
+        trajectory.unfinished_bytes = 0;
+        let after = read_afterwards(folder, &trajectory)?;
         if !after.lines.is_empty() {
-            let path = folder.join(AFTERWARDS);
+            let path = folder.join(AFTERWARDS_FILE);
             let bytes = std::fs::read(&path).map_err(RunError::io(&path))?;
-            put(AFTERWARDS, bytes.get(..after.length as usize).unwrap_or(&bytes))?;
+            put(AFTERWARDS_FILE, bytes.get(..after.length as usize).unwrap_or(&bytes))?;
         }
         for name in [PLAN_FILE, TEXTS_FILE].into_iter().filter(|_| manifest.lesson.is_some()) {
             let path = folder.join(name);
             put(name, &std::fs::read(&path).map_err(RunError::io(&path))?)?;
         }
-        let memo = notes_file(folder, &trajectory);
+        let memo = current_notes_file(folder, &trajectory);
         match std::fs::read(&memo) {
-            Ok(bytes) => put(MEMO, &bytes)?,
+            Ok(bytes) => put(NOTES_FILE, &bytes)?,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {}
             Err(error) => return Err(RunError::Io { path: memo, error }),
         }
-        let session = Session::open(own, Access::Read, true).map_err(|error| moved(error, own, folder))?;
-        Ok(Export { session, trajectory, afterwards: after.lines, copies: own.clone(), _workshop: workshop })
+        let session =
+            Session::open(own, Access::Read, true).map_err(|error| with_original_path(error, own, folder))?;
+        Ok(Export {
+            session,
+            trajectory,
+            afterwards_lines: after.lines,
+            copied_folder: own.clone(),
+            _temporary_folder: workshop,
+        })
     }
 
     /// Returns the run, open for reading.
@@ -95,40 +104,48 @@ impl Export {
     }
 
     /// Returns the lines recorded after the end of the run.
-    pub fn afterwards(&self) -> &[Line] {
-        &self.afterwards
+    pub fn afterwards_lines(&self) -> &[Line] {
+        &self.afterwards_lines
     }
 
     /// Writes the archive atomically. Signs it if `key` is given.
     ///
     /// # Errors
-    /// [`RunError::Exists`] if the file exists and `replace` is false. [`RunError::Io`] if the disk fails.
+    /// [`RunError::AlreadyExists`] if the file exists and `replace` is false. [`RunError::Io`] if the disk fails.
     pub fn write(&self, archive: &Path, replace: bool, key: Option<&LabKey>) -> Result<Seal, RunError> {
         if !replace && archive.exists() {
             let message = format!("{} already exists: choose another name, or remove it", archive.display());
-            return Err(RunError::Exists(message));
+            return Err(RunError::AlreadyExists(message));
         }
-        let database = self.copies.join(DATABASE);
+        let database = self.copied_folder.join(DATABASE_FILE);
         // The archive can be written twice. The database is copied for each.
         let _ = std::fs::remove_file(&database);
         self.session.database().copy_to(&database)?;
-        let seal = self.seal()?;
-        let folder = folder_of(archive);
-        let workshop = Workshop::within(folder)?;
+        let seal = self.build_seal()?;
+        let folder = parent_folder(archive);
+        let workshop = TemporaryFolder::create_in(folder)?;
         let draft = workshop.path().join("archive");
-        let written = self.pack(&draft, is_compressed(archive), (&seal, key));
+        let written = self.write_archive(&draft, is_compressed(archive), (&seal, key));
         let placed = written.and_then(|()| std::fs::rename(&draft, archive));
         placed.map_err(RunError::io(archive))?;
         sync_folder(folder)?;
         Ok(seal)
     }
 
-    fn seal(&self) -> Result<Seal, RunError> {
-        let folder = &self.copies;
-        let there = [MANIFEST, TRAJECTORY, AFTERWARDS, PLAN_FILE, TEXTS_FILE, MEMO, DATABASE]
-            .into_iter()
-            .filter(|name| folder.join(name).exists());
-        let file = there.map(|name| SealedFile::of(folder, name)).collect::<Result<_, _>>()?;
+    fn build_seal(&self) -> Result<Seal, RunError> {
+        let folder = &self.copied_folder;
+        let there = [
+            MANIFEST_FILE,
+            TRAJECTORY_FILE,
+            AFTERWARDS_FILE,
+            PLAN_FILE,
+            TEXTS_FILE,
+            NOTES_FILE,
+            DATABASE_FILE,
+        ]
+        .into_iter()
+        .filter(|name| folder.join(name).exists());
+        let file = there.map(|name| SealedFile::from_file(folder, name)).collect::<Result<_, _>>()?;
         let last = self.trajectory.lines.last();
         let seal = Seal {
             format: SEAL_FORMAT,
@@ -141,30 +158,38 @@ impl Export {
             checksum: String::new(),
             file,
         };
-        Ok(seal.signed())
+        Ok(seal.with_checksum())
     }
 
-    fn pack(&self, draft: &Path, compressed: bool, seal: (&Seal, Option<&LabKey>)) -> std::io::Result<()> {
+    fn write_archive(
+        &self,
+        draft: &Path,
+        compressed: bool,
+        seal: (&Seal, Option<&LabKey>),
+    ) -> std::io::Result<()> {
         let file = BufWriter::new(File::create_new(draft)?);
         let file = if compressed {
             let packer = GzEncoder::new(file, Compression::default());
-            self.fill(packer, seal)?.finish()?
+            self.append_entries(packer, seal)?.finish()?
         } else {
-            self.fill(file, seal)?
+            self.append_entries(file, seal)?
         };
         file.into_inner().map_err(std::io::IntoInnerError::into_error)?.sync_all()
     }
 
-    fn fill<W: Write>(&self, out: W, (seal, key): (&Seal, Option<&LabKey>)) -> std::io::Result<W> {
+    fn append_entries<W: Write>(&self, out: W, (seal, key): (&Seal, Option<&LabKey>)) -> std::io::Result<W> {
         let mut archive = tar::Builder::new(out);
-        let text = seal.text();
-        archive.append(&header(&seal.run, SEAL, text.len() as u64)?, text.as_bytes())?;
+        let text = seal.to_toml();
+        archive.append(&entry_header(&seal.run, SEAL_FILE, text.len() as u64)?, text.as_bytes())?;
         if let Some(signature) = key.map(|key| key.sign(&text)) {
-            archive.append(&header(&seal.run, SIGNATURE, signature.len() as u64)?, signature.as_bytes())?;
+            archive.append(
+                &entry_header(&seal.run, SIGNATURE_FILE, signature.len() as u64)?,
+                signature.as_bytes(),
+            )?;
         }
         for sealed in &seal.file {
-            let file = File::open(self.copies.join(&sealed.name))?;
-            archive.append(&header(&seal.run, &sealed.name, sealed.bytes)?, file)?;
+            let file = File::open(self.copied_folder.join(&sealed.name))?;
+            archive.append(&entry_header(&seal.run, &sealed.name, sealed.bytes)?, file)?;
         }
         archive.into_inner()
     }
@@ -172,22 +197,22 @@ impl Export {
 
 /// Reads a trajectory that another program may be writing, and checks it against manifest and integrity. Reads these
 /// two first, so that the trajectory is at least as new as they are.
-fn read_settled(
+fn read_stable_trajectory(
     folder: &Path,
     manifest: &Manifest,
     key: &SealKey,
 ) -> Result<(Vec<u8>, Trajectory), RunError> {
-    let path = folder.join(TRAJECTORY);
-    let integrity = Integrity::of(folder, manifest, key);
+    let path = folder.join(TRAJECTORY_FILE);
+    let integrity = Integrity::read(folder, manifest, key);
     let bytes = std::fs::read(&path).map_err(RunError::io(&path))?;
-    let trajectory = Trajectory::of_file(&path, &bytes)?;
+    let trajectory = Trajectory::from_bytes(&path, &bytes)?;
     check_start(&path, trajectory.lines.first(), manifest)?;
     integrity.check(&path, &trajectory)?;
     Ok((bytes, trajectory))
 }
 
 /// Returns a tar header without owner and time, so that it does not depend on the machine.
-fn header(run: &str, name: &str, bytes: u64) -> std::io::Result<tar::Header> {
+fn entry_header(run: &str, name: &str, bytes: u64) -> std::io::Result<tar::Header> {
     let mut header = tar::Header::new_ustar();
     header.set_path(format!("{run}/{name}"))?;
     header.set_size(bytes);
@@ -198,14 +223,14 @@ fn header(run: &str, name: &str, bytes: u64) -> std::io::Result<tar::Header> {
 }
 
 /// Replaces paths of the copies in an error by the original paths.
-fn moved(error: RunError, copies: &Path, folder: &Path) -> RunError {
+fn with_original_path(error: RunError, copies: &Path, folder: &Path) -> RunError {
     let original = |path: PathBuf| match path.strip_prefix(copies) {
         Ok(name) => folder.join(name),
         Err(_) => path,
     };
     match error {
-        RunError::Damaged { path, line, problem, safe } => {
-            RunError::Damaged { path: original(path), line, problem, safe }
+        RunError::Damaged { path, line, problem, remedy: safe } => {
+            RunError::Damaged { path: original(path), line, problem, remedy: safe }
         }
         other => other,
     }

@@ -7,31 +7,36 @@ use std::path::{Path, PathBuf};
 
 use flate2::read::MultiGzDecoder;
 
-use super::lab_key::{LabPublicKey, signer_of};
+use super::lab_key::{LabPublicKey, verify_signature};
 use super::seal::{CopyError, SEAL_FORMAT, Seal, SealedFile, copy_hashed};
-use super::workshop::Workshop;
-use crate::archive::{DATABASE, FILES, MANIFEST, MEMO, SEAL, SIGNATURE, TRAJECTORY, is_run_name, refused};
+use super::temporary_folder::TemporaryFolder;
+use crate::archive::{
+    DATABASE_FILE, ENTRY_LIMITS, MANIFEST_FILE, NOTES_FILE, SEAL_FILE, SIGNATURE_FILE, TRAJECTORY_FILE,
+    archive_error, is_run_id,
+};
 use novamind_record::error::RunError;
 use novamind_record::files::sync_folder;
-use novamind_record::folder::derived::check_start;
 use novamind_record::folder::manifest::Manifest;
-use novamind_record::folder::runs::{PARTICIPANTS, all_run_folders, label_of, participant_folder};
+use novamind_record::folder::manifest_check::check_start;
+use novamind_record::folder::runs::{
+    PARTICIPANTS_FOLDER, all_run_folders, participant_folder, participant_of_folder,
+};
 use novamind_record::trajectory::{Line, Record, Trajectory};
 
 /// The result of importing an archive.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Imported {
+pub enum ImportOutcome {
     /// The run was imported into this folder.
     New(PathBuf),
     /// An identical run exists already; nothing was changed.
-    Same {
+    AlreadyPresent {
         /// The notes in the archive differ from those of the existing run.
-        other_memo: bool,
+        notes_differ: bool,
     },
 }
 
 /// The seal of an archive, its signer and the result of the import.
-pub type ImportedRun = (Seal, Option<LabPublicKey>, Imported);
+pub type ImportResult = (Seal, Option<LabPublicKey>, ImportOutcome);
 
 /// Imports the run of an archive into a folder of runs and returns the signer, if the archive is signed. Checks
 /// everything before it creates the run: the seal, the hash of every file, the hash chain of the trajectory, and that
@@ -41,35 +46,38 @@ pub type ImportedRun = (Seal, Option<LabPublicKey>, Imported);
 /// original identifier.
 ///
 /// # Errors
-/// [`RunError::Archive`] if the archive is damaged, foreign or unsafe; names the file. [`RunError::Exists`] if
-/// another state of the run exists, or the name is taken. [`RunError::NotPossible`] if `name` is invalid. Nothing has
+/// [`RunError::InvalidArchive`] if the archive is damaged, foreign or unsafe; names the file. [`RunError::AlreadyExists`] if
+/// another state of the run exists, or the name is taken. [`RunError::InvalidRequest`] if `name` is invalid. Nothing has
 /// changed then.
-pub fn import_run(runs: &Path, archive: &Path, name: Option<&str>) -> Result<ImportedRun, RunError> {
-    if let Some(name) = name.filter(|name| !is_folder_name(name)) {
+pub fn import_run(runs: &Path, archive: &Path, name: Option<&str>) -> Result<ImportResult, RunError> {
+    if let Some(name) = name.filter(|name| !is_valid_run_name(name)) {
         let message = format!(
             "{name} is not a valid run name: use 1 to 40 letters, digits, - and _. Nothing was imported"
         );
-        return Err(RunError::NotPossible(message));
+        return Err(RunError::InvalidRequest(message));
     }
-    let workshop = Workshop::within(runs)?;
+    let workshop = TemporaryFolder::create_in(runs)?;
     let unpacked = unpack(archive, workshop.path())?;
     let seal = check_seal(archive, &unpacked)?;
-    let signer =
-        unpacked.signature.as_ref().map(|signature| signer_of(&unpacked.seal, signature)).transpose();
-    let signer = signer.map_err(|problem| refused(archive, problem))?;
+    let signer = unpacked
+        .signature_text
+        .as_ref()
+        .map(|signature| verify_signature(&unpacked.seal_text, signature))
+        .transpose();
+    let signer = signer.map_err(|problem| archive_error(archive, problem))?;
     let draft = workshop.path().join(&seal.run);
     check_run(archive, &draft, &seal)?;
-    let folder = folder_for(runs, &draft, &seal)?;
+    let folder = destination_folder(runs, &draft, &seal)?;
     // A name must be unique on a machine, across all participants.
     let own_name = name.unwrap_or(&seal.run);
     let there = all_run_folders(runs).into_iter().chain([folder.clone()]).map(|own| own.join(own_name));
     if let Some(place) = there.into_iter().find(|place| place.exists()) {
         let same = match name {
-            None => compare(&draft, &place, &seal)?,
+            None => compare_with_existing(&draft, &place, &seal)?,
             Some(name) => {
                 let message =
                     format!("run {name} already exists in {}. Nothing was imported", place.display());
-                return Err(RunError::Exists(message));
+                return Err(RunError::AlreadyExists(message));
             }
         };
         return Ok((seal, signer, same));
@@ -78,14 +86,14 @@ pub fn import_run(runs: &Path, archive: &Path, name: Option<&str>) -> Result<Imp
     sync_folder(&draft)?;
     std::fs::rename(&draft, &place).map_err(RunError::io(&place))?;
     sync_folder(&folder).inspect_err(|_| drop(std::fs::remove_dir_all(&place)))?;
-    Ok((seal, signer, Imported::New(place)))
+    Ok((seal, signer, ImportOutcome::New(place)))
 }
 
 /// Returns the folder of runs for a run: that of its participant, if it exists on this machine.
-fn folder_for(runs: &Path, draft: &Path, seal: &Seal) -> Result<PathBuf, RunError> {
+fn destination_folder(runs: &Path, draft: &Path, seal: &Seal) -> Result<PathBuf, RunError> {
     let whose = Manifest::read(draft)?.participant;
-    match (label_of(runs), whose) {
-        (Some(label), Some(other)) if label != other => Err(RunError::NotPossible(format!(
+    match (participant_of_folder(runs), whose) {
+        (Some(label), Some(other)) if label != other => Err(RunError::InvalidRequest(format!(
             "run {} belongs to {other}, not to {label}: import it with `--as {other}`. Nothing was imported",
             seal.run
         ))),
@@ -97,62 +105,71 @@ fn folder_for(runs: &Path, draft: &Path, seal: &Seal) -> Result<PathBuf, RunErro
     }
 }
 
-struct Unpacked {
+struct UnpackedArchive {
     run: String,
     files: Vec<SealedFile>,
-    seal: String,
-    signature: Option<String>,
+    seal_text: String,
+    signature_text: Option<String>,
 }
 
 /// Copies the files of an archive into `workshop/<run>/`. The database is hashed, but not copied.
-fn unpack(archive: &Path, workshop: &Path) -> Result<Unpacked, RunError> {
+fn unpack(archive: &Path, workshop: &Path) -> Result<UnpackedArchive, RunError> {
     let broken = |error: io::Error| {
-        refused(archive, format!("this is not an archive of a run, or it is truncated ({error})"))
+        archive_error(archive, format!("this is not an archive of a run, or it is truncated ({error})"))
     };
-    let mut tar = tar::Archive::new(open(archive)?);
-    let mut found = Unpacked { run: String::new(), files: Vec::new(), seal: String::new(), signature: None };
+    let mut tar = tar::Archive::new(open_archive(archive)?);
+    let mut found = UnpackedArchive {
+        run: String::new(),
+        files: Vec::new(),
+        seal_text: String::new(),
+        signature_text: None,
+    };
     // Raw mode rejects extensions that rename or enlarge the next file.
     for entry in tar.entries().map_err(broken)?.raw(true) {
         let mut entry = entry.map_err(broken)?;
         let name = String::from_utf8_lossy(&entry.path_bytes()).into_owned();
         let kind = entry.header().entry_type();
-        if kind == tar::EntryType::Directory && is_run_name(name.trim_end_matches('/')) {
+        if kind == tar::EntryType::Directory && is_run_id(name.trim_end_matches('/')) {
             continue;
         }
         if kind != tar::EntryType::Regular {
-            return Err(refused(archive, format!("{name} is not a regular file")));
+            return Err(archive_error(archive, format!("{name} is not a regular file")));
         }
-        let (run, file) =
-            parts(&name).ok_or_else(|| refused(archive, format!("{name} is not a file of a run")))?;
-        let (file, most) = *FILES
+        let (run, file) = split_entry_name(&name)
+            .ok_or_else(|| archive_error(archive, format!("{name} is not a file of a run")))?;
+        let (file, most) = *ENTRY_LIMITS
             .iter()
             .find(|(known, _)| *known == file)
-            .ok_or_else(|| refused(archive, format!("{name} is not a file of a run")))?;
+            .ok_or_else(|| archive_error(archive, format!("{name} is not a file of a run")))?;
         if !found.run.is_empty() && found.run != run {
-            return Err(refused(archive, format!("{name} belongs to a different run than {}", found.run)));
+            return Err(archive_error(
+                archive,
+                format!("{name} belongs to a different run than {}", found.run),
+            ));
         }
         if found.files.iter().any(|known| known.name == file) {
-            return Err(refused(archive, format!("{name} occurs twice")));
+            return Err(archive_error(archive, format!("{name} occurs twice")));
         }
         let size = entry.size();
         if size > most {
-            return Err(refused(
+            return Err(archive_error(
                 archive,
                 format!("{name} is too large: {size} bytes; the limit is {most} bytes"),
             ));
         }
         found.run = run.to_owned();
         let path = workshop.join(run).join(file);
-        let measured = store(&mut entry, &path, file).map_err(|error| match error {
-            CopyError::Read(error) => broken_file(archive, &name, &error),
+        let measured = store_entry(&mut entry, &path, file).map_err(|error| match error {
+            CopyError::Read(error) => unreadable_entry(archive, &name, &error),
             // The archive is intact; the disk has no space.
             CopyError::Write(error) => RunError::Io { path, error },
         })?;
-        if file == SEAL || file == SIGNATURE {
+        if file == SEAL_FILE || file == SIGNATURE_FILE {
             let path = workshop.join(run).join(file);
-            let text = std::fs::read_to_string(&path).map_err(|error| broken_file(archive, &name, &error))?;
+            let text =
+                std::fs::read_to_string(&path).map_err(|error| unreadable_entry(archive, &name, &error))?;
             std::fs::remove_file(&path).map_err(RunError::io(&path))?;
-            if file == SEAL { found.seal = text } else { found.signature = Some(text) }
+            if file == SEAL_FILE { found.seal_text = text } else { found.signature_text = Some(text) }
         }
         found.files.push(measured);
     }
@@ -161,7 +178,7 @@ fn unpack(archive: &Path, workshop: &Path) -> Result<Unpacked, RunError> {
     Ok(found)
 }
 
-fn open(archive: &Path) -> Result<Box<dyn Read>, RunError> {
+fn open_archive(archive: &Path) -> Result<Box<dyn Read>, RunError> {
     let mut file = File::open(archive).map_err(RunError::io(archive))?;
     let mut start = [0u8; 2];
     let count = file.read(&mut start).map_err(RunError::io(archive))?;
@@ -172,18 +189,18 @@ fn open(archive: &Path) -> Result<Box<dyn Read>, RunError> {
 }
 
 /// Splits an entry name into run and file, if it has exactly that form.
-fn parts(name: &str) -> Option<(&str, &str)> {
+fn split_entry_name(name: &str) -> Option<(&str, &str)> {
     let (run, file) = name.strip_prefix("./").unwrap_or(name).split_once('/')?;
-    is_run_name(run).then_some((run, file))
+    is_run_id(run).then_some((run, file))
 }
 
-fn broken_file(archive: &Path, name: &str, error: &io::Error) -> RunError {
-    refused(archive, format!("{name} cannot be read ({error})"))
+fn unreadable_entry(archive: &Path, name: &str, error: &io::Error) -> RunError {
+    archive_error(archive, format!("{name} cannot be read ({error})"))
 }
 
-fn store(entry: &mut dyn Read, path: &Path, file: &str) -> Result<SealedFile, CopyError> {
+fn store_entry(entry: &mut dyn Read, path: &Path, file: &str) -> Result<SealedFile, CopyError> {
     let name = file.to_owned();
-    if file == DATABASE {
+    if file == DATABASE_FILE {
         let (bytes, blake3) = copy_hashed(entry, &mut io::sink())?;
         return Ok(SealedFile { name, bytes, blake3 });
     }
@@ -195,29 +212,32 @@ fn store(entry: &mut dyn Read, path: &Path, file: &str) -> Result<SealedFile, Co
 }
 
 /// Parses the seal and compares it with the contents.
-fn check_seal(archive: &Path, found: &Unpacked) -> Result<Seal, RunError> {
-    if found.seal.is_empty() {
-        return Err(refused(archive, "seal.toml is missing: this is not an archive of a run"));
+fn check_seal(archive: &Path, found: &UnpackedArchive) -> Result<Seal, RunError> {
+    if found.seal_text.is_empty() {
+        return Err(archive_error(archive, "seal.toml is missing: this is not an archive of a run"));
     }
-    let seal: Seal = toml::from_str(&found.seal)
-        .map_err(|error| refused(archive, format!("seal.toml cannot be read ({})", error.message())))?;
+    let seal: Seal = toml::from_str(&found.seal_text)
+        .map_err(|error| archive_error(archive, format!("seal.toml cannot be read ({})", error.message())))?;
     if seal.format > SEAL_FORMAT {
         let problem = format!(
             "version {} created it in format {}; this program reads format {SEAL_FORMAT}. Use that version",
             seal.program, seal.format
         );
-        return Err(refused(archive, problem));
+        return Err(archive_error(archive, problem));
     }
     if !seal.is_intact() || seal.run != found.run {
-        return Err(refused(archive, "seal.toml was changed: its checksum does not match"));
+        return Err(archive_error(archive, "seal.toml was changed: its checksum does not match"));
     }
     let there: BTreeMap<&str, &SealedFile> =
         found.files.iter().map(|file| (file.name.as_str(), file)).collect();
     for sealed in &seal.file {
         match there.get(sealed.name.as_str()) {
-            None => return Err(refused(archive, format!("{} is missing", sealed.name))),
+            None => return Err(archive_error(archive, format!("{} is missing", sealed.name))),
             Some(own) if *own != sealed => {
-                return Err(refused(archive, format!("{} is not the file that was sealed", sealed.name)));
+                return Err(archive_error(
+                    archive,
+                    format!("{} is not the file that was sealed", sealed.name),
+                ));
             }
             Some(_) => {}
         }
@@ -226,37 +246,39 @@ fn check_seal(archive: &Path, found: &Unpacked) -> Result<Seal, RunError> {
     match found
         .files
         .iter()
-        .find(|file| ![SEAL, SIGNATURE].contains(&file.name.as_str()) && !sealed(&file.name))
+        .find(|file| ![SEAL_FILE, SIGNATURE_FILE].contains(&file.name.as_str()) && !sealed(&file.name))
     {
-        Some(stranger) => Err(refused(archive, format!("{} was added after sealing", stranger.name))),
+        Some(stranger) => Err(archive_error(archive, format!("{} was added after sealing", stranger.name))),
         None => Ok(seal),
     }
 }
 
 fn check_run(archive: &Path, draft: &Path, seal: &Seal) -> Result<(), RunError> {
-    for name in [MANIFEST, TRAJECTORY] {
+    for name in [MANIFEST_FILE, TRAJECTORY_FILE] {
         if !draft.join(name).exists() {
-            return Err(refused(archive, format!("{name} is missing")));
+            return Err(archive_error(archive, format!("{name} is missing")));
         }
     }
-    let inside = |error: RunError| refused(archive, problem_inside(error));
+    let inside = |error: RunError| archive_error(archive, problem_without_path(error));
     let manifest = Manifest::read(draft).map_err(|error| match error {
         other @ RunError::OtherFormat { .. } => other,
         error => inside(error),
     })?;
-    let path = draft.join(TRAJECTORY);
+    let path = draft.join(TRAJECTORY_FILE);
     let trajectory = Trajectory::read(&path).map_err(inside)?;
     check_start(&path, trajectory.lines.first(), &manifest).map_err(inside)?;
     let last = trajectory.lines.last().map(|line| (line.seq, line.hash.as_str()));
-    if trajectory.unfinished > 0 || last != Some((seal.last_seq, &seal.last_hash)) || manifest.id != seal.run
+    if trajectory.unfinished_bytes > 0
+        || last != Some((seal.last_seq, &seal.last_hash))
+        || manifest.id != seal.run
     {
-        return Err(refused(archive, "trajectory.jsonl does not end with the line that was sealed"));
+        return Err(archive_error(archive, "trajectory.jsonl does not end with the line that was sealed"));
     }
     Ok(())
 }
 
 /// Describes an error of the copies without their paths.
-fn problem_inside(error: RunError) -> String {
+fn problem_without_path(error: RunError) -> String {
     match error {
         RunError::Damaged { path, line, problem, .. } => {
             let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
@@ -267,28 +289,30 @@ fn problem_inside(error: RunError) -> String {
 }
 
 /// Compares the existing run with that of the archive.
-fn compare(draft: &Path, place: &Path, seal: &Seal) -> Result<Imported, RunError> {
+fn compare_with_existing(draft: &Path, place: &Path, seal: &Seal) -> Result<ImportOutcome, RunError> {
     let read = |folder: &Path, name: &str| std::fs::read(folder.join(name)).unwrap_or_default();
-    let (own, there) = (read(draft, TRAJECTORY), read(place, TRAJECTORY));
-    if read(draft, MANIFEST) == read(place, MANIFEST) && own == there {
-        return Ok(Imported::Same { other_memo: read(draft, MEMO) != read(place, MEMO) });
+    let (own, there) = (read(draft, TRAJECTORY_FILE), read(place, TRAJECTORY_FILE));
+    if read(draft, MANIFEST_FILE) == read(place, MANIFEST_FILE) && own == there {
+        return Ok(ImportOutcome::AlreadyPresent {
+            notes_differ: read(draft, NOTES_FILE) != read(place, NOTES_FILE),
+        });
     }
     let how = if there.starts_with(&own) {
         "it is the same run and was continued after the export".to_owned()
     } else if own.starts_with(&there) {
         "the archive has a later state of it; delete or move the older run to import it".to_owned()
     } else {
-        difference(draft, place)
+        describe_difference(draft, place)
     };
-    Err(RunError::Exists(format!(
+    Err(RunError::AlreadyExists(format!(
         "run {} already exists in {}: {how}. Nothing was changed; to import under another name, use --under NAME",
         seal.run,
         place.display()
     )))
 }
 
-fn difference(draft: &Path, place: &Path) -> String {
-    let lines = |folder: &Path| Trajectory::read(&folder.join(TRAJECTORY)).map(|read| read.lines);
+fn describe_difference(draft: &Path, place: &Path) -> String {
+    let lines = |folder: &Path| Trajectory::read(&folder.join(TRAJECTORY_FILE)).map(|read| read.lines);
     let own = lines(draft).unwrap_or_default();
     let there = match lines(place) {
         Ok(lines) if !lines.is_empty() => lines,
@@ -300,7 +324,7 @@ fn difference(draft: &Path, place: &Path) -> String {
         let day = lines.last().map_or(0, |line| line.day);
         format!("{} lines up to day {day}", lines.len())
     };
-    let line = |lines: &[Line]| lines.get(same).map_or("nothing".to_owned(), line_in_words);
+    let line = |lines: &[Line]| lines.get(same).map_or("nothing".to_owned(), describe_line);
     if own.len() == there.len() && same == own.len() {
         return "the lines are the same, but run.toml differs".to_owned();
     }
@@ -316,7 +340,7 @@ fn difference(draft: &Path, place: &Path) -> String {
 }
 
 /// Describes a line: its kind, the tool of a call, the day and the time.
-fn line_in_words(line: &Line) -> String {
+fn describe_line(line: &Line) -> String {
     let what = match &line.record {
         Record::Call(call) => format!("a call of {}", call.tool),
         record => format!("a line {}", record.kind()),
@@ -325,7 +349,7 @@ fn line_in_words(line: &Line) -> String {
 }
 
 /// Whether a folder of runs can contain a run with this name.
-fn is_folder_name(name: &str) -> bool {
+fn is_valid_run_name(name: &str) -> bool {
     let fits = |letter: u8| letter.is_ascii_alphanumeric() || matches!(letter, b'-' | b'_');
-    (1..=40).contains(&name.len()) && name.bytes().all(fits) && name != PARTICIPANTS
+    (1..=40).contains(&name.len()) && name.bytes().all(fits) && name != PARTICIPANTS_FOLDER
 }

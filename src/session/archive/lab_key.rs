@@ -9,15 +9,15 @@ use ed25519_dalek::{Signature, Signer, SigningKey, VerifyingKey};
 use serde::{Deserialize, Serialize};
 
 use novamind_record::error::RunError;
-use novamind_record::files::{folder_of, sync_folder};
+use novamind_record::files::{parent_folder, sync_folder};
 
-const PRIVATE: &str = "novamind lab key 1: keep it secret, and keep a copy";
-const PUBLIC: &str = "novamind lab public key 1";
-const SEAL: &str = "novamind seal key 1: keep it secret";
+const PRIVATE_KEY_TITLE: &str = "novamind lab key 1: keep it secret, and keep a copy";
+const PUBLIC_KEY_TITLE: &str = "novamind lab public key 1";
+const SEAL_KEY_TITLE: &str = "novamind seal key 1: keep it secret";
 /// Separates the snapshot key from other uses of the same hash.
-const SEAL_CONTEXT: &str = "novamind 2026-11 seal key of a lab";
+const SEAL_KEY_CONTEXT: &str = "novamind 2026-11 seal key of a lab";
 /// Prefix of every signed message, so that a signature is valid for archives only.
-const PURPOSE: &[u8] = b"novamind seal of an archive 1\n";
+const SIGNATURE_CONTEXT: &[u8] = b"novamind seal of an archive 1\n";
 
 /// A private key.
 pub struct LabKey(SigningKey);
@@ -43,7 +43,7 @@ impl LabKey {
     pub fn generate() -> Result<LabKey, RunError> {
         let mut secret = [0; 32];
         getrandom::fill(&mut secret).map_err(|error| {
-            RunError::NotPossible(format!(
+            RunError::InvalidRequest(format!(
                 "cannot create a key: the system provides no random numbers ({error})"
             ))
         })?;
@@ -55,7 +55,7 @@ impl LabKey {
     /// # Errors
     /// The file cannot be read, or is not a private key.
     pub fn read(file: &Path) -> Result<LabKey, RunError> {
-        Ok(LabKey(SigningKey::from_bytes(&read_key(file, PRIVATE)?)))
+        Ok(LabKey(SigningKey::from_bytes(&read_key_file(file, PRIVATE_KEY_TITLE)?)))
     }
 
     /// Writes the key into a new file that only its owner can read.
@@ -63,16 +63,16 @@ impl LabKey {
     /// # Errors
     /// The file exists, or cannot be written.
     pub fn write(&self, file: &Path) -> Result<(), RunError> {
-        write_secret(file, &key_text(PRIVATE, &self.0.to_bytes()))
+        write_secret_file(file, &format_key_file(PRIVATE_KEY_TITLE, &self.0.to_bytes()))
     }
 
     /// Returns the secret that seals the snapshots of a study. The key cannot be derived from it.
     pub fn seal_secret(&self) -> [u8; 32] {
-        blake3::derive_key(SEAL_CONTEXT, &self.0.to_bytes())
+        blake3::derive_key(SEAL_KEY_CONTEXT, &self.0.to_bytes())
     }
 
     /// Returns the public key.
-    pub fn public(&self) -> LabPublicKey {
+    pub fn public_key(&self) -> LabPublicKey {
         LabPublicKey(self.0.verifying_key())
     }
 
@@ -80,8 +80,8 @@ impl LabKey {
     pub(super) fn sign(&self, seal: &str) -> String {
         let file = SignatureFile {
             algorithm: "ed25519".to_owned(),
-            key: hex(self.public().0.as_bytes()),
-            signature: hex(&self.0.sign(&purposeful(seal)).to_bytes()),
+            key: to_hex(self.public_key().0.as_bytes()),
+            signature: to_hex(&self.0.sign(&signed_message(seal)).to_bytes()),
         };
         toml::to_string(&file).expect("a signature holds plain values")
     }
@@ -93,8 +93,8 @@ impl LabPublicKey {
     /// # Errors
     /// The file cannot be read, or is not a public key.
     pub fn read(file: &Path) -> Result<LabPublicKey, RunError> {
-        let bytes = read_key(file, PUBLIC)?;
-        VerifyingKey::from_bytes(&bytes).map(LabPublicKey).map_err(|_| no_key(file))
+        let bytes = read_key_file(file, PUBLIC_KEY_TITLE)?;
+        VerifyingKey::from_bytes(&bytes).map(LabPublicKey).map_err(|_| invalid_key_error(file))
     }
 
     /// Writes the key into a new file.
@@ -102,7 +102,7 @@ impl LabPublicKey {
     /// # Errors
     /// The file exists, or cannot be written.
     pub fn write(&self, file: &Path) -> Result<(), RunError> {
-        let text = key_text(PUBLIC, self.0.as_bytes());
+        let text = format_key_file(PUBLIC_KEY_TITLE, self.0.as_bytes());
         let written = File::create_new(file).and_then(|mut out| out.write_all(text.as_bytes()));
         written.map_err(RunError::io(file))
     }
@@ -118,31 +118,31 @@ impl LabPublicKey {
 ///
 /// # Errors
 /// A description of the problem if the signature is not valid for the seal.
-pub(super) fn signer_of(seal: &str, signature: &str) -> Result<LabPublicKey, String> {
+pub(super) fn verify_signature(seal: &str, signature: &str) -> Result<LabPublicKey, String> {
     let file: SignatureFile = toml::from_str(signature)
         .map_err(|error| format!("seal.sig cannot be read ({})", error.message()))?;
     if file.algorithm != "ed25519" {
         return Err(format!("seal.sig uses an unknown algorithm: {}", file.algorithm));
     }
     let odd = || "seal.sig is not a valid signature".to_owned();
-    let key = VerifyingKey::from_bytes(&bytes(&file.key).ok_or_else(odd)?).map_err(|_| odd())?;
-    let signature = Signature::from_bytes(&bytes(&file.signature).ok_or_else(odd)?);
-    key.verify_strict(&purposeful(seal), &signature)
+    let key = VerifyingKey::from_bytes(&parse_hex(&file.key).ok_or_else(odd)?).map_err(|_| odd())?;
+    let signature = Signature::from_bytes(&parse_hex(&file.signature).ok_or_else(odd)?);
+    key.verify_strict(&signed_message(seal), &signature)
         .map(|()| LabPublicKey(key))
         .map_err(|_| "seal.sig does not belong to seal.toml: one of them was changed".to_owned())
 }
 
 /// Reads `seal.key`.
 pub fn read_seal_key(file: &Path) -> Result<[u8; 32], RunError> {
-    read_key(file, SEAL)
+    read_key_file(file, SEAL_KEY_TITLE)
 }
 
 /// Writes `seal.key` into a new file that only its owner can read.
 pub fn write_seal_key(secret: &[u8; 32], file: &Path) -> Result<(), RunError> {
-    write_secret(file, &key_text(SEAL, secret))
+    write_secret_file(file, &format_key_file(SEAL_KEY_TITLE, secret))
 }
 
-fn write_secret(file: &Path, text: &str) -> Result<(), RunError> {
+fn write_secret_file(file: &Path, text: &str) -> Result<(), RunError> {
     let mut options = OpenOptions::new();
     options.write(true).create_new(true);
     #[cfg(unix)]
@@ -150,32 +150,32 @@ fn write_secret(file: &Path, text: &str) -> Result<(), RunError> {
     let written =
         options.open(file).and_then(|mut out| out.write_all(text.as_bytes()).and_then(|()| out.sync_all()));
     written.map_err(RunError::io(file))?;
-    sync_folder(folder_of(file))
+    sync_folder(parent_folder(file))
 }
 
-fn purposeful(seal: &str) -> Vec<u8> {
-    [PURPOSE, seal.as_bytes()].concat()
+fn signed_message(seal: &str) -> Vec<u8> {
+    [SIGNATURE_CONTEXT, seal.as_bytes()].concat()
 }
 
-fn key_text(title: &str, key: &[u8; 32]) -> String {
-    format!("{title}\n{}\n", hex(key))
+fn format_key_file(title: &str, key: &[u8; 32]) -> String {
+    format!("{title}\n{}\n", to_hex(key))
 }
 
-fn read_key(file: &Path, title: &str) -> Result<[u8; 32], RunError> {
+fn read_key_file(file: &Path, title: &str) -> Result<[u8; 32], RunError> {
     let text = std::fs::read_to_string(file).map_err(RunError::io(file))?;
     let digits = text.trim_end().strip_prefix(title).map(str::trim);
-    digits.and_then(bytes).ok_or_else(|| no_key(file))
+    digits.and_then(parse_hex).ok_or_else(|| invalid_key_error(file))
 }
 
-fn no_key(file: &Path) -> RunError {
-    RunError::NotPossible(format!("{} is not a key of this kind; nothing was changed", file.display()))
+fn invalid_key_error(file: &Path) -> RunError {
+    RunError::InvalidRequest(format!("{} is not a key of this kind; nothing was changed", file.display()))
 }
 
-fn hex(bytes: &[u8]) -> String {
+fn to_hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-fn bytes<const COUNT: usize>(hex: &str) -> Option<[u8; COUNT]> {
+fn parse_hex<const COUNT: usize>(hex: &str) -> Option<[u8; COUNT]> {
     let fits = hex.len() == 2 * COUNT && hex.bytes().all(|digit| digit.is_ascii_hexdigit());
     let mut bytes = [0; COUNT];
     for (at, byte) in bytes.iter_mut().enumerate().filter(|_| fits) {
@@ -189,16 +189,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn keys_come_back_from_their_files_and_are_kept_from_others() {
+    fn key_files_round_trip_and_are_owner_only() {
         let folder = tempfile::tempdir().expect("a folder");
         let (own, public) = (folder.path().join("lab.key"), folder.path().join("lab.pub"));
         let key = LabKey::generate().expect("a key");
         key.write(&own).expect("written");
-        key.public().write(&public).expect("written");
-        assert_eq!(LabKey::read(&own).expect("a key").public(), key.public());
-        assert_eq!(LabPublicKey::read(&public).expect("a key"), key.public());
+        key.public_key().write(&public).expect("written");
+        assert_eq!(LabKey::read(&own).expect("a key").public_key(), key.public_key());
+        assert_eq!(LabPublicKey::read(&public).expect("a key"), key.public_key());
         assert!(key.write(&own).is_err(), "a key is not overwritten");
-        assert_ne!(LabKey::generate().expect("a key").public().fingerprint(), key.public().fingerprint());
+        assert_ne!(
+            LabKey::generate().expect("a key").public_key().fingerprint(),
+            key.public_key().fingerprint()
+        );
         #[cfg(unix)]
         {
             use std::os::unix::fs::PermissionsExt;
@@ -213,19 +216,22 @@ mod tests {
     }
 
     #[test]
-    fn a_signature_holds_for_one_seal_and_no_change() {
+    fn signature_is_valid_for_one_unchanged_seal() {
         let key = LabKey::generate().expect("a key");
         let (seal, signature) = ("format = 1\n", key.sign("format = 1\n"));
-        assert_eq!(signer_of(seal, &signature), Ok(key.public()));
-        assert!(signer_of("format = 2\n", &signature).is_err());
+        assert_eq!(verify_signature(seal, &signature), Ok(key.public_key()));
+        assert!(verify_signature("format = 2\n", &signature).is_err());
         for (at, letter) in signature.char_indices().filter(|(_, letter)| letter.is_ascii_alphanumeric()) {
             let other = if letter == '1' { "2" } else { "1" };
             let mut changed = signature.clone();
             changed.replace_range(at..=at, other);
-            assert!(signer_of(seal, &changed).is_err(), "the change of character {at} was not detected");
+            assert!(
+                verify_signature(seal, &changed).is_err(),
+                "the change of character {at} was not detected"
+            );
         }
         // A signature with another key is valid and names its signer.
         let other = LabKey::generate().expect("a key");
-        assert_eq!(signer_of(seal, &other.sign(seal)), Ok(other.public()));
+        assert_eq!(verify_signature(seal, &other.sign(seal)), Ok(other.public_key()));
     }
 }

@@ -21,40 +21,40 @@ mod export;
 mod import;
 mod lab_key;
 mod seal;
-mod workshop;
+mod temporary_folder;
 
 use std::path::Path;
 
 pub use export::Export;
-pub use import::{Imported, import_run};
+pub use import::{ImportOutcome, import_run};
 pub use lab_key::{LabKey, LabPublicKey};
 pub use lab_key::{read_seal_key, write_seal_key};
 pub use seal::Seal;
-pub use workshop::{Workshop, close_workshops};
+pub use temporary_folder::{TemporaryFolder, remove_temporary_folders};
 
-use crate::recording::recorder::AFTERWARDS;
+use crate::recording::recorder::AFTERWARDS_FILE;
 use novamind_record::error::RunError;
 use novamind_record::lesson::{PLAN_FILE, TEXTS_FILE};
 
 /// Files that an archive can contain, with their maximum sizes in bytes: enough for any run, too few to fill a disk.
-const FILES: [(&str, u64); 9] = [
-    (SEAL, 1 << 20),
-    (SIGNATURE, 1 << 10),
-    (MANIFEST, 1 << 20),
-    (TRAJECTORY, 4 << 30),
-    (AFTERWARDS, 1 << 30),
+const ENTRY_LIMITS: [(&str, u64); 9] = [
+    (SEAL_FILE, 1 << 20),
+    (SIGNATURE_FILE, 1 << 10),
+    (MANIFEST_FILE, 1 << 20),
+    (TRAJECTORY_FILE, 4 << 30),
+    (AFTERWARDS_FILE, 1 << 30),
     (PLAN_FILE, 1 << 20),
     (TEXTS_FILE, 1 << 20),
-    (MEMO, 64 << 20),
-    (DATABASE, 16 << 30),
+    (NOTES_FILE, 64 << 20),
+    (DATABASE_FILE, 16 << 30),
 ];
 
-const SEAL: &str = "seal.toml";
-const SIGNATURE: &str = "seal.sig";
-const MANIFEST: &str = "run.toml";
-const TRAJECTORY: &str = "trajectory.jsonl";
-const MEMO: &str = "memo.md";
-const DATABASE: &str = "world.db";
+const SEAL_FILE: &str = "seal.toml";
+const SIGNATURE_FILE: &str = "seal.sig";
+const MANIFEST_FILE: &str = "run.toml";
+const TRAJECTORY_FILE: &str = "trajectory.jsonl";
+const NOTES_FILE: &str = "memo.md";
+const DATABASE_FILE: &str = "world.db";
 
 fn is_compressed(archive: &Path) -> bool {
     let ending = archive.extension().map(|ending| ending.to_ascii_lowercase());
@@ -67,16 +67,16 @@ pub fn is_archive_name(name: &str) -> bool {
 }
 
 /// Whether the name is a run identifier: eight hexadecimal digits.
-pub fn is_run_name(name: &str) -> bool {
+pub fn is_run_id(name: &str) -> bool {
     name.len() == 8 && name.bytes().all(|digit| matches!(digit, b'0'..=b'9' | b'a'..=b'f'))
 }
 
 /// Returns the error for an unusable archive. Nothing was changed.
-fn refused(archive: &Path, problem: impl AsRef<str>) -> RunError {
-    RunError::Archive {
+fn archive_error(archive: &Path, problem: impl AsRef<str>) -> RunError {
+    RunError::InvalidArchive {
         path: archive.to_owned(),
-        problem: printable(problem.as_ref()),
-        safe:
+        problem: escape_untrusted(problem.as_ref()),
+        remedy:
             "Nothing was imported and no run was changed; ask for the archive again, or export the run again"
                 .to_owned(),
     }
@@ -84,11 +84,11 @@ fn refused(archive: &Path, problem: impl AsRef<str>) -> RunError {
 
 /// Makes a text that can quote bytes of a foreign file safe to print on one line: escapes control characters and
 /// truncates it.
-fn printable(text: &str) -> String {
-    const MOST: usize = 400;
+fn escape_untrusted(text: &str) -> String {
+    const MAX_CHARACTERS: usize = 400;
     let mut line = String::new();
     for (place, letter) in text.chars().enumerate() {
-        if place == MOST {
+        if place == MAX_CHARACTERS {
             line.push('…');
             break;
         }

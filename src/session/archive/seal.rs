@@ -50,7 +50,7 @@ impl SealedFile {
     ///
     /// # Errors
     /// The file cannot be read.
-    pub fn of(folder: &Path, name: &str) -> Result<SealedFile, RunError> {
+    pub fn from_file(folder: &Path, name: &str) -> Result<SealedFile, RunError> {
         let path = folder.join(name);
         let mut file = File::open(&path).map_err(RunError::io(&path))?;
         let copied = copy_hashed(&mut file, &mut io::sink()).map_err(io::Error::from);
@@ -61,23 +61,23 @@ impl SealedFile {
 
 impl Seal {
     /// Returns the seal with its checksum.
-    pub fn signed(self) -> Seal {
-        Seal { checksum: self.own_checksum(), ..self }
+    pub fn with_checksum(self) -> Seal {
+        Seal { checksum: self.compute_checksum(), ..self }
     }
 
     /// Whether the checksum is correct.
     pub fn is_intact(&self) -> bool {
-        self.checksum == self.own_checksum()
+        self.checksum == self.compute_checksum()
     }
 
     /// Returns the seal as TOML.
-    pub fn text(&self) -> String {
+    pub fn to_toml(&self) -> String {
         toml::to_string(self).expect("a seal holds plain values")
     }
 
-    fn own_checksum(&self) -> String {
+    fn compute_checksum(&self) -> String {
         let bare = Seal { checksum: String::new(), ..self.clone() };
-        blake3::hash(bare.text().as_bytes()).to_hex().to_string()
+        blake3::hash(bare.to_toml().as_bytes()).to_hex().to_string()
     }
 }
 
@@ -120,7 +120,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_change_of_a_seal_shows() {
+    fn seal_detects_every_changed_character() {
         let file = SealedFile { name: "run.toml".to_owned(), bytes: 3, blake3: "00".to_owned() };
         let seal = Seal {
             format: SEAL_FORMAT,
@@ -133,10 +133,10 @@ mod tests {
             file: vec![file],
         };
         assert!(!seal.is_intact());
-        let seal = seal.signed();
+        let seal = seal.with_checksum();
         assert!(seal.is_intact());
-        assert_eq!(toml::from_str::<Seal>(&seal.text()).expect("it reads back"), seal);
-        let text = seal.text();
+        assert_eq!(toml::from_str::<Seal>(&seal.to_toml()).expect("it reads back"), seal);
+        let text = seal.to_toml();
         for (at, byte) in text.bytes().enumerate().filter(|(_, byte)| byte.is_ascii_alphanumeric()) {
             let mut changed = text.clone().into_bytes();
             changed[at] = if byte == b'1' { b'2' } else { b'1' };

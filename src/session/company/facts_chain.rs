@@ -20,18 +20,18 @@ pub(crate) fn state_hash(mut parts: Vec<PartHash>, facts: blake3::Hash) -> State
 pub(crate) struct FactsChain {
     hash: blake3::Hash,
     /// The week has ended: the next facts start a new chain.
-    closed: bool,
+    is_closed: bool,
 }
 
 impl Default for FactsChain {
     fn default() -> Self {
-        FactsChain { hash: blake3::hash(b""), closed: false }
+        FactsChain { hash: blake3::hash(b""), is_closed: false }
     }
 }
 
 impl FactsChain {
     pub(crate) fn add(&mut self, facts: &Facts) {
-        if self.closed {
+        if self.is_closed {
             *self = FactsChain::default();
         }
         let mut hasher = blake3::Hasher::new();
@@ -40,16 +40,16 @@ impl FactsChain {
         self.hash = hasher.finalize();
     }
 
-    pub(crate) fn resume(hash: blake3::Hash, closed: bool) -> FactsChain {
-        FactsChain { hash, closed }
+    pub(crate) fn from_hash(hash: blake3::Hash, closed: bool) -> FactsChain {
+        FactsChain { hash, is_closed: closed }
     }
 
     pub(crate) fn is_closed(&self) -> bool {
-        self.closed
+        self.is_closed
     }
 
     pub(crate) fn close(&mut self) {
-        self.closed = true;
+        self.is_closed = true;
     }
 
     /// Returns the hash of the current week, or of the last one if none has started since.

@@ -9,12 +9,12 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use novamind_database::Entry;
+use novamind_database::ProjectionEntry;
 use novamind_tools::PublicPost;
-use novamind_voice::judge::{Judgement, Original};
-use novamind_voice::posts::Writer;
+use novamind_voice::judge::{Judgement, OriginalPost};
+use novamind_voice::posts::PostWriter;
 use novamind_voice::posts::names::profile_name;
-use novamind_world::events::{Facts, Matter, Post, Sender, Sentiment};
+use novamind_world::events::{Facts, Post, PostSubject, Sender, Sentiment};
 use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
 use novamind_world::random::Streams;
@@ -22,7 +22,7 @@ use novamind_world::random::Streams;
 /// All posts so far, and the judgements of the player's posts.
 #[derive(Clone, Default, Serialize, Deserialize)]
 pub struct Feed {
-    writer: Writer,
+    writer: PostWriter,
     /// Posts of other authors as the player sees them, ordered by number.
     #[serde(with = "kept_posts")]
     pub posts: Vec<PublicPost>,
@@ -75,26 +75,26 @@ impl Feed {
         of_post.iter().find(|judgement| judgement.group == group)
     }
 
-    pub(crate) fn word(&mut self, facts: &Facts, params: &Params, streams: &Streams) {
+    pub(crate) fn add_posts(&mut self, facts: &Facts, params: &Params, streams: &Streams) {
         for post in &facts.posts {
             let judgement = match post.matter {
-                Matter::Comment { own_post, group, .. } => self.judgement(own_post, group).cloned(),
+                PostSubject::Comment { own_post, group, .. } => self.judgement(own_post, group).cloned(),
                 _ => None,
             };
             let content = self.writer.write(post, judgement.as_ref(), params, streams);
             self.complains.push(post.sentiment == Sentiment::Negative);
-            self.posts.push(public_post(post, facts.day, content, streams));
+            self.posts.push(to_public_post(post, facts.day, content, streams));
         }
     }
 
     /// Returns the texts of the posts in `facts`, which must be the newest ones.
-    pub(crate) fn words_of(&self, facts: &Facts) -> Vec<String> {
+    pub(crate) fn texts_of(&self, facts: &Facts) -> Vec<String> {
         let first = self.posts.len().saturating_sub(facts.posts.len());
         self.posts[first..].iter().map(|post| post.content.clone()).collect()
     }
 
     /// Replaces the text of a post. Does nothing if the post does not exist.
-    pub(crate) fn reword(&mut self, post: u32, text: &str) {
+    pub(crate) fn replace_text(&mut self, post: u32, text: &str) {
         let own = (post as usize).checked_sub(1).and_then(|at| self.posts.get_mut(at));
         let Some(own) = own else { return };
         let before = std::mem::replace(&mut own.content, text.to_owned());
@@ -103,17 +103,17 @@ impl Feed {
 
     /// Returns the post with this number as the original of a reply. Always uses the text of the built-in voice,
     /// because the effect of a reply is part of the world's state.
-    pub(crate) fn original(&self, post: u32) -> Option<Original<'_>> {
+    pub(crate) fn original_post(&self, post: u32) -> Option<OriginalPost<'_>> {
         let at = (post as usize).checked_sub(1)?;
         let own = self.posts.get(at)?;
         let content = self.built_in.get(&post).unwrap_or(&own.content);
-        Some(Original { content, negative: self.complains[at], group: own.written_by })
+        Some(OriginalPost { content, negative: self.complains[at], group: own.written_by })
     }
 }
 
-fn public_post(post: &Post, day: u32, content: String, streams: &Streams) -> PublicPost {
+fn to_public_post(post: &Post, day: u32, content: String, streams: &Streams) -> PublicPost {
     let (own_post, source_group) = match post.matter {
-        Matter::Comment { own_post, group, .. } => (Some(own_post), Some(group)),
+        PostSubject::Comment { own_post, group, .. } => (Some(own_post), Some(group)),
         _ => (None, None),
     };
     PublicPost {
@@ -127,20 +127,25 @@ fn public_post(post: &Post, day: u32, content: String, streams: &Streams) -> Pub
     }
 }
 
-pub(crate) fn entry_of(facts: &Arc<Facts>, notices: Vec<String>, feed: &Feed, params: &Params) -> Entry {
+pub(crate) fn build_entry(
+    facts: &Arc<Facts>,
+    notices: Vec<String>,
+    feed: &Feed,
+    params: &Params,
+) -> ProjectionEntry {
     let companies = facts.arrivals.iter().filter(|arrival| arrival.group.is_enterprise());
     let writers = facts.turns.iter().filter(|turn| turn.sender == Sender::Customer);
     let named = companies.map(|arrival| arrival.customer).chain(writers.map(|turn| turn.customer));
     let personas = &params.personas;
-    Entry {
+    ProjectionEntry {
         notices,
-        readings: facts.readings.iter().map(novamind_voice::reading).collect(),
+        readings: facts.readings.iter().map(novamind_voice::reading_text).collect(),
         turns: facts.turns.iter().map(|turn| novamind_voice::message(turn, personas)).collect(),
-        posts: feed.words_of(facts),
+        posts: feed.texts_of(facts),
         addresses: named
-            .map(|customer| (customer, novamind_voice::address(customer, &personas.email)))
+            .map(|customer| (customer, novamind_voice::enterprise_address(customer, &personas.email)))
             .collect(),
         facts: facts.clone(),
-        ..Entry::default()
+        ..ProjectionEntry::default()
     }
 }

@@ -1,14 +1,14 @@
 //! The history of a run for screens, dashboard and reports: figures of weeks, decisions, journal.
 
-use super::first_answers::FirstAnswers;
-use super::irrevocable::Irrevocable;
+use super::idempotency::IdempotentResponses;
+use super::irrevocable::IrrevocableAction;
 use super::simulation::Simulation;
-use super::this_week::ThisWeek;
-use crate::figures::changes::{Change, Decisions, changes};
+use super::week_actions::WeekActions;
+use crate::figures::changes::{Decisions, SettingChange, setting_changes};
 use crate::figures::groups::{self, GroupWeek};
 use crate::figures::journal::JournalEntry;
 use novamind_record::figures::WeekFigures;
-use novamind_record::trajectory::record::{Calculated, Ended};
+use novamind_record::trajectory::record::{CalculationOutput, RunEndReason};
 use novamind_world::events::{DayFigures, LedgerEntry, Notice};
 use novamind_world::identifiers::ByGroup;
 use novamind_world::state::World;
@@ -19,66 +19,71 @@ pub(crate) struct History {
     /// Figures of every completed week, including a shortened last one.
     pub(crate) weeks: Vec<WeekFigures>,
     /// Figures of a week that was started with single days.
-    pub(crate) running_week: WeekFigures,
+    pub(crate) current_week: WeekFigures,
     /// Group figures of every completed week.
     pub(crate) group_weeks: Vec<ByGroup<GroupWeek>>,
     /// Group figures of a week that was started with single days.
-    pub(crate) running_groups: ByGroup<GroupWeek>,
+    pub(crate) current_groups: ByGroup<GroupWeek>,
     pub(crate) decisions: Vec<Decisions>,
     /// Notices of the last simulated days: day and text.
     pub(crate) notices: Vec<(u32, String)>,
-    pub(crate) this_week: ThisWeek,
+    pub(crate) week_actions: WeekActions,
     pub(crate) journal: Vec<JournalEntry>,
     /// Distinct SQL statements of this run, newest last.
-    pub(crate) asked: Vec<String>,
-    pub(crate) calculated: Vec<Calculated>,
+    pub(crate) query_history: Vec<String>,
+    pub(crate) calculation_outputs: Vec<CalculationOutput>,
     /// The dashboard after the last simulated days; `None` before the first.
     pub(crate) last_dashboard: Option<String>,
     /// Ledger entries of calls since the last day.
-    pub(crate) called: Vec<LedgerEntry>,
-    pub(crate) ended: Option<Ended>,
-    pub(crate) first_answers: FirstAnswers,
+    pub(crate) call_ledger: Vec<LedgerEntry>,
+    pub(crate) ended: Option<RunEndReason>,
+    pub(crate) idempotent_responses: IdempotentResponses,
 }
 
 impl History {
-    pub(crate) fn begin(world: &World) -> History {
+    pub(crate) fn new(world: &World) -> History {
         let settings = world.settings.clone();
         History {
             cash_by_day: vec![world.finance.cash],
             weeks: Vec::new(),
-            running_week: WeekFigures::default(),
+            current_week: WeekFigures::default(),
             group_weeks: Vec::new(),
-            running_groups: ByGroup::default(),
+            current_groups: ByGroup::default(),
             decisions: Vec::new(),
             notices: Vec::new(),
-            this_week: ThisWeek { settings, undo: Vec::new(), redo: Vec::new(), done: Vec::new() },
+            week_actions: WeekActions {
+                settings,
+                undo: Vec::new(),
+                redo: Vec::new(),
+                irrevocable_actions: Vec::new(),
+            },
             journal: Vec::new(),
-            asked: Vec::new(),
-            calculated: Vec::new(),
+            query_history: Vec::new(),
+            calculation_outputs: Vec::new(),
             last_dashboard: None,
-            called: Vec::new(),
+            call_ledger: Vec::new(),
             ended: None,
-            first_answers: FirstAnswers::default(),
+            idempotent_responses: IdempotentResponses::default(),
         }
     }
 
     /// Returns the settings changed since the last week, with old and new values.
-    pub(crate) fn changes(&self, world: &World) -> Vec<Change> {
-        changes(&self.this_week.settings, &world.settings)
+    pub(crate) fn setting_changes(&self, world: &World) -> Vec<SettingChange> {
+        setting_changes(&self.week_actions.settings, &world.settings)
     }
 
-    pub(crate) fn count_day(&mut self, figures: &DayFigures, simulation: &Simulation, notices: &[String]) {
+    pub(crate) fn record_day(&mut self, figures: &DayFigures, simulation: &Simulation, notices: &[String]) {
         let Simulation { facts, params, world, .. } = simulation;
         self.cash_by_day.push(figures.cash);
         let repeated = |notice: &Notice| matches!(notice, Notice::LeadLossRepeated { .. });
         let told = facts.notices.iter().zip(notices).filter(|(notice, _)| !repeated(notice));
         self.notices.extend(told.map(|(_, text)| (figures.day, text.clone())));
-        groups::count(&mut self.running_groups, figures, facts, world);
-        self.running_week.count(figures, facts, &self.called, params);
+        groups::count_day(&mut self.current_groups, figures, facts, world);
+        self.current_week.add_simulated_day(figures, facts, &self.call_ledger, params);
     }
 
     /// Completes the figures of the simulated days, and of the week if it has ended.
-    pub(crate) fn settle(
+    pub(crate) fn finish_days(
         &mut self,
         simulation: &Simulation,
         opening_cash: f64,
@@ -86,32 +91,37 @@ impl History {
     ) -> WeekFigures {
         let Simulation { params, world, .. } = simulation;
         let before = self.weeks.last().map_or(opening_cash, |week| week.cash);
-        self.running_week.cash_change = world.finance.cash - before;
-        self.running_week.open_issues = open_issues;
-        let figures = self.running_week;
+        self.current_week.cash_change = world.finance.cash - before;
+        self.current_week.open_issues = open_issues;
+        let figures = self.current_week;
         if world.day.is_multiple_of(params.run.days_per_week) || world.is_over(params) {
             self.weeks.push(figures);
-            self.running_week = WeekFigures::default();
-            let mut groups = std::mem::take(&mut self.running_groups);
-            groups::settle(&mut groups, world, params, |group| simulation.estimated_floor(group));
+            self.current_week = WeekFigures::default();
+            let mut groups = std::mem::take(&mut self.current_groups);
+            groups::finish_week(&mut groups, world, params, |group| {
+                simulation.estimated_required_quality(group)
+            });
             self.group_weeks.push(groups);
         }
         self.decisions.push(Decisions {
             day: self.decisions.last().map_or(0, |before| before.until),
             until: world.day,
-            changes: self.changes(world),
-            purchases: std::mem::take(&mut self.this_week.done).iter().map(Irrevocable::to_string).collect(),
+            changes: self.setting_changes(world),
+            purchases: std::mem::take(&mut self.week_actions.irrevocable_actions)
+                .iter()
+                .map(IrrevocableAction::to_string)
+                .collect(),
         });
         self.journal.push(JournalEntry::Week { figures });
-        self.this_week.begin(world.settings.clone());
+        self.week_actions.reset(world.settings.clone());
         figures
     }
 
     /// Returns the figures of the current week, or of the last one if no day of the current week has run.
     pub(crate) fn latest_week(&self) -> WeekFigures {
-        match self.running_week.days_run {
+        match self.current_week.days_run {
             0 => self.weeks.last().copied().unwrap_or_default(),
-            _ => self.running_week,
+            _ => self.current_week,
         }
     }
 }

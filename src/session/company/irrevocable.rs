@@ -7,17 +7,17 @@ use std::fmt::{self, Display, Formatter};
 use serde::{Deserialize, Serialize};
 
 use super::simulation::Simulation;
-use novamind_base::notation::{cents, grouped};
+use novamind_base::formatting::{cents, grouped_number};
 use novamind_world::command::ResolvedCommand;
-use novamind_world::enterprise::letters::Letter;
+use novamind_world::enterprise::messages::OfferMessage;
 use novamind_world::events::Offering;
 use novamind_world::identifiers::{Group, Plan};
 
 /// Offers or threads of one call that are listed one by one.
-const NAMED: usize = 5;
+const MAX_NAMED_ENTRIES: usize = 5;
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) enum Irrevocable {
+pub(crate) enum IrrevocableAction {
     Single(String),
     /// Offers of the same plans to enterprises of a group.
     Offered {
@@ -33,23 +33,23 @@ pub(crate) enum Irrevocable {
     },
 }
 
-impl Irrevocable {
-    pub(crate) fn add(done: &mut Vec<Irrevocable>, more: Vec<Irrevocable>) {
+impl IrrevocableAction {
+    pub(crate) fn merge_all(done: &mut Vec<IrrevocableAction>, more: Vec<IrrevocableAction>) {
         for own in more {
-            if !done.iter_mut().any(|before| before.takes_in(&own)) {
+            if !done.iter_mut().any(|before| before.try_merge(&own)) {
                 done.push(own);
             }
         }
     }
 
     /// Merges another action into this one. Returns false if they are of different kinds.
-    fn takes_in(&mut self, other: &Irrevocable) -> bool {
-        use Irrevocable::{Ended, Offered};
+    fn try_merge(&mut self, other: &IrrevocableAction) -> bool {
+        use IrrevocableAction::{Ended, Offered};
         match (self, other) {
             (
                 Offered { group, offerings, companies },
                 Offered { group: to, offerings: more, companies: count },
-            ) if group == to && plans(offerings).eq(plans(more)) => {
+            ) if group == to && offered_plans(offerings).eq(offered_plans(more)) => {
                 for ((_, least, most), (_, low, high)) in offerings.iter_mut().zip(more) {
                     (*least, *most) = (least.min(*low), most.max(*high));
                 }
@@ -65,20 +65,25 @@ impl Irrevocable {
     }
 }
 
-fn plans(offerings: &[(Plan, f64, f64)]) -> impl Iterator<Item = Plan> {
+fn offered_plans(offerings: &[(Plan, f64, f64)]) -> impl Iterator<Item = Plan> {
     offerings.iter().map(|(plan, ..)| *plan)
 }
 
-impl Display for Irrevocable {
+impl Display for IrrevocableAction {
     fn fmt(&self, out: &mut Formatter<'_>) -> fmt::Result {
         match self {
-            Irrevocable::Single(words) => out.write_str(words),
-            Irrevocable::Offered { group, offerings, companies } => {
-                let offerings: Vec<String> = offerings.iter().map(offering_in_words).collect();
-                write!(out, "offered {} to {}", offerings.join(" or "), counted(*companies, *group))
+            IrrevocableAction::Single(words) => out.write_str(words),
+            IrrevocableAction::Offered { group, offerings, companies } => {
+                let offerings: Vec<String> = offerings.iter().map(describe_offering).collect();
+                write!(
+                    out,
+                    "offered {} to {}",
+                    offerings.join(" or "),
+                    describe_companies(*companies, *group)
+                )
             }
-            Irrevocable::Ended { group, companies } => {
-                write!(out, "threads with {} ended", counted(*companies, Some(*group)))
+            IrrevocableAction::Ended { group, companies } => {
+                write!(out, "threads with {} ended", describe_companies(*companies, Some(*group)))
             }
         }
     }
@@ -86,8 +91,8 @@ impl Display for Irrevocable {
 
 impl Simulation {
     /// Returns the irrevocable actions of a command that is about to be applied.
-    pub(crate) fn irrevocable(&self, resolved: &ResolvedCommand) -> Vec<Irrevocable> {
-        let single = |words: String| vec![Irrevocable::Single(words)];
+    pub(crate) fn irrevocable_actions(&self, resolved: &ResolvedCommand) -> Vec<IrrevocableAction> {
+        let single = |words: String| vec![IrrevocableAction::Single(words)];
         match resolved {
             ResolvedCommand::None | ResolvedCommand::Set(_) | ResolvedCommand::ReadInsights(_) => Vec::new(),
             ResolvedCommand::Post(_) => single("post published".to_owned()),
@@ -102,54 +107,54 @@ impl Simulation {
                 let (group, level, day) = (study.group, study.target, study.due_day);
                 single(format!("study of {group} to level {level} ordered, done on day {day}"))
             }
-            ResolvedCommand::SendDeals(letters) => self.offers(letters),
-            ResolvedCommand::RejectDeals(threads) => self.rejections(threads),
+            ResolvedCommand::SendDeals(letters) => self.offer_actions(letters),
+            ResolvedCommand::RejectDeals(threads) => self.rejection_actions(threads),
         }
     }
 
-    fn offers(&self, letters: &[Letter]) -> Vec<Irrevocable> {
-        if letters.len() <= NAMED {
-            return letters.iter().map(|letter| self.offer(letter)).collect();
+    fn offer_actions(&self, letters: &[OfferMessage]) -> Vec<IrrevocableAction> {
+        if letters.len() <= MAX_NAMED_ENTRIES {
+            return letters.iter().map(|letter| self.offer_action(letter)).collect();
         }
-        let mut alike: BTreeMap<(Option<Group>, Vec<Plan>), Vec<&Letter>> = BTreeMap::new();
+        let mut alike: BTreeMap<(Option<Group>, Vec<Plan>), Vec<&OfferMessage>> = BTreeMap::new();
         for letter in letters {
             let plans = letter.offerings.iter().map(|offering| offering.plan).collect();
             alike.entry((self.group_of(letter.customer), plans)).or_default().push(letter);
         }
-        let joined = |((group, plans), letters): ((Option<Group>, Vec<Plan>), Vec<&Letter>)| match letters[..]
-        {
-            [only] => self.offer(only),
-            _ => Irrevocable::Offered {
-                group,
-                offerings: (0..plans.len()).map(|at| offering_of_all(&letters, at)).collect(),
-                companies: letters.len() as u32,
-            },
-        };
+        let joined =
+            |((group, plans), letters): ((Option<Group>, Vec<Plan>), Vec<&OfferMessage>)| match letters[..] {
+                [only] => self.offer_action(only),
+                _ => IrrevocableAction::Offered {
+                    group,
+                    offerings: (0..plans.len()).map(|at| price_range_of_offering(&letters, at)).collect(),
+                    companies: letters.len() as u32,
+                },
+            };
         alike.into_iter().map(joined).collect()
     }
 
-    fn rejections(&self, threads: &[u32]) -> Vec<Irrevocable> {
+    fn rejection_actions(&self, threads: &[u32]) -> Vec<IrrevocableAction> {
         let all = &self.world.enterprise.threads;
         let ended = threads.iter().filter_map(|number| {
             all.binary_search_by_key(number, |thread| thread.number).ok().map(|at| &all[at])
         });
-        if threads.len() <= NAMED {
-            let words =
-                ended.map(|thread| format!("thread with {} ended", self.names.with_number(thread.customer)));
-            return words.map(Irrevocable::Single).collect();
+        if threads.len() <= MAX_NAMED_ENTRIES {
+            let words = ended
+                .map(|thread| format!("thread with {} ended", self.names.name_with_number(thread.customer)));
+            return words.map(IrrevocableAction::Single).collect();
         }
         let mut by_group: BTreeMap<Group, u32> = BTreeMap::new();
         for thread in ended {
             *by_group.entry(thread.group).or_default() += 1;
         }
-        by_group.into_iter().map(|(group, companies)| Irrevocable::Ended { group, companies }).collect()
+        by_group.into_iter().map(|(group, companies)| IrrevocableAction::Ended { group, companies }).collect()
     }
 
-    fn offer(&self, letter: &Letter) -> Irrevocable {
+    fn offer_action(&self, letter: &OfferMessage) -> IrrevocableAction {
         let offering = |offering: &Offering| format!("{} {}", offering.plan, cents(offering.price));
         let offerings: Vec<String> = letter.offerings.iter().map(offering).collect();
-        let company = self.names.with_number(letter.customer);
-        Irrevocable::Single(format!("offered to {company}: {}", offerings.join(", ")))
+        let company = self.names.name_with_number(letter.customer);
+        IrrevocableAction::Single(format!("offered to {company}: {}", offerings.join(", ")))
     }
 
     fn group_of(&self, customer: u32) -> Option<Group> {
@@ -157,21 +162,21 @@ impl Simulation {
     }
 }
 
-fn counted(count: u32, group: Option<Group>) -> String {
+fn describe_companies(count: u32, group: Option<Group>) -> String {
     let of = group.map_or(String::new(), |group| format!(" of {group}"));
     let noun = if count == 1 { "company" } else { "companies" };
-    format!("{} {noun}{of}", grouped(f64::from(count), 0))
+    format!("{} {noun}{of}", grouped_number(f64::from(count), 0))
 }
 
 /// Returns the plan and the lowest and highest price of the offering at position `at` of all letters.
-fn offering_of_all(letters: &[&Letter], at: usize) -> (Plan, f64, f64) {
+fn price_range_of_offering(letters: &[&OfferMessage], at: usize) -> (Plan, f64, f64) {
     let prices = letters.iter().map(|letter| letter.offerings[at].price);
     let (least, most) =
         prices.fold((f64::INFINITY, f64::NEG_INFINITY), |all, price| (all.0.min(price), all.1.max(price)));
     (letters[0].offerings[at].plan, least, most)
 }
 
-fn offering_in_words(&(plan, least, most): &(Plan, f64, f64)) -> String {
+fn describe_offering(&(plan, least, most): &(Plan, f64, f64)) -> String {
     match least == most {
         true => format!("{plan} at {}", cents(least)),
         false => format!("{plan} at {} to {}", cents(least), cents(most)),
@@ -185,13 +190,13 @@ mod tests {
     use crate::play::Session;
     use novamind_record::folder::configuration::Configuration;
 
-    fn letter(customer: u32, offerings: &[(Plan, f64)]) -> Letter {
+    fn letter(customer: u32, offerings: &[(Plan, f64)]) -> OfferMessage {
         let offerings =
             offerings.iter().map(|(plan, price)| Offering { plan: *plan, price: *price }).collect();
-        Letter {
+        OfferMessage {
             customer,
             thread: customer,
-            begins: false,
+            starts_thread: false,
             turn: 1,
             offerings,
             relationship: None,
@@ -200,17 +205,18 @@ mod tests {
     }
 
     #[test]
-    fn few_offers_are_named_and_many_are_counted_by_plan() {
-        let session = Session::create(NewRun::default(), &Configuration::shipped()).expect("a run");
-        let told = |letters: &[Letter]| {
-            let done = session.simulation().irrevocable(&ResolvedCommand::SendDeals(letters.to_vec()));
-            done.iter().map(Irrevocable::to_string).collect::<Vec<_>>()
+    fn few_offers_are_listed_and_many_are_summarized_by_plan() {
+        let session = Session::create(NewRun::default(), &Configuration::bundled()).expect("a run");
+        let told = |letters: &[OfferMessage]| {
+            let done =
+                session.simulation().irrevocable_actions(&ResolvedCommand::SendDeals(letters.to_vec()));
+            done.iter().map(IrrevocableAction::to_string).collect::<Vec<_>>()
         };
-        let few: Vec<Letter> = (1..=5).map(|customer| letter(customer, &[(Plan::B, 35.0)])).collect();
+        let few: Vec<OfferMessage> = (1..=5).map(|customer| letter(customer, &[(Plan::B, 35.0)])).collect();
         assert_eq!(told(&few).len(), 5);
-        let named = |customer: u32| session.company().company_names().with_number(customer);
+        let named = |customer: u32| session.company().company_names().name_with_number(customer);
         assert_eq!(told(&few)[0], format!("offered to {}: B $35.00", named(1)));
-        let mut many: Vec<Letter> =
+        let mut many: Vec<OfferMessage> =
             (1..=3_569).map(|customer| letter(customer, &[(Plan::B, 35.0)])).collect();
         assert_eq!(told(&many), ["offered B at $35.00 to 3,569 companies"]);
         many.push(letter(4_000, &[(Plan::B, 70.5)]));
@@ -225,26 +231,26 @@ mod tests {
     }
 
     #[test]
-    fn like_ones_of_several_calls_are_one() {
+    fn similar_actions_of_several_calls_are_merged() {
         let s1 = Group::parse("E2").expect("a group");
-        let offered = |plan: Plan, price: f64, companies: u32| Irrevocable::Offered {
+        let offered = |plan: Plan, price: f64, companies: u32| IrrevocableAction::Offered {
             group: Some(s1),
             offerings: vec![(plan, price, price)],
             companies,
         };
-        let mut done = vec![Irrevocable::Single("post published".to_owned())];
+        let mut done = vec![IrrevocableAction::Single("post published".to_owned())];
         for more in [
-            vec![offered(Plan::B, 35.0, 900), Irrevocable::Ended { group: s1, companies: 40 }],
+            vec![offered(Plan::B, 35.0, 900), IrrevocableAction::Ended { group: s1, companies: 40 }],
             vec![offered(Plan::C, 60.0, 10), offered(Plan::B, 30.0, 99)],
             vec![
-                Irrevocable::Ended { group: s1, companies: 2 },
-                Irrevocable::Single("post published".to_owned()),
+                IrrevocableAction::Ended { group: s1, companies: 2 },
+                IrrevocableAction::Single("post published".to_owned()),
             ],
         ] {
-            Irrevocable::add(&mut done, more);
+            IrrevocableAction::merge_all(&mut done, more);
         }
         assert_eq!(
-            done.iter().map(Irrevocable::to_string).collect::<Vec<_>>(),
+            done.iter().map(IrrevocableAction::to_string).collect::<Vec<_>>(),
             [
                 "post published",
                 "offered B at $30.00 to $35.00 to 999 companies of E2",

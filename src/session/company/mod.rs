@@ -2,14 +2,14 @@
 
 pub(crate) mod facts_chain;
 pub(crate) mod feed;
-pub(crate) mod first_answers;
+pub(crate) mod hidden_state;
 pub(crate) mod history;
+pub(crate) mod idempotency;
 pub(crate) mod irrevocable;
-pub(crate) mod judging;
 pub(crate) mod notices;
 pub(crate) mod overrides;
+pub(crate) mod post_judging;
 pub(crate) mod reports;
+pub(crate) mod run_context;
 pub(crate) mod simulation;
-pub(crate) mod surroundings;
-pub(crate) mod this_week;
-pub(crate) mod xray;
+pub(crate) mod week_actions;

@@ -1,86 +1,94 @@
 //! Texts of notices. A notice names its enterprise if the day's facts identify it.
 
-use super::feed::entry_of;
+use super::feed::build_entry;
 use super::simulation::Simulation;
-use novamind_database::Entry;
-use novamind_voice::notices::Party;
+use novamind_database::ProjectionEntry;
+use novamind_voice::notices::NoticeCustomer;
 use novamind_world::events::{EndCause, Notice, SubscriptionStatus};
 
 impl Simulation {
-    pub(crate) fn entry(&self) -> Entry {
-        entry_of(&self.facts, self.notice_texts(), &self.feed, &self.params)
+    pub(crate) fn database_entry(&self) -> ProjectionEntry {
+        build_entry(&self.facts, self.notice_texts(), &self.feed, &self.params)
     }
 
     /// Returns the texts of the notices of the last day or call. Texts of repeated lead losses are empty, because the
     /// database stores them as one fact.
     pub(crate) fn notice_texts(&self) -> Vec<String> {
-        let mut parties = Parties::of(self);
-        self.facts.notices.iter().map(|notice| self.notice_text(notice, parties.next(notice))).collect()
+        let mut parties = NoticeParties::from_simulation(self);
+        self.facts.notices.iter().map(|notice| self.notice_text(notice, parties.next_party(notice))).collect()
     }
 
-    fn notice_text(&self, notice: &Notice, party: Option<Party>) -> String {
+    fn notice_text(&self, notice: &Notice, party: Option<NoticeCustomer>) -> String {
         let Notice::OwnPostSeen(reaction) = notice else {
-            return novamind_voice::notices::notice(notice, party);
+            return novamind_voice::notices::notice_text(notice, party);
         };
         let own = self.world.market.social.own.get(reaction.post as usize - 1);
         let content = own.map_or("", |post| post.content.as_str());
-        novamind_voice::notices::reaction_to(content, reaction, &self.params.ceo_posts)
+        novamind_voice::notices::reaction_text(content, reaction, &self.params.ceo_posts)
     }
 }
 
 /// The enterprises of a day's notices, by kind, in the order of the notices.
-struct Parties {
-    asking: std::vec::IntoIter<Party>,
-    silent: std::vec::IntoIter<Party>,
-    unanswered: std::vec::IntoIter<Party>,
-    agreed: std::vec::IntoIter<Party>,
+struct NoticeParties {
+    new_leads: std::vec::IntoIter<NoticeCustomer>,
+    silent_leads: std::vec::IntoIter<NoticeCustomer>,
+    timed_out_leads: std::vec::IntoIter<NoticeCustomer>,
+    deals: std::vec::IntoIter<NoticeCustomer>,
 }
 
-impl Parties {
-    fn of(simulation: &Simulation) -> Parties {
+impl NoticeParties {
+    fn from_simulation(simulation: &Simulation) -> NoticeParties {
         let Simulation { facts, world, .. } = simulation;
         let notices = |fits: &dyn Fn(&Notice) -> bool| facts.notices.iter().filter(|own| fits(own)).count();
         // Without a one-to-one match, no enterprise is named.
-        let only = |parties: Vec<Party>, count: usize| {
+        let only = |parties: Vec<NoticeCustomer>, count: usize| {
             if parties.len() == count { parties.into_iter() } else { Vec::new().into_iter() }
         };
-        let ended = |cause: EndCause| -> Vec<Party> {
+        let ended = |cause: EndCause| -> Vec<NoticeCustomer> {
             let of_cause = facts.endings.iter().filter(|ending| ending.cause == cause);
             of_cause
-                .map(|ending| Party { customer: ending.customer, group: ending.group, seats: ending.seats })
+                .map(|ending| NoticeCustomer {
+                    customer: ending.customer,
+                    group: ending.group,
+                    seats: ending.seats,
+                })
                 .collect()
         };
         let group = |customer: u32| world.enterprise.company(customer).map(|company| company.group);
-        let asking: Vec<Party> = facts
+        let asking: Vec<NoticeCustomer> = facts
             .openings
             .iter()
             .filter(|opening| opening.status == SubscriptionStatus::Lead)
             .filter_map(|own| {
-                Some(Party { customer: own.customer, group: group(own.customer)?, seats: own.seats })
+                Some(NoticeCustomer { customer: own.customer, group: group(own.customer)?, seats: own.seats })
             })
             .collect();
-        let agreed: Vec<Party> = facts
+        let agreed: Vec<NoticeCustomer> = facts
             .deals
             .iter()
             .filter_map(|deal| {
-                Some(Party { customer: deal.customer, group: group(deal.customer)?, seats: deal.seats })
+                Some(NoticeCustomer {
+                    customer: deal.customer,
+                    group: group(deal.customer)?,
+                    seats: deal.seats,
+                })
             })
             .collect();
         let first = |notice: &Notice| matches!(notice, Notice::LeadLostByTimeout { .. });
-        Parties {
-            asking: only(asking, notices(&|own| *own == Notice::EnterpriseLead)),
-            silent: only(ended(EndCause::LeadSilent), notices(&|own| *own == Notice::LeadSilent)),
-            unanswered: only(ended(EndCause::LeadTimeout), notices(&first)),
-            agreed: only(agreed, notices(&|own| matches!(own, Notice::DealWon { .. }))),
+        NoticeParties {
+            new_leads: only(asking, notices(&|own| *own == Notice::EnterpriseLead)),
+            silent_leads: only(ended(EndCause::LeadSilent), notices(&|own| *own == Notice::LeadSilent)),
+            timed_out_leads: only(ended(EndCause::LeadTimeout), notices(&first)),
+            deals: only(agreed, notices(&|own| matches!(own, Notice::DealWon { .. }))),
         }
     }
 
-    fn next(&mut self, notice: &Notice) -> Option<Party> {
+    fn next_party(&mut self, notice: &Notice) -> Option<NoticeCustomer> {
         match notice {
-            Notice::EnterpriseLead => self.asking.next(),
-            Notice::LeadSilent => self.silent.next(),
-            Notice::LeadLostByTimeout { .. } => self.unanswered.next(),
-            Notice::DealWon { .. } => self.agreed.next(),
+            Notice::EnterpriseLead => self.new_leads.next(),
+            Notice::LeadSilent => self.silent_leads.next(),
+            Notice::LeadLostByTimeout { .. } => self.timed_out_leads.next(),
+            Notice::DealWon { .. } => self.deals.next(),
             _ => None,
         }
     }

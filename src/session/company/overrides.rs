@@ -7,12 +7,12 @@ use serde_json::Value as Json;
 use toml::{Table, Value};
 
 use super::simulation::Simulation;
-use novamind_base::notation::json_number;
+use novamind_base::formatting::json_number;
 use novamind_record::folder::manifest::Manifest;
 use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::Override;
 use novamind_record::trajectory::{Line, Record};
-use novamind_tools::{Numbers, Refusal};
+use novamind_tools::{ParameterNumbers, Rejection};
 use novamind_world::params::{ParameterError, Params};
 
 /// A parameter change.
@@ -30,14 +30,14 @@ pub struct ParameterChange {
 
 impl ParameterChange {
     /// Reads the change from a recorded line. Returns `None` if the value is not a valid type for a parameter.
-    pub fn of(seq: u64, line: &Override) -> Option<ParameterChange> {
-        let value = value_of_json(&line.new)?;
+    pub fn from_record(seq: u64, line: &Override) -> Option<ParameterChange> {
+        let value = json_to_value(&line.new)?;
         Some(ParameterChange { seq, key: line.key.clone(), value, from_day: line.from_day })
     }
 }
 
 #[derive(Debug, Clone)]
-struct WaitingChange {
+struct ScheduledChange {
     day: u32,
     change: ParameterChange,
     params: Arc<Params>,
@@ -46,22 +46,22 @@ struct WaitingChange {
 /// The parameter changes of a run.
 #[derive(Debug, Clone, Default)]
 pub struct Overrides {
-    is_used: bool,
+    has_changes: bool,
     /// Scheduled changes by day; changes of one day in the order of their lines.
-    waiting: Vec<WaitingChange>,
+    scheduled: Vec<ScheduledChange>,
 }
 
 /// Parameters after a change was added.
-pub struct Taken {
+pub struct UpdatedParams {
     /// Parameters in force now.
-    pub now: Arc<Params>,
+    pub current: Arc<Params>,
     /// Parameters in force once the change takes effect.
-    pub changed: Arc<Params>,
+    pub after_change: Arc<Params>,
 }
 
 /// The reason why a change is not allowed.
 #[derive(Debug)]
-pub struct Unfit {
+pub struct ParameterConflict {
     /// The later day on which values would contradict each other; `None` if the change itself is invalid.
     pub day: Option<u32>,
     /// The error.
@@ -70,84 +70,94 @@ pub struct Unfit {
 
 impl Overrides {
     /// Whether any parameter was changed since the start of the run.
-    pub(crate) fn is_used(&self) -> bool {
-        self.is_used
+    pub(crate) fn has_changes(&self) -> bool {
+        self.has_changes
     }
 
     /// Returns the scheduled changes.
-    pub fn waiting(&self) -> impl Iterator<Item = &ParameterChange> {
-        self.waiting.iter().map(|own| &own.change)
+    pub fn scheduled_changes(&self) -> impl Iterator<Item = &ParameterChange> {
+        self.scheduled.iter().map(|own| &own.change)
     }
 
     /// Adds a change. Checks that all scheduled changes remain valid, so that none can fail on its day.
     ///
     /// # Errors
     /// The value is not allowed, or contradicts another value now or on a later day. Nothing has changed then.
-    pub fn take(&mut self, now: &Arc<Params>, change: ParameterChange) -> Result<Taken, Unfit> {
+    pub fn add_change(
+        &mut self,
+        now: &Arc<Params>,
+        change: ParameterChange,
+    ) -> Result<UpdatedParams, ParameterConflict> {
         let (mut now, mut later): (_, Vec<ParameterChange>) =
-            (now.clone(), self.waiting().cloned().collect());
+            (now.clone(), self.scheduled_changes().cloned().collect());
         let own = change.seq;
         match change.from_day {
-            None => now = with(&now, &change).map_err(|error| Unfit { day: None, error })?,
+            None => {
+                now = params_with(&now, &change).map_err(|error| ParameterConflict { day: None, error })?
+            }
             Some(day) => later.insert(later.partition_point(|other| other.from_day <= Some(day)), change),
         }
-        let mut waiting: Vec<WaitingChange> = Vec::with_capacity(later.len());
+        let mut waiting: Vec<ScheduledChange> = Vec::with_capacity(later.len());
         for change in later {
             let before = waiting.last().map_or(&now, |last| &last.params);
-            let params = with(before, &change).map_err(|error| {
+            let params = params_with(before, &change).map_err(|error| {
                 let day = change.from_day.filter(|_| change.seq != own);
-                Unfit { day, error }
+                ParameterConflict { day, error }
             })?;
-            waiting.push(WaitingChange { day: change.from_day.unwrap_or_default(), change, params });
+            waiting.push(ScheduledChange { day: change.from_day.unwrap_or_default(), change, params });
         }
         let changed =
             waiting.iter().find(|waits| waits.change.seq == own).map_or(&now, |waits| &waits.params);
-        let taken = Taken { changed: changed.clone(), now };
-        *self = Overrides { is_used: true, waiting };
+        let taken = UpdatedParams { after_change: changed.clone(), current: now };
+        *self = Overrides { has_changes: true, scheduled: waiting };
         Ok(taken)
     }
 
-    pub(crate) fn due_on(&self, day: u32) -> Option<&Arc<Params>> {
-        let count = self.waiting.partition_point(|own| own.day <= day);
-        self.waiting[..count].last().map(|own| &own.params)
+    pub(crate) fn params_due_on(&self, day: u32) -> Option<&Arc<Params>> {
+        let count = self.scheduled.partition_point(|own| own.day <= day);
+        self.scheduled[..count].last().map(|own| &own.params)
     }
 
     /// Returns the parameters for a day, if they change on it, and removes the changes from the schedule.
-    pub(crate) fn due(&mut self, day: u32) -> Option<Arc<Params>> {
-        let count = self.waiting.partition_point(|own| own.day <= day);
-        self.waiting.drain(..count).next_back().map(|own| own.params)
+    pub(crate) fn take_due_params(&mut self, day: u32) -> Option<Arc<Params>> {
+        let count = self.scheduled.partition_point(|own| own.day <= day);
+        self.scheduled.drain(..count).next_back().map(|own| own.params)
     }
 
     /// Returns the scheduled changes applied to other parameters, without those of the lines in `dropped`. Omits
     /// changes that are not valid for these parameters.
-    pub fn over(&self, now: &Arc<Params>, dropped: &BTreeSet<u64>) -> Overrides {
-        let mut own = Overrides { is_used: self.is_used, waiting: Vec::new() };
-        for change in self.waiting().filter(|change| !dropped.contains(&change.seq)) {
-            let _ = own.take(now, change.clone());
+    pub fn rebased_on(&self, now: &Arc<Params>, dropped: &BTreeSet<u64>) -> Overrides {
+        let mut own = Overrides { has_changes: self.has_changes, scheduled: Vec::new() };
+        for change in self.scheduled_changes().filter(|change| !dropped.contains(&change.seq)) {
+            let _ = own.add_change(now, change.clone());
         }
         own
     }
 
     /// Replays the parameter changes in `lines` up to the end of a day, starting with the parameters `opening`.
     /// Returns `None` if a change is not valid.
-    pub(crate) fn after(opening: &Arc<Params>, lines: &[Line], day: u32) -> Option<(Arc<Params>, Overrides)> {
+    pub(crate) fn replay(
+        opening: &Arc<Params>,
+        lines: &[Line],
+        day: u32,
+    ) -> Option<(Arc<Params>, Overrides)> {
         let (mut now, mut own) = (opening.clone(), Overrides::default());
         for line in lines {
             let Record::Override(change) = &line.record else { continue };
-            now = own.due(line.day).unwrap_or(now);
-            now = own.take(&now, ParameterChange::of(line.seq, change)?).ok()?.now;
+            now = own.take_due_params(line.day).unwrap_or(now);
+            now = own.add_change(&now, ParameterChange::from_record(line.seq, change)?).ok()?.current;
         }
-        now = own.due(day).unwrap_or(now);
+        now = own.take_due_params(day).unwrap_or(now);
         Some((now, own))
     }
 }
 
-fn with(params: &Params, change: &ParameterChange) -> Result<Arc<Params>, ParameterError> {
+fn params_with(params: &Params, change: &ParameterChange) -> Result<Arc<Params>, ParameterError> {
     params.with(&change.key, change.value.clone()).map(Arc::new)
 }
 
 /// Converts a JSON value to a parameter value. Returns `None` if there is no equivalent.
-pub fn value_of_json(value: &Json) -> Option<Value> {
+pub fn json_to_value(value: &Json) -> Option<Value> {
     Some(match value {
         Json::Null => return None,
         Json::Bool(own) => Value::Boolean(*own),
@@ -156,45 +166,45 @@ pub fn value_of_json(value: &Json) -> Option<Value> {
             None => Value::Float(number.as_f64()?),
         },
         Json::String(text) => Value::String(text.clone()),
-        Json::Array(list) => Value::Array(list.iter().map(value_of_json).collect::<Option<_>>()?),
+        Json::Array(list) => Value::Array(list.iter().map(json_to_value).collect::<Option<_>>()?),
         Json::Object(fields) => {
-            let field = |(name, value): (&String, &Json)| Some((name.clone(), value_of_json(value)?));
+            let field = |(name, value): (&String, &Json)| Some((name.clone(), json_to_value(value)?));
             Value::Table(fields.iter().map(field).collect::<Option<Table>>()?)
         }
     })
 }
 
 /// Converts a parameter value to JSON. Whole numbers have no decimal point.
-pub fn json_of_value(value: &Value) -> Json {
+pub fn value_to_json(value: &Value) -> Json {
     match value {
         Value::String(text) => Json::from(text.as_str()),
         Value::Integer(number) => Json::from(*number),
         Value::Float(number) => json_number(*number),
         Value::Boolean(own) => Json::from(*own),
         Value::Datetime(moment) => Json::from(moment.to_string()),
-        Value::Array(list) => list.iter().map(json_of_value).collect(),
+        Value::Array(list) => list.iter().map(value_to_json).collect(),
         Value::Table(table) => {
-            Json::Object(table.iter().map(|(name, value)| (name.clone(), json_of_value(value))).collect())
+            Json::Object(table.iter().map(|(name, value)| (name.clone(), value_to_json(value))).collect())
         }
     }
 }
 
 /// Values derived from the parameters in force; reset when a parameter changes.
 #[derive(Default)]
-pub(crate) struct DerivedOfParameters {
-    numbers: OnceLock<Arc<Numbers>>,
-    are_own: OnceLock<bool>,
+pub(crate) struct DerivedValues {
+    numbers: OnceLock<Arc<ParameterNumbers>>,
+    has_custom_parameters: OnceLock<bool>,
 }
 
-impl DerivedOfParameters {
-    pub(crate) fn numbers(&self, simulation: &Simulation) -> Arc<Numbers> {
-        self.numbers.get_or_init(|| Numbers::of(&simulation.params).into()).clone()
+impl DerivedValues {
+    pub(crate) fn numbers(&self, simulation: &Simulation) -> Arc<ParameterNumbers> {
+        self.numbers.get_or_init(|| ParameterNumbers::for_params(&simulation.params).into()).clone()
     }
 
     /// Whether the parameters differ, or differed at some time, from those of the bundled scenario.
-    pub(crate) fn has_own_parameters(&self, simulation: &Simulation, manifest: &Manifest) -> bool {
-        let is_other = || simulation.overrides.is_used() || manifest.has_own_parameters();
-        *self.are_own.get_or_init(is_other)
+    pub(crate) fn has_custom_parameters(&self, simulation: &Simulation, manifest: &Manifest) -> bool {
+        let is_other = || simulation.overrides.has_changes() || manifest.has_changed_parameters();
+        *self.has_custom_parameters.get_or_init(is_other)
     }
 }
 
@@ -202,25 +212,25 @@ impl DerivedOfParameters {
 ///
 /// # Errors
 /// `not_in_this_mode`.
-pub fn refuse_outside_debug(mode: Mode) -> Result<(), Refusal> {
+pub fn require_debug_mode(mode: Mode) -> Result<(), Rejection> {
     match mode {
         Mode::Debug => Ok(()),
-        _ => Err(Refusal::new("not_in_this_mode", "parameters can be set in debug runs only")),
+        _ => Err(Rejection::new("not_in_this_mode", "parameters can be set in debug runs only")),
     }
 }
 
 /// Returns the rejection for an unknown parameter.
-pub fn unknown(error: ParameterError) -> Refusal {
-    Refusal::at(error.key, "parameter_unknown", error.problem)
+pub fn unknown_parameter(error: ParameterError) -> Rejection {
+    Rejection::for_field(error.key, "parameter_unknown", error.problem)
 }
 
 /// Returns the rejection for a value that is not allowed.
-pub fn not_allowed(Unfit { day, error }: Unfit) -> Refusal {
+pub fn parameter_not_allowed(ParameterConflict { day, error }: ParameterConflict) -> Rejection {
     let message = match day {
         None => error.problem,
         Some(day) => format!("{} from day {day}, because of a change scheduled for that day", error.problem),
     };
-    Refusal::at(error.key, "parameter_not_allowed", message)
+    Rejection::for_field(error.key, "parameter_not_allowed", message)
 }
 
 #[cfg(test)]
@@ -231,49 +241,52 @@ mod tests {
         ParameterChange { seq, key: key.to_owned(), value: Value::Float(value), from_day }
     }
 
-    const LEAST: &str = "competitor.competitor_feedback_u_min";
-    const MOST: &str = "competitor.competitor_feedback_u_max";
+    const MIN_KEY: &str = "competitor.competitor_feedback_u_min";
+    const MAX_KEY: &str = "competitor.competitor_feedback_u_max";
 
     #[test]
-    fn a_change_waits_for_its_day_and_later_ones_build_on_it() {
-        let (now, mut own) = (Arc::new(Params::shipped()), Overrides::default());
-        assert!(!own.is_used());
-        own.take(&now, change(5, "satisfaction.satisfaction_ema_alpha", 0.5, Some(30))).expect("it fits");
-        own.take(&now, change(6, "satisfaction.satisfaction_ema_alpha", 0.6, Some(20))).expect("it fits");
-        let taken = own.take(&now, change(7, "operations.base_outage_prob", 0.7, None)).expect("it fits");
-        assert_eq!(taken.now.operations.base_outage_prob, 0.7);
-        assert!(own.due(19).is_none());
-        let on_20 = own.due(20).expect("one is due");
+    fn scheduled_changes_apply_on_their_day_and_accumulate() {
+        let (now, mut own) = (Arc::new(Params::bundled()), Overrides::default());
+        assert!(!own.has_changes());
+        own.add_change(&now, change(5, "satisfaction.satisfaction_ema_alpha", 0.5, Some(30)))
+            .expect("it fits");
+        own.add_change(&now, change(6, "satisfaction.satisfaction_ema_alpha", 0.6, Some(20)))
+            .expect("it fits");
+        let taken =
+            own.add_change(&now, change(7, "operations.base_outage_prob", 0.7, None)).expect("it fits");
+        assert_eq!(taken.current.operations.base_outage_prob, 0.7);
+        assert!(own.take_due_params(19).is_none());
+        let on_20 = own.take_due_params(20).expect("one is due");
         assert_eq!(on_20.satisfaction.satisfaction_ema_alpha, 0.6);
         assert_eq!(on_20.operations.base_outage_prob, 0.7);
-        let later = own.due(44).expect("one is due");
+        let later = own.take_due_params(44).expect("one is due");
         assert_eq!(later.satisfaction.satisfaction_ema_alpha, 0.5);
-        assert_eq!(own.waiting().count(), 0);
-        assert!(own.is_used());
+        assert_eq!(own.scheduled_changes().count(), 0);
+        assert!(own.has_changes());
     }
 
     #[test]
-    fn values_that_contradict_each_other_on_a_later_day_are_refused_today() {
-        let (now, mut own) = (Arc::new(Params::shipped()), Overrides::default());
+    fn add_change_rejects_later_contradictions() {
+        let (now, mut own) = (Arc::new(Params::bundled()), Overrides::default());
         let most = now.competitor.competitor_feedback_u_max;
-        own.take(&now, change(1, LEAST, most - 0.01, Some(30))).expect("it fits");
+        own.add_change(&now, change(1, MIN_KEY, most - 0.01, Some(30))).expect("it fits");
         let unfit = own
-            .take(&now, change(2, MOST, most - 0.02, None))
+            .add_change(&now, change(2, MAX_KEY, most - 0.02, None))
             .err()
             .expect("the values contradict each other on day 30");
         assert_eq!(unfit.day, Some(30));
-        assert_eq!(own.waiting().count(), 1, "the schedule is unchanged");
-        own.take(&now, change(3, LEAST, most - 0.05, Some(30)))
+        assert_eq!(own.scheduled_changes().count(), 1, "the schedule is unchanged");
+        own.add_change(&now, change(3, MIN_KEY, most - 0.05, Some(30)))
             .expect("the later of two changes on a day applies");
-        assert_eq!(own.over(&now, &BTreeSet::from([3])).waiting().count(), 1);
+        assert_eq!(own.rebased_on(&now, &BTreeSet::from([3])).scheduled_changes().count(), 1);
     }
 
     #[test]
-    fn values_come_back_from_json_as_they_were() {
+    fn values_round_trip_through_json() {
         let json = serde_json::json!({ "a": [1, 2.5, "x", true], "b": -3 });
-        assert_eq!(json_of_value(&value_of_json(&json).expect("a table")), json);
-        assert!(value_of_json(&Json::Null).is_none());
-        assert!(value_of_json(&serde_json::json!([null])).is_none());
-        assert_eq!(json_of_value(&Value::Float(300.0)), serde_json::json!(300));
+        assert_eq!(value_to_json(&json_to_value(&json).expect("a table")), json);
+        assert!(json_to_value(&Json::Null).is_none());
+        assert!(json_to_value(&serde_json::json!([null])).is_none());
+        assert_eq!(value_to_json(&Value::Float(300.0)), serde_json::json!(300));
     }
 }

@@ -3,10 +3,10 @@
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
-use super::xray::Xray;
-use novamind_base::notation::json_number;
+use super::hidden_state::HiddenState;
+use novamind_base::formatting::json_number;
 use novamind_record::figures::WeekFigures;
-use novamind_record::trajectory::record::Ended;
+use novamind_record::trajectory::record::RunEndReason;
 use novamind_world::events::DayFigures;
 
 /// A simulated day.
@@ -16,12 +16,12 @@ pub struct DayReport<'a> {
     /// Decision day at the end of the week, unless the company goes bankrupt before.
     pub week_end: u32,
     /// The hidden state; debug runs only.
-    pub xray: Option<Xray<'a>>,
+    pub xray: Option<HiddenState<'a>>,
 }
 
 /// A simulated week, or part of one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Week {
+pub struct WeekResult {
     /// Its figures.
     pub figures: WeekFigures,
     /// The dashboard.
@@ -29,22 +29,22 @@ pub struct Week {
     /// Notices: day and text.
     pub notices: Vec<(u32, String)>,
     /// How the run ended with this week.
-    pub ended: Option<Ended>,
+    pub ended: Option<RunEndReason>,
     /// Problems that the player should know: the closing line is not saved, the next day would exceed the limit of
     /// leads, the database is not written, or the language model did not answer.
     pub remark: Option<String>,
 }
 
-impl Week {
+impl WeekResult {
     /// Returns the week as JSON, for programs.
-    pub fn as_json(&self) -> Value {
+    pub fn to_json(&self) -> Value {
         let notices: Vec<Value> =
             self.notices.iter().map(|(day, text)| json!({ "day": day, "text": text })).collect();
         let mut data = Map::from_iter([
             ("day".to_owned(), self.figures.day.into()),
             ("days_run".to_owned(), self.figures.days_run.into()),
             ("cash".to_owned(), json_number(self.figures.cash)),
-            ("figures".to_owned(), Value::Object(self.figures.as_json())),
+            ("figures".to_owned(), Value::Object(self.figures.to_json())),
             ("dashboard".to_owned(), self.dashboard.clone().into()),
             ("notifications".to_owned(), notices.into()),
             ("ended".to_owned(), json!(self.ended)),

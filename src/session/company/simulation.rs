@@ -1,5 +1,5 @@
 //! The simulated company and its texts, with parameters and seed. A snapshot stores it with the
-//! [`History`](super::history::History).
+//! [`StatementHistory`](super::history::History).
 //!
 //! Texts, the hash of the facts and database rows of a day do not affect the company. They are produced while the
 //! next day is simulated.
@@ -9,23 +9,25 @@ use std::sync::Arc;
 use serde_json::Value;
 
 use super::facts_chain::{FactsChain, StateHash, state_hash};
-use super::feed::{Feed, entry_of};
-use super::judging::RecordedScores;
+use super::feed::{Feed, build_entry};
 use super::overrides::Overrides;
-use crate::database::Entries;
-use crate::figures::estimates::truth_behind;
-use novamind_base::notation::grouped;
-use novamind_database::Entry;
+use super::post_judging::RecordedScores;
+use crate::database::EntryWriter;
+use crate::figures::estimates::true_value_range;
+use novamind_base::formatting::grouped_number;
+use novamind_database::ProjectionEntry;
 use novamind_record::folder::manifest::Manifest;
 use novamind_record::trajectory::record::JudgedPost;
-use novamind_tools::Refusal;
-use novamind_voice::CompanyNames;
+use novamind_tools::Rejection;
+use novamind_voice::EnterpriseNames;
 use novamind_world::command::{Command, ResolvedCommand};
-use novamind_world::day::room::{MOST_CUSTOMERS, MOST_LEADS_A_DAY, NoRoom, room_for_next_day};
-use novamind_world::day::watch::{DayWatch, Unwatched};
-use novamind_world::day::{DayTrace, step_day_watched};
+use novamind_world::day::limits::{
+    ExceededLimit, MAX_CUSTOMERS, MAX_LEADS_PER_DAY, exceeded_limit_on_next_day,
+};
+use novamind_world::day::observer::{DayObserver, NoObserver};
+use novamind_world::day::{DayTrace, step_day_observed};
 use novamind_world::events::{DayFigures, Facts};
-use novamind_world::held::Held;
+use novamind_world::fixed_inputs::FixedInputs;
 use novamind_world::identifiers::Group;
 use novamind_world::params::Params;
 use novamind_world::random::Streams;
@@ -44,49 +46,53 @@ pub struct Simulation {
     /// Facts of the last day or call.
     pub facts: Arc<Facts>,
     /// Facts of the day before; reused once nothing refers to them.
-    facts_before: Arc<Facts>,
+    previous_facts: Arc<Facts>,
     /// Details of the leads of the last day.
     pub(crate) trace: DayTrace,
     /// Names of enterprises.
-    pub names: CompanyNames,
+    pub names: EnterpriseNames,
     /// Posts of the social feed.
     pub feed: Feed,
-    pub(crate) scores: RecordedScores,
+    pub(crate) recorded_scores: RecordedScores,
     pub(crate) facts_chain: FactsChain,
     /// Observer of the simulated days; does nothing except for inspections.
-    pub(crate) watch: Arc<dyn DayWatch>,
+    pub(crate) watch: Arc<dyn DayObserver>,
 }
 
 impl Simulation {
     /// Creates the company of a run on day 0.
-    pub fn open(manifest: &Manifest, params: Arc<Params>) -> Simulation {
+    pub fn new(manifest: &Manifest, params: Arc<Params>) -> Simulation {
         let mut facts = Facts::default();
-        let world = World::open(manifest.days, manifest.cash, &params, &mut facts);
-        Simulation::of(manifest, params, (world, facts))
+        let world = World::new(manifest.days, manifest.cash, &params, &mut facts);
+        Simulation::from_state(manifest, params, (world, facts))
     }
 
     /// Creates the company of a run from a world and the facts of its last day or call.
-    pub(crate) fn of(manifest: &Manifest, params: Arc<Params>, (world, facts): (World, Facts)) -> Simulation {
+    pub(crate) fn from_state(
+        manifest: &Manifest,
+        params: Arc<Params>,
+        (world, facts): (World, Facts),
+    ) -> Simulation {
         Simulation {
-            names: CompanyNames::new(manifest.seed, &params.personas.email),
+            names: EnterpriseNames::new(manifest.seed, &params.personas.email),
             params,
             overrides: Overrides::default(),
             streams: Streams::new(manifest.seed),
             world,
             facts: facts.into(),
-            facts_before: Arc::default(),
+            previous_facts: Arc::default(),
             trace: DayTrace::default(),
             feed: Feed::default(),
-            scores: RecordedScores::default(),
+            recorded_scores: RecordedScores::default(),
             facts_chain: FactsChain::default(),
-            watch: Arc::new(Unwatched),
+            watch: Arc::new(NoObserver),
         }
     }
 
     /// Creates a company from a state of a run and the posts so far.
-    pub fn at(
+    pub fn from_parts(
         (params, overrides): (Arc<Params>, Overrides),
-        (streams, names): (Streams, CompanyNames),
+        (streams, names): (Streams, EnterpriseNames),
         world: World,
         feed: Feed,
     ) -> Simulation {
@@ -96,23 +102,23 @@ impl Simulation {
             streams,
             world,
             facts: Arc::default(),
-            facts_before: Arc::default(),
+            previous_facts: Arc::default(),
             trace: DayTrace::default(),
             names,
             feed,
-            scores: RecordedScores::default(),
+            recorded_scores: RecordedScores::default(),
             facts_chain: FactsChain::default(),
-            watch: Arc::new(Unwatched),
+            watch: Arc::new(NoObserver),
         }
     }
 
     /// Adds recorded scores of the player's posts.
-    pub fn take_scores(&mut self, judged: &[JudgedPost]) {
-        judged.iter().for_each(|own| self.scores.take_in(own.clone()));
+    pub fn add_scores(&mut self, judged: &[JudgedPost]) {
+        judged.iter().for_each(|own| self.recorded_scores.add(own.clone()));
     }
 
     /// Ends the hash chain of a week's facts.
-    pub fn close_facts(&mut self) {
+    pub fn close_facts_chain(&mut self) {
         self.facts_chain.close();
     }
 
@@ -133,33 +139,33 @@ impl Simulation {
 
     /// Returns the range of a group's mean required quality according to the estimate; `None` while the group is
     /// unknown.
-    pub(crate) fn estimated_floor(&self, group: Group) -> Option<(f64, f64)> {
+    pub(crate) fn estimated_required_quality(&self, group: Group) -> Option<(f64, f64)> {
         match self.resolve(Command::ReadInsights(group)) {
             ResolvedCommand::ReadInsights(Some(insights)) => {
-                Some(truth_behind(insights.quality_floor, insights.noise))
+                Some(true_value_range(insights.quality_floor, insights.noise))
             }
             _ => None,
         }
     }
 
     /// Applies a command.
-    pub fn apply(&mut self, resolved: ResolvedCommand, entries: Entries<'_>) {
-        self.world.apply(resolved, &self.params, to_fill(&mut self.facts, entries));
-        self.watch.called(&self.facts);
+    pub fn apply_command(&mut self, resolved: ResolvedCommand, entries: EntryWriter<'_>) {
+        self.world.apply(resolved, &self.params, reusable_facts(&mut self.facts, entries));
+        self.watch.on_call_applied(&self.facts);
     }
 
     /// Returns the world and facts to fill, for changes between two days.
-    pub(crate) fn between_days(
+    pub(crate) fn parts_between_days(
         &mut self,
-        entries: Entries<'_>,
+        entries: EntryWriter<'_>,
     ) -> (&mut World, &mut Facts, &Params, &Streams) {
-        (&mut self.world, to_fill(&mut self.facts, entries), &self.params, &self.streams)
+        (&mut self.world, reusable_facts(&mut self.facts, entries), &self.params, &self.streams)
     }
 
     /// Replaces the parameters.
-    pub fn use_params(&mut self, params: Arc<Params>, entries: Entries<'_>) {
+    pub fn set_params(&mut self, params: Arc<Params>, entries: EntryWriter<'_>) {
         if !Arc::ptr_eq(&self.params, &params) {
-            entries.write(|| Entry { params: Some(params.clone()), ..Entry::default() });
+            entries.send(|| ProjectionEntry { params: Some(params.clone()), ..ProjectionEntry::default() });
             self.params = params;
         }
     }
@@ -168,73 +174,85 @@ impl Simulation {
     ///
     /// # Errors
     /// `too_many_leads`.
-    pub fn refuse_crowded_day(&self) -> Result<(), Refusal> {
+    pub fn check_lead_capacity(&self) -> Result<(), Rejection> {
         let (world, day) = (&self.world, self.world.day + 1);
-        let due = self.overrides.due_on(day).unwrap_or(&self.params);
-        let told = match room_for_next_day(world, due, &self.streams) {
+        let due = self.overrides.params_due_on(day).unwrap_or(&self.params);
+        let told = match exceeded_limit_on_next_day(world, due, &self.streams) {
             None => return Ok(()),
-            Some(NoRoom::Leads) => format!("more than {} leads", grouped(f64::from(MOST_LEADS_A_DAY), 0)),
-            Some(NoRoom::Customers) => {
-                let most = grouped(f64::from(MOST_CUSTOMERS), 0);
+            Some(ExceededLimit::Leads) => {
+                format!("more than {} leads", grouped_number(f64::from(MAX_LEADS_PER_DAY), 0))
+            }
+            Some(ExceededLimit::Customers) => {
+                let most = grouped_number(f64::from(MAX_CUSTOMERS), 0);
                 format!("so many leads that there could be more than {most} customers")
             }
-            Some(NoRoom::Numbers) => "more leads than there are customer numbers".to_owned(),
+            Some(ExceededLimit::Numbers) => "more leads than there are customer numbers".to_owned(),
         };
         let message = format!(
             "day {day} would bring {told}, which exceeds the limits of the program. Nothing after day {} is simulated. \
              Spend less on advertising, or revert the parameter that multiplies leads",
             world.day
         );
-        Err(Refusal::new("too_many_leads", message))
+        Err(Rejection::new("too_many_leads", message))
     }
 
     /// Simulates a day with the given held inputs. At the same time, processes the facts of the day before, if its
     /// notices are given in `day_before`.
     pub fn simulate_day(
         &mut self,
-        held: &Held,
-        entries: Entries<'_>,
+        held: &FixedInputs,
+        entries: EntryWriter<'_>,
         day_before: Option<Vec<String>>,
     ) -> DayFigures {
-        std::mem::swap(&mut self.facts, &mut self.facts_before);
+        std::mem::swap(&mut self.facts, &mut self.previous_facts);
         // The facts of the day before are processed with the parameters of that day.
-        let due = self.overrides.due(self.world.day + 1).unwrap_or_else(|| self.params.clone());
-        let Simulation { world, params, streams, facts, facts_before, feed, facts_chain, watch, .. } = self;
-        let today = to_fill(facts, entries);
+        let due = self.overrides.take_due_params(self.world.day + 1).unwrap_or_else(|| self.params.clone());
+        let Simulation {
+            world,
+            params,
+            streams,
+            facts,
+            previous_facts: facts_before,
+            feed,
+            facts_chain,
+            watch,
+            ..
+        } = self;
+        let today = reusable_facts(facts, entries);
         let follow_up = FollowUp { feed, facts_chain, entries, params, streams };
         let ((figures, trace), ()) = rayon::join(
-            || step_day_watched(world, &due, streams, held, today, &**watch),
-            || follow_up.follow(facts_before, day_before, None),
+            || step_day_observed(world, &due, streams, held, today, &**watch),
+            || follow_up.process(facts_before, day_before, None),
         );
         self.trace = trace;
-        self.use_params(due, entries);
+        self.set_params(due, entries);
         figures
     }
 
     /// Processes the facts of a call: its notices, and the settings family if the call changed settings.
-    pub fn follow_call(&mut self, entries: Entries<'_>, notices: Vec<String>, settings: Option<Value>) {
+    pub fn process_call(&mut self, entries: EntryWriter<'_>, notices: Vec<String>, settings: Option<Value>) {
         let Simulation { params, streams, facts, feed, facts_chain, .. } = self;
-        FollowUp { feed, facts_chain, entries, params, streams }.follow(facts, Some(notices), settings);
+        FollowUp { feed, facts_chain, entries, params, streams }.process(facts, Some(notices), settings);
     }
 
     /// Processes the facts of the last day, if its notices are given.
-    pub fn follow_last_day(&mut self, entries: Entries<'_>, last_day: Option<Vec<String>>) {
+    pub fn process_last_day(&mut self, entries: EntryWriter<'_>, last_day: Option<Vec<String>>) {
         let Simulation { params, streams, facts, feed, facts_chain, .. } = self;
-        FollowUp { feed, facts_chain, entries, params, streams }.follow(facts, last_day, None);
+        FollowUp { feed, facts_chain, entries, params, streams }.process(facts, last_day, None);
     }
 
-    /// Like [`Simulation::follow_last_day`], and hashes the state at the same time.
-    pub fn end_days(&mut self, entries: Entries<'_>, last_day: Option<Vec<String>>) -> StateHash {
+    /// Like [`Simulation::process_last_day`], and hashes the state at the same time.
+    pub fn finish_days(&mut self, entries: EntryWriter<'_>, last_day: Option<Vec<String>>) -> StateHash {
         let Simulation { world, params, streams, facts, feed, facts_chain, .. } = self;
         let follow_up = FollowUp { feed, facts_chain, entries, params, streams };
-        let (parts, ()) = rayon::join(|| world.part_hashes(), || follow_up.follow(facts, last_day, None));
+        let (parts, ()) = rayon::join(|| world.part_hashes(), || follow_up.process(facts, last_day, None));
         state_hash(parts, self.facts_chain.hash())
     }
 }
 
 /// Returns facts to fill: the given ones if nothing else refers to them, otherwise spare ones of the database writer
 /// or new ones. Facts that the writer still uses are kept.
-fn to_fill<'a>(facts: &'a mut Arc<Facts>, entries: Entries<'_>) -> &'a mut Facts {
+fn reusable_facts<'a>(facts: &'a mut Arc<Facts>, entries: EntryWriter<'_>) -> &'a mut Facts {
     if Arc::strong_count(facts) > 1 {
         *facts = entries.spare_facts().unwrap_or_default();
     }
@@ -244,7 +262,7 @@ fn to_fill<'a>(facts: &'a mut Arc<Facts>, entries: Entries<'_>) -> &'a mut Facts
 struct FollowUp<'a> {
     feed: &'a mut Feed,
     facts_chain: &'a mut FactsChain,
-    entries: Entries<'a>,
+    entries: EntryWriter<'a>,
     params: &'a Params,
     streams: &'a Streams,
 }
@@ -252,11 +270,11 @@ struct FollowUp<'a> {
 impl FollowUp<'_> {
     /// Adds the facts to feed, hash chain and database. The facts are shared with the database writer, not copied.
     /// Does nothing without `notices`.
-    fn follow(self, facts: &Arc<Facts>, notices: Option<Vec<String>>, settings: Option<Value>) {
+    fn process(self, facts: &Arc<Facts>, notices: Option<Vec<String>>, settings: Option<Value>) {
         let Some(notices) = notices else { return };
-        self.feed.word(facts, self.params, self.streams);
+        self.feed.add_posts(facts, self.params, self.streams);
         self.facts_chain.add(facts);
         let FollowUp { feed, params, entries, .. } = self;
-        entries.write(|| Entry { settings, ..entry_of(facts, notices, feed, params) });
+        entries.send(|| ProjectionEntry { settings, ..build_entry(facts, notices, feed, params) });
     }
 }

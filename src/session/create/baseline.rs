@@ -1,10 +1,10 @@
 //! Conditions of a baseline run outside of studies: a participant label, and terms that make results comparable.
 
 use super::{NewRun, Storage};
-use novamind_base::notation::{dollars, grouped};
+use novamind_base::formatting::{dollars, grouped_number};
 use novamind_record::error::RunError;
 use novamind_record::folder::configuration::{Configuration, DEFAULT_SCENARIO};
-use novamind_record::folder::runs::label_of;
+use novamind_record::folder::runs::participant_of_folder;
 use novamind_record::mode::Mode;
 
 impl NewRun {
@@ -12,28 +12,28 @@ impl NewRun {
     /// modes are not restricted.
     ///
     /// # Errors
-    /// [`RunError::NotPossible`] with the next step, or the scenario cannot be read.
+    /// [`RunError::InvalidRequest`] with the next step, or the scenario cannot be read.
     pub fn check_baseline(&self, configuration: &Configuration) -> Result<(), RunError> {
         if self.mode != Mode::Baseline || self.study.is_some() {
             return Ok(());
         }
         let of_folder = match &self.storage {
-            Storage::Runs(runs) => label_of(runs),
+            Storage::Runs(runs) => participant_of_folder(runs),
             Storage::Memory => None,
         };
         let label = self.participant.clone().or(of_folder);
         if label.is_none_or(|label| label.trim().is_empty()) {
-            return Err(RunError::NotPossible(
+            return Err(RunError::InvalidRequest(
                 "a baseline run needs a participant: name a label with --as or --participant, in the form under \
                  Participant. Nothing was recorded"
                     .to_owned(),
             ));
         }
-        let other = self.other_terms(configuration)?;
+        let other = self.deviating_terms(configuration)?;
         if other.is_empty() {
             return Ok(());
         }
-        Err(RunError::NotPossible(format!(
+        Err(RunError::InvalidRequest(format!(
             "a baseline run is played with {}, so that results can be compared; {} needs a study, or another mode. \
              Nothing was recorded",
             baseline_terms(configuration)?,
@@ -45,11 +45,12 @@ impl NewRun {
     ///
     /// # Errors
     /// The scenario cannot be read.
-    pub fn other_terms(&self, configuration: &Configuration) -> Result<Vec<String>, RunError> {
-        let (days, cash) = configuration.terms(&configuration.scenario(DEFAULT_SCENARIO)?, false)?;
+    pub fn deviating_terms(&self, configuration: &Configuration) -> Result<Vec<String>, RunError> {
+        let (days, cash) =
+            configuration.days_and_cash(&configuration.load_scenario(DEFAULT_SCENARIO)?, false)?;
         let other = [
             (self.scenario != DEFAULT_SCENARIO).then(|| format!("scenario {}", self.scenario)),
-            self.days.filter(|own| *own != days).map(in_days),
+            self.days.filter(|own| *own != days).map(format_days),
             self.cash.filter(|own| *own != cash).map(dollars),
         ];
         Ok(other.into_iter().flatten().collect())
@@ -61,30 +62,30 @@ impl NewRun {
 /// # Errors
 /// The scenario cannot be read.
 pub fn baseline_terms(configuration: &Configuration) -> Result<String, RunError> {
-    let (days, cash) = configuration.terms(&configuration.scenario(DEFAULT_SCENARIO)?, false)?;
-    Ok(format!("scenario {DEFAULT_SCENARIO}, {} and {}", in_days(days), dollars(cash)))
+    let (days, cash) = configuration.days_and_cash(&configuration.load_scenario(DEFAULT_SCENARIO)?, false)?;
+    Ok(format!("scenario {DEFAULT_SCENARIO}, {} and {}", format_days(days), dollars(cash)))
 }
 
-fn in_days(days: u32) -> String {
-    format!("{} days", grouped(f64::from(days), 0))
+fn format_days(days: u32) -> String {
+    format!("{} days", grouped_number(f64::from(days), 0))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn refusal(new: &NewRun) -> Option<String> {
-        new.check_baseline(&Configuration::shipped()).err().map(|error| error.to_string())
+    fn rejection_text(new: &NewRun) -> Option<String> {
+        new.check_baseline(&Configuration::bundled()).err().map(|error| error.to_string())
     }
 
     #[test]
-    fn a_baseline_run_outside_of_a_study_has_a_label_and_the_terms_of_the_defaults() {
+    fn baseline_run_requires_label_and_default_terms() {
         let base = NewRun { mode: Mode::Baseline, participant: Some("P01".to_owned()), ..NewRun::default() };
         let named = NewRun { days: Some(500), cash: Some(1_000_000.0), seed: Some(7), ..base.clone() };
-        assert_eq!((refusal(&base), refusal(&named)), (None, None));
+        assert_eq!((rejection_text(&base), rejection_text(&named)), (None, None));
         let runs = std::path::PathBuf::from("runs/participants/P01");
         let of_folder = NewRun { participant: None, storage: Storage::Runs(runs), ..base.clone() };
-        assert_eq!(refusal(&of_folder), None);
+        assert_eq!(rejection_text(&of_folder), None);
         for (new, part) in [
             (NewRun { participant: None, ..base.clone() }, "--participant"),
             (NewRun { participant: Some(" ".to_owned()), ..base.clone() }, "--participant"),
@@ -92,10 +93,10 @@ mod tests {
             (NewRun { cash: Some(2e6), ..base.clone() }, "$2,000,000 needs a study"),
             (NewRun { scenario: "paper".to_owned(), ..base.clone() }, "scenario paper needs a study"),
         ] {
-            let words = refusal(&new).expect(part);
+            let words = rejection_text(&new).expect(part);
             assert!(words.contains(part), "{words}");
             assert_eq!(
-                refusal(&NewRun { mode: Mode::Sandbox, ..new }),
+                rejection_text(&NewRun { mode: Mode::Sandbox, ..new }),
                 None,
                 "other modes are not restricted"
             );

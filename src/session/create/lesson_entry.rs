@@ -23,7 +23,7 @@ impl LessonEntry {
         LessonStamp { name, digest, part: self.part as u32 + 1 }
     }
 
-    pub(crate) fn terms_of(&self, new: NewRun) -> NewRun {
+    pub(crate) fn apply_to(&self, new: NewRun) -> NewRun {
         let part = &self.lesson.plan.parts[self.part];
         let quiet = (!part.surges).then(|| ("demand_surge.probability".to_owned(), "0.0".to_owned()));
         let own = part.parameters.iter().map(|(key, value)| (key.clone(), value.to_string()));

@@ -10,14 +10,14 @@ use novamind_record::trajectory::record::{Activity, ClockEvent, LimitScope, Pres
 use novamind_record::trajectory::{Line, Record};
 
 /// Without `session` lines, a gap of more than this many seconds is a break: ten minutes.
-pub const BREAK_SECONDS: f64 = 600.0;
+pub const MIN_BREAK_SECONDS: f64 = 600.0;
 
-const BREAK: i64 = BREAK_SECONDS as i64 * SECOND;
-const SECOND: i64 = 1_000_000_000;
-const MILLISECOND: i64 = 1_000_000;
+const MIN_BREAK_NS: i64 = MIN_BREAK_SECONDS as i64 * NS_PER_SECOND;
+const NS_PER_SECOND: i64 = 1_000_000_000;
+const NS_PER_MS: i64 = 1_000_000;
 
 /// The interface that watches every key and records idle times.
-pub(super) const WATCHES_KEYS: &str = "console";
+pub(super) const KEY_WATCHING_INTERFACE: &str = "console";
 
 /// How a participant spent a time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -80,7 +80,7 @@ impl TimeSpent {
 
     /// Returns the milliseconds of playing, as time limits count them.
     pub fn active_ms(&self) -> u64 {
-        (self.active / MILLISECOND).max(0) as u64
+        (self.active / NS_PER_MS).max(0) as u64
     }
 
     fn add(&mut self, attention: Attention, passed: i64) {
@@ -123,12 +123,12 @@ impl std::ops::AddAssign for TimeSpent {
 
 /// Converts nanoseconds to seconds with three decimals, rounding half up.
 fn to_seconds(nanoseconds: i64) -> f64 {
-    ((nanoseconds + MILLISECOND / 2) / MILLISECOND) as f64 / 1e3
+    ((nanoseconds + NS_PER_MS / 2) / NS_PER_MS) as f64 / 1e3
 }
 
 /// A span of time of one kind. Times are nanoseconds since the first line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct AttendedTime {
+pub struct TimeSpan {
     /// Start, nanoseconds.
     pub from: i64,
     /// End, nanoseconds.
@@ -138,12 +138,12 @@ pub struct AttendedTime {
 }
 
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-enum Openness {
+enum ConnectionState {
     /// No `session` line so far: gaps determine breaks.
     #[default]
-    Untold,
+    Unknown,
     /// The program has closed the run.
-    Left,
+    Closed,
     /// The program has opened the run.
     Open {
         /// The program records idle times.
@@ -156,56 +156,60 @@ enum Openness {
 /// Times are nanoseconds since the first line. If the wall clock was set back, no time passes.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Attendance {
-    times: Vec<AttendedTime>,
+    spans: Vec<TimeSpan>,
     /// Time of the last line.
-    place: i64,
+    end_ns: i64,
     /// Wall-clock time of the last line, nanoseconds since 1970.
-    moment: Option<i64>,
-    sitting: Openness,
+    last_time_ns: Option<i64>,
+    connection: ConnectionState,
     is_paused: bool,
     is_idle: bool,
     is_suspended: bool,
-    has_focus_elsewhere: bool,
+    has_lost_focus: bool,
     /// Questions of this session without an answer.
     open_questions: u32,
-    clock_set_back: u32,
+    clock_set_back_count: u32,
     weeks: Vec<AttendedWeek>,
-    week_from: i64,
-    sitting_from: i64,
+    week_start_ns: i64,
+    session_start_ns: i64,
 }
 
 impl Attendance {
     /// Computes the times of lines.
-    pub fn of(lines: &[Line]) -> Attendance {
+    pub fn from_lines(lines: &[Line]) -> Attendance {
         let mut attendance = Attendance::default();
-        lines.iter().for_each(|line| attendance.note(line.nanoseconds(), &line.record));
+        lines.iter().for_each(|line| attendance.add_line(line.at_nanoseconds(), &line.record));
         attendance
     }
 
     /// Adds the next line, written at `moment` in nanoseconds since 1970.
-    pub fn note(&mut self, moment: i64, record: &Record) {
-        let passed = moment - self.moment.unwrap_or(moment);
+    pub fn add_line(&mut self, moment: i64, record: &Record) {
+        let passed = moment - self.last_time_ns.unwrap_or(moment);
         if passed < 0 {
-            self.clock_set_back += 1;
+            self.clock_set_back_count += 1;
         }
-        self.moment = Some(moment);
+        self.last_time_ns = Some(moment);
         let passed = passed.max(0);
-        self.push(passed, self.attention(passed, Some(record)));
+        self.push_span(passed, self.classify_gap(passed, Some(record)));
         match record {
-            Record::Activity(Activity::Session(presence)) => self.take_presence(presence),
+            Record::Activity(Activity::Session(presence)) => self.apply_presence(presence),
             Record::Activity(Activity::Question(_)) => self.open_questions += 1,
             Record::Activity(Activity::Clock(clock)) => self.is_paused = clock.event == ClockEvent::Stopped,
             // The inherited lines of a branch were played in another run, at another time.
             Record::Branch(_) => {
-                self.times.clear();
-                self.weeks.iter_mut().for_each(|week| week.inherited = true);
-                (self.week_from, self.sitting_from) = (self.place, self.place);
+                self.spans.clear();
+                self.weeks.iter_mut().for_each(|week| week.is_inherited = true);
+                (self.week_start_ns, self.session_start_ns) = (self.end_ns, self.end_ns);
             }
             record if record.closing().is_some() => {
-                self.weeks.push(AttendedWeek { from: self.week_from, to: self.place, inherited: false });
-                self.week_from = self.place;
+                self.weeks.push(AttendedWeek {
+                    from: self.week_start_ns,
+                    to: self.end_ns,
+                    is_inherited: false,
+                });
+                self.week_start_ns = self.end_ns;
             }
-            record if is_act(record) => (self.is_idle, self.has_focus_elsewhere) = (false, false),
+            record if is_user_action(record) => (self.is_idle, self.has_lost_focus) = (false, false),
             _ => {}
         }
         if matches!(record, Record::Activity(Activity::Answer(_))) {
@@ -214,13 +218,13 @@ impl Attendance {
     }
 
     /// Returns the time of the last line.
-    pub fn place(&self) -> i64 {
-        self.place
+    pub fn end_ns(&self) -> i64 {
+        self.end_ns
     }
 
     /// Returns how often the wall clock was set back between two lines.
-    pub fn clock_set_back(&self) -> u32 {
-        self.clock_set_back
+    pub fn clock_set_back_count(&self) -> u32 {
+        self.clock_set_back_count
     }
 
     /// Returns the weeks, or single days, in order.
@@ -229,20 +233,20 @@ impl Attendance {
     }
 
     /// Returns the time at which the current week starts.
-    pub fn week_from(&self) -> i64 {
-        self.week_from
+    pub fn week_start_ns(&self) -> i64 {
+        self.week_start_ns
     }
 
     /// Returns the spans in order. They have no gaps, except for lines inherited from another run.
-    pub fn times(&self) -> &[AttendedTime] {
-        &self.times
+    pub fn spans(&self) -> &[TimeSpan] {
+        &self.spans
     }
 
     /// Returns the time between two points, by kind.
-    pub fn between(&self, from: i64, to: i64) -> TimeSpent {
+    pub fn spent_between(&self, from: i64, to: i64) -> TimeSpent {
         let mut spent = TimeSpent::default();
-        let first = self.times.partition_point(|time| time.to <= from);
-        for time in self.times[first..].iter().take_while(|time| time.from < to) {
+        let first = self.spans.partition_point(|time| time.to <= from);
+        for time in self.spans[first..].iter().take_while(|time| time.from < to) {
             spent.add(time.attention, time.to.min(to) - time.from.max(from));
         }
         spent
@@ -250,21 +254,21 @@ impl Attendance {
 
     /// Returns the time so far in the scope of a limit, at `moment` in nanoseconds since 1970. Time without a key
     /// counts as active until the program records the idle time.
-    pub fn so_far(&self, scope: LimitScope, moment: i64) -> TimeSpent {
+    pub fn spent_so_far(&self, scope: LimitScope, moment: i64) -> TimeSpent {
         let from = match scope {
-            LimitScope::Week => self.week_from,
-            LimitScope::Session => self.sitting_from,
+            LimitScope::Week => self.week_start_ns,
+            LimitScope::Session => self.session_start_ns,
             LimitScope::Study => 0,
         };
-        let mut spent = self.between(from, self.place);
-        let passed = (moment - self.moment.unwrap_or(moment)).max(0);
-        spent.add(self.attention(passed, None), passed);
+        let mut spent = self.spent_between(from, self.end_ns);
+        let passed = (moment - self.last_time_ns.unwrap_or(moment)).max(0);
+        spent.add(self.classify_gap(passed, None), passed);
         spent
     }
 
     /// Returns the kind of the time since the last line. `record` is the line that ends it.
-    fn attention(&self, passed: i64, record: Option<&Record>) -> Attention {
-        let long = passed > BREAK;
+    fn classify_gap(&self, passed: i64, record: Option<&Record>) -> Attention {
+        let long = passed > MIN_BREAK_NS;
         let simulates = |record: &Record| record.closing().is_some() || matches!(record, Record::Voice(_));
         if record.is_some_and(simulates) {
             return Attention::Simulating;
@@ -272,50 +276,50 @@ impl Attendance {
         if self.is_paused {
             return Attention::Paused;
         }
-        let is_opened_again = record.and_then(presence_of) == Some(PresenceEvent::Opened);
-        match self.sitting {
-            Openness::Untold if long => Attention::Away,
-            Openness::Untold => Attention::Active,
-            Openness::Left => Attention::Away,
+        let is_opened_again = record.and_then(presence_event) == Some(PresenceEvent::Opened);
+        match self.connection {
+            ConnectionState::Unknown if long => Attention::Away,
+            ConnectionState::Unknown => Attention::Active,
+            ConnectionState::Closed => Attention::Away,
             // The run was not closed: it is unknown when the program stopped.
-            Openness::Open { .. } if is_opened_again => Attention::Away,
-            Openness::Open { .. } if self.is_suspended || self.has_focus_elsewhere => Attention::Away,
-            Openness::Open { .. } if self.is_idle => Attention::Idle,
-            Openness::Open { watches_keys: false } if long => Attention::Idle,
-            Openness::Open { .. } if self.open_questions > 0 => Attention::Answering,
-            Openness::Open { .. } => Attention::Active,
+            ConnectionState::Open { .. } if is_opened_again => Attention::Away,
+            ConnectionState::Open { .. } if self.is_suspended || self.has_lost_focus => Attention::Away,
+            ConnectionState::Open { .. } if self.is_idle => Attention::Idle,
+            ConnectionState::Open { watches_keys: false } if long => Attention::Idle,
+            ConnectionState::Open { .. } if self.open_questions > 0 => Attention::Answering,
+            ConnectionState::Open { .. } => Attention::Active,
         }
     }
 
-    fn push(&mut self, passed: i64, attention: Attention) {
-        let from = self.place;
-        self.place += passed;
-        match self.times.last_mut() {
-            Some(last) if last.attention == attention && last.to == from => last.to = self.place,
+    fn push_span(&mut self, passed: i64, attention: Attention) {
+        let from = self.end_ns;
+        self.end_ns += passed;
+        match self.spans.last_mut() {
+            Some(last) if last.attention == attention && last.to == from => last.to = self.end_ns,
             _ if passed == 0 => {}
-            _ => self.times.push(AttendedTime { from, to: self.place, attention }),
+            _ => self.spans.push(TimeSpan { from, to: self.end_ns, attention }),
         }
     }
 
-    fn take_presence(&mut self, presence: &Presence) {
+    fn apply_presence(&mut self, presence: &Presence) {
         match presence.event {
             PresenceEvent::Opened => {
-                let watches_keys = presence.interface.as_deref() == Some(WATCHES_KEYS);
-                self.sitting = Openness::Open { watches_keys };
-                self.sitting_from = self.place;
+                let watches_keys = presence.interface.as_deref() == Some(KEY_WATCHING_INTERFACE);
+                self.connection = ConnectionState::Open { watches_keys };
+                self.session_start_ns = self.end_ns;
                 // Questions without an answer are asked again.
                 self.open_questions = 0;
-                (self.is_idle, self.is_suspended, self.has_focus_elsewhere) = (false, false, false);
+                (self.is_idle, self.is_suspended, self.has_lost_focus) = (false, false, false);
             }
-            PresenceEvent::Closed => self.sitting = Openness::Left,
+            PresenceEvent::Closed => self.connection = ConnectionState::Closed,
             PresenceEvent::Idle => {
                 self.is_idle = true;
-                let since = presence.idle_ms.unwrap_or(0).min(i64::MAX as u64 / MILLISECOND as u64);
-                self.was_idle_since(self.place - since as i64 * MILLISECOND);
+                let since = presence.idle_ms.unwrap_or(0).min(i64::MAX as u64 / NS_PER_MS as u64);
+                self.mark_idle_since(self.end_ns - since as i64 * NS_PER_MS);
             }
             PresenceEvent::Active => self.is_idle = false,
-            PresenceEvent::FocusLost => self.has_focus_elsewhere = true,
-            PresenceEvent::FocusGained => self.has_focus_elsewhere = false,
+            PresenceEvent::FocusLost => self.has_lost_focus = true,
+            PresenceEvent::FocusGained => self.has_lost_focus = false,
             PresenceEvent::Suspended => self.is_suspended = true,
             PresenceEvent::Resumed => self.is_suspended = false,
             PresenceEvent::Resized => {}
@@ -323,9 +327,9 @@ impl Attendance {
     }
 
     /// Changes active time since `since` to idle.
-    fn was_idle_since(&mut self, since: i64) {
-        let first = self.times.partition_point(|time| time.to <= since);
-        let found = self.times.split_off(first);
+    fn mark_idle_since(&mut self, since: i64) {
+        let first = self.spans.partition_point(|time| time.to <= since);
+        let found = self.spans.split_off(first);
         for time in found {
             let cut = since.clamp(time.from, time.to);
             let later = match time.attention {
@@ -334,22 +338,23 @@ impl Attendance {
             };
             let parts = [(time.from, cut, time.attention), (cut, time.to, later)];
             for (from, to, attention) in parts.into_iter().filter(|(from, to, _)| from < to) {
-                match self.times.last_mut() {
+                match self.spans.last_mut() {
                     Some(last) if last.attention == attention && last.to == from => last.to = to,
-                    _ => self.times.push(AttendedTime { from, to, attention }),
+                    _ => self.spans.push(TimeSpan { from, to, attention }),
                 }
             }
         }
     }
 
     /// Returns the number of weeks that were decided implausibly fast.
-    pub fn fast_weeks(&self) -> u32 {
-        let is_fast = |week: &&AttendedWeek| week.is_implausibly_fast(&self.between(week.from, week.to));
+    pub fn fast_week_count(&self) -> u32 {
+        let is_fast =
+            |week: &&AttendedWeek| week.is_implausibly_fast(&self.spent_between(week.from, week.to));
         self.weeks().iter().filter(is_fast).count() as u32
     }
 }
 
-fn presence_of(record: &Record) -> Option<PresenceEvent> {
+fn presence_event(record: &Record) -> Option<PresenceEvent> {
     match record {
         Record::Activity(Activity::Session(presence)) => Some(presence.event),
         _ => None,
@@ -357,7 +362,7 @@ fn presence_of(record: &Record) -> Option<PresenceEvent> {
 }
 
 /// Whether only a present user can cause this line. Weeks do not count, because a time limit can submit them.
-fn is_act(record: &Record) -> bool {
+fn is_user_action(record: &Record) -> bool {
     match record {
         Record::Call(_) | Record::Query(_) | Record::Note(_) | Record::Memo(_) => true,
         Record::Activity(activity) => matches!(
@@ -383,13 +388,13 @@ pub struct AttendedWeek {
     /// End of the week, nanoseconds.
     pub to: i64,
     /// The week was inherited from the parent run.
-    pub inherited: bool,
+    pub is_inherited: bool,
 }
 
 impl AttendedWeek {
     /// Whether it was decided in this run, in less than [`FAST_WEEK_SECONDS`] active seconds.
     pub fn is_implausibly_fast(&self, time: &TimeSpent) -> bool {
-        !self.inherited && time.active_seconds() < FAST_WEEK_SECONDS
+        !self.is_inherited && time.active_seconds() < FAST_WEEK_SECONDS
     }
 }
 
@@ -397,16 +402,16 @@ impl AttendedWeek {
 mod tests {
     use super::*;
     use novamind_record::trajectory::record::{
-        Branch, Clock, Closing, Help, LeavingCause, PresenceEvent, View,
+        Branch, Clock, Closing, HelpRequest, LeavingCause, PresenceEvent, ScreenView,
     };
 
-    fn attendance(lines: &[(i64, Record)]) -> Attendance {
+    fn attendance_of(lines: &[(i64, Record)]) -> Attendance {
         let mut attendance = Attendance::default();
-        lines.iter().for_each(|(seconds, record)| attendance.note(seconds * SECOND, record));
+        lines.iter().for_each(|(seconds, record)| attendance.add_line(seconds * NS_PER_SECOND, record));
         attendance
     }
 
-    fn session(event: PresenceEvent, interface: Option<&str>, idle_ms: Option<u64>) -> Record {
+    fn session_record(event: PresenceEvent, interface: Option<&str>, idle_ms: Option<u64>) -> Record {
         Record::Activity(Activity::Session(Box::new(Presence {
             event,
             cause: (event == PresenceEvent::Closed).then_some(LeavingCause::Quit),
@@ -421,107 +426,113 @@ mod tests {
         })))
     }
 
-    fn on(event: PresenceEvent) -> Record {
-        session(event, None, None)
+    fn presence_record(event: PresenceEvent) -> Record {
+        session_record(event, None, None)
     }
 
-    fn opened(interface: &str) -> Record {
-        session(PresenceEvent::Opened, Some(interface), None)
+    fn opened_record(interface: &str) -> Record {
+        session_record(PresenceEvent::Opened, Some(interface), None)
     }
 
-    fn clock(event: ClockEvent) -> Record {
+    fn clock_record(event: ClockEvent) -> Record {
         Record::Activity(Activity::Clock(Clock { event, reason: None, stood_ms: None }))
     }
 
-    fn help() -> Record {
-        Record::Activity(Activity::Help(Help { term: String::new(), place: String::new() }))
+    fn help_record() -> Record {
+        Record::Activity(Activity::Help(HelpRequest { term: String::new(), place: String::new() }))
     }
 
-    fn look() -> Record {
-        Record::Activity(Activity::View(View { screen: String::new(), from: String::new(), for_ms: 0 }))
+    fn view_record() -> Record {
+        Record::Activity(Activity::View(ScreenView { screen: String::new(), from: String::new(), for_ms: 0 }))
     }
 
-    fn week() -> Record {
+    fn week_record() -> Record {
         let (figures, state_hash, parts) = Default::default();
         Record::Week(Closing { days_run: 7, figures, cash: 0.0, state_hash, parts })
     }
 
     /// Active, idle, away and paused seconds.
-    fn all(attendance: &Attendance) -> [f64; 4] {
-        let spent = attendance.between(0, attendance.place());
+    fn seconds_by_kind(attendance: &Attendance) -> [f64; 4] {
+        let spent = attendance.spent_between(0, attendance.end_ns());
         [spent.active_seconds(), spent.idle_seconds(), spent.away_seconds(), spent.paused_seconds()]
     }
 
     #[test]
-    fn without_lines_of_presence_a_long_gap_is_a_break() {
-        let run = attendance(&[(0, help()), (600, help()), (1201, help()), (1200, help()), (1230, help())]);
-        assert_eq!(all(&run), [630.0, 0.0, 601.0, 0.0]);
-        assert_eq!(run.clock_set_back(), 1);
-    }
-
-    #[test]
-    fn reading_is_no_break_and_whoever_is_found_idle_was_since_the_last_key() {
-        let run = attendance(&[
-            (0, opened("console")),
-            (660, look()),
-            (760, session(PresenceEvent::Idle, None, Some(120_000))),
-            (1000, on(PresenceEvent::Active)),
-            (1010, help()),
+    fn long_gap_without_presence_is_a_break() {
+        let run = attendance_of(&[
+            (0, help_record()),
+            (600, help_record()),
+            (1201, help_record()),
+            (1200, help_record()),
+            (1230, help_record()),
         ]);
-        assert_eq!(all(&run), [650.0, 360.0, 0.0, 0.0]);
-        let plain = attendance(&[(0, opened("plain")), (660, help()), (700, help())]);
-        assert_eq!(all(&plain), [40.0, 660.0, 0.0, 0.0], "plain mode does not watch keys");
+        assert_eq!(seconds_by_kind(&run), [630.0, 0.0, 601.0, 0.0]);
+        assert_eq!(run.clock_set_back_count(), 1);
     }
 
     #[test]
-    fn the_program_left_stopped_or_in_the_background_is_away() {
-        let run = attendance(&[
-            (0, opened("console")),
-            (10, on(PresenceEvent::FocusLost)),
-            (20, on(PresenceEvent::FocusGained)),
-            (25, on(PresenceEvent::Suspended)),
-            (125, on(PresenceEvent::Resumed)),
-            (130, clock(ClockEvent::Stopped)),
-            (330, clock(ClockEvent::Started)),
-            (335, on(PresenceEvent::Closed)),
-            (1335, opened("console")),
-            (1340, look()),
+    fn idle_time_starts_at_the_last_key() {
+        let run = attendance_of(&[
+            (0, opened_record("console")),
+            (660, view_record()),
+            (760, session_record(PresenceEvent::Idle, None, Some(120_000))),
+            (1000, presence_record(PresenceEvent::Active)),
+            (1010, help_record()),
+        ]);
+        assert_eq!(seconds_by_kind(&run), [650.0, 360.0, 0.0, 0.0]);
+        let plain = attendance_of(&[(0, opened_record("plain")), (660, help_record()), (700, help_record())]);
+        assert_eq!(seconds_by_kind(&plain), [40.0, 660.0, 0.0, 0.0], "plain mode does not watch keys");
+    }
+
+    #[test]
+    fn closed_stopped_or_unfocused_program_counts_as_away() {
+        let run = attendance_of(&[
+            (0, opened_record("console")),
+            (10, presence_record(PresenceEvent::FocusLost)),
+            (20, presence_record(PresenceEvent::FocusGained)),
+            (25, presence_record(PresenceEvent::Suspended)),
+            (125, presence_record(PresenceEvent::Resumed)),
+            (130, clock_record(ClockEvent::Stopped)),
+            (330, clock_record(ClockEvent::Started)),
+            (335, presence_record(PresenceEvent::Closed)),
+            (1335, opened_record("console")),
+            (1340, view_record()),
             // The program was killed.
-            (1400, opened("console")),
-            (1401, on(PresenceEvent::FocusLost)),
-            (1403, help()),
-            (1405, help()),
+            (1400, opened_record("console")),
+            (1401, presence_record(PresenceEvent::FocusLost)),
+            (1403, help_record()),
+            (1405, help_record()),
         ]);
-        assert_eq!(all(&run), [10.0 + 5.0 + 5.0 + 5.0 + 5.0 + 1.0 + 2.0, 0.0, 1372.0, 200.0]);
-        assert_eq!(run.between(0, run.place()).elapsed_seconds(), 1405.0);
+        assert_eq!(seconds_by_kind(&run), [10.0 + 5.0 + 5.0 + 5.0 + 5.0 + 1.0 + 2.0, 0.0, 1372.0, 200.0]);
+        assert_eq!(run.spent_between(0, run.end_ns()).elapsed_seconds(), 1405.0);
     }
 
     #[test]
-    fn a_clock_that_stands_while_the_program_is_left_is_found_forgotten() {
-        let run = attendance(&[
-            (0, opened("console")),
-            (5, clock(ClockEvent::Stopped)),
-            (9, on(PresenceEvent::Closed)),
-            (100, opened("console")),
-            (101, clock(ClockEvent::Forgotten)),
-            (105, look()),
+    fn clock_stopped_while_detached_counts_as_paused() {
+        let run = attendance_of(&[
+            (0, opened_record("console")),
+            (5, clock_record(ClockEvent::Stopped)),
+            (9, presence_record(PresenceEvent::Closed)),
+            (100, opened_record("console")),
+            (101, clock_record(ClockEvent::Forgotten)),
+            (105, view_record()),
         ]);
-        assert_eq!(all(&run), [9.0, 0.0, 96.0, 96.0]);
+        assert_eq!(seconds_by_kind(&run), [9.0, 0.0, 96.0, 96.0]);
     }
 
     #[test]
-    fn simulated_days_and_those_of_a_parent_are_nobodys_time() {
-        let run = attendance(&[
-            (0, help()),
-            (60, week()),
+    fn simulated_and_inherited_days_take_no_time() {
+        let run = attendance_of(&[
+            (0, help_record()),
+            (60, week_record()),
             (70, Record::Branch(Branch { from: None })),
-            (75, opened("console")),
-            (80, look()),
-            (100, week()),
-            (103, look()),
+            (75, opened_record("console")),
+            (80, view_record()),
+            (100, week_record()),
+            (103, view_record()),
         ]);
-        assert_eq!(all(&run), [13.0, 0.0, 0.0, 0.0]);
-        let at = |scope| run.so_far(scope, 110 * SECOND).active_ms();
+        assert_eq!(seconds_by_kind(&run), [13.0, 0.0, 0.0, 0.0]);
+        let at = |scope| run.spent_so_far(scope, 110 * NS_PER_SECOND).active_ms();
         let scopes = [LimitScope::Week, LimitScope::Session, LimitScope::Study].map(at);
         assert_eq!(scopes, [10_000, 15_000, 20_000]);
     }

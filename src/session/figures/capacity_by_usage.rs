@@ -3,11 +3,11 @@
 use novamind_record::figures::WeekFigures;
 use novamind_world::params::{CapacityTier, Params};
 
-const UTILISATION: f64 = 0.8;
+const TARGET_UTILIZATION: f64 = 0.8;
 
 /// A rule that sets the capacity from usage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum UsageRule {
+pub enum UsageCapacityRule {
     /// The smallest tier that serves the busiest day of the week before without overload, or the largest tier. No
     /// change before the first week.
     BusiestDay,
@@ -16,16 +16,16 @@ pub enum UsageRule {
     StepByStep,
 }
 
-impl UsageRule {
+impl UsageCapacityRule {
     /// Returns the tier for the next week, given the current one and the figures of the last week.
-    pub fn tier(self, now: u8, before: Option<&WeekFigures>, params: &Params) -> u8 {
+    pub fn next_tier(self, now: u8, before: Option<&WeekFigures>, params: &Params) -> u8 {
         match self {
-            UsageRule::BusiestDay => {
-                before.map_or(now, |week| covering(week.busiest_day as f64, now, params))
+            UsageCapacityRule::BusiestDay => {
+                before.map_or(now, |week| smallest_covering_tier(week.busiest_day as f64, now, params))
             }
-            UsageRule::StepByStep => {
+            UsageCapacityRule::StepByStep => {
                 let mean = before.map_or(0.0, |week| week.usage as f64 / f64::from(week.days_run.max(1)));
-                let target = covering(mean / UTILISATION, now, params);
+                let target = smallest_covering_tier(mean / TARGET_UTILIZATION, now, params);
                 target.clamp(now.saturating_sub(1), now.saturating_add(1))
             }
         }
@@ -33,7 +33,7 @@ impl UsageRule {
 }
 
 /// Returns the smallest tier that serves `units` a day, or the largest tier.
-fn covering(units: f64, now: u8, params: &Params) -> u8 {
+fn smallest_covering_tier(units: f64, now: u8, params: &Params) -> u8 {
     let tiers = &params.capacity_tier;
     let holds = |tier: &&CapacityTier| f64::from(tier.capacity_units) >= units;
     tiers.iter().find(holds).or(tiers.last()).map_or(now, |tier| tier.tier)

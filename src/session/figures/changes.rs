@@ -8,7 +8,7 @@ use novamind_world::settings::Settings;
 
 /// A setting that differs between two states.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Change {
+pub struct SettingChange {
     /// Setting.
     pub setting: SettingId,
     /// Value before.
@@ -18,7 +18,7 @@ pub struct Change {
 }
 
 /// Serializes the change for programs, with tool and unit.
-impl Serialize for Change {
+impl Serialize for SettingChange {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut fields = serializer.serialize_struct("Change", 5)?;
         fields.serialize_field("tool", &self.setting.tool())?;
@@ -39,7 +39,7 @@ pub struct Decisions {
     pub until: u32,
     /// Changed settings.
     #[serde(with = "kept")]
-    pub changes: Vec<Change>,
+    pub changes: Vec<SettingChange>,
     /// Purchases, posts and offers, as text.
     pub purchases: Vec<String>,
 }
@@ -48,32 +48,32 @@ pub struct Decisions {
 mod kept {
     use serde::{Deserialize, Deserializer, Serializer};
 
-    use super::{Change, SettingId};
+    use super::{SettingChange, SettingId};
 
-    pub fn serialize<S: Serializer>(changes: &[Change], serializer: S) -> Result<S::Ok, S::Error> {
+    pub fn serialize<S: Serializer>(changes: &[SettingChange], serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_seq(changes.iter().map(|change| (change.setting, change.old, change.new)))
     }
 
-    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Change>, D::Error> {
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<SettingChange>, D::Error> {
         let kept = Vec::<(SettingId, f64, f64)>::deserialize(deserializer)?;
-        Ok(kept.into_iter().map(|(setting, old, new)| Change { setting, old, new }).collect())
+        Ok(kept.into_iter().map(|(setting, old, new)| SettingChange { setting, old, new }).collect())
     }
 }
 
 /// Returns the changed settings, in the order of the tools. A setting that is in one state only has value 0 in the
 /// other.
-pub fn changes(old: &Settings, new: &Settings) -> Vec<Change> {
+pub fn setting_changes(old: &Settings, new: &Settings) -> Vec<SettingChange> {
     let (before, after) = (setting_values(old), setting_values(new));
     let value_in = |list: &[(SettingId, f64)], wanted: SettingId| {
         list.iter().find(|(setting, _)| *setting == wanted).map(|(_, value)| *value)
     };
     let gone = before.iter().filter(|(setting, _)| value_in(&after, *setting).is_none());
-    let mut found: Vec<Change> = Vec::new();
+    let mut found: Vec<SettingChange> = Vec::new();
     for (setting, _) in after.iter().chain(gone) {
         let old = value_in(&before, *setting).unwrap_or(0.0);
         let new = value_in(&after, *setting).unwrap_or(0.0);
         if old != new {
-            found.push(Change { setting: *setting, old, new });
+            found.push(SettingChange { setting: *setting, old, new });
         }
     }
     found
@@ -98,20 +98,20 @@ mod tests {
     use novamind_world::params::Params;
 
     #[test]
-    fn changes_name_what_differs_in_both_directions() {
-        let params = Params::shipped();
-        let old = Settings::opening(&params);
+    fn setting_changes_list_differences_in_both_directions() {
+        let params = Params::bundled();
+        let old = Settings::initial(&params);
         let mut new = old.clone();
         new.core.prices[Plan::B] = 25.0;
         let s1 = Group::at(0).expect("S1");
         new.targeted_ads.targeted_spend.insert(Channel::Linkedin, [(s1, 40.0)].into_iter().collect());
-        let there = changes(&old, &new);
-        let as_text = |list: &[Change]| -> Vec<String> {
+        let there = setting_changes(&old, &new);
+        let as_text = |list: &[SettingChange]| -> Vec<String> {
             list.iter().map(|change| format!("{} {} -> {}", change.setting, change.old, change.new)).collect()
         };
         assert_eq!(as_text(&there), ["price B 0 -> 25", "ads linkedin S1 0 -> 40"]);
-        assert_eq!(as_text(&changes(&new, &old)), ["price B 25 -> 0", "ads linkedin S1 40 -> 0"]);
-        assert!(changes(&new, &new).is_empty());
+        assert_eq!(as_text(&setting_changes(&new, &old)), ["price B 25 -> 0", "ads linkedin S1 40 -> 0"]);
+        assert!(setting_changes(&new, &new).is_empty());
         let told =
             json!({"tool": "set_prices", "setting": "price B", "old": 0.0, "new": 25.0, "unit": "$/month"});
         assert_eq!(json!(there[0]), told);

@@ -3,11 +3,11 @@
 use std::fmt::Write;
 
 use super::week::week_of;
-use novamind_base::notation::{dollars, grouped, percent, price, released_dollars, signed_dollars};
+use novamind_base::formatting::{dollars, grouped_number, percent, price, released_dollars, signed_dollars};
 use novamind_record::figures::WeekFigures;
-use novamind_record::trajectory::record::Calculated;
+use novamind_record::trajectory::record::CalculationOutput;
 use novamind_world::identifiers::{ByPlan, Group, Plan};
-use novamind_world::market::social::own::OwnPost;
+use novamind_world::market::social::own_posts::OwnPost;
 use novamind_world::params::Params;
 use novamind_world::state::World;
 
@@ -41,7 +41,7 @@ pub fn delivered_quality(world: &World, params: &Params) -> Vec<DeliveredQuality
 
 /// Leads that wait for a response.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Waiting {
+pub struct WaitingLeads {
     /// Number of threads.
     pub threads: u32,
     /// Days until the first of them ends without a response.
@@ -49,16 +49,16 @@ pub struct Waiting {
 }
 
 /// Builds the dashboard. `week` has the figures of the last week; `None` before the first.
-pub fn build(
+pub fn dashboard_text(
     world: &World,
     params: &Params,
     week: Option<&WeekFigures>,
     stocks: &WeekFigures,
-    calculated: &[Calculated],
-    waiting: Waiting,
+    calculated: &[CalculationOutput],
+    waiting: WaitingLeads,
 ) -> String {
     let mut text = format!("=== Week {} (day {}) ===\n", week_of(world.day), world.day);
-    head(&mut text, stocks);
+    header_block(&mut text, stocks);
     if let Some(week) = week {
         week_block(&mut text, week);
     }
@@ -70,7 +70,7 @@ pub fn build(
     text
 }
 
-fn head(text: &mut String, stocks: &WeekFigures) {
+fn header_block(text: &mut String, stocks: &WeekFigures) {
     let _ = writeln!(
         text,
         "Cash: {} | Individual Subscribers: {}",
@@ -101,7 +101,7 @@ fn week_block(text: &mut String, week: &WeekFigures) {
         released_dollars(week.payments),
         released_dollars(week.costs)
     );
-    let _ = writeln!(text, "Usage: {} units", grouped(week.usage as f64, 0));
+    let _ = writeln!(text, "Usage: {} units", grouped_number(week.usage as f64, 0));
     let _ = writeln!(
         text,
         "New Individual Leads: {} | New Enterprise Leads: {}",
@@ -122,7 +122,7 @@ fn week_block(text: &mut String, week: &WeekFigures) {
     let _ = writeln!(
         text,
         "P95 Latency (peak): {} ms | Error Rate (peak): {}",
-        grouped(week.p95_ms_peak, 0),
+        grouped_number(week.p95_ms_peak, 0),
         percent(week.error_rate_peak, 2)
     );
 }
@@ -134,7 +134,7 @@ fn settings_block(text: &mut String, world: &World) {
     let _ = writeln!(text, "\n--- Settings ---");
     let _ = writeln!(text, "Prices: {}", list(&|plan| price(core.prices[plan])));
     let _ = writeln!(text, "Model Tiers: {}", list(&|plan| core.tiers[plan].to_string()));
-    let _ = writeln!(text, "Quotas: {}", list(&|plan| grouped(core.quotas[plan].units(), 0)));
+    let _ = writeln!(text, "Quotas: {}", list(&|plan| grouped_number(core.quotas[plan].units(), 0)));
     let _ = writeln!(text, "Capacity Tier: {}", core.capacity_tier);
     let _ = writeln!(text, "Ops: {}/day | Dev: {}/day", dollars(core.operations), dollars(core.development));
     let settings = &world.settings;
@@ -164,12 +164,12 @@ fn quality_block(text: &mut String, world: &World, params: &Params) {
     }
 }
 
-fn calculations_block(text: &mut String, calculated: &[Calculated]) {
+fn calculations_block(text: &mut String, calculated: &[CalculationOutput]) {
     if calculated.is_empty() {
         return;
     }
     let _ = writeln!(text, "\n--- Weekly Calculations ---");
-    for Calculated { name, output } in calculated {
+    for CalculationOutput { name, output } in calculated {
         let _ = writeln!(text, "{name}:");
         output.lines().for_each(|line| {
             let _ = writeln!(text, "  {line}");
@@ -191,7 +191,7 @@ fn posts_block(text: &mut String, world: &World, params: &Params) {
         let preview: String = post.content.chars().take(shown).collect();
         let comments: Vec<String> = post.comments.iter().map(u32::to_string).collect();
         let numbers = if comments.is_empty() { String::new() } else { format!(" ({})", comments.join(", ")) };
-        let views = grouped(post.views as f64, 0);
+        let views = grouped_number(post.views as f64, 0);
         let _ = writeln!(
             text,
             "Day {}: {views} views, {} comments{numbers} | {preview}",
@@ -201,7 +201,7 @@ fn posts_block(text: &mut String, world: &World, params: &Params) {
     }
 }
 
-fn inbox_block(text: &mut String, week: Option<&WeekFigures>, waiting: Waiting) {
+fn inbox_block(text: &mut String, week: Option<&WeekFigures>, waiting: WaitingLeads) {
     let _ = writeln!(text, "\n--- Inbox ---");
     let mut lines = 0;
     if let Some(week) = week.filter(|week| week.threads_opened > 0) {
@@ -234,15 +234,15 @@ mod tests {
     use novamind_world::events::Facts;
 
     fn world() -> (World, Params) {
-        let params = Params::shipped();
-        (World::open(500, 1_000_000.0, &params, &mut Facts::default()), params)
+        let params = Params::bundled();
+        (World::new(500, 1_000_000.0, &params, &mut Facts::default()), params)
     }
 
     #[test]
-    fn day_0_shows_stocks_settings_and_quality() {
+    fn dashboard_shows_stocks_settings_and_quality_on_day_0() {
         let (world, params) = world();
         let stocks = WeekFigures { cash: 1_000_000.0, ..WeekFigures::default() };
-        let text = build(&world, &params, None, &stocks, &[], Waiting::default());
+        let text = dashboard_text(&world, &params, None, &stocks, &[], WaitingLeads::default());
         let expected = "=== Week 0 (day 0) ===\n\
             Cash: $1,000,000 | Individual Subscribers: 0\n\
             Enterprise Subscribed Seats: 0 | Open Issues: 0\n\n\
@@ -272,7 +272,8 @@ mod tests {
         let s1 = Group::at(0).expect("S1");
         world.settings.core.prices = ByPlan([22.5, 0.4, 55.0]);
         world.settings.targeted_development.targeted_spend.insert(s1, 4_500.0);
-        let text = build(&world, &params, None, &WeekFigures::default(), &[], Waiting::default());
+        let text =
+            dashboard_text(&world, &params, None, &WeekFigures::default(), &[], WaitingLeads::default());
         assert!(text.contains("Prices: A $22.50 | B $0.40 | C $55\n"), "{text}");
         assert!(text.contains("Targeted spend: ops $0/day, dev $4,500/day, ads $0/day"), "{text}");
     }
@@ -283,29 +284,32 @@ mod tests {
         world.settings.core.tiers = ByPlan([1, 2, 3]);
         world.product.shared_bonus = 0.02257;
         world.product.group_bonus[Group::at(0).expect("S1")] = 0.27773;
-        let text = build(&world, &params, None, &WeekFigures::default(), &[], Waiting::default());
+        let text =
+            dashboard_text(&world, &params, None, &WeekFigures::default(), &[], WaitingLeads::default());
         assert!(text.contains("S1      0.3002        0.3752        0.4503        +0.2777"), "{text}");
         assert!(text.contains("S2      0.1335        0.1669        0.2003        0\n"), "{text}");
         assert!(text.contains("global bonus 0.0226"), "{text}");
     }
 
     #[test]
-    fn posts_of_the_week_show_what_became_of_them() {
+    fn posts_block_lists_posts_of_the_last_week() {
         let (mut world, params) = world();
         let own = &mut world.market.social.own;
         own.push(OwnPost::new(0, "An old one.", None));
         own.push(OwnPost { views: 1840, comments: vec![91, 92], ..OwnPost::new(7, "y".repeat(90), None) });
         world.day = 14;
-        let text = build(&world, &params, None, &WeekFigures::default(), &[], Waiting::default());
+        let text =
+            dashboard_text(&world, &params, None, &WeekFigures::default(), &[], WaitingLeads::default());
         let line = format!("Day 7: 1,840 views, 2 comments (91, 92) | {}\n", "y".repeat(80));
         assert!(text.contains(&line) && !text.contains("An old one"), "{text}");
         world.day = 7;
-        let text = build(&world, &params, None, &WeekFigures::default(), &[], Waiting::default());
+        let text =
+            dashboard_text(&world, &params, None, &WeekFigures::default(), &[], WaitingLeads::default());
         assert!(text.contains("An old one.") && !text.contains("1,840"), "{text}");
     }
 
     #[test]
-    fn a_week_shows_peaks_and_losses() {
+    fn dashboard_shows_peaks_and_losses() {
         let (world, params) = world();
         let week = WeekFigures {
             overload_peak: 0.12345,
@@ -321,8 +325,8 @@ mod tests {
             replies: 3,
             ..WeekFigures::default()
         };
-        let waiting = Waiting { threads: 2, days_left: 4 };
-        let text = build(&world, &params, Some(&week), &week, &[], waiting);
+        let waiting = WaitingLeads { threads: 2, days_left: 4 };
+        let text = dashboard_text(&world, &params, Some(&week), &week, &[], waiting);
         for part in [
             "Overload (peak): 12.3% | Outage: yes (40 minutes)",
             "P95 Latency (peak): 250 ms | Error Rate (peak): 1.23%",

@@ -13,13 +13,13 @@ pub struct Estimates {
     /// discovery.
     pub as_of: u32,
     /// Largest relative error, 0..1.
-    pub noise: f64,
+    pub max_relative_error: f64,
     /// Mean budget, dollars a month; for enterprises per seat.
     pub budget: f64,
     /// Mean usage, units a day; for enterprises per seat.
     pub usage: f64,
     /// Mean required quality.
-    pub floor: f64,
+    pub required_quality: f64,
     /// Seats of the smallest and the largest enterprise; 1 for individuals.
     pub seats: (f64, f64),
 }
@@ -31,20 +31,20 @@ impl Estimates {
     }
 
     /// Returns the range of the true value behind an estimate.
-    pub fn range(&self, value: f64) -> (f64, f64) {
-        truth_behind(value, self.noise)
+    pub fn true_range(&self, value: f64) -> (f64, f64) {
+        true_value_range(value, self.max_relative_error)
     }
 
     /// Returns the range of the true usage of the smallest account, units a day.
-    pub fn account_range(&self) -> (f64, f64) {
-        let ((least, most), (fewest, seats)) = (self.range(self.usage), self.range(self.seats.0));
+    pub fn account_usage_range(&self) -> (f64, f64) {
+        let ((least, most), (fewest, seats)) = (self.true_range(self.usage), self.true_range(self.seats.0));
         // Individuals have exactly one seat.
         if self.group.is_enterprise() { (least * fewest, most * seats) } else { (least, most) }
     }
 }
 
 /// Returns the range of the true value behind an estimate, which is the true value times 1 ± at most `share`.
-pub fn truth_behind(estimate: f64, share: f64) -> (f64, f64) {
+pub fn true_value_range(estimate: f64, share: f64) -> (f64, f64) {
     let from = estimate / (1.0 + share);
     let to = if share < 1.0 { estimate / (1.0 - share) } else { f64::INFINITY };
     (from.min(to), from.max(to))
@@ -55,15 +55,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_truth_lies_inside_the_range_whatever_the_noise_was() {
+    fn true_value_is_within_range_for_every_error() {
         for share in [0.65, 0.4, 0.05] {
             for draw in [-1.0, -0.3, 0.0, 0.8, 1.0] {
                 let truth = 20.0;
-                let (from, to) = truth_behind(truth * (1.0 + share * draw), share);
+                let (from, to) = true_value_range(truth * (1.0 + share * draw), share);
                 assert!(from <= truth + 1e-9 && truth <= to + 1e-9, "{share} {draw}: {from} {to}");
             }
         }
-        assert_eq!(truth_behind(0.0, 0.4), (0.0, 0.0));
-        assert_eq!(truth_behind(14.0, 0.4), (10.0, 14.0 / 0.6));
+        assert_eq!(true_value_range(0.0, 0.4), (0.0, 0.0));
+        assert_eq!(true_value_range(14.0, 0.4), (10.0, 14.0 / 0.6));
     }
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::dashboard::delivered_quality;
-use novamind_record::figures::MeasuredGroup;
+use novamind_record::figures::GroupFigures;
 use novamind_world::canonical::canonical;
 use novamind_world::customers::columns::Block;
 use novamind_world::events::{Arrival, DayFigures, Facts, SubscriptionStatus};
@@ -76,7 +76,7 @@ impl GroupWeek {
 }
 
 /// Adds a day to the figures of its week.
-pub fn count(week: &mut ByGroup<GroupWeek>, figures: &DayFigures, facts: &Facts, world: &World) {
+pub fn count_day(week: &mut ByGroup<GroupWeek>, figures: &DayFigures, facts: &Facts, world: &World) {
     let came: BTreeMap<u32, &Arrival> =
         facts.arrivals.iter().map(|arrival| (arrival.customer, arrival)).collect();
     for arrival in came.values() {
@@ -125,7 +125,7 @@ pub fn count(week: &mut ByGroup<GroupWeek>, figures: &DayFigures, facts: &Facts,
 
 /// Completes the figures at the end of a week. `floor` returns the range of a group's mean required quality, if the
 /// group is known.
-pub(crate) fn settle(
+pub(crate) fn finish_week(
     week: &mut ByGroup<GroupWeek>,
     world: &World,
     params: &Params,
@@ -144,7 +144,7 @@ pub(crate) fn settle(
 }
 
 /// Returns mean satisfaction and mean relationship of a group's active subscribers; `None` if there are none.
-pub fn mood_of(world: &World, group: Group) -> Option<(f64, f64)> {
+pub fn mean_satisfaction(world: &World, group: Group) -> Option<(f64, f64)> {
     let blocks = || world.customers.groups[group].blocks.iter();
     let count: usize = blocks().map(Block::len).sum();
     let satisfaction: f64 = blocks().flat_map(|block| &block.satisfaction).sum();
@@ -153,17 +153,17 @@ pub fn mood_of(world: &World, group: Group) -> Option<(f64, f64)> {
 }
 
 /// Returns the figures of a group at the end of the days that `counted` covers.
-pub fn measured_group(group: Group, counted: &GroupWeek, world: &World) -> MeasuredGroup {
-    let (satisfaction, relationship) = mood_of(world, group).unzip();
+pub fn measure_group(group: Group, counted: &GroupWeek, world: &World) -> GroupFigures {
+    let (satisfaction, relationship) = mean_satisfaction(world, group).unzip();
     let own = &world.customers.groups[group];
-    MeasuredGroup {
+    GroupFigures {
         leads: counted.leads,
         signed: counted.signed,
         left: counted.left,
         usage: counted.usage.0.iter().sum(),
-        subscribers: own.active(),
+        subscribers: own.active_count(),
         open_issues: own.blocks.iter().map(Block::open_issues).sum(),
-        reputation: world.market.reputation.of(group),
+        reputation: world.market.reputation.get(group),
         satisfaction,
         relationship,
     }

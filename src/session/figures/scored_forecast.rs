@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::journal::JournalEntry;
-use novamind_base::notation::percent;
+use novamind_base::formatting::percent;
 use novamind_tools::Forecast;
 
 /// A submitted forecast of cash, with its outcome once it is due.
@@ -21,7 +21,7 @@ pub struct ScoredForecast {
 
 /// Position of an outcome relative to an interval. The interval includes its ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Verdict {
+pub enum IntervalPosition {
     /// Below the lower end.
     Below,
     /// Within the interval.
@@ -30,56 +30,56 @@ pub enum Verdict {
     Above,
 }
 
-impl Verdict {
+impl IntervalPosition {
     /// Returns the position as a word.
-    pub fn word(self) -> &'static str {
+    pub fn as_str(self) -> &'static str {
         match self {
-            Verdict::Below => "below",
-            Verdict::Inside => "inside",
-            Verdict::Above => "above",
+            IntervalPosition::Below => "below",
+            IntervalPosition::Inside => "inside",
+            IntervalPosition::Above => "above",
         }
     }
 }
 
 impl ScoredForecast {
     /// Creates a forecast submitted on `day`. `cash_by_day` is cash at the end of each day, day 0 first.
-    pub fn of(day: u32, forecast: &Forecast, cash_by_day: &[f64]) -> ScoredForecast {
+    pub fn new(day: u32, forecast: &Forecast, cash_by_day: &[f64]) -> ScoredForecast {
         let scored = ScoredForecast { forecast: *forecast, day, outcome: None };
-        ScoredForecast { outcome: cash_by_day.get(scored.due() as usize).copied(), ..scored }
+        ScoredForecast { outcome: cash_by_day.get(scored.due_day() as usize).copied(), ..scored }
     }
 
     /// Returns the due day.
-    pub fn due(&self) -> u32 {
+    pub fn due_day(&self) -> u32 {
         self.day.saturating_add(self.forecast.horizon_days)
     }
 
     /// Returns the position of the outcome; `None` before the due day.
-    pub fn verdict(&self) -> Option<Verdict> {
+    pub fn interval_position(&self) -> Option<IntervalPosition> {
         let outcome = self.outcome?;
         Some(if outcome < self.forecast.lower {
-            Verdict::Below
+            IntervalPosition::Below
         } else if outcome > self.forecast.upper {
-            Verdict::Above
+            IntervalPosition::Above
         } else {
-            Verdict::Inside
+            IntervalPosition::Inside
         })
     }
 
     /// Whether the interval contains the outcome; false before the due day.
-    pub fn is_inside(&self) -> bool {
-        self.verdict() == Some(Verdict::Inside)
+    pub fn is_covered(&self) -> bool {
+        self.interval_position() == Some(IntervalPosition::Inside)
     }
 
     /// Returns the error of the point as a share of the outcome, or of 1 dollar if the outcome is smaller. Positive
     /// if the point was too high.
-    pub fn error(&self) -> Option<f64> {
-        self.outcome.map(|outcome| (self.forecast.point - outcome) / size(outcome))
+    pub fn relative_error(&self) -> Option<f64> {
+        self.outcome.map(|outcome| (self.forecast.point - outcome) / error_scale(outcome))
     }
 
     /// Describes the error of the point: `0.2% low`, or `exact` if no digit shows a difference; `None` before the
     /// due day. Errors of 1,000 % or more (outcomes near 0) are shown as `>999%`.
-    pub fn miss_in_words(&self) -> Option<String> {
-        let error = self.error()?;
+    pub fn describe_error(&self) -> Option<String> {
+        let error = self.relative_error()?;
         let shown = match error.abs() {
             size if size < 10.0 => percent(size, 1),
             _ => ">999%".to_owned(),
@@ -93,11 +93,11 @@ impl ScoredForecast {
 
     /// Returns the width of the interval as a share of the outcome.
     pub fn sharpness(&self) -> Option<f64> {
-        self.outcome.map(|outcome| (self.forecast.upper - self.forecast.lower) / size(outcome))
+        self.outcome.map(|outcome| (self.forecast.upper - self.forecast.lower) / error_scale(outcome))
     }
 }
 
-fn size(outcome: f64) -> f64 {
+fn error_scale(outcome: f64) -> f64 {
     outcome.abs().max(1.0)
 }
 
@@ -106,7 +106,7 @@ pub fn filed_forecasts(journal: &[JournalEntry], cash_by_day: &[f64]) -> Vec<Sco
     let mut all = Vec::new();
     for entry in journal {
         let JournalEntry::Advance { day, forecasts, .. } = entry else { continue };
-        all.extend(forecasts.iter().map(|forecast| ScoredForecast::of(*day, forecast, cash_by_day)));
+        all.extend(forecasts.iter().map(|forecast| ScoredForecast::new(*day, forecast, cash_by_day)));
     }
     all
 }
@@ -128,7 +128,7 @@ pub struct ForecastScore {
 
 impl ForecastScore {
     /// Computes the score of a horizon from all submitted forecasts.
-    pub fn of(horizon_days: u32, filed: &[ScoredForecast]) -> ForecastScore {
+    pub fn from_forecasts(horizon_days: u32, filed: &[ScoredForecast]) -> ForecastScore {
         let due = filed.iter().filter(|one| one.forecast.horizon_days == horizon_days);
         let due: Vec<&ScoredForecast> = due.filter(|one| one.outcome.is_some()).collect();
         let mean = |of: fn(&ScoredForecast) -> Option<f64>| {
@@ -137,8 +137,8 @@ impl ForecastScore {
         ForecastScore {
             horizon_days,
             scored: due.len() as u32,
-            covered: due.iter().filter(|one| one.is_inside()).count() as u32,
-            mean_error: mean(ScoredForecast::error),
+            covered: due.iter().filter(|one| one.is_covered()).count() as u32,
+            mean_error: mean(ScoredForecast::relative_error),
             mean_sharpness: mean(ScoredForecast::sharpness),
         }
     }
@@ -148,49 +148,63 @@ impl ForecastScore {
 mod tests {
     use super::*;
 
-    fn came(outcome: f64) -> ScoredForecast {
+    fn forecast_with_outcome(outcome: f64) -> ScoredForecast {
         let forecast = Forecast { horizon_days: 7, point: 5.0, lower: 1.0, upper: 9.0 };
         ScoredForecast { forecast, day: 7, outcome: Some(outcome) }
     }
 
     #[test]
-    fn an_interval_holds_its_ends() {
-        use Verdict::{Above, Below, Inside};
-        let verdicts = [0.9, 1.0, 5.0, 9.0, 9.1].map(|outcome| came(outcome).verdict());
+    fn interval_includes_its_ends() {
+        use IntervalPosition::{Above, Below, Inside};
+        let verdicts =
+            [0.9, 1.0, 5.0, 9.0, 9.1].map(|outcome| forecast_with_outcome(outcome).interval_position());
         assert_eq!(verdicts, [Below, Inside, Inside, Inside, Above].map(Some));
-        let open = ScoredForecast { outcome: None, ..came(5.0) };
-        assert_eq!((open.verdict(), open.is_inside(), open.error(), open.due()), (None, false, None, 14));
+        let open = ScoredForecast { outcome: None, ..forecast_with_outcome(5.0) };
+        assert_eq!(
+            (open.interval_position(), open.is_covered(), open.relative_error(), open.due_day()),
+            (None, false, None, 14)
+        );
     }
 
     #[test]
-    fn a_miss_is_told_by_the_side_of_the_point_and_never_as_a_negative_zero() {
-        let told = [10.0, 4.0, 5.001, 5.0, 4.999, 0.0, 0.2].map(|outcome| came(outcome).miss_in_words());
+    fn error_text_names_the_side_and_no_negative_zero() {
+        let told = [10.0, 4.0, 5.001, 5.0, 4.999, 0.0, 0.2]
+            .map(|outcome| forecast_with_outcome(outcome).describe_error());
         let told = told.each_ref().map(|told| told.as_deref().unwrap_or_default());
         assert_eq!(
             told,
             ["50.0% low", "25.0% high", "exact", "exact", "exact", "500.0% high", "480.0% high"]
         );
-        let far = Forecast { point: -50.0, ..came(1.0).forecast };
-        let far = ScoredForecast { forecast: far, ..came(1.0) };
-        assert_eq!(far.miss_in_words().as_deref(), Some(">999% low"));
+        let far = Forecast { point: -50.0, ..forecast_with_outcome(1.0).forecast };
+        let far = ScoredForecast { forecast: far, ..forecast_with_outcome(1.0) };
+        assert_eq!(far.describe_error().as_deref(), Some(">999% low"));
     }
 
     #[test]
-    fn a_miss_is_a_share_of_what_came_or_of_a_dollar() {
-        assert_eq!([4.0, -10.0, 0.0].map(|outcome| came(outcome).error()), [0.25, 1.5, 5.0].map(Some));
-        let score =
-            ForecastScore::of(7, &[came(4.0), came(10.0), ScoredForecast { outcome: None, ..came(1.0) }]);
+    fn relative_error_uses_outcome_or_one_dollar() {
+        assert_eq!(
+            [4.0, -10.0, 0.0].map(|outcome| forecast_with_outcome(outcome).relative_error()),
+            [0.25, 1.5, 5.0].map(Some)
+        );
+        let score = ForecastScore::from_forecasts(
+            7,
+            &[
+                forecast_with_outcome(4.0),
+                forecast_with_outcome(10.0),
+                ScoredForecast { outcome: None, ..forecast_with_outcome(1.0) },
+            ],
+        );
         assert_eq!((score.scored, score.covered), (2, 1));
         assert!((score.mean_error - (0.25 + 0.5) / 2.0).abs() < 1e-12);
         assert!((score.mean_sharpness - (8.0 / 4.0 + 8.0 / 10.0) / 2.0).abs() < 1e-12);
-        assert_eq!(ForecastScore::of(28, &[came(4.0)]).scored, 0);
+        assert_eq!(ForecastScore::from_forecasts(28, &[forecast_with_outcome(4.0)]).scored, 0);
     }
 
     #[test]
-    fn the_outcome_is_cash_on_the_day_it_speaks_of() {
+    fn outcome_is_cash_on_the_due_day() {
         let cash: Vec<f64> = (0..20).map(f64::from).collect();
-        let one = ScoredForecast::of(7, &came(0.0).forecast, &cash);
-        assert_eq!((one.due(), one.outcome), (14, Some(14.0)));
-        assert_eq!(ScoredForecast::of(14, &one.forecast, &cash).outcome, None);
+        let one = ScoredForecast::new(7, &forecast_with_outcome(0.0).forecast, &cash);
+        assert_eq!((one.due_day(), one.outcome), (14, Some(14.0)));
+        assert_eq!(ScoredForecast::new(14, &one.forecast, &cash).outcome, None);
     }
 }

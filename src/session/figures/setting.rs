@@ -90,7 +90,7 @@ impl SettingId {
     }
 
     /// Returns the family and the member, for example `ads linkedin` and `E1`. The member is empty for all customers.
-    pub fn parts(self) -> (String, String) {
+    pub fn name_parts(self) -> (String, String) {
         let of = |family: &str, member: String| (family.to_owned(), member.trim_start().to_owned());
         match self {
             SettingId::Price(plan) => of("price", plan.to_string()),
@@ -120,7 +120,7 @@ impl SettingId {
 /// Formats the name, for example `price A` or `ads linkedin E1`.
 impl Display for SettingId {
     fn fmt(&self, out: &mut Formatter<'_>) -> fmt::Result {
-        let (family, member) = self.parts();
+        let (family, member) = self.name_parts();
         out.write_str(&family)?;
         if member.is_empty() { Ok(()) } else { write!(out, " {member}") }
     }
@@ -157,19 +157,24 @@ pub fn setting_values(settings: &Settings) -> Vec<(SettingId, f64)> {
     let development = settings.targeted_development.targeted_spend.iter();
     all.extend(development.map(|(group, spend)| (SettingId::TargetedDevelopment(*group), *spend)));
     all.extend(
-        operations(settings).map(|(audience, spend)| (SettingId::TargetedOperations(audience), spend)),
-    );
-    all.extend(discounts(settings).map(|(audience, dollars)| (SettingId::Discount(audience), dollars)));
-    all.extend(
-        lead_discounts(settings).map(|(audience, dollars)| (SettingId::LeadDiscount(audience), dollars)),
+        operations_by_audience(settings)
+            .map(|(audience, spend)| (SettingId::TargetedOperations(audience), spend)),
     );
     all.extend(
-        ads_strengths(settings).map(|(audience, strength)| (SettingId::AdsStrength(audience), strength)),
+        discounts_by_audience(settings).map(|(audience, dollars)| (SettingId::Discount(audience), dollars)),
+    );
+    all.extend(
+        lead_discounts_by_audience(settings)
+            .map(|(audience, dollars)| (SettingId::LeadDiscount(audience), dollars)),
+    );
+    all.extend(
+        ads_strength_by_audience(settings)
+            .map(|(audience, strength)| (SettingId::AdsStrength(audience), strength)),
     );
     all
 }
 
-fn operations(settings: &Settings) -> impl Iterator<Item = (Audience, f64)> {
+fn operations_by_audience(settings: &Settings) -> impl Iterator<Item = (Audience, f64)> {
     let own = &settings.targeted_operations;
     let groups = own.by_group.iter().map(|(group, value)| (Audience::Group(*group), *value));
     let plans = own.by_plan.iter().map(|(plan, value)| (Audience::Plan(*plan), *value));
@@ -180,7 +185,7 @@ fn operations(settings: &Settings) -> impl Iterator<Item = (Audience, f64)> {
     groups.chain(plans).chain(both).chain(customers)
 }
 
-fn discounts(settings: &Settings) -> impl Iterator<Item = (Audience, f64)> {
+fn discounts_by_audience(settings: &Settings) -> impl Iterator<Item = (Audience, f64)> {
     let own = &settings.promotion;
     let everybody = std::iter::once((Audience::Everybody, own.global));
     let groups = own.by_group.iter().map(|(group, value)| (Audience::Group(*group), *value));
@@ -191,7 +196,7 @@ fn discounts(settings: &Settings) -> impl Iterator<Item = (Audience, f64)> {
     everybody.chain(groups).chain(customers).chain(both)
 }
 
-fn lead_discounts(settings: &Settings) -> impl Iterator<Item = (Audience, f64)> {
+fn lead_discounts_by_audience(settings: &Settings) -> impl Iterator<Item = (Audience, f64)> {
     let own = &settings.lead_promotion;
     let everybody = std::iter::once((Audience::Everybody, own.global));
     let groups = own.by_group.iter().map(|(group, value)| (Audience::Group(*group), *value));
@@ -202,7 +207,7 @@ fn lead_discounts(settings: &Settings) -> impl Iterator<Item = (Audience, f64)> 
     everybody.chain(groups).chain(channels).chain(both)
 }
 
-fn ads_strengths(settings: &Settings) -> impl Iterator<Item = (Audience, f64)> {
+fn ads_strength_by_audience(settings: &Settings) -> impl Iterator<Item = (Audience, f64)> {
     let own = &settings.ads_strength;
     let everybody = std::iter::once((Audience::Everybody, own.global));
     let groups = own.by_group.iter().map(|(group, value)| (Audience::Group(*group), *value));
@@ -215,7 +220,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn settings_are_called_by_what_they_set_and_for_whom() {
+    fn setting_names_include_the_audience() {
         let e1: Group = Group::parse("E1").expect("a group");
         let named = [
             (SettingId::Price(Plan::A), "price A"),

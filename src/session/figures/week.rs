@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use novamind_base::notation::json_number;
+use novamind_base::formatting::json_number;
 use novamind_record::trajectory::record::FiledForecast;
 use novamind_tools::{FORECAST_KEYS, Forecast};
 
@@ -12,13 +12,13 @@ pub fn week_of(day: u32) -> u32 {
 }
 
 /// SQL expression for the week of a ledger row. Purchases on a decision day belong to the week that starts with it.
-pub const WEEK_OF_ENTRY: &str = "CASE WHEN category IN ('research_project', 'market_research', 'group_research') \
+pub const WEEK_OF_ENTRY_SQL: &str = "CASE WHEN category IN ('research_project', 'market_research', 'group_research') \
                                  THEN day / 7 + 1 ELSE (day + 6) / 7 END";
 
 /// Returns the SQL condition for ledger rows of some weeks.
-pub fn entries_of_weeks(first: u32, last: u32) -> String {
+pub fn entries_of_weeks_sql(first: u32, last: u32) -> String {
     let (from, to) = (7 * first.saturating_sub(1), 7 * last);
-    format!("day BETWEEN {from} AND {to} AND {WEEK_OF_ENTRY} BETWEEN {first} AND {last}")
+    format!("day BETWEEN {from} AND {to} AND {WEEK_OF_ENTRY_SQL} BETWEEN {first} AND {last}")
 }
 
 /// Four forecasts of cash, and whether the naive projection filled in each.
@@ -31,7 +31,7 @@ pub struct Forecasts {
 }
 
 /// Describes how many forecasts the naive projection filled in: `by projection`, `3 of 4 by projection`, or `None`.
-pub fn naively(filled: &[bool]) -> Option<String> {
+pub fn describe_naive_share(filled: &[bool]) -> Option<String> {
     match filled.iter().filter(|filled| **filled).count() {
         0 => None,
         all if all == filled.len() => Some("by projection".to_owned()),
@@ -41,16 +41,16 @@ pub fn naively(filled: &[bool]) -> Option<String> {
 
 impl Forecasts {
     /// Reads the forecasts of a line; `None` unless there is one for each horizon.
-    pub(crate) fn of(filed: &[FiledForecast]) -> Option<Forecasts> {
+    pub(crate) fn from_filed(filed: &[FiledForecast]) -> Option<Forecasts> {
         let filed: &[FiledForecast; 4] = filed.try_into().ok()?;
         Some(Forecasts {
-            all: filed.map(|forecast| forecast.said()),
+            all: filed.map(|forecast| forecast.to_forecast()),
             filled_naively: filed.map(|forecast| forecast.filled_naively),
         })
     }
 
     /// Converts the forecasts to their form in a line.
-    pub(crate) fn filed(&self) -> Vec<FiledForecast> {
+    pub(crate) fn to_filed(&self) -> Vec<FiledForecast> {
         let one = |(forecast, filled_naively): (Forecast, bool)| {
             let Forecast { horizon_days, point, lower, upper } = forecast;
             FiledForecast { horizon_days, point, lower, upper, filled_naively }
@@ -59,7 +59,7 @@ impl Forecasts {
     }
 
     /// Converts the forecasts to the `predictions` of next_week.
-    pub fn as_predictions(&self) -> Value {
+    pub fn to_predictions(&self) -> Value {
         let entry = |(key, forecast): (&str, &Forecast)| {
             let fields = json!({
                 "point": json_number(forecast.point),
@@ -77,13 +77,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn forecasts_are_told_naive_as_far_as_they_are() {
-        let told = [[false; 4], [false, true, true, true], [true; 4]].map(|filled| naively(&filled));
+    fn naive_share_is_described() {
+        let told =
+            [[false; 4], [false, true, true, true], [true; 4]].map(|filled| describe_naive_share(&filled));
         assert_eq!(told, [None, Some("3 of 4 by projection".to_owned()), Some("by projection".to_owned())]);
     }
 
     #[test]
-    fn weeks_are_counted_from_the_first_and_day_0_belongs_to_none() {
+    fn week_of_counts_from_1_and_returns_0_for_day_0() {
         for (day, week) in [(0, 0), (1, 1), (7, 1), (8, 2), (497, 71), (500, 72), (504, 72)] {
             assert_eq!(week_of(day), week, "day {day}");
         }

@@ -16,9 +16,9 @@ mod over_http {
     use ureq::{Agent, Error};
 
     use super::{Duration, ModelPrompt, ModelSettings};
-    use novamind_base::notation::printable;
+    use novamind_base::formatting::escape_control_characters;
 
-    const MOST_BYTES: u64 = 1024 * 1024;
+    const MAX_RESPONSE_BYTES: u64 = 1024 * 1024;
     const TEMPERATURE: f64 = 0.3;
 
     pub(crate) struct Endpoint {
@@ -33,8 +33,8 @@ mod over_http {
         ///
         /// # Errors
         /// The environment variable of the key is not set.
-        pub(crate) fn open(settings: &ModelSettings) -> Result<Endpoint, String> {
-            let key = settings.key_variable.as_deref().map(key_in).transpose()?;
+        pub(crate) fn new(settings: &ModelSettings) -> Result<Endpoint, String> {
+            let key = settings.key_variable.as_deref().map(read_key).transpose()?;
             let configuration = Agent::config_builder()
                 .http_status_as_error(false)
                 // Prompts go only to the configured host.
@@ -44,7 +44,7 @@ mod over_http {
                 .max_idle_connections(0)
                 .user_agent("novamind")
                 .build();
-            let (address, model) = (settings.address(), settings.model.clone());
+            let (address, model) = (settings.completions_url(), settings.model.clone());
             Ok(Endpoint { agent: configuration.into(), address, model, key })
         }
 
@@ -52,12 +52,12 @@ mod over_http {
         ///
         /// # Errors
         /// A description of the failure.
-        pub(crate) fn ask(&self, prompt: &ModelPrompt, within: Duration) -> Result<String, String> {
+        pub(crate) fn request(&self, prompt: &ModelPrompt, within: Duration) -> Result<String, String> {
             let body = json!({
                 "model": self.model,
                 "messages": [
                     { "role": "system", "content": prompt.task },
-                    { "role": "user", "content": prompt.material },
+                    { "role": "user", "content": prompt.input },
                 ],
                 "temperature": TEMPERATURE,
                 "stream": false,
@@ -67,20 +67,20 @@ mod over_http {
                 request = request.header("authorization", format!("Bearer {key}"));
             }
             let request = request.config().timeout_global(Some(within)).build();
-            let mut response = request.send(body.to_string()).map_err(in_words)?;
+            let mut response = request.send(body.to_string()).map_err(describe_error)?;
             let status = response.status().as_u16();
             if status != 200 {
                 return Err(format!("it responded with status {status}"));
             }
-            let read = response.body_mut().with_config().limit(MOST_BYTES).read_to_string();
-            let told: Value = serde_json::from_str(&read.map_err(in_words)?)
+            let read = response.body_mut().with_config().limit(MAX_RESPONSE_BYTES).read_to_string();
+            let told: Value = serde_json::from_str(&read.map_err(describe_error)?)
                 .map_err(|_| "its response is not JSON".to_owned())?;
             let content = told.pointer("/choices/0/message/content").and_then(Value::as_str);
             content.map(str::to_owned).ok_or_else(|| "its response has no message".to_owned())
         }
     }
 
-    fn key_in(variable: &str) -> Result<String, String> {
+    fn read_key(variable: &str) -> Result<String, String> {
         let key = std::env::var(variable).unwrap_or_default();
         match key.trim() {
             "" => Err(format!("the environment variable {variable}, which must contain its key, is not set")),
@@ -88,11 +88,11 @@ mod over_http {
         }
     }
 
-    fn in_words(error: Error) -> String {
+    fn describe_error(error: Error) -> String {
         match error {
             Error::Timeout(_) => "it did not answer in time".to_owned(),
-            Error::BodyExceedsLimit(_) => format!("its response is longer than {MOST_BYTES} bytes"),
-            other => format!("it could not be reached: {}", printable(&other.to_string())),
+            Error::BodyExceedsLimit(_) => format!("its response is longer than {MAX_RESPONSE_BYTES} bytes"),
+            other => format!("it could not be reached: {}", escape_control_characters(&other.to_string())),
         }
     }
 }

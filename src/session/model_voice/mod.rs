@@ -3,7 +3,7 @@
 //! The model's scores of the player's posts are inputs of the world, so they are in the trajectory before they take
 //! effect. Its texts do not affect the simulation.
 
+pub(crate) mod client;
 mod endpoint;
-pub(crate) mod speaker;
 #[cfg(all(any(test, feature = "test-kit"), feature = "server"))]
 pub(crate) mod stub;

@@ -14,30 +14,30 @@ use novamind_voice::model::settings::ModelSettings;
 
 /// The behavior of a stub.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Manner {
+pub enum StubBehavior {
     /// Correct answers.
-    Well,
+    Correct,
     /// Correct answers after three seconds.
     Late,
     /// Too few texts and scores.
-    Short,
+    TooFew,
     /// An answer that is not an array.
-    Chatty,
+    NotJson,
     /// Status 500.
-    Broken,
+    ServerError,
 }
 
 /// A stub of a language model; stops on drop.
-pub struct Stub {
+pub struct StubModel {
     port: u16,
-    asked: Arc<Mutex<Vec<Value>>>,
-    stopped: Arc<AtomicBool>,
+    requests: Arc<Mutex<Vec<Value>>>,
+    is_stopped: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
 
-impl Stub {
+impl StubModel {
     /// Starts a stub on its own port.
-    pub fn start(manner: Manner) -> Stub {
+    pub fn start(manner: StubBehavior) -> StubModel {
         let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
         let port = listener.local_addr().expect("an address").port();
         let (asked, stopped) = (Arc::new(Mutex::new(Vec::new())), Arc::new(AtomicBool::new(false)));
@@ -48,14 +48,14 @@ impl Stub {
                     return;
                 }
                 // The client may have closed the connection.
-                let _ = stream.and_then(|stream| answer(stream, manner, &heard));
+                let _ = stream.and_then(|stream| serve_request(stream, manner, &heard));
             }
         });
-        Stub { port, asked, stopped, thread: Some(thread) }
+        StubModel { port, requests: asked, is_stopped: stopped, thread: Some(thread) }
     }
 
     /// Returns a configuration that names the stub.
-    pub fn named(&self, judge: bool, words: bool, seconds: u32) -> Configuration {
+    pub fn configuration(&self, judge: bool, words: bool, seconds: u32) -> Configuration {
         let settings = ModelSettings {
             endpoint: format!("http://127.0.0.1:{}/v1", self.port),
             model: "stub".to_owned(),
@@ -64,24 +64,24 @@ impl Stub {
             judge,
             words,
         };
-        Configuration { voice: Some(settings), ..Configuration::shipped() }
+        Configuration { voice: Some(settings), ..Configuration::bundled() }
     }
 
     /// Returns the requests so far.
-    pub fn asked(&self) -> Vec<Value> {
-        self.asked.lock().expect("not poisoned").clone()
+    pub fn requests(&self) -> Vec<Value> {
+        self.requests.lock().expect("not poisoned").clone()
     }
 }
 
-impl Drop for Stub {
+impl Drop for StubModel {
     fn drop(&mut self) {
-        self.stopped.store(true, Ordering::SeqCst);
+        self.is_stopped.store(true, Ordering::SeqCst);
         let _ = TcpStream::connect(("127.0.0.1", self.port));
         self.thread.take().map(JoinHandle::join);
     }
 }
 
-fn answer(stream: TcpStream, manner: Manner, heard: &Mutex<Vec<Value>>) -> std::io::Result<()> {
+fn serve_request(stream: TcpStream, manner: StubBehavior, heard: &Mutex<Vec<Value>>) -> std::io::Result<()> {
     let mut reader = BufReader::new(stream);
     let mut length = 0;
     loop {
@@ -98,17 +98,17 @@ fn answer(stream: TcpStream, manner: Manner, heard: &Mutex<Vec<Value>>) -> std::
     let material = asked["messages"][1]["content"].as_str().unwrap_or_default();
     let material: Value = serde_json::from_str(material)?;
     heard.lock().expect("not poisoned").push(asked);
-    let mut said = well(&material);
+    let mut said = correct_answer(&material);
     match manner {
-        Manner::Late => std::thread::sleep(Duration::from_secs(3)),
-        Manner::Short => drop(said.pop()),
-        Manner::Well | Manner::Chatty | Manner::Broken => {}
+        StubBehavior::Late => std::thread::sleep(Duration::from_secs(3)),
+        StubBehavior::TooFew => drop(said.pop()),
+        StubBehavior::Correct | StubBehavior::NotJson | StubBehavior::ServerError => {}
     }
     let content = match manner {
-        Manner::Chatty => "Certainly! Here are the posts.".to_owned(),
+        StubBehavior::NotJson => "Certainly! Here are the posts.".to_owned(),
         _ => Value::from(said).to_string(),
     };
-    let status = if manner == Manner::Broken { "500 Internal Server Error" } else { "200 OK" };
+    let status = if manner == StubBehavior::ServerError { "500 Internal Server Error" } else { "200 OK" };
     let body = json!({ "choices": [{ "message": { "role": "assistant", "content": content } }] }).to_string();
     let head = format!(
         "HTTP/1.1 {status}\r\ncontent-type: application/json\r\ncontent-length: {}\r\nconnection: close\r\n\r\n",
@@ -118,7 +118,7 @@ fn answer(stream: TcpStream, manner: Manner, heard: &Mutex<Vec<Value>>) -> std::
 }
 
 /// Scores of 0.8 for groups, a prefix for the texts of posts.
-fn well(material: &Value) -> Vec<Value> {
+fn correct_answer(material: &Value) -> Vec<Value> {
     let score =
         |group: &Value| json!({ "group": group["group"], "score": 0.8, "reason": "It speaks to me." });
     let reworded = |post: &Value| Value::from(format!("Well: {}", post["text"].as_str().unwrap_or_default()));

@@ -5,26 +5,26 @@ use std::sync::Arc;
 use serde_json::{Value, json};
 
 use super::Session;
-use super::act::not_saved;
+use super::tool_call::not_saved_rejection;
 use crate::company::facts_chain::StateHash;
-use crate::company::overrides::DerivedOfParameters;
-use crate::company::reports::{DayReport, Week};
+use crate::company::overrides::DerivedValues;
+use crate::company::reports::{DayReport, WeekResult};
 use crate::company::simulation::Simulation;
 use crate::figures::journal::JournalEntry;
 use crate::figures::week::Forecasts;
-use crate::snapshot::file::WEEKS_BETWEEN;
-use novamind_database::{Entry, ForecastRow, ProjectionError};
-use novamind_record::clock::seconds;
+use crate::snapshot::file::SNAPSHOT_INTERVAL_WEEKS;
+use novamind_database::{ForecastRow, ProjectionEntry, ProjectionError};
+use novamind_record::clock::parse_seconds;
 use novamind_record::figures::WeekFigures;
-use novamind_record::trajectory::record::{Advance, Closing, End, Ended, RequestId, Via};
+use novamind_record::trajectory::record::{Advance, Closing, End, RequestId, RunEndReason, Via};
 use novamind_record::trajectory::{Durability, Record};
-use novamind_tools::{Kind, Refusal, ToolId};
-use novamind_world::held::Held;
+use novamind_tools::{Rejection, ToolId, ToolKind};
+use novamind_world::fixed_inputs::FixedInputs;
 
 /// Recorded rationale of a week in lessons that ask for none.
-const UNASKED: &str = "(not asked for in this lesson)";
+const NO_RATIONALE_TEXT: &str = "(not asked for in this lesson)";
 
-pub(crate) struct Filing<'a> {
+pub(crate) struct WeekSubmission<'a> {
     pub(crate) rationale: &'a Value,
     pub(crate) predictions: &'a Value,
     /// Whether the naive projection filled in each forecast.
@@ -46,74 +46,80 @@ impl Session {
         forecasts: &Forecasts,
         via: Via,
         progress: &mut dyn FnMut(&DayReport<'_>),
-    ) -> Result<Week, Refusal> {
-        let predictions = forecasts.as_predictions();
-        self.advance_given(&json!(rationale), &predictions, forecasts.filled_naively, via, progress)
+    ) -> Result<WeekResult, Rejection> {
+        let predictions = forecasts.to_predictions();
+        self.advance_with_json(&json!(rationale), &predictions, forecasts.filled_naively, via, progress)
     }
 
-    /// Like [`Session::advance`], with rationale and predictions as JSON.
+    /// Like [`Session::advance_week`], with rationale and predictions as JSON.
     ///
     /// # Errors
-    /// As [`Session::advance`].
-    pub fn advance_given(
+    /// As [`Session::advance_week`].
+    pub fn advance_with_json(
         &mut self,
         rationale: &Value,
         predictions: &Value,
         filled_naively: [bool; 4],
         via: Via,
         progress: &mut dyn FnMut(&DayReport<'_>),
-    ) -> Result<Week, Refusal> {
-        let filing =
-            Filing { rationale, predictions, filled_naively, expected_day: &Value::Null, request: None };
-        self.file_week(filing, via, progress)
+    ) -> Result<WeekResult, Rejection> {
+        let filing = WeekSubmission {
+            rationale,
+            predictions,
+            filled_naively,
+            expected_day: &Value::Null,
+            request: None,
+        };
+        self.submit_week(filing, via, progress)
     }
 
-    pub(crate) fn file_week(
+    pub(crate) fn submit_week(
         &mut self,
-        filing: Filing<'_>,
+        filing: WeekSubmission<'_>,
         via: Via,
         progress: &mut dyn FnMut(&DayReport<'_>),
-    ) -> Result<Week, Refusal> {
-        let Filing { rationale, predictions, filled_naively, expected_day, request } = filing;
-        let allowed = self.refuse_week_of_lesson(via).and_then(|()| self.refuse_if_over(Kind::Time));
-        let allowed = allowed.and_then(|()| self.refuse_unexpected_day(expected_day));
-        let unasked = Value::from(UNASKED);
-        let asks_none = self.lesson().is_some_and(|lesson| lesson.access().asks_no_rationale());
+    ) -> Result<WeekResult, Rejection> {
+        let WeekSubmission { rationale, predictions, filled_naively, expected_day, request } = filing;
+        let allowed = self.check_lesson_week(via).and_then(|()| self.check_can_act(ToolKind::Time));
+        let allowed = allowed.and_then(|()| self.check_expected_day(expected_day));
+        let unasked = Value::from(NO_RATIONALE_TEXT);
+        let asks_none = self.lesson().is_some_and(|lesson| lesson.access().is_rationale_off());
         let rationale = if asks_none { &unasked } else { rationale };
         let checked = allowed.and_then(|()| {
-            let text = novamind_tools::rationale(rationale)?;
-            let all = novamind_tools::forecasts(
+            let text = novamind_tools::parse_rationale(rationale)?;
+            let all = novamind_tools::parse_forecasts(
                 predictions,
                 &self.simulation.params.limits.prediction_horizons_days,
             )?;
-            self.simulation.refuse_crowded_day()?;
+            self.simulation.check_lead_capacity()?;
             Ok((text, Forecasts { all, filled_naively }))
         });
         let (text, forecasts) = match checked {
             Ok(checked) => checked,
             Err(refusal) => {
-                let arguments = arguments_of_week(rationale, predictions, expected_day);
-                self.record_refusal(ToolId::NextWeek.name(), &arguments, via, &refusal, request);
+                let arguments = week_arguments(rationale, predictions, expected_day);
+                self.record_rejection(ToolId::NextWeek.name(), &arguments, via, &refusal, request);
                 return Err(refusal);
             }
         };
-        self.prepare_week_of_lesson()?;
+        self.prepare_lesson_week()?;
         let calculated = self.run_calculations(via);
         let filed = Advance {
             rationale: text.clone(),
-            forecasts: forecasts.filed(),
+            forecasts: forecasts.to_filed(),
             via,
             calculations: calculated.clone(),
             request: request.clone(),
         };
-        let at = self.append(&Record::Advance(filed), self.log.durability_of_calls()).map_err(not_saved)?;
-        self.history.first_answers.begin_week(request);
-        self.history.calculated = calculated;
-        self.file(text, &forecasts, &at);
+        let at =
+            self.append(&Record::Advance(filed), self.log.call_durability()).map_err(not_saved_rejection)?;
+        self.history.idempotent_responses.start_week(request);
+        self.history.calculation_outputs = calculated;
+        self.store_forecasts(text, &forecasts, &at);
         Ok(self.run_week(progress))
     }
 
-    fn refuse_unexpected_day(&self, expected: &Value) -> Result<(), Refusal> {
+    fn check_expected_day(&self, expected: &Value) -> Result<(), Rejection> {
         let day = self.simulation.world.day;
         if expected.is_null() || expected.as_u64() == Some(day.into()) {
             return Ok(());
@@ -127,32 +133,37 @@ impl Session {
                 ("wrong_type", "expected_day must be a whole number: the day on which the run is".to_owned())
             }
         };
-        Err(Refusal::at("expected_day", code, message))
+        Err(Rejection::for_field("expected_day", code, message))
     }
 
     /// Simulates single days of a debug run, at most to the end of the week.
     ///
     /// # Errors
     /// `not_in_this_mode`, `run_over`, `too_many_leads`, `not_saved`.
-    pub fn step(&mut self, days: u32, progress: &mut dyn FnMut(&DayReport<'_>)) -> Result<Week, Refusal> {
+    pub fn step(
+        &mut self,
+        days: u32,
+        progress: &mut dyn FnMut(&DayReport<'_>),
+    ) -> Result<WeekResult, Rejection> {
         self.step_while(&|_| true, days, progress)
     }
 
-    /// Like [`Session::step`]; stops after a day for which `goes_on` returns false.
+    /// Like [`Session::simulate`]; stops after a day for which `should_continue` returns false.
     ///
     /// # Errors
-    /// As [`Session::step`].
+    /// As [`Session::simulate`].
     pub(crate) fn step_while(
         &mut self,
         goes_on: &dyn Fn(u32) -> bool,
         days: u32,
         progress: &mut dyn FnMut(&DayReport<'_>),
-    ) -> Result<Week, Refusal> {
-        self.refuse_to_step()?;
-        self.simulation.refuse_crowded_day()?;
+    ) -> Result<WeekResult, Rejection> {
+        self.check_can_step()?;
+        self.simulation.check_lead_capacity()?;
         let from = self.simulation.world.day;
         let until = self.company().next_decision_day().min(from.saturating_add(days.max(1)));
-        let goes_on = |day: &Simulation| (day.world.day == from || goes_on(day.world.day)) && has_room(day);
+        let goes_on =
+            |day: &Simulation| (day.world.day == from || goes_on(day.world.day)) && has_lead_capacity(day);
         let last_day = self.run_days_while(&goes_on, until, progress);
         Ok(self.close_days(Record::Step, from, last_day))
     }
@@ -161,31 +172,32 @@ impl Session {
     ///
     /// # Errors
     /// `not_in_this_mode`, `run_over`.
-    pub(crate) fn refuse_to_step(&self) -> Result<(), Refusal> {
+    pub(crate) fn check_can_step(&self) -> Result<(), Rejection> {
         if self.manifest.mode != novamind_record::mode::Mode::Debug {
-            return Err(Refusal::new("not_in_this_mode", "single days can be stepped in debug runs only"));
+            return Err(Rejection::new("not_in_this_mode", "single days can be stepped in debug runs only"));
         }
-        self.refuse_if_over(Kind::Time)
+        self.check_can_act(ToolKind::Time)
     }
 
     /// Abandons an unfinished run permanently.
     ///
     /// # Errors
     /// `run_over`, `not_saved`. Nothing has happened then.
-    pub fn end(&mut self) -> Result<(), Refusal> {
-        self.refuse_if_over(Kind::Time)?;
-        let end = End { reason: Ended::Abandoned, cash: self.simulation.world.finance.cash, score: None };
-        self.append(&Record::End(end), Durability::Synced).map_err(not_saved)?;
-        self.history.ended = Some(Ended::Abandoned);
+    pub fn abandon(&mut self) -> Result<(), Rejection> {
+        self.check_can_act(ToolKind::Time)?;
+        let end =
+            End { reason: RunEndReason::Abandoned, cash: self.simulation.world.finance.cash, score: None };
+        self.append(&Record::End(end), Durability::Synced).map_err(not_saved_rejection)?;
+        self.history.ended = Some(RunEndReason::Abandoned);
         self.commit_projection();
         Ok(())
     }
 
     /// Simulates the week of an `advance` line and closes it. The week ends early before a day that would exceed the
     /// limit of leads.
-    pub(crate) fn run_week(&mut self, progress: &mut dyn FnMut(&DayReport<'_>)) -> Week {
+    pub(crate) fn run_week(&mut self, progress: &mut dyn FnMut(&DayReport<'_>)) -> WeekResult {
         let (from, until) = (self.simulation.world.day, self.company().next_decision_day());
-        let last_day = self.run_days_while(&has_room, until, progress);
+        let last_day = self.run_days_while(&has_lead_capacity, until, progress);
         let Simulation { world, params, .. } = &self.simulation;
         let is_whole = world.day == until || world.is_over(params);
         self.close_days(if is_whole { Record::Week } else { Record::Step }, from, last_day)
@@ -194,10 +206,10 @@ impl Session {
     /// Simulates days until `until` or bankruptcy. Returns the hash of the state reached.
     pub(crate) fn run_days(&mut self, until: u32, progress: &mut dyn FnMut(&DayReport<'_>)) -> StateHash {
         let last_day = self.run_days_while(&|_| true, until, progress);
-        self.simulation.end_days(self.database.entries(), last_day)
+        self.simulation.finish_days(self.database.entry_writer(), last_day)
     }
 
-    /// Simulates days while `goes_on` returns true. Returns the notices of the last simulated day, whose facts are
+    /// Simulates days while `should_continue` returns true. Returns the notices of the last simulated day, whose facts are
     /// not processed yet.
     fn run_days_while(
         &mut self,
@@ -206,71 +218,77 @@ impl Session {
         progress: &mut dyn FnMut(&DayReport<'_>),
     ) -> Option<Vec<String>> {
         let week_end = self.company().next_decision_day();
-        self.voice.begin_week();
+        self.voice.start_week();
         self.history.notices.clear();
-        let (mut day_before, nothing) = (None, Held::default());
+        let (mut day_before, nothing) = (None, FixedInputs::default());
         let params = self.simulation.params.clone();
         while self.simulation.world.day < until && !self.simulation.world.is_over(&self.simulation.params) {
             if !goes_on(&self.simulation) {
                 break;
             }
-            let figures = self.simulation.simulate_day(&nothing, self.database.entries(), day_before.take());
-            self.ask_readers();
-            self.simulation.judge_own_posts(self.database.entries());
+            let figures =
+                self.simulation.simulate_day(&nothing, self.database.entry_writer(), day_before.take());
+            self.score_pending_posts();
+            self.simulation.judge_own_posts(self.database.entry_writer());
             let notices = self.simulation.notice_texts();
-            self.history.count_day(&figures, &self.simulation, &notices);
+            self.history.record_day(&figures, &self.simulation, &notices);
             let debug = self.manifest.mode == novamind_record::mode::Mode::Debug;
-            let xray = (debug || self.is_shadow).then(|| self.hidden_state());
+            let xray = (debug || self.is_replay).then(|| self.hidden_state());
             progress(&DayReport { figures: &figures, week_end, xray });
-            self.history.called.clear();
+            self.history.call_ledger.clear();
             day_before = Some(notices);
         }
         if !Arc::ptr_eq(&params, &self.simulation.params) {
-            self.derived = DerivedOfParameters::default();
+            self.derived_values = DerivedValues::default();
         }
         day_before
     }
 
     /// Processes the facts of the last day and hashes the state. For runs in memory the hash is empty, because no
     /// line contains it.
-    fn end_days(&mut self, last_day: Option<Vec<String>>) -> StateHash {
-        let entries = self.database.entries();
+    fn finish_days(&mut self, last_day: Option<Vec<String>>) -> StateHash {
+        let entries = self.database.entry_writer();
         if self.log.is_on_disk() {
-            return self.simulation.end_days(entries, last_day);
+            return self.simulation.finish_days(entries, last_day);
         }
-        self.simulation.follow_last_day(entries, last_day);
+        self.simulation.process_last_day(entries, last_day);
         StateHash::default()
     }
 
-    pub(crate) fn settle_figures(&mut self) -> WeekFigures {
+    pub(crate) fn finish_figures(&mut self) -> WeekFigures {
         let open_issues = self.simulation.open_issues();
-        let figures = self.history.settle(&self.simulation, self.manifest.cash, open_issues);
+        let figures = self.history.finish_days(&self.simulation, self.manifest.cash, open_issues);
         self.history.last_dashboard = Some(self.company().build_dashboard(figures.open_issues));
         figures
     }
 
     /// Writes the line that closes simulated days. Returns the report, with a remark if the line could not be
     /// written.
-    fn close_days(&mut self, kind: fn(Closing) -> Record, from: u32, last_day: Option<Vec<String>>) -> Week {
-        let state = self.end_days(last_day);
-        let figures = self.settle_figures();
-        let closing = self.closing(from, &figures, &state);
+    fn close_days(
+        &mut self,
+        kind: fn(Closing) -> Record,
+        from: u32,
+        last_day: Option<Vec<String>>,
+    ) -> WeekResult {
+        let state = self.finish_days(last_day);
+        let figures = self.finish_figures();
+        let closing = self.closing_record(from, &figures, &state);
         let record = kind(closing);
         let is_week = matches!(record, Record::Week(_));
-        let unclosed = self.append_done(&record);
+        let unclosed = self.append_irrevocable(&record);
         self.simulation.facts_chain.close();
-        self.settle_lesson();
+        self.finish_lesson_week();
         if unclosed.is_none() {
-            self.word_days_after(from);
+            self.reword_posts_after(from);
         }
         // The run ends even if the line of its last week is not saved: both lines wait for the disk.
         let problem = match self.due_end() {
             Some(ended) => self.close_run(ended),
             None => unclosed,
         };
-        let due =
-            self.history.weeks.len().is_multiple_of(WEEKS_BETWEEN) && self.history.running_week.days_run == 0;
-        let snapshot = due && problem.is_none() && self.log.durability_of_calls() == Durability::Synced;
+        let due = self.history.weeks.len().is_multiple_of(SNAPSHOT_INTERVAL_WEEKS)
+            && self.history.current_week.days_run == 0;
+        let snapshot = due && problem.is_none() && self.log.call_durability() == Durability::Synced;
         // A week has an `advance` line before it, single days do not.
         let next = match is_week {
             true => "the days are simulated again when the run is opened, with the same result",
@@ -279,15 +297,15 @@ impl Session {
             }
         };
         let unsaved = problem.map(|problem| format!("{problem}; {next}"));
-        let crowded = self.simulation.refuse_crowded_day().err().filter(|_| self.history.ended.is_none());
+        let crowded = self.simulation.check_lead_capacity().err().filter(|_| self.history.ended.is_none());
         let remark = unsaved.or(crowded.map(|refusal| refusal.message));
         let remarks = remark.into_iter().chain(self.database_remark()).chain(self.voice.take_notice());
         let remarks: Vec<String> = remarks.collect();
-        let week = self.report((!remarks.is_empty()).then(|| remarks.join(". ")));
-        self.history.first_answers.note_week(|| week.clone());
+        let week = self.week_result((!remarks.is_empty()).then(|| remarks.join(". ")));
+        self.history.idempotent_responses.record_week(|| week.clone());
         // The database is written after progress was reported, because it competes for processors.
         if snapshot {
-            self.keep_snapshot(|| state.0, false);
+            self.save_snapshot(|| state.0, false);
         } else {
             self.commit_projection();
         }
@@ -300,12 +318,12 @@ impl Session {
     }
 
     /// Returns how the run ends, if it has ended and is not closed.
-    fn due_end(&self) -> Option<Ended> {
+    fn due_end(&self) -> Option<RunEndReason> {
         let Simulation { world, params, .. } = &self.simulation;
         let due = if world.finance.is_bankrupt(params) {
-            Some(Ended::Bankruptcy)
+            Some(RunEndReason::Bankruptcy)
         } else {
-            world.is_over(params).then_some(Ended::Horizon)
+            world.is_over(params).then_some(RunEndReason::Horizon)
         };
         due.filter(|_| self.history.ended.is_none())
     }
@@ -315,7 +333,7 @@ impl Session {
     fn database_remark(&self) -> Option<String> {
         if self.history.ended.is_some() {
             self.commit_projection();
-            let _ = self.database.wait();
+            let _ = self.database.wait_until_written();
         }
         let ProjectionError(problem) = self.database.failure()?;
         let recovery = match self.folder {
@@ -328,40 +346,40 @@ impl Session {
         Some(format!("The database could not be written ({problem}): it lacks the newest rows. {recovery}"))
     }
 
-    pub(crate) fn close_run(&mut self, ended: Ended) -> Option<String> {
+    pub(crate) fn close_run(&mut self, ended: RunEndReason) -> Option<String> {
         self.history.ended = Some(ended);
-        self.note_end(ended);
+        self.record_end(ended);
         let end = End { reason: ended, cash: self.simulation.world.finance.cash, score: self.score() };
-        self.append_done(&Record::End(end))
+        self.append_irrevocable(&Record::End(end))
     }
 
-    pub(crate) fn note_answered_week(&mut self) {
-        let mut answers = std::mem::take(&mut self.history.first_answers);
-        answers.note_week(|| self.report(None));
-        self.history.first_answers = answers;
+    pub(crate) fn record_replayed_week(&mut self) {
+        let mut answers = std::mem::take(&mut self.history.idempotent_responses);
+        answers.record_week(|| self.week_result(None));
+        self.history.idempotent_responses = answers;
     }
 
     /// Adds the end of the run to the response to its last week, unless the run was abandoned.
-    pub(crate) fn note_end(&mut self, ended: Ended) {
-        if ended != Ended::Abandoned {
-            self.history.first_answers.note_end(self.simulation.world.day, ended);
+    pub(crate) fn record_end(&mut self, ended: RunEndReason) {
+        if ended != RunEndReason::Abandoned {
+            self.history.idempotent_responses.record_end(self.simulation.world.day, ended);
         }
     }
 
     /// Returns the record that closes days, which a replay must reproduce.
-    pub(crate) fn closing(&self, from: u32, figures: &WeekFigures, state: &StateHash) -> Closing {
+    pub(crate) fn closing_record(&self, from: u32, figures: &WeekFigures, state: &StateHash) -> Closing {
         let (state_hash, parts) = state.clone();
         Closing {
             days_run: self.simulation.world.day - from,
-            figures: figures.as_json(),
+            figures: figures.to_json(),
             cash: self.simulation.world.finance.cash,
             state_hash,
             parts,
         }
     }
 
-    fn report(&self, remark: Option<String>) -> Week {
-        Week {
+    fn week_result(&self, remark: Option<String>) -> WeekResult {
+        WeekResult {
             figures: self.history.latest_week(),
             dashboard: self.company().dashboard(),
             notices: self.history.notices.clone(),
@@ -370,8 +388,8 @@ impl Session {
         }
     }
 
-    fn file(&mut self, rationale: String, forecasts: &Forecasts, at: &str) {
-        self.project_forecasts(forecasts, at);
+    fn store_forecasts(&mut self, rationale: String, forecasts: &Forecasts, at: &str) {
+        self.write_forecast_rows(forecasts, at);
         self.history.journal.push(JournalEntry::Advance {
             day: self.simulation.world.day,
             rationale,
@@ -381,14 +399,15 @@ impl Session {
     }
 
     pub(crate) fn replay_forecasts(&mut self, filed: &Advance, at: &str) -> Result<(), String> {
-        let forecasts = Forecasts::of(&filed.forecasts).ok_or("the line does not have four forecasts")?;
-        self.history.calculated.clone_from(&filed.calculations);
-        self.file(filed.rationale.clone(), &forecasts, at);
+        let forecasts =
+            Forecasts::from_filed(&filed.forecasts).ok_or("the line does not have four forecasts")?;
+        self.history.calculation_outputs.clone_from(&filed.calculations);
+        self.store_forecasts(filed.rationale.clone(), &forecasts, at);
         Ok(())
     }
 
-    fn project_forecasts(&self, forecasts: &Forecasts, at: &str) {
-        let submitted_at = seconds(at);
+    fn write_forecast_rows(&self, forecasts: &Forecasts, at: &str) {
+        let submitted_at = parse_seconds(at);
         let row = |forecast: &novamind_tools::Forecast| ForecastRow {
             submit_day: self.simulation.world.day,
             horizon_days: forecast.horizon_days,
@@ -398,16 +417,18 @@ impl Session {
             submitted_at,
         };
         let rows = || forecasts.all.iter().map(row).collect();
-        self.database.entries().write(|| Entry { forecasts: rows(), ..Entry::default() });
+        self.database
+            .entry_writer()
+            .send(|| ProjectionEntry { forecasts: rows(), ..ProjectionEntry::default() });
     }
 }
 
-fn has_room(simulation: &Simulation) -> bool {
-    simulation.refuse_crowded_day().is_ok()
+fn has_lead_capacity(simulation: &Simulation) -> bool {
+    simulation.check_lead_capacity().is_ok()
 }
 
 /// Returns the arguments of a week as its rejection records them.
-pub(crate) fn arguments_of_week(rationale: &Value, predictions: &Value, expected_day: &Value) -> Value {
+pub(crate) fn week_arguments(rationale: &Value, predictions: &Value, expected_day: &Value) -> Value {
     let mut args = json!({ "rationale": rationale, "predictions": predictions });
     if !expected_day.is_null() {
         args["expected_day"] = expected_day.clone();

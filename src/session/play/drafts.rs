@@ -8,20 +8,20 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use super::Session;
-use novamind_record::files::write_whole;
+use novamind_record::files::write_atomically;
 use novamind_tools::ToolId;
 
-const FILE: &str = "drafts.json";
+const DRAFTS_FILE: &str = "drafts.json";
 
 /// Texts that were typed but not submitted.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct UnsentTexts {
+pub struct DraftTexts {
     /// Rationale of the next week.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub rationale: String,
     /// Low, point and high of each horizon, as typed.
-    #[serde(skip_serializing_if = "is_unset")]
+    #[serde(skip_serializing_if = "are_all_empty")]
     pub forecasts: [[String; 3]; 4],
     /// Notes, if they differ from the saved notes.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -40,18 +40,18 @@ pub struct UnsentTexts {
     pub forms: BTreeMap<ToolId, BTreeMap<String, String>>,
 }
 
-fn is_unset(forecasts: &[[String; 3]; 4]) -> bool {
+fn are_all_empty(forecasts: &[[String; 3]; 4]) -> bool {
     forecasts.as_flattened().iter().all(String::is_empty)
 }
 
-impl UnsentTexts {
+impl DraftTexts {
     /// Whether there are no texts.
     pub fn is_empty(&self) -> bool {
-        *self == UnsentTexts::default()
+        *self == DraftTexts::default()
     }
 
     /// Returns each text with its location, as named in the record.
-    pub fn places(&self) -> Vec<(String, String)> {
+    pub fn texts_by_place(&self) -> Vec<(String, String)> {
         let mut all = vec![("rationale".to_owned(), self.rationale.clone())];
         let forecasts = self.forecasts.as_flattened().iter().filter(|text| !text.is_empty()).cloned();
         all.push(("forecasts".to_owned(), forecasts.collect::<Vec<_>>().join(" ")));
@@ -68,23 +68,23 @@ impl UnsentTexts {
 }
 
 /// The drafts file of a run. A run in memory or open read-only has none.
-pub struct Drafts(Option<PathBuf>);
+pub struct DraftFile(Option<PathBuf>);
 
-impl Drafts {
+impl DraftFile {
     /// Saves the drafts, or removes the file if there are none. Ignores disk errors, because the texts are still on
     /// the screen.
-    pub fn keep(&self, drafts: &UnsentTexts) {
+    pub fn save(&self, drafts: &DraftTexts) {
         let Some(file) = &self.0 else { return };
         if drafts.is_empty() {
             let _ = std::fs::remove_file(file);
             return;
         }
         let Ok(text) = serde_json::to_vec(drafts) else { return };
-        let _ = write_whole(file, &text);
+        let _ = write_atomically(file, &text);
     }
 
     /// Loads the drafts; empty if they cannot be read.
-    pub fn kept(&self) -> UnsentTexts {
+    pub fn load(&self) -> DraftTexts {
         let text = self.0.as_ref().and_then(|file| std::fs::read(file).ok()).unwrap_or_default();
         serde_json::from_slice(&text).unwrap_or_default()
     }
@@ -92,9 +92,9 @@ impl Drafts {
 
 impl Session {
     /// Returns the drafts file of the run.
-    pub fn drafts(&self) -> Drafts {
+    pub fn draft_file(&self) -> DraftFile {
         let folder = self.folder.as_ref().filter(|_| self.log.is_written());
-        Drafts(folder.map(|folder| folder.join(FILE)))
+        DraftFile(folder.map(|folder| folder.join(DRAFTS_FILE)))
     }
 }
 
@@ -105,22 +105,22 @@ mod tests {
     use novamind_record::folder::configuration::Configuration;
 
     #[test]
-    fn texts_are_kept_whole_and_leave_no_file_when_there_are_none() {
+    fn drafts_round_trip_and_empty_drafts_remove_the_file() {
         let runs = tempfile::tempdir().expect("a folder");
         let storage = Storage::Runs(runs.path().to_owned());
         let new = NewRun { storage, projection: false, days: Some(28), ..NewRun::default() };
-        let session = Session::create(new, &Configuration::shipped()).expect("a run");
-        let mut drafts = UnsentTexts { rationale: "wait\nand see".to_owned(), ..UnsentTexts::default() };
+        let session = Session::create(new, &Configuration::bundled()).expect("a run");
+        let mut drafts = DraftTexts { rationale: "wait\nand see".to_owned(), ..DraftTexts::default() };
         drafts.forecasts[1][2] = "1,2".to_owned();
         drafts.forms.entry(ToolId::SetPrices).or_default().insert("A".to_owned(), "12.".to_owned());
-        session.drafts().keep(&drafts);
-        assert_eq!(session.drafts().kept(), drafts);
-        let places: Vec<String> = drafts.places().into_iter().map(|(place, _)| place).collect();
+        session.draft_file().save(&drafts);
+        assert_eq!(session.draft_file().load(), drafts);
+        let places: Vec<String> = drafts.texts_by_place().into_iter().map(|(place, _)| place).collect();
         assert_eq!(places, ["rationale", "forecasts", "form set_prices"]);
-        let file = session.folder().expect("a folder").join(FILE);
+        let file = session.folder().expect("a folder").join(DRAFTS_FILE);
         std::fs::write(&file, b"{\"rationale\":").expect("written");
-        assert!(session.drafts().kept().is_empty(), "a truncated file is ignored");
-        session.drafts().keep(&UnsentTexts::default());
+        assert!(session.draft_file().load().is_empty(), "a truncated file is ignored");
+        session.draft_file().save(&DraftTexts::default());
         assert!(!file.exists());
     }
 }

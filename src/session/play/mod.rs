@@ -1,19 +1,19 @@
 //! An open run: its state and all operations that change it.
 
-pub(crate) mod act;
 pub(crate) mod advance;
-mod ask;
-pub(crate) mod companion;
 pub(crate) mod drafts;
+pub(crate) mod extension;
+pub(crate) mod idempotent;
 pub(crate) mod lesson;
-pub(crate) mod memo;
-mod mend;
-pub(crate) mod once;
+pub(crate) mod notes;
 pub(crate) mod open;
 pub(crate) mod parameters;
+mod query;
+mod repair;
 mod replay;
 mod save;
 mod scripts;
+pub(crate) mod tool_call;
 pub(crate) mod undo;
 mod voice;
 #[cfg(all(test, feature = "server"))]
@@ -25,37 +25,37 @@ use std::sync::Arc;
 
 use serde_json::Value;
 
-use self::companion::Companion;
+use self::extension::Extension;
+use crate::company::hidden_state::HiddenState;
 use crate::company::history::History;
-use crate::company::overrides::DerivedOfParameters;
+use crate::company::overrides::DerivedValues;
+use crate::company::run_context::RunContext;
 use crate::company::simulation::Simulation;
-use crate::company::surroundings::RunSurroundings;
-use crate::company::xray::Xray;
 use crate::database::RunDatabase;
 use crate::figures::journal::JournalEntry;
-use crate::model_voice::speaker::{ModelVoice, Speaker};
+use crate::model_voice::client::{ModelClient, ModelVoice};
 use crate::permission;
 use crate::recording::RunLog;
 use crate::recording::activity::ActivityLog;
 use crate::recording::recorder::Recorder;
 use crate::snapshot::sealing::SealKey;
 use crate::view::CompanyView;
-use novamind_database::{Position, Projector};
+use novamind_database::{ProjectionPosition, Projector};
 use novamind_record::error::RunError;
 use novamind_record::figures::WeekFigures;
 use novamind_record::folder::manifest::Manifest;
-use novamind_record::lesson::LessonStanding;
+use novamind_record::lesson::LessonProgress;
 use novamind_record::mode::Mode;
 use novamind_record::rules::SessionRules;
-use novamind_record::trajectory::record::Ended;
+use novamind_record::trajectory::record::RunEndReason;
 use novamind_record::trajectory::{Durability, Record};
-use novamind_tools::{Notebook, Numbers, Refusal, ToolId};
-use novamind_world::day::watch::DayWatch;
+use novamind_tools::{Notebook, ParameterNumbers, Rejection, ToolId};
+use novamind_world::day::observer::DayObserver;
 use novamind_world::params::Params;
 use novamind_world::settings::Settings;
 
 /// Returns the calls with which rules answer waiting enterprises. The session does not evaluate rules itself.
-pub type AnswersCompanies = fn(&str, &mut Session) -> Result<Vec<(ToolId, Value)>, Refusal>;
+pub type RuleEvaluator = fn(&str, &mut Session) -> Result<Vec<(ToolId, Value)>, Rejection>;
 
 /// An open run.
 pub struct Session {
@@ -64,19 +64,19 @@ pub struct Session {
     folder: Option<PathBuf>,
     simulation: Simulation,
     history: History,
-    surroundings: RunSurroundings,
-    derived: DerivedOfParameters,
+    context: RunContext,
+    derived_values: DerivedValues,
     database: RunDatabase,
     seal_key: SealKey,
     /// The session replays an inspected run and reports its days with hidden state.
-    is_shadow: bool,
-    companion: Companion,
+    is_replay: bool,
+    extension: Extension,
     /// The lesson and its progress; `None` outside lessons.
-    lesson: Option<Box<LessonStanding>>,
-    company_answers: Option<AnswersCompanies>,
+    lesson: Option<Box<LessonProgress>>,
+    rule_evaluator: Option<RuleEvaluator>,
     voice: ModelVoice,
     /// Notes of a run without a folder.
-    memo_in_memory: String,
+    notes_in_memory: String,
     /// Problems found when the run was opened.
     remarks: Vec<String>,
     /// The record of the run. Dropped last: it holds the lock until the database is closed.
@@ -92,68 +92,69 @@ impl Session {
         database: RunDatabase,
     ) -> Session {
         Session {
-            log: RunLog::unwritten(manifest.session_rules()),
+            log: RunLog::read_only(manifest.session_rules()),
             manifest,
             folder,
-            history: History::begin(&simulation.world),
+            history: History::new(&simulation.world),
             simulation,
-            surroundings: RunSurroundings::default(),
-            derived: DerivedOfParameters::default(),
+            context: RunContext::default(),
+            derived_values: DerivedValues::default(),
             database,
             seal_key: SealKey::default(),
-            is_shadow: false,
-            companion: Companion::default(),
+            is_replay: false,
+            extension: Extension::default(),
             lesson: None,
-            company_answers: None,
+            rule_evaluator: None,
             voice: ModelVoice::default(),
-            memo_in_memory: String::new(),
+            notes_in_memory: String::new(),
             remarks: Vec::new(),
         }
     }
 
     /// Creates a session on day 0 without a recorder, for a replay.
-    pub(crate) fn unwritten(
+    pub(crate) fn read_only(
         manifest: Manifest,
         folder: Option<PathBuf>,
         params: Arc<Params>,
         projector: Option<Projector>,
     ) -> Session {
-        let simulation = Simulation::open(&manifest, params);
-        Session::assemble(manifest, folder, simulation, RunDatabase::of(projector))
+        let simulation = Simulation::new(&manifest, params);
+        Session::assemble(manifest, folder, simulation, RunDatabase::new(projector))
     }
 
     /// Creates a copy of a run before its first line. It passes its days to `watch` and reports them with their
     /// hidden state.
-    pub(crate) fn shadow_of(run: &Session, watch: Arc<dyn DayWatch>) -> Result<Session, RunError> {
-        let params = Arc::new(run.manifest.params()?);
-        let mut shadow = Session::unwritten(run.manifest.clone(), run.folder.clone(), params, None);
+    pub(crate) fn replay_of(run: &Session, watch: Arc<dyn DayObserver>) -> Result<Session, RunError> {
+        let params = Arc::new(run.manifest.load_params()?);
+        let mut shadow = Session::read_only(run.manifest.clone(), run.folder.clone(), params, None);
         shadow.simulation.watch = watch;
-        shadow.is_shadow = true;
+        shadow.is_replay = true;
         Ok(shadow)
     }
 
     /// Creates a new run on day 0 with a recorder.
-    pub(crate) fn written(
+    pub(crate) fn with_recorder(
         (manifest, params): (Manifest, Arc<Params>),
         folder: Option<PathBuf>,
         projector: Option<Projector>,
         recorder: Recorder,
         seal_key: SealKey,
     ) -> Session {
-        let log = RunLog::written(manifest.session_rules(), recorder);
-        let session = Session::unwritten(manifest, folder, params, projector);
+        let log = RunLog::with_recorder(manifest.session_rules(), recorder);
+        let session = Session::read_only(manifest, folder, params, projector);
         let session = Session { log, seal_key, ..session };
-        session.project_opening();
+        session.write_initial_rows();
         session
     }
 
-    pub(crate) fn set_speaker(&mut self, speaker: Option<Speaker>) {
-        self.voice = ModelVoice { speaker, ..ModelVoice::default() };
+    pub(crate) fn set_model_client(&mut self, speaker: Option<ModelClient>) {
+        self.voice = ModelVoice { client: speaker, ..ModelVoice::default() };
     }
 
     /// Returns the company as the player may see it.
     pub fn company(&self) -> CompanyView<'_> {
-        let Session { manifest, simulation, history, surroundings, derived, .. } = self;
+        let Session { manifest, simulation, history, context: surroundings, derived_values: derived, .. } =
+            self;
         CompanyView { manifest, simulation, history, surroundings, derived }
     }
 
@@ -164,13 +165,13 @@ impl Session {
 
     /// Returns the log for activities of the user.
     pub fn activity(&mut self) -> ActivityLog<'_> {
-        let (day, is_over) = self.stand();
+        let (day, is_over) = self.day_and_is_over();
         ActivityLog::new(&mut self.log, day, is_over)
     }
 
     /// Returns the storage for a value of a higher crate.
-    pub fn companion(&mut self) -> &mut Companion {
-        &mut self.companion
+    pub fn extension(&mut self) -> &mut Extension {
+        &mut self.extension
     }
 
     /// Returns the manifest.
@@ -194,7 +195,7 @@ impl Session {
     }
 
     /// Returns how the run ended.
-    pub fn ended(&self) -> Option<Ended> {
+    pub fn ended(&self) -> Option<RunEndReason> {
         self.history.ended
     }
 
@@ -224,13 +225,13 @@ impl Session {
     }
 
     /// Returns the numbers that the documentation of the tools quotes, for this run.
-    pub fn numbers(&self) -> Arc<Numbers> {
-        self.derived.numbers(&self.simulation)
+    pub fn numbers(&self) -> Arc<ParameterNumbers> {
+        self.derived_values.numbers(&self.simulation)
     }
 
     /// Returns the calculations and scripts of the run.
     pub fn notebook(&self) -> &Notebook {
-        &self.surroundings.notebook
+        &self.context.notebook
     }
 
     /// Returns the parameters in force.
@@ -250,9 +251,9 @@ impl Session {
         self.simulation.state_hash()
     }
 
-    /// Whether hidden state may be shown; see [`may_look_inside`](permission::may_look_inside).
-    pub fn may_look_inside(&self) -> bool {
-        permission::may_look_inside(&self.manifest, self.history.ended, self.folder())
+    /// Whether hidden state may be shown; see [`can_inspect`](permission::may_look_inside).
+    pub fn can_inspect(&self) -> bool {
+        permission::can_inspect(&self.manifest, self.history.ended, self.folder())
     }
 
     /// Rejects an inspection if hidden state must not be shown. The result depends only on the mode, the study, the
@@ -260,34 +261,34 @@ impl Session {
     ///
     /// # Errors
     /// `not_in_this_mode`.
-    pub fn refuse_to_look_inside(&self) -> Result<(), Refusal> {
-        permission::refuse_to_look_inside(&self.manifest, self.history.ended, self.folder())
+    pub fn check_inspection(&self) -> Result<(), Rejection> {
+        permission::check_inspection(&self.manifest, self.history.ended, self.folder())
     }
 
     /// Returns the hidden state of a debug run.
     ///
     /// # Errors
     /// `not_in_this_mode`.
-    pub fn xray(&self) -> Result<Xray<'_>, Refusal> {
+    pub fn debug_hidden_state(&self) -> Result<HiddenState<'_>, Rejection> {
         if self.manifest.mode != Mode::Debug {
-            return Err(Refusal::new("not_in_this_mode", "hidden state is shown in debug runs only"));
+            return Err(Rejection::new("not_in_this_mode", "hidden state is shown in debug runs only"));
         }
         Ok(self.hidden_state())
     }
 
-    pub(crate) fn hidden_state(&self) -> Xray<'_> {
-        Xray::new(&self.simulation, &self.history)
+    pub(crate) fn hidden_state(&self) -> HiddenState<'_> {
+        HiddenState::new(&self.simulation, &self.history)
     }
 
     pub(crate) fn simulation(&self) -> &Simulation {
         &self.simulation
     }
 
-    pub(crate) fn set_watch(&mut self, watch: Arc<dyn DayWatch>) {
+    pub(crate) fn set_watch(&mut self, watch: Arc<dyn DayObserver>) {
         self.simulation.watch = watch;
     }
 
-    pub(crate) fn position(&self) -> &Position {
+    pub(crate) fn position(&self) -> &ProjectionPosition {
         self.log.position()
     }
 
@@ -299,28 +300,28 @@ impl Session {
         self.database.commit(self.log.position());
     }
 
-    fn project_opening(&self) {
-        self.database.entries().write(|| self.simulation.entry());
+    fn write_initial_rows(&self) {
+        self.database.entry_writer().send(|| self.simulation.database_entry());
         self.commit_projection();
     }
 
     /// Appends a line. Does nothing if the run is open read-only.
     pub(crate) fn append(&mut self, record: &Record, durability: Durability) -> Result<String, RunError> {
-        self.log.append(self.stand(), record, durability)
+        self.log.append(self.day_and_is_over(), record, durability)
     }
 
     /// Appends a line about an irrevocable action. Returns the problem if it is not saved yet.
-    fn append_done(&mut self, record: &Record) -> Option<String> {
-        self.log.append_done(self.simulation.world.day, record)
+    fn append_irrevocable(&mut self, record: &Record) -> Option<String> {
+        self.log.append_irrevocable(self.simulation.world.day, record)
     }
 
     /// Records an event without effect; ignores disk errors.
-    fn note(&mut self, record: Record) {
+    fn record_event(&mut self, record: Record) {
         let _ = self.append(&record, Durability::Written);
     }
 
     /// Returns the last day, and whether the run has ended.
-    fn stand(&self) -> (u32, bool) {
+    fn day_and_is_over(&self) -> (u32, bool) {
         (self.simulation.world.day, self.history.ended.is_some())
     }
 }
@@ -328,8 +329,8 @@ impl Session {
 /// Functions for tests.
 #[cfg(test)]
 impl Session {
-    pub(crate) fn write_to(&mut self, medium: Box<dyn novamind_record::trajectory::Medium>) {
-        self.log.write_to(medium);
+    pub(crate) fn set_medium(&mut self, medium: Box<dyn novamind_record::trajectory::Medium>) {
+        self.log.set_medium(medium);
     }
 
     pub(crate) fn manifest_mut(&mut self) -> &mut Manifest {

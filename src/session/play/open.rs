@@ -5,15 +5,15 @@ use std::sync::Arc;
 
 use super::Session;
 use crate::database::RunDatabase;
-use crate::recording::folders::remove_leftovers;
+use crate::recording::folders::remove_stale_staging_folders;
 use crate::recording::recorder::Recorder;
 use crate::snapshot::integrity::Integrity;
 use crate::snapshot::sealing::SealKey;
-use novamind_database::{Location, Position, Projector};
+use novamind_database::{DatabaseLocation, ProjectionPosition, Projector};
 use novamind_record::error::RunError;
-use novamind_record::folder::derived::{Derived, check_start};
 use novamind_record::folder::lock::lock_run;
 use novamind_record::folder::manifest::Manifest;
+use novamind_record::folder::manifest_check::{ManifestCheck, check_start};
 use novamind_record::folder::runs::find_run;
 use novamind_record::trajectory::Trajectory;
 use novamind_world::params::Params;
@@ -29,12 +29,12 @@ pub enum Access {
 
 /// Functions with which a reading command stores what it had to simulate.
 #[derive(Clone, Copy)]
-pub(crate) struct Keeping {
+pub(crate) struct CacheFunctions {
     /// Returns whether the end of the run may be stored.
-    pub(crate) may_keep: fn(&Path, &Manifest, &Trajectory, &SealKey) -> bool,
+    pub(crate) may_store: fn(&Path, &Manifest, &Trajectory, &SealKey) -> bool,
     /// Stores snapshot and database. Returns whether it succeeded.
-    pub(crate) keep_database: fn(&Path, &SealKey) -> bool,
-    pub(crate) keep_snapshot: fn(&Session, &Path),
+    pub(crate) store_database: fn(&Path, &SealKey) -> bool,
+    pub(crate) store_snapshot: fn(&Session, &Path),
 }
 
 impl Session {
@@ -56,28 +56,28 @@ impl Session {
         projection: bool,
         key: SealKey,
     ) -> Result<Session, RunError> {
-        Session::open_and_keep(folder, access, projection, key, None)
+        Session::open_with_cache(folder, access, projection, key, None)
     }
 
     /// Like [`Session::open_sealed`]. With `keeping`, stores what a reading command had to simulate.
     ///
     /// # Errors
     /// As [`Session::open`].
-    pub(crate) fn open_and_keep(
+    pub(crate) fn open_with_cache(
         folder: &Path,
         access: Access,
         projection: bool,
         key: SealKey,
-        keeping: Option<Keeping>,
+        keeping: Option<CacheFunctions>,
     ) -> Result<Session, RunError> {
-        let derived = Derived::of(folder)?;
+        let derived = ManifestCheck::read(folder)?;
         let manifest = derived.manifest.clone();
-        let params = Arc::new(manifest.params()?);
+        let params = Arc::new(manifest.load_params()?);
         let (lock, restored) = match access {
             Access::Write => {
                 let lock = lock_run(folder, &manifest.id)?;
-                folder.parent().into_iter().for_each(remove_leftovers);
-                (Some(lock), derived.restore(folder)?)
+                folder.parent().into_iter().for_each(remove_stale_staging_folders);
+                (Some(lock), derived.repair_manifest(folder)?)
             }
             Access::Read => (
                 None,
@@ -87,22 +87,22 @@ impl Session {
             ),
         };
         let path = folder.join("trajectory.jsonl");
-        let mut integrity = Integrity::of(folder, &manifest, &key);
+        let mut integrity = Integrity::read(folder, &manifest, &key);
         let trajectory = Trajectory::read(&path)?;
         check_start(&path, trajectory.lines.first(), &manifest)?;
         integrity.check(&path, &trajectory)?;
         let finished = (projection && access == Access::Read)
             .then(|| integrity.finished_database(folder, &trajectory))
             .flatten();
-        let keeping = keeping.filter(|own| (own.may_keep)(folder, &manifest, &trajectory, &key));
+        let keeping = keeping.filter(|own| (own.may_store)(folder, &manifest, &trajectory, &key));
         let simulates = projection && finished.is_none();
-        if simulates && keeping.is_some_and(|own| (own.keep_database)(folder, &key)) {
+        if simulates && keeping.is_some_and(|own| (own.store_database)(folder, &key)) {
             return Session::open_sealed(folder, access, projection, key);
         }
         let database = match projection && finished.is_none() {
             false => None,
             true => {
-                let sound = access == Access::Write && integrity.vouch_for_database(folder);
+                let sound = access == Access::Write && integrity.check_database(folder);
                 Some(open_projector(folder, access, (&manifest, &params), &trajectory, sound)?)
             }
         };
@@ -110,23 +110,23 @@ impl Session {
         let rows = database.as_ref().map(|(_, rows)| rows.as_ref().map_or(0, |position| position.seq));
         let snapshot = integrity.usable_snapshot(&manifest, &trajectory, rows);
         let lines = &trajectory.lines;
-        let (mut session, seen) = Session::before_replay(manifest.clone(), folder, params, lines, snapshot);
+        let (mut session, seen) = Session::prepare_replay(manifest.clone(), folder, params, lines, snapshot);
         session.seal_key = key;
         session.remarks.extend(restored);
         session.remarks.append(&mut integrity.remarks);
         session.replay(&path, &trajectory, seen, database, &mut |_| {})?;
         if let Some(own) = keeping.filter(|_| !projection && seen < trajectory.lines.len()) {
-            (own.keep_snapshot)(&session, folder);
+            (own.store_snapshot)(&session, folder);
         }
         if let Some(location) = finished {
-            session.database = RunDatabase::finished(location);
+            session.database = RunDatabase::from_file(location);
         }
         if let Some(lock) = lock {
-            session.log.resume(Recorder::resume(&path, &trajectory, lock)?);
+            session.log.set_recorder(Recorder::resume(&path, &trajectory, lock)?);
         }
-        if trajectory.unfinished > 0 {
-            let bytes = trajectory.unfinished;
-            let reason = match integrity.is_ahead_of(&trajectory) {
+        if trajectory.unfinished_bytes > 0 {
+            let bytes = trajectory.unfinished_bytes;
+            let reason = match integrity.is_database_ahead_of(&trajectory) {
                 true => {
                     ". world.db contains the complete line: a power cut or an edit removed the end of the line."
                 }
@@ -136,13 +136,13 @@ impl Session {
                 "The last line of the trajectory was unfinished ({bytes} bytes) and was dropped{reason}"
             ));
         }
-        session.log.read(&trajectory);
+        session.log.load(&trajectory);
         session.replay_afterwards(&trajectory);
-        session.check_memo(&trajectory, access);
+        session.check_notes(&trajectory, access);
         session.resume_lesson(folder, &trajectory.lines)?;
         session.finish_week(&trajectory);
-        session.finish_beginning(&trajectory.lines)?;
-        session.name_python_calculations();
+        session.finish_start(&trajectory.lines)?;
+        session.report_python_calculations();
         Ok(session)
     }
 }
@@ -154,24 +154,24 @@ pub(crate) fn open_projector(
     (manifest, params): (&Manifest, &Arc<Params>),
     trajectory: &Trajectory,
     sound: bool,
-) -> Result<(Projector, Option<Position>), RunError> {
+) -> Result<(Projector, Option<ProjectionPosition>), RunError> {
     let location = match access {
-        Access::Write => Location::File(folder.join("world.db")),
+        Access::Write => DatabaseLocation::File(folder.join("world.db")),
         // Another program may write the file, so a reader creates its own database.
-        Access::Read => Location::memory(),
+        Access::Read => DatabaseLocation::new_in_memory(),
     };
-    let known = |position: &Position| {
+    let known = |position: &ProjectionPosition| {
         let line = trajectory.lines.get(position.seq as usize);
         sound && line.is_some_and(|line| line.hash == position.line_hash)
     };
-    Ok(Projector::start(location, manifest.number(), params.clone(), known)?)
+    Ok(Projector::start(location, manifest.id_number(), params.clone(), known)?)
 }
 
 /// Abandons an unfinished run permanently.
 ///
 /// # Errors
 /// The run has ended already, is in use, or cannot be read.
-pub fn end_run(runs: &Path, id: &str) -> Result<(), RunError> {
+pub fn abandon_run(runs: &Path, id: &str) -> Result<(), RunError> {
     let mut session = Session::open(&find_run(runs, id)?, Access::Write, false)?;
-    session.end().map_err(|refusal| RunError::NotPossible(refusal.message))
+    session.abandon().map_err(|refusal| RunError::InvalidRequest(refusal.message))
 }

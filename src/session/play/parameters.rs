@@ -3,21 +3,21 @@
 use serde_json::Value;
 
 use super::Session;
-use super::act::not_saved;
+use super::tool_call::not_saved_rejection;
 use crate::company::overrides::{
-    DerivedOfParameters, ParameterChange, Taken, json_of_value, not_allowed, refuse_outside_debug, unknown,
-    value_of_json,
+    DerivedValues, ParameterChange, UpdatedParams, json_to_value, parameter_not_allowed, require_debug_mode,
+    unknown_parameter, value_to_json,
 };
 use crate::figures::journal::JournalEntry;
 use crate::view::debug_parameters::ChangedParameter;
 use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::Override;
 use novamind_record::trajectory::{Durability, Record};
-use novamind_tools::{Kind, Refusal};
+use novamind_tools::{Rejection, ToolKind};
 use novamind_world::params::ParameterError;
 
-fn names_nothing(value: &toml::Value) -> bool {
-    value.as_table().is_some_and(|table| table.values().all(names_nothing))
+fn has_no_parameter(value: &toml::Value) -> bool {
+    value.as_table().is_some_and(|table| table.values().all(has_no_parameter))
 }
 
 impl Session {
@@ -32,50 +32,51 @@ impl Session {
         key: &str,
         value: &Value,
         from_day: Option<u32>,
-    ) -> Result<ChangedParameter, Refusal> {
-        refuse_outside_debug(self.manifest.mode)?;
-        self.set_parameter_anyway(key, value, from_day)
+    ) -> Result<ChangedParameter, Rejection> {
+        require_debug_mode(self.manifest.mode)?;
+        self.set_parameter_in_any_mode(key, value, from_day)
     }
 
     /// Sets a parameter immediately, on behalf of the lesson.
     ///
     /// # Errors
     /// As [`Session::set_parameter`].
-    pub(crate) fn set_parameter_of_lesson(&mut self, key: &str, value: &Value) -> Result<(), Refusal> {
-        self.set_parameter_anyway(key, value, None).map(|_| ())
+    pub(crate) fn set_lesson_parameter(&mut self, key: &str, value: &Value) -> Result<(), Rejection> {
+        self.set_parameter_in_any_mode(key, value, None).map(|_| ())
     }
 
-    fn set_parameter_anyway(
+    fn set_parameter_in_any_mode(
         &mut self,
         key: &str,
         value: &Value,
         from_day: Option<u32>,
-    ) -> Result<ChangedParameter, Refusal> {
-        self.refuse_if_over(Kind::Time)?;
+    ) -> Result<ChangedParameter, Rejection> {
+        self.check_can_act(ToolKind::Time)?;
         let (today, last) = (self.simulation.world.day, self.manifest.days);
         if let Some(day) = from_day.filter(|day| !(today + 1..=last).contains(day)) {
             let message = format!("the start day must be between {} and {last}, not {day}", today + 1);
-            return Err(Refusal::at("from", "day_unknown", message));
+            return Err(Rejection::for_field("from", "day_unknown", message));
         }
-        let old = json_of_value(&self.simulation.params.value(key).map_err(unknown)?);
-        let value = value_of_json(value).ok_or_else(|| {
-            Refusal::at(key, "parameter_not_allowed", format!("{key} cannot be or contain null"))
+        let old = value_to_json(&self.simulation.params.value(key).map_err(unknown_parameter)?);
+        let value = json_to_value(value).ok_or_else(|| {
+            Rejection::for_field(key, "parameter_not_allowed", format!("{key} cannot be or contain null"))
         })?;
-        if names_nothing(&value) {
+        if has_no_parameter(&value) {
             let message = format!("the table contains no parameter; name a parameter of {key}");
-            return Err(Refusal::at(key, "parameter_not_allowed", message));
+            return Err(Rejection::for_field(key, "parameter_not_allowed", message));
         }
         let change =
             ParameterChange { seq: self.log.position().seq + 1, key: key.to_owned(), value, from_day };
         let mut overrides = self.simulation.overrides.clone();
-        let Taken { now, changed } = overrides.take(&self.simulation.params, change).map_err(not_allowed)?;
-        let new = json_of_value(&changed.value(key).map_err(unknown)?);
+        let UpdatedParams { current: now, after_change: changed } =
+            overrides.add_change(&self.simulation.params, change).map_err(parameter_not_allowed)?;
+        let new = value_to_json(&changed.value(key).map_err(unknown_parameter)?);
         let line = Override { key: key.to_owned(), old: old.clone(), new: new.clone(), from_day };
-        self.append(&Record::Override(line.clone()), Durability::Synced).map_err(not_saved)?;
-        self.enter_parameter(self.log.position().seq, &line);
+        self.append(&Record::Override(line.clone()), Durability::Synced).map_err(not_saved_rejection)?;
+        self.add_to_journal(self.log.position().seq, &line);
         self.simulation.overrides = overrides;
-        self.simulation.use_params(now, self.database.entries());
-        self.derived = DerivedOfParameters::default();
+        self.simulation.set_params(now, self.database.entry_writer());
+        self.derived_values = DerivedValues::default();
         Ok(ChangedParameter { key: key.to_owned(), old, new, from_day })
     }
 
@@ -91,22 +92,23 @@ impl Session {
         if line.from_day.is_some_and(|day| day <= today) {
             return Err(format!("it sets a parameter from a day that is not after day {today}"));
         }
-        let held = self.simulation.params.value(&line.key).map_err(|error| in_words(&error))?;
-        if json_of_value(&held) != line.old {
+        let held = self.simulation.params.value(&line.key).map_err(|error| describe_error(&error))?;
+        if value_to_json(&held) != line.old {
             return Err(format!("{} was not {} before it", line.key, line.old));
         }
-        self.enter_parameter(seq, line);
-        let change = ParameterChange::of(seq, line).ok_or("its value is not valid for a parameter")?;
-        let taken = self.simulation.overrides.take(&self.simulation.params, change);
-        let Taken { now, .. } = taken.map_err(|unfit| in_words(&unfit.error))?;
-        self.simulation.use_params(now, self.database.entries());
-        self.derived = DerivedOfParameters::default();
+        self.add_to_journal(seq, line);
+        let change =
+            ParameterChange::from_record(seq, line).ok_or("its value is not valid for a parameter")?;
+        let taken = self.simulation.overrides.add_change(&self.simulation.params, change);
+        let UpdatedParams { current: now, .. } = taken.map_err(|unfit| describe_error(&unfit.error))?;
+        self.simulation.set_params(now, self.database.entry_writer());
+        self.derived_values = DerivedValues::default();
         Ok(())
     }
 
     /// Adds a parameter change to the journal of a debug run. Changes by a lesson are omitted, because the student
     /// did not decide them.
-    fn enter_parameter(&mut self, seq: u64, line: &Override) {
+    fn add_to_journal(&mut self, seq: u64, line: &Override) {
         if self.manifest.mode == Mode::Debug {
             let Override { key, old, new, from_day } = line.clone();
             let day = self.simulation.world.day;
@@ -115,6 +117,6 @@ impl Session {
     }
 }
 
-fn in_words(error: &ParameterError) -> String {
+fn describe_error(error: &ParameterError) -> String {
     format!("{}: {}", error.key, error.problem)
 }

@@ -6,20 +6,20 @@ use std::sync::Arc;
 use super::Session;
 use crate::company::facts_chain::StateHash;
 use crate::company::reports::DayReport;
-use crate::company::surroundings::RunSurroundings;
+use crate::company::run_context::RunContext;
 use crate::database::RunDatabase;
-use crate::recording::recorder::lines_afterwards;
-use crate::snapshot::file::{Recalled, Snapshot};
-use novamind_database::{Entry, Position, Projector};
+use crate::recording::recorder::read_afterwards;
+use crate::snapshot::file::{RestoredSession, Snapshot};
+use novamind_database::{ProjectionEntry, ProjectionPosition, Projector};
 use novamind_record::error::RunError;
 use novamind_record::folder::manifest::Manifest;
 use novamind_record::trajectory::record::{Closing, Outcome};
-use novamind_record::trajectory::{Line, Record, Trajectory, damaged_at};
+use novamind_record::trajectory::{Line, Record, Trajectory, damaged_line_error};
 use novamind_world::params::Params;
 
 impl Session {
     /// Creates a session on day 0, or from a snapshot. Also returns the number of lines that it includes.
-    pub(crate) fn before_replay(
+    pub(crate) fn prepare_replay(
         manifest: Manifest,
         folder: &Path,
         params: Arc<Params>,
@@ -27,17 +27,17 @@ impl Session {
         snapshot: Option<&Snapshot>,
     ) -> (Session, usize) {
         let own = Some(folder.to_owned());
-        let recall = |snapshot: &Snapshot| snapshot.recall(&manifest, &params, lines);
+        let recall = |snapshot: &Snapshot| snapshot.restore_session(&manifest, &params, lines);
         let recalled = snapshot.and_then(|snapshot| Some((recall(snapshot)?, snapshot)));
-        let Some((Recalled { simulation, history, notebook }, snapshot)) = recalled else {
-            return (Session::unwritten(manifest, own, params, None), 0);
+        let Some((RestoredSession { simulation, history, notebook }, snapshot)) = recalled else {
+            return (Session::read_only(manifest, own, params, None), 0);
         };
         let position = snapshot.position();
         let seen = position.seq as usize + 1;
-        let surroundings = RunSurroundings { notebook, ..RunSurroundings::default() };
+        let surroundings = RunContext { notebook, ..RunContext::default() };
         let mut session = Session::assemble(manifest, own, simulation, RunDatabase::default());
-        session.log.move_to(position);
-        (Session { history, surroundings, ..session }, seen)
+        session.log.set_position(position);
+        (Session { history, context: surroundings, ..session }, seen)
     }
 
     /// Applies all lines after the first `seen`. The database receives only missing rows. `reached` is called with
@@ -47,7 +47,7 @@ impl Session {
         path: &Path,
         trajectory: &Trajectory,
         seen: usize,
-        database: Option<(Projector, Option<Position>)>,
+        database: Option<(Projector, Option<ProjectionPosition>)>,
         reached: &mut dyn FnMut(u32),
     ) -> Result<(), RunError> {
         let (mut projector, projected): (Option<Projector>, _) = database.unzip();
@@ -55,70 +55,72 @@ impl Session {
         for line in trajectory.lines.iter().skip(seen) {
             let missing = projected.as_ref().is_none_or(|position| line.seq > position.seq);
             if missing && projector.is_some() {
-                self.go_on_with(projector.take());
+                self.attach_projector(projector.take());
             }
             self.apply_line(path, line)?;
             reached(self.simulation.world.day);
         }
         if projector.is_some() {
-            self.go_on_with(projector);
+            self.attach_projector(projector);
         }
         Ok(())
     }
 
     /// Writes rows to this database from now on, with the parameters in force.
-    fn go_on_with(&mut self, projector: Option<Projector>) {
-        self.database = RunDatabase::of(projector);
-        if self.simulation.overrides.is_used() {
+    fn attach_projector(&mut self, projector: Option<Projector>) {
+        self.database = RunDatabase::new(projector);
+        if self.simulation.overrides.has_changes() {
             let params = self.simulation.params.clone();
-            self.database.entries().write(|| Entry { params: Some(params), ..Entry::default() });
+            self.database
+                .entry_writer()
+                .send(|| ProjectionEntry { params: Some(params), ..ProjectionEntry::default() });
         }
     }
 
     pub(crate) fn apply_line(&mut self, path: &Path, line: &Line) -> Result<(), RunError> {
-        self.apply_line_telling(path, line, &mut |_| {})
+        self.apply_line_with_progress(path, line, &mut |_| {})
     }
 
     /// Like [`Session::apply_line`]; calls `tell` for each simulated day.
-    pub(crate) fn apply_line_telling(
+    pub(crate) fn apply_line_with_progress(
         &mut self,
         path: &Path,
         line: &Line,
         tell: &mut dyn FnMut(&DayReport<'_>),
     ) -> Result<(), RunError> {
-        self.log.move_to(line.position());
-        let damaged = damaged_at(path);
+        self.log.set_position(line.position());
+        let damaged = damaged_line_error(path);
         self.replay_line(line, tell).map_err(|problem| damaged((line.seq as usize + 1, problem)))
     }
 
     fn replay_line(&mut self, line: &Line, tell: &mut dyn FnMut(&DayReport<'_>)) -> Result<(), String> {
         match &line.record {
-            Record::Start(_) => self.project_opening(),
+            Record::Start(_) => self.write_initial_rows(),
             Record::Call(call) => {
-                self.history.first_answers.note_call(call);
+                self.history.idempotent_responses.record_call(call);
                 if let Outcome::Accepted(answer) = &call.outcome {
                     self.replay_call(call, answer)?;
                 }
             }
             Record::Advance(filed) => {
-                self.history.first_answers.begin_week(filed.request.clone());
+                self.history.idempotent_responses.start_week(filed.request.clone());
                 self.replay_forecasts(filed, &line.at)?;
             }
             Record::Week(closing) | Record::Step(closing) => {
                 let from = self.simulation.world.day;
                 let state = self.run_days(from.saturating_add(closing.days_run), tell);
-                self.compare(from, &state, closing)?;
-                self.note_answered_week();
+                self.verify_closing(from, &state, closing)?;
+                self.record_replayed_week();
                 self.commit_projection();
             }
             Record::End(end) => {
-                self.note_end(end.reason);
+                self.record_end(end.reason);
                 self.history.ended = Some(end.reason);
                 self.commit_projection();
             }
             Record::Override(change) => self.replay_override(line.seq, change)?,
             Record::Voice(said) => self.replay_voice(said)?,
-            Record::Query(query) => self.remember_query(query),
+            Record::Query(query) => self.add_to_query_history(query),
             Record::Activity(_)
             | Record::Memo(_)
             | Record::Note(_)
@@ -129,12 +131,12 @@ impl Session {
     }
 
     /// Completes the figures of replayed days and compares the state with the recorded one.
-    fn compare(&mut self, from: u32, state: &StateHash, recorded: &Closing) -> Result<(), String> {
-        let figures = self.settle_figures();
-        let reached = self.closing(from, &figures, state);
+    fn verify_closing(&mut self, from: u32, state: &StateHash, recorded: &Closing) -> Result<(), String> {
+        let figures = self.finish_figures();
+        let reached = self.closing_record(from, &figures, state);
         self.simulation.facts_chain.close();
         if reached.state_hash == recorded.state_hash {
-            return same_figures(&reached, recorded);
+            return compare_figures(&reached, recorded);
         }
         let differs = |(name, hash): &(&String, &String)| recorded.parts.get(*name) != Some(*hash);
         let differing = reached.parts.iter().filter(differs).map(|(name, _)| name.as_str());
@@ -168,10 +170,10 @@ impl Session {
     /// Applies the lines recorded after the end of the run. Adds a remark if their file is damaged.
     pub(crate) fn replay_afterwards(&mut self, trajectory: &Trajectory) {
         let Some(folder) = self.folder.clone().filter(|_| self.history.ended.is_some()) else { return };
-        match lines_afterwards(&folder, trajectory) {
+        match read_afterwards(&folder, trajectory) {
             Ok(after) => {
-                self.log.read_answers(trajectory.lines.iter().chain(&after.lines));
-                after.lines.iter().for_each(|line| self.keep_again(line));
+                self.log.load_answers(trajectory.lines.iter().chain(&after.lines));
+                after.lines.iter().for_each(|line| self.replay_afterwards_line(line));
             }
             Err(problem) => {
                 self.remarks.push(format!("{problem} Lines recorded after the end are not shown."))
@@ -180,11 +182,11 @@ impl Session {
     }
 
     /// Applies a line recorded after the end of the run. It does not affect the company.
-    fn keep_again(&mut self, line: &Line) {
+    fn replay_afterwards_line(&mut self, line: &Line) {
         match &line.record {
-            Record::Query(query) => self.remember_query(query),
+            Record::Query(query) => self.add_to_query_history(query),
             Record::Call(call) => {
-                self.history.first_answers.note_call(call);
+                self.history.idempotent_responses.record_call(call);
                 if let Outcome::Accepted(answer) = &call.outcome {
                     let _ = self.replay_call(call, answer);
                 }
@@ -195,7 +197,7 @@ impl Session {
 }
 
 /// Compares the figures of the closing record, which are derived from the state.
-fn same_figures(reached: &Closing, recorded: &Closing) -> Result<(), String> {
+fn compare_figures(reached: &Closing, recorded: &Closing) -> Result<(), String> {
     let name = if reached.days_run != recorded.days_run {
         "days_run"
     } else if reached.figures != recorded.figures {

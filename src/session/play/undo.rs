@@ -8,16 +8,16 @@ use std::collections::BTreeSet;
 use serde_json::{Map, Value};
 
 use super::Session;
-use super::act::Marks;
-use crate::company::this_week::Step;
-use crate::figures::changes::{Change, changes};
+use super::tool_call::CallMetadata;
+use crate::company::week_actions::UndoStep;
+use crate::figures::changes::{SettingChange, setting_changes};
 use crate::figures::journal::JournalEntry;
 use novamind_record::trajectory::record::{Reversal, Via};
-use novamind_tools::{Refusal, ToolId};
+use novamind_tools::{Rejection, ToolId};
 use novamind_world::settings::Settings;
 
 /// Returns the lines of the calls that were undone. A redo has its own line.
-pub fn undone_calls(journal: &[JournalEntry]) -> BTreeSet<u64> {
+pub fn undone_call_lines(journal: &[JournalEntry]) -> BTreeSet<u64> {
     let mut undone = BTreeSet::new();
     for entry in journal {
         if let JournalEntry::Call { reversal: Some(Reversal::Undoes(seq)), .. } = entry {
@@ -32,11 +32,11 @@ impl Session {
     ///
     /// # Errors
     /// `nothing_to_undo`, `cannot_undo` if no call can restore the old value, and the rejections of the call.
-    pub fn undo(&mut self, via: Via) -> Result<Vec<Change>, Refusal> {
-        let Some(step) = self.history.this_week.undo.last().cloned() else {
+    pub fn undo(&mut self, via: Via) -> Result<Vec<SettingChange>, Rejection> {
+        let Some(step) = self.history.week_actions.undo.last().cloned() else {
             let message =
                 "no setting has changed since the last week; purchases, posts and offers cannot be undone";
-            return Err(Refusal::new("nothing_to_undo", message));
+            return Err(Rejection::new("nothing_to_undo", message));
         };
         self.restore(&step, via, Reversal::Undoes(step.seq))
     }
@@ -45,20 +45,25 @@ impl Session {
     ///
     /// # Errors
     /// `nothing_to_redo`, and the rejections of the call.
-    pub fn redo(&mut self, via: Via) -> Result<Vec<Change>, Refusal> {
-        let Some(step) = self.history.this_week.redo.last().cloned() else {
+    pub fn redo(&mut self, via: Via) -> Result<Vec<SettingChange>, Rejection> {
+        let Some(step) = self.history.week_actions.redo.last().cloned() else {
             let message = "no call was undone since the last change of a setting";
-            return Err(Refusal::new("nothing_to_redo", message));
+            return Err(Rejection::new("nothing_to_redo", message));
         };
         self.restore(&step, via, Reversal::Redoes(step.seq))
     }
 
-    fn restore(&mut self, step: &Step, via: Via, reversal: Reversal) -> Result<Vec<Change>, Refusal> {
+    fn restore(
+        &mut self,
+        step: &UndoStep,
+        via: Via,
+        reversal: Reversal,
+    ) -> Result<Vec<SettingChange>, Rejection> {
         let before = self.simulation.world.settings.clone();
-        let arguments = restoring_arguments(step.tool, &before, &step.restores)?;
-        let marks = Marks { reversal: Some(reversal), request: None };
-        self.call_recorded(step.tool.name(), &Value::Object(arguments), via, marks)?;
-        Ok(changes(&before, &self.simulation.world.settings))
+        let arguments = restoring_arguments(step.tool, &before, &step.restored_settings)?;
+        let marks = CallMetadata { reversal: Some(reversal), request: None };
+        self.call_with_metadata(step.tool.name(), &Value::Object(arguments), via, marks)?;
+        Ok(setting_changes(&before, &self.simulation.world.settings))
     }
 }
 
@@ -66,7 +71,7 @@ fn restoring_arguments(
     id: ToolId,
     now: &Settings,
     restored: &Settings,
-) -> Result<Map<String, Value>, Refusal> {
+) -> Result<Map<String, Value>, Rejection> {
     let tool = id.tool();
     let mut arguments = tool.current(restored);
     if id == ToolId::SetPrices {
@@ -76,7 +81,7 @@ fn restoring_arguments(
             let message = format!(
                 "plan {plan} had no price before this call, and a price cannot be set to 0; set another price instead"
             );
-            return Err(Refusal::at(plan.clone(), "cannot_undo", message));
+            return Err(Rejection::for_field(plan.clone(), "cannot_undo", message));
         }
     }
     Ok(arguments)

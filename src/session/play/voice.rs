@@ -5,39 +5,39 @@ use std::path::Path;
 
 use super::Session;
 use super::open::Access;
-use crate::company::judging::is_of;
-use crate::model_voice::speaker::{Reply, Speaker};
-use novamind_database::Entry;
+use crate::company::post_judging::is_for_post;
+use crate::model_voice::client::{ModelClient, ModelReply};
+use novamind_database::ProjectionEntry;
 use novamind_record::error::RunError;
 use novamind_record::folder::configuration::Configuration;
 use novamind_record::trajectory::record::{
-    AskedOfModel, FailedAnswer, JudgedPost, VoiceAnswer, WordedPost, WordedPosts,
+    FailedAnswer, JudgedPost, ModelTask, VoiceAnswer, WordedPost, WordedPosts,
 };
 use novamind_record::trajectory::{Durability, Record};
 use novamind_tools::PublicPost;
 use novamind_voice::model::ModelPrompt;
-use novamind_voice::model::scoring::{self, ModelScore, PostForReaders};
+use novamind_voice::model::scoring::{self, ModelScore, PostToScore};
 use novamind_voice::model::settings::ModelSettings;
-use novamind_voice::model::wording::{self, BuiltInPost, MOST_POSTS};
+use novamind_voice::model::wording::{self, BuiltInPost, MAX_POSTS_PER_WEEK};
 use novamind_world::identifiers::Group;
 use novamind_world::params::PostJudge;
 
 impl Session {
     /// Requests scores of the player's posts that are judged next and have no recorded scores. If the scores cannot
     /// be recorded, the built-in judge is used.
-    pub(super) fn ask_readers(&mut self) {
+    pub(super) fn score_pending_posts(&mut self) {
         let is_judged = self.simulation.params.fidelity.post_judge != PostJudge::None;
-        let can_ask = self.voice.speaker.is_some() || !self.voice.inherited.is_empty();
+        let can_ask = self.voice.client.is_some() || !self.voice.inherited_scores.is_empty();
         if !self.log.is_written() || !is_judged || !can_ask {
             return;
         }
         for at in self.unscored_posts() {
-            let Some(judged) = self.inherited_scores(at).or_else(|| self.scores_of_model(at)) else {
+            let Some(judged) = self.inherited_scores(at).or_else(|| self.request_scores(at)) else {
                 continue;
             };
             let record = Record::Voice(VoiceAnswer::Scores(judged.clone()));
             if self.append(&record, Durability::Synced).is_ok() {
-                self.simulation.scores.take_in(judged);
+                self.simulation.recorded_scores.add(judged);
             }
         }
     }
@@ -50,30 +50,31 @@ impl Session {
     fn unscored_posts(&self) -> Vec<usize> {
         let (known, simulation) = (self.known_groups(), &self.simulation);
         let own = simulation.world.market.social.own.iter().enumerate();
-        own.filter(|(_, post)| post.effects.is_none() && !simulation.scores.cover(post, &known))
+        own.filter(|(_, post)| post.effects.is_none() && !simulation.recorded_scores.covers(post, &known))
             .map(|(at, _)| at)
             .collect()
     }
 
     /// Sets recorded scores for posts that are published again.
-    pub fn inherit_scores(&mut self, judged: Vec<JudgedPost>) {
-        self.voice.inherited = judged;
+    pub fn set_inherited_scores(&mut self, judged: Vec<JudgedPost>) {
+        self.voice.inherited_scores = judged;
     }
 
     fn inherited_scores(&self, at: usize) -> Option<JudgedPost> {
         let post = self.simulation.world.market.social.own.get(at)?;
-        let said = self.voice.inherited.iter().rev().find(|judged| is_of(judged, post))?;
+        let said = self.voice.inherited_scores.iter().rev().find(|judged| is_for_post(judged, post))?;
         Some(JudgedPost { post: at as u32 + 1, took_ms: 0.0, ..said.clone() })
     }
 
-    fn scores_of_model(&mut self, at: usize) -> Option<JudgedPost> {
-        if !self.voice.speaker.as_ref()?.settings.judge {
+    fn request_scores(&mut self, at: usize) -> Option<JudgedPost> {
+        if !self.voice.client.as_ref()?.settings.judge {
             return None;
         }
         let known = self.known_groups();
-        let prompt = self.prompt_for_readers(at, &known)?;
-        let speaker = self.voice.speaker.as_mut()?;
-        let Reply { answer, took_ms } = speaker.ask(&prompt, |answer| scoring::read(answer, &known));
+        let prompt = self.scoring_prompt(at, &known)?;
+        let speaker = self.voice.client.as_mut()?;
+        let ModelReply { answer, took_ms } =
+            speaker.request(&prompt, |answer| scoring::parse_response(answer, &known));
         let post = self.simulation.world.market.social.own.get(at)?;
         match answer {
             Ok(scores) => Some(JudgedPost {
@@ -85,18 +86,18 @@ impl Session {
                 took_ms,
             }),
             Err(problem) => {
-                self.note_failure(AskedOfModel::Scores, problem, took_ms);
+                self.record_failure(ModelTask::Scores, problem, took_ms);
                 None
             }
         }
     }
 
-    fn prompt_for_readers(&self, at: usize, known: &[Group]) -> Option<ModelPrompt> {
+    fn scoring_prompt(&self, at: usize, known: &[Group]) -> Option<ModelPrompt> {
         let own = &self.simulation.world.market.social.own;
         let (post, posts) = (own.get(at)?, &self.simulation.feed.posts);
         let shown = |number: u32| Some(posts.get((number as usize).checked_sub(1)?)?.content.as_str());
         let who = |group: &Group| (*group, self.simulation.params.group(*group).description.as_str());
-        Some(scoring::prompt(&PostForReaders {
+        Some(scoring::prompt(&PostToScore {
             content: &post.content,
             day: post.day,
             original: post.reply_to.and_then(shown),
@@ -105,24 +106,25 @@ impl Session {
         }))
     }
 
-    fn note_failure(&mut self, asked: AskedOfModel, problem: String, took_ms: f64) {
-        self.note(Record::Voice(VoiceAnswer::Failed(FailedAnswer { asked, problem, took_ms })));
+    fn record_failure(&mut self, asked: ModelTask, problem: String, took_ms: f64) {
+        self.record_event(Record::Voice(VoiceAnswer::Failed(FailedAnswer { asked, problem, took_ms })));
     }
 
     /// Requests other words for the newest posts after a day. Without a usable answer, the posts keep their texts.
-    pub(super) fn word_days_after(&mut self, day: u32) {
-        let Some(speaker) = self.voice.speaker.as_mut().filter(|speaker| speaker.settings.words) else {
+    pub(super) fn reword_posts_after(&mut self, day: u32) {
+        let Some(speaker) = self.voice.client.as_mut().filter(|speaker| speaker.settings.words) else {
             return;
         };
         let feed = &self.simulation.feed.posts;
         let newest = feed.iter().rev().take_while(|post| post.day > day && !post.content.is_empty());
-        let newest: Vec<&PublicPost> = newest.take(MOST_POSTS).collect();
+        let newest: Vec<&PublicPost> = newest.take(MAX_POSTS_PER_WEEK).collect();
         if newest.is_empty() {
             return;
         }
-        let built_in: Vec<BuiltInPost<'_>> = newest.iter().map(|post| as_built_in(post)).collect();
+        let built_in: Vec<BuiltInPost<'_>> = newest.iter().map(|post| to_built_in_post(post)).collect();
         let prompt = wording::prompt(&built_in);
-        let Reply { answer, took_ms } = speaker.ask(&prompt, |answer| wording::read(answer, &built_in));
+        let ModelReply { answer, took_ms } =
+            speaker.request(&prompt, |answer| wording::parse_response(answer, &built_in));
         match answer {
             Ok(texts) => {
                 let numbers = newest.iter().map(|post| post.post);
@@ -130,19 +132,21 @@ impl Session {
                 let worded = WordedPosts { posts, took_ms };
                 let record = Record::Voice(VoiceAnswer::Words(worded.clone()));
                 if self.append(&record, Durability::Synced).is_ok() {
-                    self.take_words(&worded.posts);
+                    self.apply_rewordings(&worded.posts);
                 }
             }
-            Err(problem) => self.note_failure(AskedOfModel::Words, problem, took_ms),
+            Err(problem) => self.record_failure(ModelTask::Words, problem, took_ms),
         }
     }
 
-    fn take_words(&mut self, posts: &[WordedPost]) {
+    fn apply_rewordings(&mut self, posts: &[WordedPost]) {
         for WordedPost { post, text } in posts {
-            self.simulation.feed.reword(*post, text);
+            self.simulation.feed.replace_text(*post, text);
         }
         let rewordings = || posts.iter().map(|own| (own.post, own.text.clone())).collect();
-        self.database.entries().write(|| Entry { rewordings: rewordings(), ..Entry::default() });
+        self.database
+            .entry_writer()
+            .send(|| ProjectionEntry { rewordings: rewordings(), ..ProjectionEntry::default() });
     }
 
     /// Applies a `voice` line.
@@ -160,7 +164,7 @@ impl Session {
                 if !fits {
                     return Err("the language model of this run cannot have given these scores".to_owned());
                 }
-                self.simulation.scores.take_in(judged.clone());
+                self.simulation.recorded_scores.add(judged.clone());
             }
             VoiceAnswer::Words(worded) => {
                 let feed = &self.simulation.feed;
@@ -170,7 +174,7 @@ impl Session {
                 if !(model.words && fits) {
                     return Err("the language model of this run cannot have written these texts".to_owned());
                 }
-                self.take_words(&worded.posts);
+                self.apply_rewordings(&worded.posts);
                 self.commit_projection();
             }
             VoiceAnswer::Failed(_) => {}
@@ -184,12 +188,12 @@ impl Session {
     /// As [`Session::open`].
     pub fn open_to_play(folder: &Path, configuration: &Configuration) -> Result<Session, RunError> {
         let mut session = Session::open(folder, Access::Write, true)?;
-        session.join_model(configuration.voice.as_ref());
+        session.connect_model(configuration.voice.as_ref());
         Ok(session)
     }
 
     /// Connects the language model of the run. If that fails, adds a remark, and the built-in voice is used.
-    pub fn join_model(&mut self, named: Option<&ModelSettings>) {
+    pub fn connect_model(&mut self, named: Option<&ModelSettings>) {
         if self.history.ended.is_some() || !self.log.is_written() {
             return;
         }
@@ -203,17 +207,17 @@ impl Session {
             }
             (Some(_), None) => "to use it, name its file with --voice".to_owned(),
             (Some(model), Some(named)) if named.stamp() != *model => {
-                format!("--voice names another model: {}", named.stamp().in_words())
+                format!("--voice names another model: {}", named.stamp().describe())
             }
-            (Some(_), Some(named)) => match Speaker::open(named) {
+            (Some(_), Some(named)) => match ModelClient::new(named) {
                 Ok(speaker) => {
-                    self.voice.speaker = Some(speaker);
+                    self.voice.client = Some(speaker);
                     return;
                 }
                 Err(problem) => problem,
             },
         };
-        let model = self.manifest.voice.as_ref().map(|model| model.in_words()).unwrap_or_default();
+        let model = self.manifest.voice.as_ref().map(|model| model.describe()).unwrap_or_default();
         self.remarks.push(format!(
             "In this run {model}; from now on the built-in voice does ({problem}). Existing texts and scores are kept."
         ));
@@ -221,10 +225,10 @@ impl Session {
 
     /// Returns the settings of the connected language model.
     pub fn model_settings(&self) -> Option<&ModelSettings> {
-        self.voice.speaker.as_ref().map(|speaker| &speaker.settings)
+        self.voice.client.as_ref().map(|speaker| &speaker.settings)
     }
 }
 
-fn as_built_in(post: &PublicPost) -> BuiltInPost<'_> {
+fn to_built_in_post(post: &PublicPost) -> BuiltInPost<'_> {
     BuiltInPost { text: &post.content, group: post.written_by, profile: post.profile.as_deref() }
 }

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use serde_json::json;
 
 use crate::create::{NewRun, Storage, StudyEntry};
-use crate::model_voice::stub::{Manner, Stub};
+use crate::model_voice::stub::{StubBehavior, StubModel};
 use crate::play::Session;
 use crate::play::open::Access;
 use crate::resume::verify::verify;
@@ -16,7 +16,7 @@ use novamind_record::folder::manifest::Manifest;
 use novamind_record::mode::Mode;
 use novamind_record::rules::SessionRules;
 use novamind_record::stamp::StudyStamp;
-use novamind_record::trajectory::record::{AskedOfModel, Via, VoiceAnswer, WordedPost, WordedPosts};
+use novamind_record::trajectory::record::{ModelTask, Via, VoiceAnswer, WordedPost, WordedPosts};
 use novamind_record::trajectory::{Record, Trajectory};
 
 const POST: &str = "We doubled the quota of plan B today and cut its price by 20%.";
@@ -27,7 +27,7 @@ fn new_run(runs: &Path, mode: Mode) -> NewRun {
     NewRun { seed: Some(7), days: Some(60), mode, participant, storage, ..NewRun::default() }
 }
 
-fn begun(runs: &Path, configuration: &Configuration) -> Session {
+fn start_company(runs: &Path, configuration: &Configuration) -> Session {
     let mut session = Session::create(new_run(runs, Mode::Sandbox), configuration).expect("a run");
     for (tool, arguments) in [
         ("set_prices", json!({"A": 12, "B": 25, "C": 55})),
@@ -41,26 +41,26 @@ fn begun(runs: &Path, configuration: &Configuration) -> Session {
     session
 }
 
-fn post(session: &mut Session) {
+fn publish_post(session: &mut Session) {
     session.call("post_social_media", &json!({ "content": POST }), Via::Script).expect("a post");
 }
 
 /// Simulates a week. Returns the remark.
-fn week(session: &mut Session) -> Option<String> {
+fn advance_week(session: &mut Session) -> Option<String> {
     let forecasts = session.company().naive_forecasts();
     session.advance("on", &forecasts, Via::Script, &mut |_| {}).expect("a week").remark
 }
 
 /// Simulates three weeks, with a post before the second.
-fn played(runs: &Path, configuration: &Configuration) -> (Session, Vec<Option<String>>) {
-    let mut session = begun(runs, configuration);
-    let mut told = vec![week(&mut session)];
-    post(&mut session);
-    told.extend([week(&mut session), week(&mut session)]);
+fn play_three_weeks(runs: &Path, configuration: &Configuration) -> (Session, Vec<Option<String>>) {
+    let mut session = start_company(runs, configuration);
+    let mut told = vec![advance_week(&mut session)];
+    publish_post(&mut session);
+    told.extend([advance_week(&mut session), advance_week(&mut session)]);
     (session, told)
 }
 
-fn said(folder: &Path) -> Vec<VoiceAnswer> {
+fn voice_answers(folder: &Path) -> Vec<VoiceAnswer> {
     let lines = Trajectory::read(&folder.join("trajectory.jsonl")).expect("a trajectory").lines;
     let said = lines.into_iter().filter_map(|line| match line.record {
         Record::Voice(said) => Some(said),
@@ -69,11 +69,11 @@ fn said(folder: &Path) -> Vec<VoiceAnswer> {
     said.collect()
 }
 
-fn shown(session: &Session) -> Vec<String> {
+fn post_texts(session: &Session) -> Vec<String> {
     session.company().posts().iter().map(|post| post.content.clone()).collect()
 }
 
-fn queried(session: &mut Session) -> Vec<String> {
+fn queried_post_texts(session: &mut Session) -> Vec<String> {
     let rows = session.query("SELECT content FROM social_media_posts ORDER BY post_id").expect("rows").rows;
     let text = |row: Vec<Cell>| match row.into_iter().next() {
         Some(Cell::Text(text)) => text.to_string(),
@@ -82,18 +82,18 @@ fn queried(session: &mut Session) -> Vec<String> {
     rows.into_iter().map(text).collect()
 }
 
-fn folder_of(session: &Session) -> std::path::PathBuf {
+fn run_folder(session: &Session) -> std::path::PathBuf {
     session.folder().expect("a folder").to_owned()
 }
 
 #[test]
-fn words_and_scores_are_recorded_and_replayed_without_the_model() {
+fn voice_answers_replay_without_the_model() {
     let runs = tempfile::tempdir().expect("a folder");
-    let stub = Stub::start(Manner::Well);
-    let (mut session, told) = played(runs.path(), &stub.named(true, true, 30));
+    let stub = StubModel::start(StubBehavior::Correct);
+    let (mut session, told) = play_three_weeks(runs.path(), &stub.configuration(true, true, 30));
     assert_eq!(told, [None, None, None]);
-    let folder = folder_of(&session);
-    let (hash, words) = (session.state_hash().0, shown(&session));
+    let folder = run_folder(&session);
+    let (hash, words) = (session.state_hash().0, post_texts(&session));
     let effects = session.simulation.world.market.social.own[0].effects.expect("it was judged");
     assert!(effects.iter().filter(|effect| **effect == 0.8).count() >= 6);
     assert!(session.simulation.feed.judgements[0].iter().all(|own| own.reason() == "It speaks to me."));
@@ -101,12 +101,12 @@ fn words_and_scores_are_recorded_and_replayed_without_the_model() {
         words.len() > 3 && words.iter().rev().take(3).all(|text| text.starts_with("Well: ")),
         "{words:?}"
     );
-    assert_eq!(queried(&mut session), words);
-    let answers = said(&folder);
+    assert_eq!(queried_post_texts(&mut session), words);
+    let answers = voice_answers(&folder);
     let scored =
         answers.iter().filter(|said| matches!(said, VoiceAnswer::Scores(judged) if judged.post == 1));
     assert_eq!(scored.count(), 1);
-    let asked = stub.asked();
+    let asked = stub.requests();
     assert_eq!(asked.len(), answers.len(), "one request for each answer");
     let all = serde_json::to_string(&asked).expect("JSON");
     assert!(asked.iter().all(|own| own["model"] == "stub") && !all.contains("satisfaction"), "{all}");
@@ -115,78 +115,78 @@ fn words_and_scores_are_recorded_and_replayed_without_the_model() {
 
     let verified = verify(&folder).expect("it replays without the model");
     assert_eq!((verified.state_hash, verified.states), (hash.clone(), 3));
-    assert_eq!(shown(&Session::open(&folder, Access::Read, false).expect("it opens")), words);
+    assert_eq!(post_texts(&Session::open(&folder, Access::Read, false).expect("it opens")), words);
     for file in ["world.db", "snapshot.bin"] {
         let _ = std::fs::remove_file(folder.join(file));
     }
     let mut again = Session::open(&folder, Access::Write, true).expect("it opens");
-    assert_eq!((again.state_hash().0, shown(&again)), (hash, words.clone()));
-    assert_eq!(queried(&mut again), words, "the database contains the recorded texts");
-    again.join_model(None);
+    assert_eq!((again.state_hash().0, post_texts(&again)), (hash, words.clone()));
+    assert_eq!(queried_post_texts(&mut again), words, "the database contains the recorded texts");
+    again.connect_model(None);
     assert!(
         again.remarks().iter().any(|remark| remark.contains("stub at 127.0.0.1")),
         "{:?}",
         again.remarks()
     );
-    assert_eq!(week(&mut again), None, "the built-in voice continues");
+    assert_eq!(advance_week(&mut again), None, "the built-in voice continues");
     again.save().expect("saved");
     drop(again);
     verify(&folder).expect("it replays");
 }
 
 #[test]
-fn a_branch_takes_over_what_was_said() {
+fn branch_copies_reworded_posts() {
     let runs = tempfile::tempdir().expect("a folder");
-    let stub = Stub::start(Manner::Well);
-    let (session, _) = played(runs.path(), &stub.named(true, true, 30));
+    let stub = StubModel::start(StubBehavior::Correct);
+    let (session, _) = play_three_weeks(runs.path(), &stub.configuration(true, true, 30));
     drop(stub);
     let branch = session.branch(3, Mode::Sandbox).expect("a branch");
-    let so_far = shown(&branch);
+    let so_far = post_texts(&branch);
     assert!(so_far.iter().any(|text| text.starts_with("Well: ")));
-    assert_eq!(shown(&session)[..so_far.len()], so_far);
+    assert_eq!(post_texts(&session)[..so_far.len()], so_far);
     assert_eq!(branch.manifest().voice, session.manifest().voice);
-    verify(&folder_of(&branch)).expect("it replays");
+    verify(&run_folder(&branch)).expect("it replays");
     drop(branch);
 }
 
 #[test]
-fn a_model_that_does_not_serve_changes_nothing_and_is_told_of_once() {
+fn failing_model_changes_nothing_and_is_reported_once() {
     let runs = tempfile::tempdir().expect("a folder");
-    let (plain, _) = played(runs.path(), &Configuration::shipped());
-    assert_eq!(said(&folder_of(&plain)), []);
+    let (plain, _) = play_three_weeks(runs.path(), &Configuration::bundled());
+    assert_eq!(voice_answers(&run_folder(&plain)), []);
     for (manner, why) in [
-        (Manner::Late, "did not answer in time"),
-        (Manner::Short, "cannot be used"),
-        (Manner::Chatty, "not a JSON array"),
-        (Manner::Broken, "status 500"),
+        (StubBehavior::Late, "did not answer in time"),
+        (StubBehavior::TooFew, "cannot be used"),
+        (StubBehavior::NotJson, "not a JSON array"),
+        (StubBehavior::ServerError, "status 500"),
     ] {
-        let stub = Stub::start(manner);
+        let stub = StubModel::start(manner);
         let started = Instant::now();
-        let (session, told) = played(runs.path(), &stub.named(true, true, 1));
+        let (session, told) = play_three_weeks(runs.path(), &stub.configuration(true, true, 1));
         assert!(started.elapsed() < Duration::from_secs(20), "a week waits one second at most");
         assert_eq!(session.state_hash(), plain.state_hash(), "{manner:?}");
-        assert_eq!(shown(&session), shown(&plain), "{manner:?}");
+        assert_eq!(post_texts(&session), post_texts(&plain), "{manner:?}");
         let notices: Vec<&String> = told.iter().flatten().collect();
         assert!(notices.len() == 1 && notices[0].contains(why), "{manner:?}: {notices:?}");
-        let failed = said(&folder_of(&session));
-        let is_of = |what: AskedOfModel| {
+        let failed = voice_answers(&run_folder(&session));
+        let is_of = |what: ModelTask| {
             failed.iter().any(|said| matches!(said, VoiceAnswer::Failed(own) if own.asked == what))
         };
-        assert!(is_of(AskedOfModel::Scores) && is_of(AskedOfModel::Words), "{failed:?}");
-        verify(&folder_of(&session)).expect("it replays");
+        assert!(is_of(ModelTask::Scores) && is_of(ModelTask::Words), "{failed:?}");
+        verify(&run_folder(&session)).expect("it replays");
     }
     // The server is gone.
-    let gone = Stub::start(Manner::Well).named(true, true, 1);
-    let (session, told) = played(runs.path(), &gone);
+    let gone = StubModel::start(StubBehavior::Correct).configuration(true, true, 1);
+    let (session, told) = play_three_weeks(runs.path(), &gone);
     assert_eq!(session.state_hash(), plain.state_hash());
     assert_eq!(told.iter().flatten().count(), 1, "{told:?}");
 }
 
 #[test]
-fn a_baseline_run_has_a_model_only_where_its_study_says_so() {
+fn baseline_run_has_a_model_only_if_its_study_names_one() {
     let runs = tempfile::tempdir().expect("a folder");
-    let stub = Stub::start(Manner::Well);
-    let named = stub.named(false, true, 30);
+    let stub = StubModel::start(StubBehavior::Correct);
+    let named = stub.configuration(false, true, 30);
     let new = || new_run(runs.path(), Mode::Baseline);
     let refused = Session::create(new(), &named).err().expect("it is refused").to_string();
     assert!(refused.contains("study.toml") && refused.contains("Nothing was recorded"), "{refused}");
@@ -201,27 +201,27 @@ fn a_baseline_run_has_a_model_only_where_its_study_says_so() {
             practice: false,
             refused_labels: 0,
         },
-        rules: SessionRules::of_mode(Mode::Baseline),
+        rules: SessionRules::for_mode(Mode::Baseline),
         consent: None,
         voice,
     };
     let of_study = |voice| NewRun { study: Some(entry(voice)), ..new() };
     let silent = Session::create(of_study(None), &named).expect("a run");
     assert_eq!(silent.manifest().voice, None, "a study without a model has none");
-    let session = Session::create(of_study(named.voice.clone()), &Configuration::shipped()).expect("a run");
+    let session = Session::create(of_study(named.voice.clone()), &Configuration::bundled()).expect("a run");
     let stamp = session.manifest().voice.clone().expect("the run says so");
     assert_eq!((stamp.model.as_str(), stamp.judge, stamp.words), ("stub", false, true));
-    let folder = folder_of(&session);
+    let folder = run_folder(&session);
     assert_eq!(Manifest::read(&folder).expect("a manifest").voice, Some(stamp.clone()));
     let lines = Trajectory::read(&folder.join("trajectory.jsonl")).expect("a trajectory").lines;
     assert!(matches!(&lines[0].record, Record::Start(start) if start.voice == Some(stamp)));
 }
 
 #[test]
-fn a_key_that_is_missing_begins_no_run_and_another_model_does_not_join() {
+fn missing_key_prevents_the_run_and_other_model_is_rejected() {
     let runs = tempfile::tempdir().expect("a folder");
-    let stub = Stub::start(Manner::Well);
-    let mut named = stub.named(false, true, 30);
+    let stub = StubModel::start(StubBehavior::Correct);
+    let mut named = stub.configuration(false, true, 30);
     let own = named.voice.as_mut().expect("a model");
     own.key_variable = Some("NOVAMIND_NO_SUCH_KEY".to_owned());
     let refused =
@@ -230,29 +230,29 @@ fn a_key_that_is_missing_begins_no_run_and_another_model_does_not_join() {
         refused.contains("NOVAMIND_NO_SUCH_KEY") && refused.contains("Nothing was recorded"),
         "{refused}"
     );
-    let folder = folder_of(&begun(runs.path(), &stub.named(false, true, 30)));
-    let mut session = Session::open_to_play(&folder, &stub.named(true, true, 30)).expect("it opens");
+    let folder = run_folder(&start_company(runs.path(), &stub.configuration(false, true, 30)));
+    let mut session = Session::open_to_play(&folder, &stub.configuration(true, true, 30)).expect("it opens");
     assert!(
         session.remarks().iter().any(|remark| remark.contains("names another")),
         "{:?}",
         session.remarks()
     );
     assert_eq!(session.model_settings(), None);
-    session.join_model(stub.named(false, true, 5).voice.as_ref());
+    session.connect_model(stub.configuration(false, true, 5).voice.as_ref());
     assert!(session.model_settings().is_some(), "time may differ");
 }
 
 #[test]
-fn a_line_that_no_model_of_the_run_can_have_written_is_found() {
+fn replay_rejects_impossible_voice_lines() {
     let words = |post, text: &str| {
         let posts = vec![WordedPost { post, text: text.to_owned() }];
         VoiceAnswer::Words(WordedPosts { posts, took_ms: 1.0 })
     };
-    let mut plain = Session::create(NewRun::default(), &Configuration::shipped()).expect("a run");
+    let mut plain = Session::create(NewRun::default(), &Configuration::bundled()).expect("a run");
     assert!(plain.replay_voice(&words(1, "Hello.")).is_err(), "it has no model");
     let runs = tempfile::tempdir().expect("a folder");
-    let stub = Stub::start(Manner::Well);
-    let (mut session, _) = played(runs.path(), &stub.named(false, true, 30));
+    let stub = StubModel::start(StubBehavior::Correct);
+    let (mut session, _) = play_three_weeks(runs.path(), &stub.configuration(false, true, 30));
     assert_eq!(session.replay_voice(&words(1, "Hello.")), Ok(()));
     for (post, text) in [(0, "Hello."), (9_999, "Hello."), (1, "\u{1b}[2J"), (1, "")] {
         assert!(session.replay_voice(&words(post, text)).is_err(), "{post} {text:?}");

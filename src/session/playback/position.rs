@@ -4,7 +4,7 @@ use super::record_view::RecordView;
 
 /// The target of a seek.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Goal {
+pub enum SeekTarget {
     /// Before the first action.
     First,
     /// After the last line.
@@ -21,9 +21,9 @@ pub enum Goal {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SeekResult {
     /// The target was reached.
-    There,
+    Reached,
     /// The target was reached with a new session; connections to the old database are stale.
-    Anew,
+    ReachedInNewSession,
     /// The seek was stopped. Forward, the reached position is kept; back, the old position is kept.
     Stopped,
 }
@@ -44,13 +44,13 @@ pub struct PlaybackPosition {
     /// Number of recorded weeks.
     pub weeks: u32,
     /// Whether the playback waits for new lines of a running session.
-    pub follows: bool,
+    pub is_following: bool,
     /// Whether the playback is after the last line.
-    pub at_end: bool,
+    pub is_at_end: bool,
     /// Decisions before the next week, or before the last one at the end.
     pub chapter: Chapter,
     /// Reason why the run cannot be branched here.
-    pub no_branch: Option<String>,
+    pub branch_rejection: Option<String>,
 }
 
 /// Decisions before a week.
@@ -63,5 +63,5 @@ pub struct Chapter {
     /// Lines up to the end of the week, in order.
     pub entries: Vec<RecordView>,
     /// Number of these lines that are applied.
-    pub done: usize,
+    pub applied_entries: usize,
 }

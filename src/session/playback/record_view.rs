@@ -22,13 +22,13 @@ pub struct RecordView {
 }
 
 impl RecordView {
-    pub(crate) fn of(line: &Line, today: u32, outcome: &dyn Fn(u32) -> Option<f64>) -> RecordView {
+    pub(crate) fn new(line: &Line, today: u32, outcome: &dyn Fn(u32) -> Option<f64>) -> RecordView {
         let scored = |forecast: Forecast| {
             let open = ScoredForecast { forecast, day: line.day, outcome: None };
-            ScoredForecast { outcome: outcome(open.due()), ..open }
+            ScoredForecast { outcome: outcome(open.due_day()), ..open }
         };
         let forecasts = match &line.record {
-            Record::Advance(filed) => filed.forecasts.iter().map(|one| scored(one.said())).collect(),
+            Record::Advance(filed) => filed.forecasts.iter().map(|one| scored(one.to_forecast())).collect(),
             _ => Vec::new(),
         };
         let Line { seq, day, at, record, .. } = line.clone();
@@ -36,19 +36,19 @@ impl RecordView {
     }
 
     /// Whether the outcome of a forecast was unknown on the current day.
-    pub fn is_later(&self, forecast: &ScoredForecast) -> bool {
-        forecast.due() > self.today
+    pub fn is_future(&self, forecast: &ScoredForecast) -> bool {
+        forecast.due_day() > self.today
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figures::scored_forecast::Verdict;
+    use crate::figures::scored_forecast::IntervalPosition;
     use novamind_record::trajectory::record::{Advance, FiledForecast, Via};
 
     #[test]
-    fn a_forecast_says_what_came_and_what_is_still_to_come() {
+    fn record_view_marks_future_forecasts() {
         let one = |horizon_days| FiledForecast {
             horizon_days,
             point: 100.0,
@@ -63,10 +63,13 @@ mod tests {
             calculations: Vec::new(),
             request: None,
         };
-        let line = Line::alone(5, 14, "", Record::Advance(advance));
-        let view = RecordView::of(&line, 21, &|due| (due == 21).then_some(90.0));
+        let line = Line::detached(5, 14, "", Record::Advance(advance));
+        let view = RecordView::new(&line, 21, &|due| (due == 21).then_some(90.0));
         let [first, second] = view.forecasts[..] else { panic!("{view:?}") };
-        assert_eq!((first.due(), first.verdict(), view.is_later(&first)), (21, Some(Verdict::Inside), false));
-        assert_eq!((second.due(), second.verdict(), view.is_later(&second)), (42, None, true));
+        assert_eq!(
+            (first.due_day(), first.interval_position(), view.is_future(&first)),
+            (21, Some(IntervalPosition::Inside), false)
+        );
+        assert_eq!((second.due_day(), second.interval_position(), view.is_future(&second)), (42, None, true));
     }
 }

@@ -14,22 +14,22 @@ use novamind_record::folder::configuration::Configuration;
 use novamind_record::trajectory::record::{Call, Outcome, Via};
 use novamind_record::trajectory::{Durability, Record};
 
-pub(crate) struct Recorded {
+pub(crate) struct RecordedRun {
     _runs: tempfile::TempDir,
     pub folder: PathBuf,
     pub id: String,
 }
 
 /// Records a run with calls, a rejection, a query, notes and a view of a screen, and closes it.
-pub(crate) fn recorded(mode: Mode, weeks: u32) -> Recorded {
+pub(crate) fn record_run(mode: Mode, weeks: u32) -> RecordedRun {
     let runs = tempfile::tempdir().expect("a folder");
-    let session = play(runs.path(), mode, weeks);
+    let session = play_weeks(runs.path(), mode, weeks);
     let (folder, id) = (session.folder().expect("a folder").to_owned(), session.manifest().id.clone());
     drop(session);
-    Recorded { _runs: runs, folder, id }
+    RecordedRun { _runs: runs, folder, id }
 }
 
-fn play(runs: &Path, mode: Mode, weeks: u32) -> Session {
+fn play_weeks(runs: &Path, mode: Mode, weeks: u32) -> Session {
     let new = NewRun {
         seed: Some(7),
         days: Some(35),
@@ -37,7 +37,7 @@ fn play(runs: &Path, mode: Mode, weeks: u32) -> Session {
         storage: Storage::Runs(runs.to_owned()),
         ..NewRun::default()
     };
-    let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+    let mut session = Session::create(new, &Configuration::bundled()).expect("a run");
     session.call("set_prices", &json!({"A": 12, "B": 25, "C": 55}), Via::Form).expect("prices");
     let quotas = json!({"A": 60_000, "B": 250_000, "C": 1_200_000});
     session.call("set_usage_quotas", &quotas, Via::Form).expect("quotas");
@@ -52,155 +52,156 @@ fn play(runs: &Path, mode: Mode, weeks: u32) -> Session {
                 .call("set_daily_spend", &json!({"operations": 10 * week, "development": 5}), Via::Form)
                 .expect("spend");
             session.query("SELECT count(*) FROM customers").expect("an answer");
-            session.set_memo("remember the ads").expect("notes");
-            session.activity().note_view("cash", "overview", 1_500);
+            session.set_notes("remember the ads").expect("notes");
+            session.activity().record_view("cash", "overview", 1_500);
         }
     }
     session
 }
 
-fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+fn read_files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let entries = std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
     entries.map(|path| (path.clone(), std::fs::read(path).expect("a file"))).collect()
 }
 
-fn go(playback: &mut Playback, goal: Goal) -> SeekResult {
-    playback.go(goal, &mut |_| ControlFlow::Continue(())).expect("it goes there")
+fn seek(playback: &mut Playback, goal: SeekTarget) -> SeekResult {
+    playback.seek(goal, &mut |_| ControlFlow::Continue(())).expect("it goes there")
 }
 
-fn hashes(folder: &Path) -> BTreeMap<u32, String> {
+fn recorded_hashes(folder: &Path) -> BTreeMap<u32, String> {
     let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).expect("a trajectory");
     let hash = |line: &Line| Some((line.day, line.record.closing()?.state_hash.clone()));
     trajectory.lines.iter().filter_map(hash).collect()
 }
 
 #[test]
-fn every_week_has_the_recorded_state_forward_back_and_by_seeking() {
-    let run = recorded(Mode::Sandbox, 5);
-    let before = files(&run.folder);
-    let recorded = hashes(&run.folder);
+fn every_seek_reaches_the_recorded_state() {
+    let run = record_run(Mode::Sandbox, 5);
+    let before = read_files(&run.folder);
+    let recorded = recorded_hashes(&run.folder);
     let mut playback = Playback::open(&run.folder).expect("it opens");
-    assert_eq!((playback.place().day, playback.place().week, playback.place().weeks), (0, 0, 5));
+    assert_eq!((playback.position().day, playback.position().week, playback.position().weeks), (0, 0, 5));
     let check = |playback: &mut Playback, week: u32| {
         assert_eq!(playback.session().day(), 7 * week);
-        assert_eq!(playback.place().week, week);
+        assert_eq!(playback.position().week, week);
         assert_eq!(playback.session().state_hash().0, recorded[&(7 * week)], "week {week}");
         let days = playback.session_mut().query("SELECT max(day) FROM ledger").expect("an answer");
         assert_eq!(days.rows[0][0], novamind_database::Cell::Integer(i64::from(7 * week)), "the database");
     };
     for week in 1..=5 {
-        assert_eq!(go(&mut playback, Goal::Weeks(1)), SeekResult::There);
+        assert_eq!(seek(&mut playback, SeekTarget::Weeks(1)), SeekResult::Reached);
         check(&mut playback, week);
     }
     assert_eq!(
         playback.session().ended(),
-        Some(novamind_record::trajectory::record::Ended::Horizon),
+        Some(novamind_record::trajectory::record::RunEndReason::Horizon),
         "the end of the run belongs to its last week"
     );
-    assert!(playback.at_end());
+    assert!(playback.is_at_end());
     for week in [4, 3] {
-        assert_eq!(go(&mut playback, Goal::Weeks(-1)), SeekResult::Anew);
+        assert_eq!(seek(&mut playback, SeekTarget::Weeks(-1)), SeekResult::ReachedInNewSession);
         check(&mut playback, week);
     }
     for week in [1, 5, 2, 4] {
-        go(&mut playback, Goal::Week(week));
+        seek(&mut playback, SeekTarget::Week(week));
         check(&mut playback, week);
     }
-    go(&mut playback, Goal::Weeks(-100));
-    assert_eq!((playback.session().day(), playback.place().line), (0, 1));
-    go(&mut playback, Goal::Weeks(3));
+    seek(&mut playback, SeekTarget::Weeks(-100));
+    assert_eq!((playback.session().day(), playback.position().line), (0, 1));
+    seek(&mut playback, SeekTarget::Weeks(3));
     check(&mut playback, 3);
-    go(&mut playback, Goal::Last);
+    seek(&mut playback, SeekTarget::Last);
     check(&mut playback, 5);
-    go(&mut playback, Goal::Week(99));
+    seek(&mut playback, SeekTarget::Week(99));
     check(&mut playback, 5);
-    go(&mut playback, Goal::First);
-    assert_eq!(playback.place().line, 1);
+    seek(&mut playback, SeekTarget::First);
+    assert_eq!(playback.position().line, 1);
     drop(playback);
-    assert_eq!(files(&run.folder), before, "a file changed");
+    assert_eq!(read_files(&run.folder), before, "a file changed");
 }
 
 #[test]
-fn single_actions_show_the_company_between_the_weeks() {
-    let run = recorded(Mode::Sandbox, 2);
+fn line_steps_show_states_between_weeks() {
+    let run = record_run(Mode::Sandbox, 2);
     let mut playback = Playback::open(&run.folder).expect("it opens");
-    let price = |playback: &Playback| playback.session().company().current("set_prices")["A"].as_f64();
+    let price =
+        |playback: &Playback| playback.session().company().current_arguments("set_prices")["A"].as_f64();
     assert_eq!(price(&playback), Some(0.0));
-    go(&mut playback, Goal::Lines(1));
+    seek(&mut playback, SeekTarget::Lines(1));
     assert_eq!(price(&playback), Some(12.0));
-    let chapter = playback.place().chapter;
-    assert_eq!((chapter.week, chapter.day, chapter.done, chapter.entries.len()), (1, 0, 1, 6));
+    let chapter = playback.position().chapter;
+    assert_eq!((chapter.week, chapter.day, chapter.applied_entries, chapter.entries.len()), (1, 0, 1, 6));
     assert!(
-        matches!(&chapter.entries[2].record, Record::Call(Call { tool, outcome: Outcome::Refused(_), .. }) if *tool == novamind_tools::ToolId::SetPrices)
+        matches!(&chapter.entries[2].record, Record::Call(Call { tool, outcome: Outcome::Rejected(_), .. }) if *tool == novamind_tools::ToolId::SetPrices)
     );
-    go(&mut playback, Goal::Lines(-1));
+    seek(&mut playback, SeekTarget::Lines(-1));
     assert_eq!(price(&playback), Some(0.0));
-    go(&mut playback, Goal::Lines(5));
-    assert!(matches!(playback.place().chapter.entries[4].record, Record::Advance(_)));
+    seek(&mut playback, SeekTarget::Lines(5));
+    assert!(matches!(playback.position().chapter.entries[4].record, Record::Advance(_)));
     assert_eq!(playback.session().day(), 0, "the week is submitted, but not simulated");
-    go(&mut playback, Goal::Lines(1));
-    assert_eq!((playback.session().day(), playback.place().chapter.done), (7, 0));
+    seek(&mut playback, SeekTarget::Lines(1));
+    assert_eq!((playback.session().day(), playback.position().chapter.applied_entries), (7, 0));
 }
 
 #[test]
-fn an_outcome_is_known_when_its_day_has_come_and_marked_before() {
-    let run = recorded(Mode::Sandbox, 5);
+fn future_outcomes_are_marked() {
+    let run = record_run(Mode::Sandbox, 5);
     let mut playback = Playback::open(&run.folder).expect("it opens");
     let foreseen = |playback: &Playback| {
-        let chapter = playback.place().chapter;
+        let chapter = playback.position().chapter;
         let filed = |entry: &RecordView| matches!(entry.record, Record::Advance(_));
         chapter.entries.into_iter().find(filed).expect("a submitted week")
     };
     let entry = foreseen(&playback);
     let early = &entry.forecasts;
-    assert!(early.iter().all(|forecast| entry.is_later(forecast)));
+    assert!(early.iter().all(|forecast| entry.is_future(forecast)));
     assert!(early[0].outcome.is_some() && early[1].outcome.is_some(), "days 7 and 28 were recorded");
     assert_eq!(early[2].outcome, None, "day 84 was not");
-    go(&mut playback, Goal::Last);
+    seek(&mut playback, SeekTarget::Last);
     let entry = foreseen(&playback);
     let late = entry.forecasts[0];
-    assert_eq!((late.due(), entry.is_later(&late)), (35, false), "the last chapter stays at the end");
+    assert_eq!((late.due_day(), entry.is_future(&late)), (35, false), "the last chapter stays at the end");
     assert_eq!(late.outcome, playback.session().cash_by_day().last().copied());
 }
 
 #[test]
-fn the_notes_are_shown_from_when_they_were_written() {
-    let run = recorded(Mode::Sandbox, 3);
+fn notes_appear_once_they_were_written() {
+    let run = record_run(Mode::Sandbox, 3);
     let mut playback = Playback::open(&run.folder).expect("it opens");
-    assert_eq!(playback.memo(), None);
-    go(&mut playback, Goal::Last);
-    assert_eq!(playback.memo().as_deref(), Some("remember the ads"));
+    assert_eq!(playback.notes(), None);
+    seek(&mut playback, SeekTarget::Last);
+    assert_eq!(playback.notes().as_deref(), Some("remember the ads"));
 }
 
 #[test]
-fn nothing_can_be_done_and_a_long_way_can_be_stopped() {
-    let run = recorded(Mode::Sandbox, 4);
+fn playback_is_read_only_and_seeks_can_be_stopped() {
+    let run = record_run(Mode::Sandbox, 4);
     let mut playback = Playback::open(&run.folder).expect("it opens");
     let refusal =
         playback.session_mut().call("set_prices", &json!({"A": 1}), Via::Form).expect_err("read-only");
     assert_eq!(refusal.code, "read_only");
     let mut days = Vec::new();
-    let stopped = playback.go(Goal::Last, &mut |day| {
+    let stopped = playback.seek(SeekTarget::Last, &mut |day| {
         days.push(day);
         if day < 14 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     });
     assert_eq!((stopped.expect("no problem"), playback.session().day()), (SeekResult::Stopped, 14));
     assert_eq!(days, [7, 14]);
-    go(&mut playback, Goal::Last);
-    let back = playback.go(Goal::Week(2), &mut |_| ControlFlow::Break(())).expect("no problem");
+    seek(&mut playback, SeekTarget::Last);
+    let back = playback.seek(SeekTarget::Week(2), &mut |_| ControlFlow::Break(())).expect("no problem");
     assert_eq!((back, playback.session().day()), (SeekResult::Stopped, 28), "back is all or nothing");
 }
 
 #[test]
-fn what_is_taken_over_is_a_run_of_its_own_with_everything_up_to_there() {
-    let run = recorded(Mode::Sandbox, 5);
+fn create_branch_copies_everything_up_to_the_position() {
+    let run = record_run(Mode::Sandbox, 5);
     let mut playback = Playback::open(&run.folder).expect("it opens");
-    go(&mut playback, Goal::Week(2));
-    go(&mut playback, Goal::Lines(1));
-    let mut branch = playback.take_over(Mode::Debug).expect("a branch");
+    seek(&mut playback, SeekTarget::Week(2));
+    seek(&mut playback, SeekTarget::Lines(1));
+    let mut branch = playback.create_branch(Mode::Debug).expect("a branch");
     assert_eq!((branch.day(), branch.manifest().mode), (14, Mode::Debug));
     assert_eq!(
-        branch.company().current("set_daily_spend")["operations"],
+        branch.company().current_arguments("set_daily_spend")["operations"],
         10.0,
         "the branch includes this week's first call"
     );
@@ -211,56 +212,56 @@ fn what_is_taken_over_is_a_run_of_its_own_with_everything_up_to_there() {
     drop(branch);
     assert_eq!(verify(&folder).expect("an intact run").day, 21);
     // A week that was submitted but not simulated is not part of the branch.
-    go(&mut playback, Goal::First);
-    go(&mut playback, Goal::Lines(5));
-    assert_eq!(playback.take_over(Mode::Sandbox).expect("a branch").day(), 0);
-    assert_eq!(playback.take_over(Mode::Baseline).err().expect("no baseline").code, "not_in_this_mode");
-    go(&mut playback, Goal::Last);
-    assert_eq!(playback.take_over(Mode::Sandbox).err().expect("it is over").code, "run_over");
+    seek(&mut playback, SeekTarget::First);
+    seek(&mut playback, SeekTarget::Lines(5));
+    assert_eq!(playback.create_branch(Mode::Sandbox).expect("a branch").day(), 0);
+    assert_eq!(playback.create_branch(Mode::Baseline).err().expect("no baseline").code, "not_in_this_mode");
+    seek(&mut playback, SeekTarget::Last);
+    assert_eq!(playback.create_branch(Mode::Sandbox).err().expect("it is over").code, "run_over");
 }
 
 #[test]
-fn an_unfinished_baseline_is_not_taken_over() {
-    let run = recorded(Mode::Baseline, 2);
+fn unfinished_baseline_run_cannot_be_branched() {
+    let run = record_run(Mode::Baseline, 2);
     let playback = Playback::open(&run.folder).expect("it opens");
-    assert!(playback.place().no_branch.expect("a reason").contains("end it first"));
-    assert_eq!(playback.take_over(Mode::Sandbox).err().expect("refused").code, "not_in_this_mode");
-    crate::play::open::end_run(run.folder.parent().expect("the runs"), &run.id).expect("it ends");
+    assert!(playback.position().branch_rejection.expect("a reason").contains("end it first"));
+    assert_eq!(playback.create_branch(Mode::Sandbox).err().expect("refused").code, "not_in_this_mode");
+    crate::play::open::abandon_run(run.folder.parent().expect("the runs"), &run.id).expect("it ends");
     let playback = Playback::open(&run.folder).expect("it opens");
-    assert_eq!(playback.take_over(Mode::Sandbox).expect("a branch").day(), 0);
+    assert_eq!(playback.create_branch(Mode::Sandbox).expect("a branch").day(), 0);
 }
 
 #[test]
-fn a_trajectory_that_stands_alone_is_played_too() {
-    let run = recorded(Mode::Sandbox, 3);
+fn standalone_trajectory_can_be_played() {
+    let run = record_run(Mode::Sandbox, 3);
     let elsewhere = tempfile::tempdir().expect("a folder");
     let file = elsewhere.path().join("of a participant.jsonl");
     std::fs::copy(run.folder.join("trajectory.jsonl"), &file).expect("copied");
     let mut playback = Playback::open(&file).expect("it opens");
-    go(&mut playback, Goal::Last);
-    assert_eq!(playback.session().state_hash().0, hashes(&run.folder)[&21]);
+    seek(&mut playback, SeekTarget::Last);
+    assert_eq!(playback.session().state_hash().0, recorded_hashes(&run.folder)[&21]);
     let verified = verify(&file).expect("it verifies");
     assert_eq!(verified, verify(&run.folder).expect("as the run does"));
     assert_eq!((verified.day, verified.states), (21, 3));
-    assert_eq!(playback.take_over(Mode::Sandbox).err().expect("refused").code, "not_possible");
+    assert_eq!(playback.create_branch(Mode::Sandbox).err().expect("refused").code, "not_possible");
     let problem = Playback::open(&elsewhere.path().join("none.jsonl")).err().expect("there is none");
     assert!(problem.to_string().contains("none.jsonl"), "{problem}");
 }
 
 #[test]
-fn a_run_that_is_played_elsewhere_is_followed() {
+fn playback_follows_a_running_session() {
     let runs = tempfile::tempdir().expect("a folder");
-    let mut played = play(runs.path(), Mode::Sandbox, 2);
+    let mut played = play_weeks(runs.path(), Mode::Sandbox, 2);
     let folder = played.folder().expect("a folder").to_owned();
     let mut playback = Playback::open(&folder).expect("it opens while the run is being written");
-    playback.follow();
-    go(&mut playback, Goal::Last);
+    playback.start_following();
+    seek(&mut playback, SeekTarget::Last);
     assert_eq!(playback.session().day(), 14);
-    assert!(!playback.look_for_more().expect("no problem"), "nothing has happened");
+    assert!(!playback.poll_new_lines().expect("no problem"), "nothing has happened");
     played.call("set_prices", &json!({"A": 15}), Via::Form).expect("a price");
-    assert!(playback.look_for_more().expect("no problem"));
-    go(&mut playback, Goal::Last);
-    assert_eq!(playback.session().company().current("set_prices")["A"], 15.0);
+    assert!(playback.poll_new_lines().expect("no problem"));
+    seek(&mut playback, SeekTarget::Last);
+    assert_eq!(playback.session().company().current_arguments("set_prices")["A"], 15.0);
     // A partial line is ignored.
     let path = folder.join("trajectory.jsonl");
     let whole = std::fs::read(&path).expect("a trajectory");
@@ -269,18 +270,20 @@ fn a_run_that_is_played_elsewhere_is_followed() {
     let after = std::fs::read(&path).expect("a trajectory");
     drop(played);
     std::fs::write(&path, &after[..whole.len() + 40]).expect("a part of a line");
-    assert!(!playback.look_for_more().expect("no problem"));
+    assert!(!playback.poll_new_lines().expect("no problem"));
     std::fs::write(&path, &after).expect("the rest");
-    assert!(playback.look_for_more().expect("no problem"));
-    go(&mut playback, Goal::Last);
-    assert_eq!(playback.session().state_hash().0, hashes(&folder)[&21]);
+    assert!(playback.poll_new_lines().expect("no problem"));
+    seek(&mut playback, SeekTarget::Last);
+    assert_eq!(playback.session().state_hash().0, recorded_hashes(&folder)[&21]);
     std::fs::write(&path, &after[..60]).expect("a shorter file");
-    assert!(playback.look_for_more().expect_err("lines are gone").to_string().contains("lines were removed"));
+    assert!(
+        playback.poll_new_lines().expect_err("lines are gone").to_string().contains("lines were removed")
+    );
 }
 
 #[test]
-fn a_state_that_is_not_reached_again_stops_before_it() {
-    let run = recorded(Mode::Sandbox, 4);
+fn playback_stops_before_a_state_that_does_not_reproduce() {
+    let run = record_run(Mode::Sandbox, 4);
     let path = run.folder.join("trajectory.jsonl");
     // Creates a valid hash chain with a changed call.
     let read = Trajectory::read(&path).expect("a trajectory");
@@ -298,11 +301,12 @@ fn a_state_that_is_not_reached_again_stops_before_it() {
         writer.append(line.day, &line.record, Durability::Written).expect("a line");
     }
     let mut playback = Playback::open(&copy).expect("the chain is whole");
-    let problem = playback.go(Goal::Last, &mut |_| ControlFlow::Continue(())).expect_err("another state");
+    let problem =
+        playback.seek(SeekTarget::Last, &mut |_| ControlFlow::Continue(())).expect_err("another state");
     assert!(problem.to_string().contains("line"), "{problem}");
     let reached = playback.session().day();
     assert!(reached == 21, "{reached}");
-    assert_eq!(playback.session().state_hash().0, hashes(&run.folder)[&21]);
-    go(&mut playback, Goal::Last);
+    assert_eq!(playback.session().state_hash().0, recorded_hashes(&run.folder)[&21]);
+    seek(&mut playback, SeekTarget::Last);
     assert_eq!(playback.session().day(), 21, "the playback does not pass it");
 }

@@ -12,24 +12,24 @@ use serde_json::Value;
 
 use super::ScriptRequest;
 
-const MOST_REQUEST: usize = 1 << 20;
+const MAX_REQUEST_BYTES: usize = 1 << 20;
 /// Time between two attempts to write to a full socket.
-const BETWEEN_WRITES: Duration = Duration::from_millis(2);
+const WRITE_RETRY_INTERVAL: Duration = Duration::from_millis(2);
 
 #[derive(Debug, PartialEq, Eq)]
-pub(super) enum Heard {
+pub(super) enum ChannelEvent {
     /// A request; `None` if the line is not valid.
     Request(Option<ScriptRequest>),
     /// No complete line yet.
-    Nothing,
+    Idle,
     /// The other end is closed.
-    End,
+    Closed,
 }
 
 #[derive(Debug)]
 pub(super) struct Channel {
     socket: UnixStream,
-    begun: Vec<u8>,
+    partial_line: Vec<u8>,
 }
 
 impl Channel {
@@ -39,34 +39,36 @@ impl Channel {
     /// The system cannot create a socket.
     pub fn pair() -> std::io::Result<(Channel, OwnedFd)> {
         let (socket, other) = UnixStream::pair()?;
-        Ok((Channel { socket, begun: Vec::new() }, OwnedFd::from(other)))
+        Ok((Channel { socket, partial_line: Vec::new() }, OwnedFd::from(other)))
     }
 
     /// Waits for a request, at most `time`.
-    pub fn hear(&mut self, time: Duration) -> Heard {
-        if let Some(request) = self.whole_line() {
-            return Heard::Request(request);
+    pub fn receive(&mut self, time: Duration) -> ChannelEvent {
+        if let Some(request) = self.take_line() {
+            return ChannelEvent::Request(request);
         }
-        if self.begun.len() > MOST_REQUEST || self.socket.set_read_timeout(Some(at_least(time))).is_err() {
-            return Heard::End;
+        if self.partial_line.len() > MAX_REQUEST_BYTES
+            || self.socket.set_read_timeout(Some(nonzero_timeout(time))).is_err()
+        {
+            return ChannelEvent::Closed;
         }
         let mut buffer = [0; 1 << 14];
         match self.socket.read(&mut buffer) {
-            Ok(0) => Heard::End,
+            Ok(0) => ChannelEvent::Closed,
             Ok(count) => {
-                self.begun.extend_from_slice(&buffer[..count]);
-                self.whole_line().map_or(Heard::Nothing, Heard::Request)
+                self.partial_line.extend_from_slice(&buffer[..count]);
+                self.take_line().map_or(ChannelEvent::Idle, ChannelEvent::Request)
             }
             Err(error) => match error.kind() {
-                ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted => Heard::Nothing,
-                _ => Heard::End,
+                ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted => ChannelEvent::Idle,
+                _ => ChannelEvent::Closed,
             },
         }
     }
 
-    fn whole_line(&mut self) -> Option<Option<ScriptRequest>> {
-        let end = self.begun.iter().position(|byte| *byte == b'\n')?;
-        let line: Vec<u8> = self.begun.drain(..=end).collect();
+    fn take_line(&mut self) -> Option<Option<ScriptRequest>> {
+        let end = self.partial_line.iter().position(|byte| *byte == b'\n')?;
+        let line: Vec<u8> = self.partial_line.drain(..=end).collect();
         Some(serde_json::from_slice(&line).ok())
     }
 
@@ -75,23 +77,23 @@ impl Channel {
     ///
     /// # Errors
     /// The other end is closed, or `TimedOut` if `is_over` returned true before everything was sent.
-    pub fn say(&mut self, message: &Value, is_over: &mut dyn FnMut() -> bool) -> std::io::Result<()> {
+    pub fn send_line(&mut self, message: &Value, is_over: &mut dyn FnMut() -> bool) -> std::io::Result<()> {
         let line = format!("{message}\n");
         // The timeout of a blocking socket restarts after every partial write.
         self.socket.set_nonblocking(true)?;
-        let sent = self.send(line.as_bytes(), is_over);
+        let sent = self.write_until(line.as_bytes(), is_over);
         self.socket.set_nonblocking(false)?;
         sent
     }
 
-    fn send(&mut self, mut bytes: &[u8], is_over: &mut dyn FnMut() -> bool) -> std::io::Result<()> {
+    fn write_until(&mut self, mut bytes: &[u8], is_over: &mut dyn FnMut() -> bool) -> std::io::Result<()> {
         while !bytes.is_empty() {
             if is_over() {
                 return Err(ErrorKind::TimedOut.into());
             }
             match self.socket.write(bytes) {
                 Ok(count) => bytes = &bytes[count..],
-                Err(error) if error.kind() == ErrorKind::WouldBlock => sleep(BETWEEN_WRITES),
+                Err(error) if error.kind() == ErrorKind::WouldBlock => sleep(WRITE_RETRY_INTERVAL),
                 Err(error) if error.kind() == ErrorKind::Interrupted => {}
                 Err(error) => return Err(error),
             }
@@ -107,7 +109,7 @@ impl Channel {
 }
 
 /// A socket timeout of zero would wait forever.
-fn at_least(time: Duration) -> Duration {
+fn nonzero_timeout(time: Duration) -> Duration {
     time.max(Duration::from_millis(1))
 }
 
@@ -116,29 +118,29 @@ mod tests {
     use super::*;
 
     #[test]
-    fn requests_come_in_pieces_together_and_never() {
+    fn receive_joins_partial_lines_and_splits_joined_ones() {
         let (mut channel, other) = Channel::pair().expect("a socket");
         let mut other = UnixStream::from(other);
-        let mut heard = || channel.hear(Duration::from_millis(5));
-        assert_eq!(heard(), Heard::Nothing);
+        let mut heard = || channel.receive(Duration::from_millis(5));
+        assert_eq!(heard(), ChannelEvent::Idle);
         other.write_all(br#"{"ask":"que"#).expect("written");
-        assert_eq!(heard(), Heard::Nothing);
+        assert_eq!(heard(), ChannelEvent::Idle);
         other.write_all(b"ry\",\"sql\":\"SELECT 1\"}\n{\"ask\":\"vars\"}\nnothing\n").expect("written");
-        assert_eq!(heard(), Heard::Request(Some(ScriptRequest::Query { sql: "SELECT 1".to_owned() })));
-        assert_eq!(heard(), Heard::Request(Some(ScriptRequest::Vars)));
-        assert_eq!(heard(), Heard::Request(None));
+        assert_eq!(heard(), ChannelEvent::Request(Some(ScriptRequest::Query { sql: "SELECT 1".to_owned() })));
+        assert_eq!(heard(), ChannelEvent::Request(Some(ScriptRequest::Vars)));
+        assert_eq!(heard(), ChannelEvent::Request(None));
         drop(other);
-        assert_eq!(heard(), Heard::End);
+        assert_eq!(heard(), ChannelEvent::Closed);
     }
 
     #[test]
-    fn say_ends_when_it_is_over_however_slowly_the_other_end_reads() {
+    fn send_line_stops_at_the_deadline_despite_slow_reader() {
         let large = Value::from("x".repeat(8 << 20));
         for read_at_once in [0, 1, 1 << 16] {
             let (mut channel, other) = Channel::pair().expect("a socket");
             let mut other = UnixStream::from(other);
             let mut asked = 0;
-            let sent = channel.say(&large, &mut || {
+            let sent = channel.send_line(&large, &mut || {
                 asked += 1;
                 other.read_exact(&mut vec![0; if asked > 2 { read_at_once } else { 0 }]).expect("bytes");
                 asked == 50
@@ -149,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn say_sends_everything_to_a_slow_reader_while_there_is_time() {
+    fn send_line_sends_everything_to_a_slow_reader() {
         let (mut channel, other) = Channel::pair().expect("a socket");
         let mut other = UnixStream::from(other);
         let reader = std::thread::spawn(move || {
@@ -160,20 +162,20 @@ mod tests {
             all
         });
         let text = "x".repeat(3 << 20);
-        channel.say(&Value::from(text.as_str()), &mut || false).expect("sent");
+        channel.send_line(&Value::from(text.as_str()), &mut || false).expect("sent");
         drop(channel);
         assert_eq!(reader.join().expect("it ends"), format!("\"{text}\"\n").as_bytes());
     }
 
     #[test]
-    fn hear_ends_at_a_line_without_end() {
+    fn receive_closes_on_an_endless_line() {
         let (mut channel, other) = Channel::pair().expect("a socket");
         let mut other = UnixStream::from(other);
         let flood = std::thread::spawn(move || {
             let line = vec![b'x'; 1 << 16];
             while other.write_all(&line).is_ok() {}
         });
-        while channel.hear(Duration::from_secs(10)) != Heard::End {}
+        while channel.receive(Duration::from_secs(10)) != ChannelEvent::Closed {}
         drop(channel);
         flood.join().expect("it ends");
     }

@@ -26,15 +26,15 @@ const SYSTEM_PATH: &str = "/usr/bin:/bin";
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Interpreter {
     /// The first on `PATH`.
-    OfPath,
+    FromPath,
     /// The first of a fixed list of absolute paths, so that a participant cannot choose it through `PATH`.
-    OfSystem,
+    System,
 }
 
 impl Interpreter {
     /// Returns the interpreter for a mode. Runs of studies are baseline runs.
-    pub fn of(mode: Mode) -> Interpreter {
-        if mode == Mode::Baseline { Interpreter::OfSystem } else { Interpreter::OfPath }
+    pub fn for_mode(mode: Mode) -> Interpreter {
+        if mode == Mode::Baseline { Interpreter::System } else { Interpreter::FromPath }
     }
 
     /// Returns the program to start and its `PATH`, given the `PATH` of this process.
@@ -42,7 +42,7 @@ impl Interpreter {
     /// # Errors
     /// None of the fixed paths exists.
     pub fn program(self, path: OsString) -> std::io::Result<(PathBuf, OsString)> {
-        if self == Interpreter::OfPath {
+        if self == Interpreter::FromPath {
             return Ok((PathBuf::from("python3"), path));
         }
         let found = SYSTEM_PYTHONS.into_iter().find(|program| Path::new(program).is_file());
@@ -52,14 +52,14 @@ impl Interpreter {
     }
 
     /// Returns the message for a player if this Python does not exist.
-    pub fn missing(self) -> String {
+    pub fn missing_message(self) -> String {
         match self {
-            Interpreter::OfPath => {
+            Interpreter::FromPath => {
                 "python3 is not on the path of this machine: install Python 3.8 or newer, or write SQL \
                                     statements instead"
                     .to_owned()
             }
-            Interpreter::OfSystem => format!(
+            Interpreter::System => format!(
                 "a baseline run does not search PATH for python3, and none of these files exists: {}. Install Python 3.8 or \
                  newer there, or write SQL statements instead",
                 SYSTEM_PYTHONS.join(", ")

@@ -6,24 +6,24 @@
 //! or the week, so reading a record starts no process.
 
 #[cfg(unix)]
-mod captured;
+mod captured_pipe;
 #[cfg(unix)]
 mod channel;
-#[cfg(unix)]
-mod empty_folder;
 #[cfg(unix)]
 mod interpreter;
 #[cfg(unix)]
 mod process;
 #[cfg(unix)]
 pub(crate) mod run;
+#[cfg(unix)]
+mod script_folder;
 
 use std::time::Duration;
 
 use serde::Deserialize;
 use serde_json::Value;
 
-use novamind_tools::Refusal;
+use novamind_tools::Rejection;
 
 /// A request of a script.
 #[derive(Debug, PartialEq, Eq, Deserialize)]
@@ -41,33 +41,34 @@ pub(crate) enum ScriptRequest {
 /// time.
 pub(crate) struct ScriptHost<'a> {
     pub(crate) is_stopped: &'a dyn Fn() -> bool,
-    pub(crate) answer: &'a mut dyn FnMut(ScriptRequest, Duration) -> Result<Value, Refusal>,
+    pub(crate) answer: &'a mut dyn FnMut(ScriptRequest, Duration) -> Result<Value, Rejection>,
 }
 
 /// The output of a script.
 #[derive(Debug, Default)]
-pub(crate) struct Said {
+pub(crate) struct RawScriptOutput {
     /// Results as tables, or printed text.
     pub results: String,
     /// Warnings and hints.
     pub remarks: String,
 }
 
-pub(crate) fn failed(message: impl Into<String>) -> Refusal {
-    Refusal::at("code", "script_failed", message)
+pub(crate) fn script_failed(message: impl Into<String>) -> Rejection {
+    Rejection::for_field("code", "script_failed", message)
 }
 
 /// Message if Python is not allowed.
-pub const PYTHON_NOT_RUN: &str = "Python is not run for policies or for decisions that were made elsewhere";
+pub const PYTHON_DISABLED_MESSAGE: &str =
+    "Python is not run for policies or for decisions that were made elsewhere";
 
 /// Rejects Python unless a player makes the call: records, policies and lessons must not start programs.
 ///
 /// # Errors
 /// `script_failed`.
-pub(crate) fn refuse_unless_played(is_played: bool) -> Result<(), Refusal> {
+pub(crate) fn require_player(is_played: bool) -> Result<(), Rejection> {
     match is_played {
         true => Ok(()),
-        false => Err(failed(PYTHON_NOT_RUN)),
+        false => Err(script_failed(PYTHON_DISABLED_MESSAGE)),
     }
 }
 
@@ -77,11 +78,16 @@ pub(crate) mod run {
 
     use std::time::Duration;
 
-    use super::{Said, ScriptHost, failed};
+    use super::{RawScriptOutput, ScriptHost, script_failed};
     use novamind_record::mode::Mode;
-    use novamind_tools::Refusal;
+    use novamind_tools::Rejection;
 
-    pub(crate) fn run_python(_: &str, _: Duration, _: Mode, _: &mut ScriptHost<'_>) -> Result<Said, Refusal> {
-        Err(failed("scripts in Python run on Linux and macOS only; write SQL statements instead"))
+    pub(crate) fn run_python(
+        _: &str,
+        _: Duration,
+        _: Mode,
+        _: &mut ScriptHost<'_>,
+    ) -> Result<RawScriptOutput, Rejection> {
+        Err(script_failed("scripts in Python run on Linux and macOS only; write SQL statements instead"))
     }
 }

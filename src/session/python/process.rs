@@ -10,22 +10,22 @@ use std::time::{Duration, Instant};
 use serde_json::{Value, json};
 
 use super::ScriptRequest;
-use super::captured::Captured;
-use super::channel::{Channel, Heard};
-use super::empty_folder::EmptyFolder;
+use super::captured_pipe::CapturedPipe;
+use super::channel::{Channel, ChannelEvent};
 use super::interpreter::Interpreter;
+use super::script_folder::ScriptFolder;
 
 /// Python code that runs before the script.
 const BOOTSTRAP: &str = include_str!("../../../assets/scripts/python.py");
-const MOST_MEMORY: u64 = 1 << 30;
+const MAX_MEMORY_BYTES: u64 = 1 << 30;
 /// Time between two checks of clock and process.
-const BETWEEN_LOOKS: Duration = Duration::from_millis(50);
+const POLL_INTERVAL: Duration = Duration::from_millis(50);
 /// Time between two checks of a process that has closed its socket.
-const BETWEEN_LAST_LOOKS: Duration = Duration::from_millis(2);
+const EXIT_POLL_INTERVAL: Duration = Duration::from_millis(2);
 /// Time that an ended process may take to close its pipes.
-const LEAVING: Duration = Duration::from_millis(500);
+const PIPE_CLOSE_TIMEOUT: Duration = Duration::from_millis(500);
 /// Number of the signal SIGXCPU (processor time limit), on every system with python3.
-const TIME_IS_OVER: i32 = 24;
+const SIGXCPU: i32 = 24;
 
 #[derive(Debug)]
 pub(super) enum ScriptEnd {
@@ -41,12 +41,12 @@ pub(super) enum ScriptEnd {
 pub(super) struct ScriptProcess {
     process: Child,
     channel: Channel,
-    pub stdout: Captured,
-    pub stderr: Captured,
+    pub stdout: CapturedPipe,
+    pub stderr: CapturedPipe,
     deadline: Instant,
     /// The first message to the process: code and limits.
-    given: Value,
-    _folder: EmptyFolder,
+    setup_message: Value,
+    _folder: ScriptFolder,
 }
 
 impl ScriptProcess {
@@ -56,7 +56,7 @@ impl ScriptProcess {
     /// python3 does not exist, or the system cannot create a process, socket or folder.
     pub fn start(code: &str, interpreter: Interpreter, time: Duration) -> std::io::Result<ScriptProcess> {
         let deadline = Instant::now() + time;
-        let folder = EmptyFolder::create()?;
+        let folder = ScriptFolder::create()?;
         let (channel, other) = Channel::pair()?;
         let path = std::env::var_os("PATH").unwrap_or_else(|| OsString::from("/usr/local/bin:/usr/bin:/bin"));
         let (program, path) = interpreter.program(path)?;
@@ -70,7 +70,8 @@ impl ScriptProcess {
         drop(command);
         let pipes = (process.stdout.take(), process.stderr.take());
         let (Some(stdout), Some(stderr)) = pipes else { unreachable!("both pipes were requested") };
-        let captured = Captured::of(stdout).and_then(|stdout| Ok((stdout, Captured::of(stderr)?)));
+        let captured =
+            CapturedPipe::start(stdout).and_then(|stdout| Ok((stdout, CapturedPipe::start(stderr)?)));
         let (stdout, stderr) = match captured {
             Ok(both) => both,
             Err(error) => {
@@ -78,12 +79,20 @@ impl ScriptProcess {
                 return Err(error);
             }
         };
-        let given = json!({ "code": code, "seconds": time.as_secs_f64(), "memory": MOST_MEMORY });
-        Ok(ScriptProcess { process, channel, stdout, stderr, deadline, given, _folder: folder })
+        let given = json!({ "code": code, "seconds": time.as_secs_f64(), "memory": MAX_MEMORY_BYTES });
+        Ok(ScriptProcess {
+            process,
+            channel,
+            stdout,
+            stderr,
+            deadline,
+            setup_message: given,
+            _folder: folder,
+        })
     }
 
     /// Returns the remaining time.
-    pub fn left(&self) -> Duration {
+    pub fn time_left(&self) -> Duration {
         self.deadline.saturating_duration_since(Instant::now())
     }
 
@@ -94,33 +103,33 @@ impl ScriptProcess {
         answer: &mut dyn FnMut(Option<ScriptRequest>, Duration) -> Value,
     ) -> ScriptEnd {
         // If the process does not read its code, its own error is reported.
-        let given = self.given.take();
-        let _ = self.say(&given, is_stopped);
+        let given = self.setup_message.take();
+        let _ = self.send_line(&given, is_stopped);
         let mut is_heard = true;
         loop {
             if is_stopped() {
-                return self.end(ScriptEnd::Stopped);
+                return self.terminate(ScriptEnd::Stopped);
             }
-            if self.left().is_zero() {
-                return self.end(ScriptEnd::TimedOut);
+            if self.time_left().is_zero() {
+                return self.terminate(ScriptEnd::TimedOut);
             }
             let heard = match is_heard {
-                true => self.channel.hear(BETWEEN_LOOKS.min(self.left())),
+                true => self.channel.receive(POLL_INTERVAL.min(self.time_left())),
                 false => {
                     self.channel.close();
-                    sleep(BETWEEN_LAST_LOOKS);
-                    Heard::Nothing
+                    sleep(EXIT_POLL_INTERVAL);
+                    ChannelEvent::Idle
                 }
             };
             match heard {
-                Heard::Request(request) => {
-                    let told = answer(request, self.left());
-                    is_heard = self.say(&told, is_stopped).is_ok();
+                ChannelEvent::Request(request) => {
+                    let told = answer(request, self.time_left());
+                    is_heard = self.send_line(&told, is_stopped).is_ok();
                 }
-                Heard::End => is_heard = false,
-                Heard::Nothing => {
+                ChannelEvent::Closed => is_heard = false,
+                ChannelEvent::Idle => {
                     if let Ok(Some(status)) = self.process.try_wait() {
-                        return self.ended(status);
+                        return self.finish(status);
                     }
                 }
             }
@@ -128,36 +137,36 @@ impl ScriptProcess {
     }
 
     /// Sends a line until the time is over, the script is stopped or its process has ended.
-    fn say(&mut self, message: &Value, is_stopped: &dyn Fn() -> bool) -> std::io::Result<()> {
+    fn send_line(&mut self, message: &Value, is_stopped: &dyn Fn() -> bool) -> std::io::Result<()> {
         let Self { process, channel, deadline, .. } = self;
-        channel.say(message, &mut || {
+        channel.send_line(message, &mut || {
             is_stopped() || Instant::now() >= *deadline || !matches!(process.try_wait(), Ok(None))
         })
     }
 
     /// Handles the exit of the process. Kills its group if a child process keeps the pipes open.
-    fn ended(&mut self, status: ExitStatus) -> ScriptEnd {
-        if !self.has_left_pipes() {
+    fn finish(&mut self, status: ExitStatus) -> ScriptEnd {
+        if !self.wait_for_pipes() {
             self.kill_group();
-            self.has_left_pipes();
+            self.wait_for_pipes();
         }
         match status.signal() {
-            Some(TIME_IS_OVER) => ScriptEnd::TimedOut,
+            Some(SIGXCPU) => ScriptEnd::TimedOut,
             _ => ScriptEnd::Ended(status),
         }
     }
 
-    fn end(&mut self, how: ScriptEnd) -> ScriptEnd {
+    fn terminate(&mut self, how: ScriptEnd) -> ScriptEnd {
         self.kill_group();
         let _ = self.process.kill().and_then(|()| self.process.wait());
-        self.has_left_pipes();
+        self.wait_for_pipes();
         how
     }
 
-    fn has_left_pipes(&self) -> bool {
-        let until = Instant::now() + LEAVING;
+    fn wait_for_pipes(&self) -> bool {
+        let until = Instant::now() + PIPE_CLOSE_TIMEOUT;
         let left = || until.saturating_duration_since(Instant::now());
-        self.stdout.ends_within(left()) && self.stderr.ends_within(left())
+        self.stdout.closes_within(left()) && self.stderr.closes_within(left())
     }
 
     /// Kills the process group, whose number is the process id.
@@ -185,7 +194,7 @@ mod tests {
     use super::*;
 
     /// Finds the socket to the program and sends one request.
-    const ASK: &str = r#"
+    const ASK_ONCE_CODE: &str = r#"
 import os, stat, time
 def is_socket(number):
     try:
@@ -197,44 +206,45 @@ os.write(socket, b'{"ask":"vars"}\n')
 "#;
 
     /// Serves a script that sends one request, with an answer larger than the socket buffer.
-    fn served(code: &str, time: Duration, stop_after_asking: bool) -> (ScriptEnd, ScriptProcess) {
+    fn serve_script(code: &str, time: Duration, stop_after_asking: bool) -> (ScriptEnd, ScriptProcess) {
         let mut process =
-            ScriptProcess::start(&format!("{ASK}{code}"), Interpreter::OfPath, time).expect("python3");
+            ScriptProcess::start(&format!("{ASK_ONCE_CODE}{code}"), Interpreter::FromPath, time)
+                .expect("python3");
         let has_asked = Cell::new(false);
         let end = process.serve(&|| stop_after_asking && has_asked.get(), &mut |_, _| {
             has_asked.set(true);
             Value::from("x".repeat(8 << 20))
         });
-        assert!(has_asked.get(), "{}", process.stderr.first());
+        assert!(has_asked.get(), "{}", process.stderr.first_text());
         (end, process)
     }
 
     #[test]
-    fn a_reader_that_takes_a_little_at_a_time_is_ended_at_its_deadline() {
+    fn slow_reader_is_terminated_at_the_deadline() {
         // Reading everything would take 8 MiB / 64 KiB * 0.2 s = 25 s.
         let code =
             "while True:\n    os.read(socket, 1 << 16)\n    print('x', flush=True)\n    time.sleep(0.2)";
-        let (end, process) = served(code, Duration::from_secs(3), false);
+        let (end, process) = serve_script(code, Duration::from_secs(3), false);
         assert!(matches!(end, ScriptEnd::TimedOut), "{end:?}");
-        let reads = process.stdout.first().lines().count();
+        let reads = process.stdout.first_text().lines().count();
         assert!(reads < 60, "it read {reads} times");
     }
 
     #[test]
-    fn a_script_that_never_reads_is_ended_at_its_deadline() {
-        let (end, _) = served("time.sleep(600)", Duration::from_secs(3), false);
+    fn script_that_never_reads_is_terminated_at_the_deadline() {
+        let (end, _) = serve_script("time.sleep(600)", Duration::from_secs(3), false);
         assert!(matches!(end, ScriptEnd::TimedOut), "{end:?}");
     }
 
     #[test]
-    fn a_script_is_cancelled_while_a_write_to_it_waits() {
-        let (end, _) = served("time.sleep(600)", Duration::from_secs(600), true);
+    fn script_is_canceled_during_a_blocked_write() {
+        let (end, _) = serve_script("time.sleep(600)", Duration::from_secs(600), true);
         assert!(matches!(end, ScriptEnd::Stopped), "{end:?}");
     }
 
     #[test]
-    fn a_script_that_ends_while_a_write_to_it_waits_has_ended() {
-        let (end, _) = served("time.sleep(0.1)", Duration::from_secs(600), false);
+    fn script_exit_is_detected_during_a_blocked_write() {
+        let (end, _) = serve_script("time.sleep(0.1)", Duration::from_secs(600), false);
         assert!(matches!(end, ScriptEnd::Ended(status) if status.success()), "{end:?}");
     }
 }

@@ -8,14 +8,14 @@ use serde_json::json;
 
 use super::interpreter::Interpreter;
 use super::process::{ScriptEnd, ScriptProcess};
-use super::{Said, ScriptHost, failed};
+use super::{RawScriptOutput, ScriptHost, script_failed};
 use novamind_record::mode::Mode;
-use novamind_tools::Refusal;
+use novamind_tools::Rejection;
 
-const MOST_QUERIES: u32 = 10_000;
-const MOST_TRACEBACK: usize = 2000;
+const MAX_QUERIES: u32 = 10_000;
+const MAX_TRACEBACK_CHARACTERS: usize = 2000;
 /// Maximum length of printed output in a rejection, characters.
-const MOST_PRINTED: usize = 1000;
+const MAX_PRINTED_CHARACTERS: usize = 1000;
 
 /// Runs a script in Python and returns its output.
 ///
@@ -26,70 +26,76 @@ pub(crate) fn run_python(
     time: Duration,
     mode: Mode,
     host: &mut ScriptHost<'_>,
-) -> Result<Said, Refusal> {
-    let interpreter = Interpreter::of(mode);
+) -> Result<RawScriptOutput, Rejection> {
+    let interpreter = Interpreter::for_mode(mode);
     let started = ScriptProcess::start(code, interpreter, time);
-    let mut process = started.map_err(|error| not_started(interpreter, &error))?;
+    let mut process = started.map_err(|error| start_error(interpreter, &error))?;
     let mut asked = 0;
     let ScriptHost { is_stopped, answer } = host;
     let end = process.serve(is_stopped, &mut |request, left| {
         asked += 1;
         let answer = match request {
-            _ if asked > MOST_QUERIES => {
-                Err(Refusal::new("sql_error", "a script can send 10,000 queries; select more rows per query"))
-            }
+            _ if asked > MAX_QUERIES => Err(Rejection::new(
+                "sql_error",
+                "a script can send 10,000 queries; select more rows per query",
+            )),
             Some(request) => answer(request, left),
-            None => Err(Refusal::new("sql_error", "a script can call query(sql) and get_vars()")),
+            None => Err(Rejection::new("sql_error", "a script can call query(sql) and get_vars()")),
         };
         answer.unwrap_or_else(
             |refusal| json!({ "error": { "code": refusal.code, "message": refusal.message } }),
         )
     });
-    told(&end, &process, time)
+    script_result(&end, &process, time)
 }
 
-fn not_started(interpreter: Interpreter, error: &std::io::Error) -> Refusal {
+fn start_error(interpreter: Interpreter, error: &std::io::Error) -> Rejection {
     match error.kind() {
-        ErrorKind::NotFound => failed(interpreter.missing()),
-        _ => failed(format!("python3 cannot be started: {error}")),
+        ErrorKind::NotFound => script_failed(interpreter.missing_message()),
+        _ => script_failed(format!("python3 cannot be started: {error}")),
     }
 }
 
-fn told(end: &ScriptEnd, process: &ScriptProcess, time: Duration) -> Result<Said, Refusal> {
+fn script_result(
+    end: &ScriptEnd,
+    process: &ScriptProcess,
+    time: Duration,
+) -> Result<RawScriptOutput, Rejection> {
     match end {
         ScriptEnd::Ended(status) if status.success() => {
-            Ok(Said { results: process.stdout.first(), remarks: process.stderr.first() })
+            Ok(RawScriptOutput { results: process.stdout.first_text(), remarks: process.stderr.first_text() })
         }
         ScriptEnd::Ended(status) => {
             let how = match (status.code(), status.signal()) {
                 (Some(code), _) => format!("python3 ended with code {code}"),
                 (None, signal) => format!("python3 was ended by signal {}", signal.unwrap_or_default()),
             };
-            let traceback = process.stderr.last(MOST_TRACEBACK);
+            let traceback = process.stderr.last_text(MAX_TRACEBACK_CHARACTERS);
             // The error message is in the last line; it comes first for displays of one line.
             let what = traceback.trim_end().lines().next_back().filter(|line| !line.trim().is_empty());
             let what = what.map_or_else(|| how.clone(), |what| format!("{}; {how}", what.trim()));
-            Err(failed(format!("{what}{}{}", part("", &traceback), printed(process))))
+            Err(script_failed(format!("{what}{}{}", paragraph("", &traceback), printed_part(process))))
         }
         ScriptEnd::TimedOut => {
-            let seconds = novamind_base::notation::grouped((10.0 * time.as_secs_f64()).round() / 10.0, 1);
+            let seconds =
+                novamind_base::formatting::grouped_number((10.0 * time.as_secs_f64()).round() / 10.0, 1);
             let seconds = seconds.trim_end_matches(".0");
-            let message = format!("it did not end in {seconds} s and was stopped{}", printed(process));
-            Err(Refusal::at("code", "script_timeout", message))
+            let message = format!("it did not end in {seconds} s and was stopped{}", printed_part(process));
+            Err(Rejection::for_field("code", "script_timeout", message))
         }
         ScriptEnd::Stopped => {
-            let message = format!("the script was cancelled{}", printed(process));
-            Err(Refusal::at("code", "script_timeout", message))
+            let message = format!("the script was cancelled{}", printed_part(process));
+            Err(Rejection::for_field("code", "script_timeout", message))
         }
     }
 }
 
-fn printed(process: &ScriptProcess) -> String {
-    part("before that it printed:\n", &process.stdout.last(MOST_PRINTED))
+fn printed_part(process: &ScriptProcess) -> String {
+    paragraph("before that it printed:\n", &process.stdout.last_text(MAX_PRINTED_CHARACTERS))
 }
 
 /// Returns a paragraph of a message; empty if `text` is empty.
-fn part(heading: &str, text: &str) -> String {
+fn paragraph(heading: &str, text: &str) -> String {
     match text.trim_end() {
         "" => String::new(),
         text => format!("\n{heading}{text}"),

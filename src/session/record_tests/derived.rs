@@ -2,7 +2,7 @@
 
 use crate::play::Session;
 use crate::play::open::Access;
-use crate::playback::tests::recorded;
+use crate::playback::tests::record_run;
 use crate::resume::verify::verify;
 use novamind_record::folder::runs::{find_run, list_runs};
 use novamind_record::mode::Mode;
@@ -10,7 +10,7 @@ use std::path::Path;
 use toml::Table;
 
 /// Opens a run with this text as `run.toml`, or without the file. Returns the remarks.
-fn opened(folder: &Path, text: Option<&str>) -> String {
+fn open_and_read_remarks(folder: &Path, text: Option<&str>) -> String {
     let path = folder.join("run.toml");
     match text {
         Some(text) => std::fs::write(&path, text).expect("written"),
@@ -32,8 +32,8 @@ fn opened(folder: &Path, text: Option<&str>) -> String {
 }
 
 #[test]
-fn whatever_is_done_to_the_manifest_the_first_line_counts() {
-    let run = recorded(Mode::Baseline, 2);
+fn manifest_is_restored_from_the_first_line() {
+    let run = record_run(Mode::Baseline, 2);
     let path = run.folder.join("run.toml");
     let good = std::fs::read_to_string(&path).expect("a manifest");
     let edit = |from: &str, to: &str| {
@@ -52,7 +52,7 @@ fn whatever_is_done_to_the_manifest_the_first_line_counts() {
         (None, "was missing"),
     ];
     for (text, told) in cases {
-        let remark = opened(&run.folder, text.as_deref());
+        let remark = open_and_read_remarks(&run.folder, text.as_deref());
         assert!(remark.contains(told) && remark.contains("rebuilt"), "{told}: {remark}");
         let restored: Table = std::fs::read_to_string(&path).expect("a manifest").parse().expect("TOML");
         let mut expected: Table = good.parse().expect("TOML");
@@ -67,8 +67,8 @@ fn whatever_is_done_to_the_manifest_the_first_line_counts() {
 }
 
 #[test]
-fn files_of_two_runs_are_not_taken_for_one() {
-    let (one, other) = (recorded(Mode::Sandbox, 1), recorded(Mode::Sandbox, 1));
+fn mixed_files_of_two_runs_are_rejected() {
+    let (one, other) = (record_run(Mode::Sandbox, 1), record_run(Mode::Sandbox, 1));
     std::fs::copy(other.folder.join("trajectory.jsonl"), one.folder.join("trajectory.jsonl"))
         .expect("copied");
     let error = Session::open(&one.folder, Access::Write, true).err().expect("it is refused").to_string();

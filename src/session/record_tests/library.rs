@@ -1,24 +1,24 @@
 use crate::create::NewRun;
 use crate::play::Session;
 use novamind_record::folder::configuration::Configuration;
-use novamind_record::folder::library::*;
+use novamind_record::folder::query_library::*;
 use novamind_record::trajectory::record::Via;
 use serde_json::json;
 
-fn all_answer(session: &mut Session) {
-    for query in Library::shipped().queries() {
+fn run_all_queries(session: &mut Session) {
+    for query in QueryLibrary::bundled().queries() {
         let rows = session.query(&query.sql).unwrap_or_else(|refusal| panic!("{}: {refusal}", query.name));
         assert!(!rows.truncated, "{} is truncated", query.name);
-        let head = Head::of(&query.sql);
+        let head = QueryHeader::parse(&query.sql);
         assert!(head.title.is_some(), "{}", query.name);
-        assert!(head.what.is_some_and(|what| what.ends_with('.')), "{}", query.name);
-        for column in head.chart.iter().flat_map(|chart| chart.ys.iter().chain([&chart.x])) {
+        assert!(head.description.is_some_and(|what| what.ends_with('.')), "{}", query.name);
+        for column in head.chart.iter().flat_map(|chart| chart.y_columns.iter().chain([&chart.x_column])) {
             assert!(rows.columns.contains(column), "{} has no column {column}", query.name);
         }
     }
 }
 
-fn play(session: &mut Session, weeks: usize) {
+fn play_weeks(session: &mut Session, weeks: usize) {
     for _ in 0..weeks {
         let forecasts = session.company().naive_forecasts();
         session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
@@ -26,10 +26,10 @@ fn play(session: &mut Session, weeks: usize) {
 }
 
 #[test]
-fn every_shipped_query_is_answered_in_every_phase() {
+fn bundled_queries_run_in_every_phase() {
     let new = NewRun { seed: Some(11), cash: Some(20_000_000.0), ..NewRun::default() };
-    let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
-    all_answer(&mut session);
+    let mut session = Session::create(new, &Configuration::bundled()).expect("a run");
+    run_all_queries(&mut session);
     let ads = json!({"S1": 750, "E1": 4000, "E2": 4000, "E3": 4000});
     for (tool, arguments) in [
         ("set_prices", json!({"A": 14, "B": 32, "C": 55})),
@@ -43,15 +43,15 @@ fn every_shipped_query_is_answered_in_every_phase() {
     ] {
         session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
     }
-    play(&mut session, 3);
-    all_answer(&mut session);
+    play_weeks(&mut session, 3);
+    run_all_queries(&mut session);
     while session.company().observe().waiting.is_empty() && session.day() < 140 {
-        play(&mut session, 1);
+        play_weeks(&mut session, 1);
     }
     let waiting = session.company().observe().waiting;
     assert!(!waiting.is_empty(), "there must be threads");
     let deals = json!({"deals": [[waiting[0].customer, [["C", 30.0], ["B", 20.0]]]]});
     session.call("send_enterprise_deal", &deals, Via::Script).expect("an offer");
-    play(&mut session, 1);
-    all_answer(&mut session);
+    play_weeks(&mut session, 1);
+    run_all_queries(&mut session);
 }

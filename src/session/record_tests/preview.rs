@@ -8,7 +8,7 @@ use novamind_record::trajectory::record::Via;
 use serde_json::json;
 
 #[test]
-fn the_course_is_what_the_session_saw() {
+fn preview_matches_the_session() {
     let runs = tempfile::tempdir().expect("a folder");
     let new = NewRun {
         seed: Some(7),
@@ -16,16 +16,16 @@ fn the_course_is_what_the_session_saw() {
         storage: Storage::Runs(runs.path().to_owned()),
         ..NewRun::default()
     };
-    let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+    let mut session = Session::create(new, &Configuration::bundled()).expect("a run");
     let id = session.manifest().id.clone();
-    assert_eq!(run_preview(runs.path(), &id).expect("day 0").cash, [(0, 1_000_000.0)]);
+    assert_eq!(read_preview(runs.path(), &id).expect("day 0").cash, [(0, 1_000_000.0)]);
     session.call("set_prices", &json!({"A": 12, "B": 25, "C": 55}), Via::Form).expect("prices");
     session.call("set_daily_spend", &json!({"operations": 200}), Via::Form).expect("spend");
     for _ in 0..3 {
         let forecasts = session.company().naive_forecasts();
         session.advance("as planned", &forecasts, Via::Form, &mut |_| {}).expect("a week");
     }
-    let preview = run_preview(runs.path(), &id).expect("a preview");
+    let preview = read_preview(runs.path(), &id).expect("a preview");
     let days: Vec<u32> = preview.cash.iter().map(|point| point.0).collect();
     assert_eq!(days, [0, 7, 14, 17]);
     for (day, cash) in &preview.cash {
@@ -35,11 +35,11 @@ fn the_course_is_what_the_session_saw() {
 }
 
 #[test]
-fn odd_lines_are_passed_over_and_missing_runs_are_errors() {
+fn preview_skips_invalid_lines_and_fails_for_missing_runs() {
     let runs = tempfile::tempdir().expect("a folder");
     let folder = runs.path().join("0123abcd");
     let new = NewRun { seed: Some(7), storage: Storage::Runs(runs.path().to_owned()), ..NewRun::default() };
-    let session = Session::create(new, &Configuration::shipped()).expect("a run");
+    let session = Session::create(new, &Configuration::bundled()).expect("a run");
     std::fs::rename(session.folder().expect("a folder"), &folder).expect("moved");
     let closing = |cash: f64| {
         format!(
@@ -55,7 +55,7 @@ fn odd_lines_are_passed_over_and_missing_runs_are_errors() {
         json!({"kind": "end", "day": 7, "reason": "horizon", "cash": 4, "score": 4}).to_string(),
     ];
     std::fs::write(folder.join("trajectory.jsonl"), lines.join("\n")).expect("written");
-    let preview = run_preview(runs.path(), "0123abcd").expect("a preview");
+    let preview = read_preview(runs.path(), "0123abcd").expect("a preview");
     assert_eq!(preview.cash, [(0, 1_000_000.0), (7, 4.0)]);
-    assert!(run_preview(runs.path(), "nothing").is_err());
+    assert!(read_preview(runs.path(), "nothing").is_err());
 }

@@ -4,18 +4,18 @@ use std::time::Duration;
 
 use super::RunLog;
 use super::machine::Machine;
-use novamind_record::clock::{now, seconds};
+use novamind_record::clock::{now, parse_seconds};
 use novamind_record::trajectory::record::{
-    Activity, Clock, ClockEvent, LeavingCause, Limit, LimitEvent, Presence, PresenceEvent, View,
+    Activity, Clock, ClockEvent, LeavingCause, Limit, LimitEvent, Presence, PresenceEvent, ScreenView,
 };
 use novamind_record::trajectory::{Durability, Record};
-use novamind_tools::Refusal;
+use novamind_tools::Rejection;
 
 /// Rationale of a week that is submitted because its time limit was reached.
-pub const TIME_LIMIT: &str = "time limit";
+pub const TIME_LIMIT_RATIONALE: &str = "time limit";
 
 /// Time without a key after which a user is idle, if keys are watched.
-pub const IDLE_AFTER: Duration = Duration::from_secs(60);
+pub const IDLE_TIMEOUT: Duration = Duration::from_secs(60);
 
 /// The interface of a session, and its window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,60 +40,65 @@ impl<'a> ActivityLog<'a> {
     }
 
     /// Records an activity, unless the rules exclude its kind.
-    pub fn note(&mut self, activity: Activity) {
-        if !self.log.rules.records(activity.kind()) {
+    pub fn record(&mut self, activity: Activity) {
+        if !self.log.rules.records_activity(activity.kind()) {
             return;
         }
-        self.log.answers.note(&activity);
+        self.log.answers.record_activity(&activity);
         let durability = if activity.is_evidence() { Durability::Synced } else { Durability::Written };
         let _ = self.log.append((self.day, self.is_over), &Record::Activity(activity), durability);
     }
 
     /// Records that a user attaches to the run.
-    pub fn take_up(&mut self, interface: Interface) {
+    pub fn attach(&mut self, interface: Interface) {
         let presence = Presence {
             interface: Some(interface.name.to_owned()),
             window: interface.window,
             version: Some(env!("CARGO_PKG_VERSION").to_owned()),
-            ..presence(PresenceEvent::Opened)
+            ..new_presence(PresenceEvent::Opened)
         };
-        self.note(Activity::Session(Box::new(presence)));
+        self.record(Activity::Session(Box::new(presence)));
         // The clock was stopped when the program closed the run.
-        self.start_after(ClockEvent::Forgotten);
+        self.restart_clock(ClockEvent::Forgotten);
     }
 
     /// Records that the program closes the run.
-    pub fn leave(&mut self, cause: LeavingCause) {
-        let presence = Presence { cause: Some(cause), ..presence(PresenceEvent::Closed) };
-        self.note(Activity::Session(Box::new(presence)));
+    pub fn detach(&mut self, cause: LeavingCause) {
+        let presence = Presence { cause: Some(cause), ..new_presence(PresenceEvent::Closed) };
+        self.record(Activity::Session(Box::new(presence)));
     }
 
     /// Records that the user became idle or returned, or that the window changed.
-    pub fn note_presence(&mut self, event: PresenceEvent, idle_ms: Option<u64>, window: Option<(u16, u16)>) {
-        let presence = Presence { idle_ms, window, ..presence(event) };
-        self.note(Activity::Session(Box::new(presence)));
+    pub fn record_presence(
+        &mut self,
+        event: PresenceEvent,
+        idle_ms: Option<u64>,
+        window: Option<(u16, u16)>,
+    ) {
+        let presence = Presence { idle_ms, window, ..new_presence(event) };
+        self.record(Activity::Session(Box::new(presence)));
     }
 
     /// Records a view and its duration.
-    pub fn note_view(&mut self, screen: &str, from: &str, for_ms: u64) {
-        let view = View { screen: screen.to_owned(), from: from.to_owned(), for_ms };
-        self.note(Activity::View(view));
+    pub fn record_view(&mut self, screen: &str, from: &str, for_ms: u64) {
+        let view = ScreenView { screen: screen.to_owned(), from: from.to_owned(), for_ms };
+        self.record(Activity::View(view));
     }
 
     /// Stops the clock: from now on, time does not count.
     ///
     /// # Errors
-    /// `clock_stands`, and `reason_needed` if the rules require a reason and none is given.
-    pub fn stop_clock(&mut self, reason: Option<&str>) -> Result<(), Refusal> {
+    /// `is_clock_stopped`, and `reason_needed` if the rules require a reason and none is given.
+    pub fn stop_clock(&mut self, reason: Option<&str>) -> Result<(), Rejection> {
         let reason = reason.map(str::trim).filter(|reason| !reason.is_empty());
-        if self.log.clock_stands() {
-            return Err(Refusal::new("clock_stands", "the clock is stopped already"));
+        if self.log.is_clock_stopped() {
+            return Err(Rejection::new("clock_stands", "the clock is stopped already"));
         }
         if self.log.rules.pause_reason && reason.is_none() {
-            return Err(Refusal::new("reason_needed", "give a reason for stopping the clock"));
+            return Err(Rejection::new("reason_needed", "give a reason for stopping the clock"));
         }
         let reason = reason.map(str::to_owned);
-        self.note_clock(Clock { event: ClockEvent::Stopped, reason, stood_ms: None });
+        self.record_clock(Clock { event: ClockEvent::Stopped, reason, stood_ms: None });
         Ok(())
     }
 
@@ -101,47 +106,47 @@ impl<'a> ActivityLog<'a> {
     ///
     /// # Errors
     /// `clock_runs`.
-    pub fn start_clock(&mut self) -> Result<f64, Refusal> {
-        self.start_after(ClockEvent::Started).ok_or_else(|| Refusal::new("clock_runs", "the clock runs"))
+    pub fn start_clock(&mut self) -> Result<f64, Rejection> {
+        self.restart_clock(ClockEvent::Started).ok_or_else(|| Rejection::new("clock_runs", "the clock runs"))
     }
 
-    fn start_after(&mut self, event: ClockEvent) -> Option<f64> {
-        let stood = (seconds(&now()) - self.log.clock.stopped?).max(0.0);
-        self.note_clock(Clock { event, reason: None, stood_ms: Some((stood * 1e3) as u64) });
+    fn restart_clock(&mut self, event: ClockEvent) -> Option<f64> {
+        let stood = (parse_seconds(&now()) - self.log.clock.stopped_at?).max(0.0);
+        self.record_clock(Clock { event, reason: None, stood_ms: Some((stood * 1e3) as u64) });
         Some(stood)
     }
 
-    fn note_clock(&mut self, clock: Clock) {
+    fn record_clock(&mut self, clock: Clock) {
         let event = clock.event;
-        let stopped = (event == ClockEvent::Stopped).then(|| seconds(&now()));
-        self.note(Activity::Clock(clock));
+        let stopped = (event == ClockEvent::Stopped).then(|| parse_seconds(&now()));
+        self.record(Activity::Clock(clock));
         // Set even if the rules exclude clock lines from the record, because the screen is covered in any case.
-        self.log.clock.stopped = stopped;
-        self.log.clock.held &= event != ClockEvent::Started;
+        self.log.clock.stopped_at = stopped;
+        self.log.clock.is_stopped_by_limit &= event != ClockEvent::Started;
     }
 
     /// Returns limits that are near or reached and not reported yet. Records each once.
     pub fn check_limits(&mut self) -> Vec<Limit> {
-        if self.is_over || self.log.clock_stands() {
+        if self.is_over || self.log.is_clock_stopped() {
             return Vec::new();
         }
         let mut told = Vec::new();
         for left in self.log.time_left() {
-            let Some(event) = self.log.clock.due(left, &self.log.rules.limits) else { continue };
+            let Some(event) = self.log.clock.due_event(left, &self.log.rules.limits) else { continue };
             let used_ms = ((f64::from(left.minutes) * 60.0 - left.seconds) * 1e3) as u64;
             let limit = Limit { limit: left.scope, event, minutes: left.minutes, used_ms };
-            self.note(Activity::Limit(limit.clone()));
+            self.record(Activity::Limit(limit.clone()));
             // Set even if the rules exclude limit lines from the record.
-            self.log.clock.told.insert((limit.limit, event != LimitEvent::Warned));
-            self.log.clock.held |= event == LimitEvent::Paused;
+            self.log.clock.reported_limits.insert((limit.limit, event != LimitEvent::Warned));
+            self.log.clock.is_stopped_by_limit |= event == LimitEvent::Paused;
             told.push(limit);
         }
         told
     }
 }
 
-fn presence(event: PresenceEvent) -> Presence {
-    let Machine { id, boot } = Machine::here();
+fn new_presence(event: PresenceEvent) -> Presence {
+    let Machine { id, boot } = Machine::current();
     Presence {
         event,
         cause: None,

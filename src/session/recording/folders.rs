@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use novamind_record::folder::lock::lock_run;
-use novamind_record::folder::runs::is_unnamed;
+use novamind_record::folder::runs::is_staging_folder;
 
 /// Returns eight hexadecimal digits that are almost certainly unique.
-pub fn new_id() -> String {
+pub fn new_run_id() -> String {
     static COUNT: std::sync::atomic::AtomicU64 = std::sync::atomic::AtomicU64::new(0);
     let count = COUNT.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
     let moment =
@@ -16,9 +16,9 @@ pub fn new_id() -> String {
 }
 
 /// Removes staging folders that a stopped program left. Staging folders in use are locked.
-pub(crate) fn remove_leftovers(runs: &Path) {
+pub(crate) fn remove_stale_staging_folders(runs: &Path) {
     let entries = std::fs::read_dir(runs).into_iter().flatten().flatten();
-    for folder in entries.map(|entry| entry.path()).filter(|path| is_unnamed(path)) {
+    for folder in entries.map(|entry| entry.path()).filter(|path| is_staging_folder(path)) {
         if lock_run(&folder, "").is_ok() {
             let _ = std::fs::remove_dir_all(&folder);
         }

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use novamind_record::clock::scripted_steady;
+use novamind_record::clock::scripted_monotonic_time;
 
 /// The machine, as a hash: records of one machine have the same value, but do not identify it.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -15,37 +15,37 @@ pub struct Machine {
 
 impl Machine {
     /// Returns this machine.
-    pub fn here() -> Machine {
+    pub fn current() -> Machine {
         let read = |path: &str| std::fs::read_to_string(path).ok().filter(|text| !text.trim().is_empty());
         let name = read("/etc/machine-id").or_else(|| read("/var/lib/dbus/machine-id"));
         let name = name.or_else(|| std::env::var("COMPUTERNAME").ok()).or_else(|| read("/etc/hostname"));
         let boot = read("/proc/sys/kernel/random/boot_id");
         // Without a boot id, each start of the program counts as a start of the machine.
-        let boot = boot.unwrap_or_else(|| format!("{} {:?}", std::process::id(), began()));
+        let boot = boot.unwrap_or_else(|| format!("{} {:?}", std::process::id(), program_start()));
         Machine {
-            id: hashed("novamind machine", name.unwrap_or_default().trim()),
-            boot: hashed("novamind boot", boot.trim()),
+            id: hash_name("novamind machine", name.unwrap_or_default().trim()),
+            boot: hash_name("novamind boot", boot.trim()),
         }
     }
 
     /// Returns milliseconds since the machine was started, or since the program was, if the system does not provide
     /// this.
     pub fn monotonic_ms() -> u64 {
-        if let Some(scripted) = scripted_steady() {
+        if let Some(scripted) = scripted_monotonic_time() {
             return scripted.as_millis() as u64;
         }
         let uptime = std::fs::read_to_string("/proc/uptime").ok();
         let seconds = uptime.and_then(|text| text.split_whitespace().next()?.parse::<f64>().ok());
-        seconds.map_or_else(|| began().elapsed().as_millis() as u64, |seconds| (seconds * 1e3) as u64)
+        seconds.map_or_else(|| program_start().elapsed().as_millis() as u64, |seconds| (seconds * 1e3) as u64)
     }
 }
 
-fn hashed(context: &str, name: &str) -> String {
+fn hash_name(context: &str, name: &str) -> String {
     let key = blake3::derive_key(context, name.as_bytes());
     blake3::hash(&key).to_hex()[..16].to_owned()
 }
 
-fn began() -> Instant {
-    static BEGAN: std::sync::OnceLock<Instant> = std::sync::OnceLock::new();
-    *BEGAN.get_or_init(Instant::now)
+fn program_start() -> Instant {
+    static PROGRAM_START: std::sync::OnceLock<Instant> = std::sync::OnceLock::new();
+    *PROGRAM_START.get_or_init(Instant::now)
 }

@@ -3,17 +3,17 @@
 pub(crate) mod activity;
 pub(crate) mod folders;
 pub(crate) mod machine;
-pub(crate) mod personal_clock;
 pub(crate) mod recorder;
+pub(crate) mod session_clock;
 
 use std::collections::BTreeMap;
 
-use self::personal_clock::{PersonalClock, TimeLeft};
 use self::recorder::Recorder;
+use self::session_clock::{SessionClock, TimeLeft};
 use crate::figures::attendance::TimeSpent;
-use novamind_database::Position;
-use novamind_record::answer_book::AnswerBook;
-use novamind_record::clock::{nanoseconds, now, seconds};
+use novamind_database::ProjectionPosition;
+use novamind_record::answered_questions::AnsweredQuestions;
+use novamind_record::clock::{now, parse_nanoseconds, parse_seconds};
 use novamind_record::error::RunError;
 use novamind_record::rules::SessionRules;
 use novamind_record::trajectory::record::{Activity, LimitScope};
@@ -22,56 +22,56 @@ use novamind_record::trajectory::{Durability, Line, Record, Trajectory};
 /// The record of an open run, and the state that follows from it besides the company.
 pub struct RunLog {
     rules: SessionRules,
-    position: Position,
-    clock: PersonalClock,
-    answers: AnswerBook,
+    position: ProjectionPosition,
+    clock: SessionClock,
+    answers: AnsweredQuestions,
     /// The last day on which each screen of the console was left, in earlier sessions.
-    viewed: BTreeMap<String, u32>,
+    last_views: BTreeMap<String, u32>,
     /// The recorder; `None` if the run is open read-only.
     recorder: Option<Recorder>,
 }
 
 impl RunLog {
     /// Creates the log of a run without lines and without a recorder.
-    pub(crate) fn unwritten(rules: SessionRules) -> RunLog {
+    pub(crate) fn read_only(rules: SessionRules) -> RunLog {
         RunLog {
             rules,
-            position: Position { seq: 0, line_hash: String::new() },
-            clock: PersonalClock::default(),
-            answers: AnswerBook::default(),
-            viewed: BTreeMap::new(),
+            position: ProjectionPosition { seq: 0, line_hash: String::new() },
+            clock: SessionClock::default(),
+            answers: AnsweredQuestions::default(),
+            last_views: BTreeMap::new(),
             recorder: None,
         }
     }
 
-    pub(crate) fn written(rules: SessionRules, recorder: Recorder) -> RunLog {
-        RunLog { position: recorder.position(), recorder: Some(recorder), ..RunLog::unwritten(rules) }
+    pub(crate) fn with_recorder(rules: SessionRules, recorder: Recorder) -> RunLog {
+        RunLog { position: recorder.position(), recorder: Some(recorder), ..RunLog::read_only(rules) }
     }
 
-    pub(crate) fn resume(&mut self, recorder: Recorder) {
+    pub(crate) fn set_recorder(&mut self, recorder: Recorder) {
         self.recorder = Some(recorder);
     }
 
     /// Reads clock, screens and answers from the lines of the run.
-    pub(crate) fn read(&mut self, trajectory: &Trajectory) {
-        self.clock = PersonalClock::of(trajectory);
-        self.viewed = trajectory.lines.iter().filter_map(view).collect();
-        self.answers = AnswerBook::of(&trajectory.lines);
+    pub(crate) fn load(&mut self, trajectory: &Trajectory) {
+        self.clock = SessionClock::from_trajectory(trajectory);
+        self.last_views = trajectory.lines.iter().filter_map(viewed_screen).collect();
+        self.answers = AnsweredQuestions::from_lines(&trajectory.lines);
     }
 
     /// Reads the answers from all lines, including those after the end of the run.
-    pub(crate) fn read_answers<'a>(&mut self, lines: impl IntoIterator<Item = &'a Line>) {
-        self.answers = AnswerBook::of(lines);
+    pub(crate) fn load_answers<'a>(&mut self, lines: impl IntoIterator<Item = &'a Line>) {
+        self.answers = AnsweredQuestions::from_lines(lines);
     }
 
     /// Whether the user has stopped the clock.
-    pub fn clock_stands(&self) -> bool {
-        self.clock.stopped.is_some()
+    pub fn is_clock_stopped(&self) -> bool {
+        self.clock.stopped_at.is_some()
     }
 
     /// Whether a time limit has stopped the clock and it was not started since. Closing the run does not start it.
-    pub fn is_held(&self) -> bool {
-        self.clock.held
+    pub fn is_stopped_by_limit(&self) -> bool {
+        self.clock.is_stopped_by_limit
     }
 
     /// Returns the time left for each limit of the rules. While the clock is stopped, this time does not change.
@@ -93,17 +93,17 @@ impl RunLog {
     /// Returns the time spent in the scope of a limit; nothing if the run is open read-only.
     pub fn time_spent(&self, scope: LimitScope) -> TimeSpent {
         let attendance = self.recorder.as_ref().map(Recorder::attendance);
-        attendance.map(|time| time.so_far(scope, nanoseconds(&now()))).unwrap_or_default()
+        attendance.map(|time| time.spent_so_far(scope, parse_nanoseconds(&now()))).unwrap_or_default()
     }
 
     /// Returns the recorded answers to the questions of a study.
-    pub fn answer_book(&self) -> &AnswerBook {
+    pub fn answer_book(&self) -> &AnsweredQuestions {
         &self.answers
     }
 
     /// Returns the last day on which each screen of the console was left in an earlier session.
-    pub fn viewed(&self) -> &BTreeMap<String, u32> {
-        &self.viewed
+    pub fn last_views(&self) -> &BTreeMap<String, u32> {
+        &self.last_views
     }
 
     /// Whether all events are in the trajectory: false if the run is open read-only, or if its file accepts no more
@@ -113,8 +113,8 @@ impl RunLog {
     }
 
     /// Returns why nothing more can be saved: the file was replaced or changed. `None` while lines are saved.
-    pub fn loss(&self) -> Option<&str> {
-        self.recorder.as_ref()?.loss()
+    pub fn loss_reason(&self) -> Option<&str> {
+        self.recorder.as_ref()?.loss_reason()
     }
 
     /// Whether lines are written: false if the run is open read-only or replayed.
@@ -127,18 +127,18 @@ impl RunLog {
         self.recorder.as_ref().is_some_and(Recorder::is_on_disk)
     }
 
-    pub(crate) fn position(&self) -> &Position {
+    pub(crate) fn position(&self) -> &ProjectionPosition {
         &self.position
     }
 
-    pub(crate) fn move_to(&mut self, position: Position) {
+    pub(crate) fn set_position(&mut self, position: ProjectionPosition) {
         self.position = position;
     }
 
     /// Returns when the line of an accepted call must be synced. A run that is open read-only has the value of a
     /// played one.
-    pub(crate) fn durability_of_calls(&self) -> Durability {
-        self.recorder.as_ref().map_or(Durability::Synced, Recorder::durability_of_calls)
+    pub(crate) fn call_durability(&self) -> Durability {
+        self.recorder.as_ref().map_or(Durability::Synced, Recorder::call_durability)
     }
 
     /// Appends a line. Does nothing if the run is open read-only.
@@ -155,16 +155,16 @@ impl RunLog {
         }
         let at = recorder.append(day, record, durability)?;
         self.position = recorder.position();
-        self.clock.pass(record, seconds(&at));
+        self.clock.apply(record, parse_seconds(&at));
         Ok(at)
     }
 
     /// Appends a line about an irrevocable action. Returns the problem if it is not saved yet.
-    pub(crate) fn append_done(&mut self, day: u32, record: &Record) -> Option<String> {
+    pub(crate) fn append_irrevocable(&mut self, day: u32, record: &Record) -> Option<String> {
         let recorder = self.recorder.as_mut()?;
-        let problem = recorder.append_done(day, record);
+        let problem = recorder.append_irrevocable(day, record);
         self.position = recorder.position();
-        self.clock.pass(record, seconds(&now()));
+        self.clock.apply(record, parse_seconds(&now()));
         problem
     }
 
@@ -173,7 +173,7 @@ impl RunLog {
     }
 
     /// Syncs pending lines of calls. Returns whether there can be any.
-    pub(crate) fn sync_waiting_calls(&self) -> Result<bool, RunError> {
+    pub(crate) fn sync_pending_calls(&self) -> Result<bool, RunError> {
         match self.recorder.as_ref().filter(|recorder| !recorder.syncs_calls()) {
             Some(recorder) => recorder.sync_calls().map(|()| true),
             None => Ok(false),
@@ -181,12 +181,12 @@ impl RunLog {
     }
 
     #[cfg(test)]
-    pub(crate) fn write_to(&mut self, medium: Box<dyn novamind_record::trajectory::Medium>) {
-        self.recorder.as_mut().expect("it is written").write_to(medium);
+    pub(crate) fn set_medium(&mut self, medium: Box<dyn novamind_record::trajectory::Medium>) {
+        self.recorder.as_mut().expect("it is written").set_medium(medium);
     }
 }
 
-fn view(line: &Line) -> Option<(String, u32)> {
+fn viewed_screen(line: &Line) -> Option<(String, u32)> {
     match &line.record {
         Record::Activity(Activity::View(view)) => Some((view.screen.clone(), line.day)),
         _ => None,

@@ -4,27 +4,27 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use crate::figures::attendance::Attendance;
-use novamind_database::Position;
-use novamind_record::clock::{nanoseconds, now};
+use novamind_database::ProjectionPosition;
+use novamind_record::clock::{now, parse_nanoseconds};
 use novamind_record::error::RunError;
 use novamind_record::files::read_regular_file;
 use novamind_record::folder::lock::lock_run;
 use novamind_record::folder::manifest::Manifest;
-use novamind_record::folder::manifest::start_of;
+use novamind_record::folder::manifest::to_start_record;
 use novamind_record::trajectory::{Durability, Line, Record, Trajectory, TrajectoryWriter};
 
 /// File in the run folder with lines recorded after the end of the run. Their hash chain continues the trajectory.
 ///
 /// The end is the last line of a trajectory, so a finished run never changes. Notes, saved statements, inspections
 /// and answers to questions can follow it.
-pub(crate) const AFTERWARDS: &str = "afterwards.jsonl";
+pub(crate) const AFTERWARDS_FILE: &str = "afterwards.jsonl";
 
 /// The parts of a played run that a read-only run does not have.
 pub(crate) struct Recorder {
     trajectory: TrajectoryWriter,
     /// Durability of an accepted call's line: synced before the call is confirmed, or, in headless runs, with the
     /// week.
-    calls: Durability,
+    call_durability: Durability,
     /// Folder of the run; `None` in memory.
     folder: Option<PathBuf>,
     afterwards: Option<TrajectoryWriter>,
@@ -34,7 +34,7 @@ pub(crate) struct Recorder {
 
 impl Recorder {
     /// Creates the trajectory of a new run, in its folder or in memory, with its first line.
-    pub(crate) fn begin(
+    pub(crate) fn create(
         manifest: &Manifest,
         folder: Option<&Path>,
         sync_calls: bool,
@@ -48,13 +48,13 @@ impl Recorder {
                 (trajectory, Some(lock))
             }
         };
-        let start = start_of(manifest);
+        let start = to_start_record(manifest);
         let at = trajectory.append(0, &start, Durability::Synced)?;
         let mut attendance = Attendance::default();
-        attendance.note(nanoseconds(&at), &start);
+        attendance.add_line(parse_nanoseconds(&at), &start);
         let calls = if sync_calls { Durability::Synced } else { Durability::Written };
         let folder = folder.map(Path::to_owned);
-        Ok(Recorder { trajectory, calls, folder, afterwards: None, attendance, _lock: lock })
+        Ok(Recorder { trajectory, call_durability: calls, folder, afterwards: None, attendance, _lock: lock })
     }
 
     /// Continues the trajectory of a run whose lock is held.
@@ -63,10 +63,10 @@ impl Recorder {
         let folder = path.parent().map(Path::to_owned);
         Ok(Recorder {
             trajectory,
-            calls: Durability::Synced,
+            call_durability: Durability::Synced,
             folder,
             afterwards: None,
-            attendance: Attendance::of(&read.lines),
+            attendance: Attendance::from_lines(&read.lines),
             _lock: Some(lock),
         })
     }
@@ -75,18 +75,18 @@ impl Recorder {
         self.folder.is_some()
     }
 
-    pub(crate) fn position(&self) -> Position {
-        self.trajectory.position()
+    pub(crate) fn position(&self) -> ProjectionPosition {
+        self.trajectory.last_position()
     }
 
     /// Returns the durability of an accepted call's line.
-    pub(crate) fn durability_of_calls(&self) -> Durability {
-        self.calls
+    pub(crate) fn call_durability(&self) -> Durability {
+        self.call_durability
     }
 
     /// Whether every call is synced before it is confirmed.
     pub(crate) fn syncs_calls(&self) -> bool {
-        self.calls == Durability::Synced
+        self.call_durability == Durability::Synced
     }
 
     /// Appends a line and returns its time.
@@ -100,7 +100,7 @@ impl Recorder {
         durability: Durability,
     ) -> Result<String, RunError> {
         let at = self.trajectory.append(day, record, durability)?;
-        self.attendance.note(nanoseconds(&at), record);
+        self.attendance.add_line(parse_nanoseconds(&at), record);
         Ok(at)
     }
 
@@ -121,17 +121,17 @@ impl Recorder {
             self.trajectory.sync()?;
         }
         if self.afterwards.is_none() {
-            let path = folder.join(AFTERWARDS);
-            self.afterwards = Some(TrajectoryWriter::open_after(&path, self.trajectory.position())?);
+            let path = folder.join(AFTERWARDS_FILE);
+            self.afterwards = Some(TrajectoryWriter::open_after(&path, self.trajectory.last_position())?);
         }
         let Some(writer) = &mut self.afterwards else { return Ok(now()) };
         writer.append(day, record, durability)
     }
 
     /// Appends a line about an irrevocable action. Returns the problem if it is not saved yet.
-    pub(crate) fn append_done(&mut self, day: u32, record: &Record) -> Option<String> {
-        let problem = self.trajectory.append_done(day, record).err().map(|error| error.to_string());
-        self.attendance.note(nanoseconds(self.trajectory.last_at()), record);
+    pub(crate) fn append_irrevocable(&mut self, day: u32, record: &Record) -> Option<String> {
+        let problem = self.trajectory.append_irrevocable(day, record).err().map(|error| error.to_string());
+        self.attendance.add_line(parse_nanoseconds(self.trajectory.last_at()), record);
         problem
     }
 
@@ -152,8 +152,8 @@ impl Recorder {
     }
 
     /// Returns why nothing more can be saved, once this was detected.
-    pub(crate) fn loss(&self) -> Option<&str> {
-        self.trajectory.loss()
+    pub(crate) fn loss_reason(&self) -> Option<&str> {
+        self.trajectory.loss_reason()
     }
 
     /// Whether the file is still in its place and no line is pending.
@@ -162,8 +162,8 @@ impl Recorder {
     }
 
     #[cfg(test)]
-    pub(crate) fn write_to(&mut self, medium: Box<dyn novamind_record::trajectory::Medium>) {
-        self.trajectory.write_to(medium);
+    pub(crate) fn set_medium(&mut self, medium: Box<dyn novamind_record::trajectory::Medium>) {
+        self.trajectory.replace_medium(medium);
     }
 }
 
@@ -171,11 +171,11 @@ impl Recorder {
 ///
 /// # Errors
 /// The file cannot be read, or is damaged.
-pub fn lines_afterwards(folder: &Path, trajectory: &Trajectory) -> Result<Trajectory, RunError> {
-    let path = folder.join(AFTERWARDS);
+pub fn read_afterwards(folder: &Path, trajectory: &Trajectory) -> Result<Trajectory, RunError> {
+    let path = folder.join(AFTERWARDS_FILE);
     let last = trajectory.lines.last().map(Line::position);
     match (read_regular_file(&path), last) {
-        (Ok(bytes), Some(last)) => Trajectory::of_file_after(&path, last, &bytes),
+        (Ok(bytes), Some(last)) => Trajectory::from_bytes_after(&path, last, &bytes),
         (Ok(_), None) => Ok(Trajectory::default()),
         (Err(error), _) if error.kind() == std::io::ErrorKind::NotFound => Ok(Trajectory::default()),
         (Err(error), _) => Err(RunError::Io { path, error }),

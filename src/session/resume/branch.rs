@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use super::unnamed::{UnnamedBranch, write_branch};
+use super::staged_branch::{StagedBranch, write_branch_files};
 use crate::play::Session;
-use crate::play::lesson::conduct::weeks_passed;
-use crate::recording::folders::new_id;
+use crate::play::lesson::progress::weeks_passed;
+use crate::recording::folders::new_run_id;
 use novamind_record::clock::now;
 use novamind_record::error::RunError;
 use novamind_record::files::create_folder;
@@ -14,7 +14,7 @@ use novamind_record::mode::Mode;
 use novamind_record::rules::SessionRules;
 use novamind_record::trajectory::record::{Activity, LessonEvent, Parent, Via};
 use novamind_record::trajectory::{Line, Record, Trajectory};
-use novamind_tools::Refusal;
+use novamind_tools::Rejection;
 
 impl Session {
     /// Creates a branch at the start of a week, counted from 1, and opens it.
@@ -22,84 +22,84 @@ impl Session {
     /// # Errors
     /// `not_in_this_mode` for an unfinished baseline run, for a baseline branch, and for a branch in another mode
     /// than debug if the shared lines change parameters or the run has a seeded fault; `guess_first` while the
-    /// question of a lesson has no answer; `week_unknown`, `not_saved`.
-    pub fn branch(&self, week: u32, mode: Mode) -> Result<Session, Refusal> {
-        UnnamedBranch::begin(self, week, mode)?.name().map_err(not_saved)
+    /// question of a lesson has no answer; `week_unknown`, `not_saved_error`.
+    pub fn branch(&self, week: u32, mode: Mode) -> Result<Session, Rejection> {
+        StagedBranch::stage(self, week, mode)?.publish().map_err(not_saved_error)
     }
 }
 
-impl UnnamedBranch {
+impl StagedBranch {
     /// Creates a branch in a staging folder.
     ///
     /// # Errors
     /// As [`Session::branch`].
-    pub fn begin(run: &Session, week: u32, mode: Mode) -> Result<UnnamedBranch, Refusal> {
+    pub fn stage(run: &Session, week: u32, mode: Mode) -> Result<StagedBranch, Rejection> {
         if run.manifest().mode == Mode::Baseline && run.ended().is_none() {
             let message = "an unfinished baseline run cannot be branched; end it first";
-            return Err(Refusal::new("not_in_this_mode", message));
+            return Err(Rejection::new("not_in_this_mode", message));
         }
         if let Some(lesson) = run.lesson().filter(|_| run.ended().is_none()) {
-            lesson.refuse_before_guess(weeks_passed(run))?;
+            lesson.check_guess_submitted(weeks_passed(run))?;
         }
         let Some(folder) = run.folder() else {
-            return Err(Refusal::new("not_saved", "a run in memory cannot be branched"));
+            return Err(Rejection::new("not_saved", "a run in memory cannot be branched"));
         };
         let day = week.saturating_sub(1).saturating_mul(run.params().run.days_per_week);
         if week == 0 || day > run.day() {
             let last = run.day() / run.params().run.days_per_week + 1;
-            return Err(Refusal::at(
+            return Err(Rejection::for_field(
                 "week",
                 "week_unknown",
                 format!("cannot branch from week {week}; choose a week from 1 to {last}"),
             ));
         }
-        let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).map_err(not_saved)?;
-        unnamed_branch(folder, run.manifest(), before(&trajectory, day), mode)
+        let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).map_err(not_saved_error)?;
+        stage_branch(folder, run.manifest(), lines_before(&trajectory, day), mode)
     }
 }
 
 /// Returns the rejection for a failed write.
-pub fn not_saved(error: RunError) -> Refusal {
-    Refusal::new("not_saved", error.to_string())
+pub fn not_saved_error(error: RunError) -> Rejection {
+    Rejection::new("not_saved", error.to_string())
 }
 
 /// Creates a branch next to its parent that shares some of its lines, and opens it.
 ///
 /// # Errors
 /// `not_in_this_mode` for a baseline branch, and for a branch in another mode than debug if the shared lines change
-/// parameters or the run has a seeded fault; `not_saved`.
-pub(crate) fn branch_of(
+/// parameters or the run has a seeded fault; `not_saved_error`.
+pub(crate) fn create_branch(
     folder: &Path,
     parent: &Manifest,
     lines: &[Line],
     mode: Mode,
-) -> Result<Session, Refusal> {
-    unnamed_branch(folder, parent, lines, mode)?.name().map_err(not_saved)
+) -> Result<Session, Rejection> {
+    stage_branch(folder, parent, lines, mode)?.publish().map_err(not_saved_error)
 }
 
-fn unnamed_branch(
+fn stage_branch(
     folder: &Path,
     parent: &Manifest,
     lines: &[Line],
     mode: Mode,
-) -> Result<UnnamedBranch, Refusal> {
+) -> Result<StagedBranch, Rejection> {
     if mode == Mode::Baseline {
-        return Err(Refusal::new("not_in_this_mode", "a branch can have any mode but baseline"));
+        return Err(Rejection::new("not_in_this_mode", "a branch can have any mode but baseline"));
     }
     if mode != Mode::Debug && parent.fault.is_some() {
         let message = "the run has a seeded fault, so its branches must be debug runs";
-        return Err(Refusal::new("not_in_this_mode", message));
+        return Err(Rejection::new("not_in_this_mode", message));
     }
-    let shared = shared_lines(lines);
+    let shared = state_lines(lines);
     if mode != Mode::Debug
         && parent.lesson.is_none()
         && shared.iter().any(|line| matches!(line.record, Record::Override(_)))
     {
         let message = "the run has changed parameters, so its branches must be debug runs";
-        return Err(Refusal::new("not_in_this_mode", message));
+        return Err(Rejection::new("not_in_this_mode", message));
     }
     let manifest = Manifest {
-        id: new_id(),
+        id: new_run_id(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
         created: now(),
         format: FORMAT,
@@ -107,42 +107,42 @@ fn unnamed_branch(
         study: None,
         lesson: None,
         handout: None,
-        rules: Some(SessionRules::of_mode(mode)),
+        rules: Some(SessionRules::for_mode(mode)),
         parent: Some(Parent { run: parent.id.clone(), seq: shared.last().map_or(0, |line| line.seq) }),
         ..parent.clone()
     };
-    UnnamedBranch::write(folder, &manifest, &shared).map_err(not_saved)
+    StagedBranch::create(folder, &manifest, &shared).map_err(not_saved_error)
 }
 
 /// Creates another attempt at a lesson from a day on, and opens it.
 ///
 /// # Errors
-/// `not_saved`.
-pub fn branch_of_lesson(
+/// `not_saved_error`.
+pub fn create_lesson_branch(
     folder: &Path,
     parent: &Manifest,
     trajectory: &Trajectory,
     day: u32,
-) -> Result<Session, Refusal> {
-    let lines = before(trajectory, day);
+) -> Result<Session, Rejection> {
+    let lines = lines_before(trajectory, day);
     let is_of_lesson =
-        |line: &&Line| makes_company(line) || matches!(line.record, Record::Activity(Activity::Lesson(_)));
-    let start = before_step(&trajectory.lines[lines.len()..], day);
+        |line: &&Line| changes_state(line) || matches!(line.record, Record::Activity(Activity::Lesson(_)));
+    let start = lines_before_step(&trajectory.lines[lines.len()..], day);
     let shared: Vec<&Line> = lines.iter().filter(is_of_lesson).chain(start).collect();
     let manifest = Manifest {
-        id: new_id(),
+        id: new_run_id(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
         created: now(),
         format: FORMAT,
         parent: Some(Parent { run: parent.id.clone(), seq: shared.last().map_or(0, |line| line.seq) }),
         ..parent.clone()
     };
-    UnnamedBranch::write(folder, &manifest, &shared).and_then(UnnamedBranch::name).map_err(not_saved)
+    StagedBranch::create(folder, &manifest, &shared).and_then(StagedBranch::publish).map_err(not_saved_error)
 }
 
 /// Returns the lesson's lines on the first day of a step, before the step starts: the calls of its start, and the
 /// judgement of the step before.
-fn before_step(lines: &[Line], day: u32) -> impl Iterator<Item = &Line> {
+fn lines_before_step(lines: &[Line], day: u32) -> impl Iterator<Item = &Line> {
     let begins = |line: &Line| match &line.record {
         Record::Activity(Activity::Lesson(note)) => note.event == LessonEvent::Begun,
         _ => false,
@@ -155,9 +155,9 @@ fn before_step(lines: &[Line], day: u32) -> impl Iterator<Item = &Line> {
 }
 
 /// Returns the lines before a decision day, including the end of the week on that day, without decisions made on it.
-fn before(trajectory: &Trajectory, day: u32) -> &[Line] {
+fn lines_before(trajectory: &Trajectory, day: u32) -> &[Line] {
     let is_before = |line: &Line| {
-        let said_on_it = line.day == day && is_of_model(line);
+        let said_on_it = line.day == day && is_voice_line(line);
         line.day < day || (line.day == day && line.closes_days()) || said_on_it || line.seq == 0
     };
     let after = trajectory.lines.iter().position(|line| !is_before(line));
@@ -165,16 +165,16 @@ fn before(trajectory: &Trajectory, day: u32) -> &[Line] {
 }
 
 /// Whether a language model produced the line. Such lines are written before the decisions of their day.
-fn is_of_model(line: &Line) -> bool {
+fn is_voice_line(line: &Line) -> bool {
     matches!(line.record, Record::Voice(_))
 }
 
 /// Returns the lines that determine the state of the company.
-fn shared_lines(lines: &[Line]) -> Vec<&Line> {
-    lines.iter().filter(|line| makes_company(line)).collect()
+fn state_lines(lines: &[Line]) -> Vec<&Line> {
+    lines.iter().filter(|line| changes_state(line)).collect()
 }
 
-fn makes_company(line: &Line) -> bool {
+fn changes_state(line: &Line) -> bool {
     let record = &line.record;
     record.accepted_call().is_some()
         || matches!(
@@ -187,7 +187,7 @@ fn makes_company(line: &Line) -> bool {
 ///
 /// # Errors
 /// The folder cannot be written.
-pub fn write_past(folder: &Path, manifest: &Manifest, lines: &[Line]) -> Result<(), RunError> {
+pub fn create_branch_files(folder: &Path, manifest: &Manifest, lines: &[Line]) -> Result<(), RunError> {
     create_folder(folder)?;
-    write_branch(folder, manifest, &shared_lines(lines))
+    write_branch_files(folder, manifest, &state_lines(lines))
 }

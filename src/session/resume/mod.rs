@@ -1,11 +1,11 @@
 //! Operations on stored runs: branches, recovery, verification, rebuilding of databases.
 
 pub(crate) mod branch;
-pub(crate) mod look;
+pub(crate) mod external_read;
+pub(crate) mod origin;
 pub(crate) mod rebuild;
-pub(crate) mod recorded;
-pub(crate) mod rescue;
-pub(crate) mod unnamed;
+pub(crate) mod recovery;
+pub(crate) mod staged_branch;
 pub(crate) mod verify;
 
 #[cfg(test)]

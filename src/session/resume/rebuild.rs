@@ -3,19 +3,19 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::permission::may_look_inside;
+use crate::permission::can_inspect;
 use crate::play::Session;
-use crate::play::open::{Access, Keeping, open_projector};
-use crate::snapshot::file::SnapshotPlace;
-use crate::snapshot::integrity::{Integrity, is_as_left};
+use crate::play::open::{Access, CacheFunctions, open_projector};
+use crate::snapshot::file::SnapshotTarget;
+use crate::snapshot::integrity::{Integrity, is_database_unchanged};
 use crate::snapshot::sealing::SealKey;
-use novamind_database::{Location, Position, QueryConnection, Scope, query_connection};
+use novamind_database::{DatabaseLocation, ProjectionPosition, QueryConnection, Scope, query_connection};
 use novamind_record::error::RunError;
-use novamind_record::folder::derived::{Derived, check_start};
 use novamind_record::folder::lock::lock_run;
 use novamind_record::folder::manifest::Manifest;
+use novamind_record::folder::manifest_check::{ManifestCheck, check_start};
 use novamind_record::trajectory::{Record, Trajectory};
-use novamind_tools::Refusal;
+use novamind_tools::Rejection;
 
 /// Brings `world.db` up to the last line of the trajectory, or rebuilds it. `progress` is called with each day
 /// reached and the last day of the run. `key` is the key of the run's snapshots.
@@ -27,41 +27,41 @@ pub fn rebuild_database(
     key: &SealKey,
     progress: &mut dyn FnMut(u32, u32),
 ) -> Result<(), RunError> {
-    let Derived { manifest, .. } = Derived::of(folder)?;
-    let params = Arc::new(manifest.params()?);
+    let ManifestCheck { manifest, .. } = ManifestCheck::read(folder)?;
+    let params = Arc::new(manifest.load_params()?);
     let _lock = lock_run(folder, &manifest.id)?;
     let path = folder.join("trajectory.jsonl");
-    let mut integrity = Integrity::of(folder, &manifest, key);
+    let mut integrity = Integrity::read(folder, &manifest, key);
     let trajectory = Trajectory::read(&path)?;
     check_start(&path, trajectory.lines.first(), &manifest)?;
     integrity.check(&path, &trajectory)?;
-    let sound = integrity.vouch_for_database(folder);
+    let sound = integrity.check_database(folder);
     let database = open_projector(folder, Access::Write, (&manifest, &params), &trajectory, sound)?;
     let rows = database.1.as_ref().map_or(0, |position| position.seq);
     let snapshot = integrity.usable_snapshot(&manifest, &trajectory, Some(rows));
     let days = manifest.days;
     let lines = &trajectory.lines;
-    let (mut session, seen) = Session::before_replay(manifest.clone(), folder, params, lines, snapshot);
+    let (mut session, seen) = Session::prepare_replay(manifest.clone(), folder, params, lines, snapshot);
     session.replay(&path, &trajectory, seen, Some(database), &mut |day| progress(day, days))?;
-    session.database().wait()?;
-    let place = SnapshotPlace::of(folder, key);
-    if end_may_be_kept(folder, &manifest, &trajectory, key) {
+    session.database().wait_until_written()?;
+    let place = SnapshotTarget::new(folder, key);
+    if may_store_end(folder, &manifest, &trajectory, key) {
         session.write_snapshot(place, true);
     } else if let Some(closed) = integrity.snapshot.filter(|snapshot| snapshot.database().is_some()) {
         // The database file has changed: update its digest in the snapshot.
-        session.database().then(true, move |digest| closed.vouch_for(&place, digest));
+        session.database().after_writes(true, move |digest| closed.certify_database(&place, digest));
     }
-    Ok(session.database().wait()?)
+    Ok(session.database().wait_until_written()?)
 }
 
 /// Whether a reading command may write the snapshot of a run's end: the run has ended, its hidden state may be shown,
 /// and the existing snapshot is not sealed with the secret of a study.
-fn end_may_be_kept(folder: &Path, manifest: &Manifest, trajectory: &Trajectory, key: &SealKey) -> bool {
-    let ended = trajectory.end().and_then(|line| match &line.record {
+fn may_store_end(folder: &Path, manifest: &Manifest, trajectory: &Trajectory, key: &SealKey) -> bool {
+    let ended = trajectory.end_line().and_then(|line| match &line.record {
         Record::End(end) => Some(end.reason),
         _ => None,
     });
-    ended.is_some() && may_look_inside(manifest, ended, Some(folder)) && SnapshotPlace::may_write(folder, key)
+    ended.is_some() && can_inspect(manifest, ended, Some(folder)) && SnapshotTarget::may_write(folder, key)
 }
 
 /// Opens a connection to the database file of a run as it is, and returns the line of the trajectory that it
@@ -69,12 +69,15 @@ fn end_may_be_kept(folder: &Path, manifest: &Manifest, trajectory: &Trajectory, 
 ///
 /// # Errors
 /// The file is missing, is not the database of a run, or was changed after the run was closed.
-pub fn connection_to_file(folder: &Path, key: &SealKey) -> Result<(QueryConnection, Position), Refusal> {
-    if !is_as_left(folder, key) {
-        return Err(Refusal::new("sql_error", "world.db was changed after the run was closed"));
+pub fn open_database_file(
+    folder: &Path,
+    key: &SealKey,
+) -> Result<(QueryConnection, ProjectionPosition), Rejection> {
+    if !is_database_unchanged(folder, key) {
+        return Err(Rejection::new("sql_error", "world.db was changed after the run was closed"));
     }
-    query_connection(&Location::File(folder.join("world.db")), Scope::Visible)
-        .map_err(|error| Refusal::new("sql_error", error.to_string()))
+    query_connection(&DatabaseLocation::File(folder.join("world.db")), Scope::Visible)
+        .map_err(|error| Rejection::new("sql_error", error.to_string()))
 }
 
 impl Session {
@@ -84,19 +87,19 @@ impl Session {
     /// # Errors
     /// As [`Session::open`].
     pub fn open_to_read(folder: &Path, projection: bool) -> Result<Session, RunError> {
-        let keeping = Keeping {
-            may_keep: end_may_be_kept,
-            keep_database: |folder, key| rebuild_database(folder, key, &mut |_, _| {}).is_ok(),
-            keep_snapshot: Session::keep_end,
+        let keeping = CacheFunctions {
+            may_store: may_store_end,
+            store_database: |folder, key| rebuild_database(folder, key, &mut |_, _| {}).is_ok(),
+            store_snapshot: Session::store_end,
         };
-        Session::open_and_keep(folder, Access::Read, projection, SealKey::default(), Some(keeping))
+        Session::open_with_cache(folder, Access::Read, projection, SealKey::default(), Some(keeping))
     }
 
     /// Writes the snapshot of an ended run that was simulated for reading. Does nothing if the run is in use, or if
     /// its folder cannot be written.
-    fn keep_end(&self, folder: &Path) {
+    fn store_end(&self, folder: &Path) {
         if let Ok(_lock) = lock_run(folder, &self.manifest().id) {
-            self.write_snapshot(SnapshotPlace::of(folder, self.seal_key()), false);
+            self.write_snapshot(SnapshotTarget::new(folder, self.seal_key()), false);
         }
     }
 }
@@ -107,20 +110,20 @@ mod tests {
 
     use super::*;
     use crate::create::{NewRun, Storage};
-    use crate::play::open::end_run;
+    use crate::play::open::abandon_run;
     use novamind_record::folder::configuration::Configuration;
     use novamind_record::mode::Mode;
     use novamind_record::trajectory::record::Via;
 
-    const DERIVED: [&str; 2] = ["snapshot.bin", "world.db"];
+    const DERIVED_FILES: [&str; 2] = ["snapshot.bin", "world.db"];
 
     /// Creates a run of two weeks without derived files, as after an import.
-    fn imported(runs: &Path, mode: Mode, ends: bool) -> PathBuf {
+    fn run_without_derived_files(runs: &Path, mode: Mode, ends: bool) -> PathBuf {
         let storage = Storage::Runs(runs.to_owned());
         let participant = Some("P01".to_owned());
         let days = (mode != Mode::Baseline).then_some(28);
         let new = NewRun { seed: Some(5), days, mode, participant, storage, ..NewRun::default() };
-        let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
+        let mut session = Session::create(new, &Configuration::bundled()).expect("a run");
         for _ in 0..2 {
             let forecasts = session.company().naive_forecasts();
             session.advance("on", &forecasts, Via::Form, &mut |_| {}).expect("a week");
@@ -128,27 +131,27 @@ mod tests {
         let (folder, id) = (session.folder().expect("a folder").to_owned(), session.manifest().id.clone());
         drop(session);
         if ends {
-            end_run(runs, &id).expect("it ends");
+            abandon_run(runs, &id).expect("it ends");
         }
-        for file in ["world.db-wal", "world.db-shm"].into_iter().chain(DERIVED) {
+        for file in ["world.db-wal", "world.db-shm"].into_iter().chain(DERIVED_FILES) {
             let _ = std::fs::remove_file(folder.join(file));
         }
         folder
     }
 
     fn derived_files(folder: &Path) -> Vec<&'static str> {
-        DERIVED.into_iter().filter(|file| folder.join(file).exists()).collect()
+        DERIVED_FILES.into_iter().filter(|file| folder.join(file).exists()).collect()
     }
 
     /// Returns the number of lines that the next command simulates, and whether it uses the database file.
-    fn next_opening(folder: &Path) -> (usize, bool) {
-        let manifest = Derived::of(folder).expect("a manifest").manifest;
+    fn next_open_cost(folder: &Path) -> (usize, bool) {
+        let manifest = ManifestCheck::read(folder).expect("a manifest").manifest;
         let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).expect("a trajectory");
-        let integrity = Integrity::of(folder, &manifest, &SealKey::default());
+        let integrity = Integrity::read(folder, &manifest, &SealKey::default());
         assert_eq!(integrity.remarks, Vec::<String>::new());
-        let params = Arc::new(manifest.params().expect("parameters"));
+        let params = Arc::new(manifest.load_params().expect("parameters"));
         let snapshot = integrity.usable_snapshot(&manifest, &trajectory, None);
-        let (_, seen) = Session::before_replay(manifest, folder, params, &trajectory.lines, snapshot);
+        let (_, seen) = Session::prepare_replay(manifest, folder, params, &trajectory.lines, snapshot);
         (trajectory.lines.len() - seen, integrity.finished_database(folder, &trajectory).is_some())
     }
 
@@ -156,11 +159,14 @@ mod tests {
     fn ended_run_is_simulated_by_the_first_reader_and_by_no_other() {
         for mode in [Mode::Sandbox, Mode::Baseline] {
             let runs = tempfile::tempdir().expect("a folder");
-            let folder = imported(runs.path(), mode, true);
+            let folder = run_without_derived_files(runs.path(), mode, true);
             let whole = Session::open(&folder, Access::Read, true).expect("it opens");
             assert_eq!(derived_files(&folder), [""; 0], "Session::open writes nothing");
             let first = Session::open_to_read(&folder, true).expect("it opens");
-            assert_eq!((derived_files(&folder), next_opening(&folder)), (DERIVED.to_vec(), (0, true)));
+            assert_eq!(
+                (derived_files(&folder), next_open_cost(&folder)),
+                (DERIVED_FILES.to_vec(), (0, true))
+            );
             let second = Session::open_to_read(&folder, true).expect("it opens");
             for session in [&first, &second] {
                 assert_eq!(session.state_hash(), whole.state_hash());
@@ -177,30 +183,30 @@ mod tests {
     #[test]
     fn reader_without_a_database_keeps_the_snapshot_alone() {
         let runs = tempfile::tempdir().expect("a folder");
-        let folder = imported(runs.path(), Mode::Sandbox, true);
+        let folder = run_without_derived_files(runs.path(), Mode::Sandbox, true);
         Session::open_to_read(&folder, false).expect("it opens");
-        assert_eq!((derived_files(&folder), next_opening(&folder)), (vec!["snapshot.bin"], (0, false)));
+        assert_eq!((derived_files(&folder), next_open_cost(&folder)), (vec!["snapshot.bin"], (0, false)));
         // The database is stored when it is needed.
         Session::open_to_read(&folder, true).expect("it opens");
-        assert_eq!((derived_files(&folder), next_opening(&folder)), (DERIVED.to_vec(), (0, true)));
+        assert_eq!((derived_files(&folder), next_open_cost(&folder)), (DERIVED_FILES.to_vec(), (0, true)));
     }
 
     #[test]
     fn query_keeps_the_end_of_a_run() {
         let runs = tempfile::tempdir().expect("a folder");
-        let folder = imported(runs.path(), Mode::Sandbox, true);
+        let folder = run_without_derived_files(runs.path(), Mode::Sandbox, true);
         rebuild_database(&folder, &SealKey::default(), &mut |_, _| {}).expect("a database");
-        assert_eq!(next_opening(&folder), (0, true));
+        assert_eq!(next_open_cost(&folder), (0, true));
     }
 
     #[test]
     fn reader_writes_nothing_of_an_unfinished_run_or_of_one_in_use() {
         let runs = tempfile::tempdir().expect("a folder");
         for projection in [false, true] {
-            let unfinished = imported(runs.path(), Mode::Baseline, false);
+            let unfinished = run_without_derived_files(runs.path(), Mode::Baseline, false);
             Session::open_to_read(&unfinished, projection).expect("it opens");
             assert_eq!(derived_files(&unfinished), [""; 0]);
-            let used = imported(runs.path(), Mode::Sandbox, true);
+            let used = run_without_derived_files(runs.path(), Mode::Sandbox, true);
             let id = used.file_name().expect("a name").to_string_lossy().into_owned();
             let lock = lock_run(&used, &id).expect("a lock");
             Session::open_to_read(&used, projection).expect("it opens");
@@ -212,8 +218,8 @@ mod tests {
     #[test]
     fn snapshot_that_only_a_study_opens_is_not_replaced() {
         let runs = tempfile::tempdir().expect("a folder");
-        let folder = imported(runs.path(), Mode::Sandbox, true);
-        let key = SealKey::of_study(&[7; 32]);
+        let folder = run_without_derived_files(runs.path(), Mode::Sandbox, true);
+        let key = SealKey::with_study_secret(&[7; 32]);
         let mut session = Session::open_sealed(&folder, Access::Write, true, key).expect("it opens");
         session.save().expect("it is saved");
         drop(session);

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::play::Session;
-use crate::resume::recorded::{Origin, read};
+use crate::resume::origin::{Origin, read_origin};
 use crate::snapshot::integrity::Integrity;
 use crate::snapshot::sealing::SealKey;
 use novamind_record::error::RunError;
@@ -37,13 +37,13 @@ pub fn verify(path: &Path) -> Result<Verification, RunError> {
 /// # Errors
 /// As [`verify`].
 pub fn verify_sealed(path: &Path, key: &SealKey) -> Result<Verification, RunError> {
-    let (origin, trajectory) = read(path)?;
+    let (origin, trajectory) = read_origin(path)?;
     let Origin { path, folder, manifest, params } = origin;
     if let Some(folder) = &folder {
-        Integrity::of(folder, &manifest, key).check(&path, &trajectory)?;
+        Integrity::read(folder, &manifest, key).check(&path, &trajectory)?;
     }
     let run = manifest.id.clone();
-    let mut session = Session::unwritten(manifest, None, params, None);
+    let mut session = Session::read_only(manifest, None, params, None);
     for line in &trajectory.lines {
         session.apply_line(&path, line)?;
     }

@@ -21,34 +21,34 @@ use serde::{Deserialize, Serialize};
 use super::sealing::{Envelope, RunKeys, SealKey};
 use crate::company::facts_chain::FactsChain;
 use crate::company::feed::Feed;
-use crate::company::first_answers::FirstAnswers;
 use crate::company::history::History;
-use crate::company::irrevocable::Irrevocable;
+use crate::company::idempotency::IdempotentResponses;
+use crate::company::irrevocable::IrrevocableAction;
 use crate::company::overrides::Overrides;
-use crate::company::reports::Week;
+use crate::company::reports::WeekResult;
 use crate::company::simulation::Simulation;
-use crate::company::this_week::{Step, ThisWeek};
+use crate::company::week_actions::{UndoStep, WeekActions};
 use crate::figures::changes::Decisions;
 use crate::figures::journal::JournalEntry;
-use novamind_database::Position;
+use novamind_database::ProjectionPosition;
 use novamind_record::figures::WeekFigures;
 use novamind_record::folder::manifest::Manifest;
-use novamind_record::trajectory::record::{Calculated, Ended, RequestId};
-use novamind_record::trajectory::{Line, Record, hash_of_first_line};
+use novamind_record::trajectory::record::{CalculationOutput, RequestId, RunEndReason};
+use novamind_record::trajectory::{Line, Record, first_line_hash};
 use novamind_tools::Notebook;
 use novamind_world::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore, bytes_of};
 use novamind_world::params::Params;
 
 const TITLE: &[u8] = b"novamind snapshot 6\n";
 /// After the title: whether the secret of a study is needed.
-const OF_RUN: u8 = b'r';
-const OF_STUDY: u8 = b's';
-const TRAJECTORY: &str = "trajectory.jsonl";
-pub(crate) const FILE: &str = "snapshot.bin";
+const RUN_KEY_MARK: u8 = b'r';
+const STUDY_KEY_MARK: u8 = b's';
+const TRAJECTORY_FILE: &str = "trajectory.jsonl";
+pub(crate) const SNAPSHOT_FILE: &str = "snapshot.bin";
 /// Initial capacity per subscriber: columns and a day's facts need about 190 bytes. Unused capacity costs nothing;
 /// too little costs a copy of everything.
-const BYTES_OF_A_SUBSCRIBER: usize = 320;
-pub(crate) const WEEKS_BETWEEN: usize = 4;
+const BYTES_PER_SUBSCRIBER: usize = 320;
+pub(crate) const SNAPSHOT_INTERVAL_WEEKS: usize = 4;
 
 /// Identifies the state of a snapshot.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -66,41 +66,41 @@ struct Header {
 
 /// The history of a session: borrowed for writing, owned for reading.
 #[derive(Serialize, Deserialize)]
-struct Notes<'a> {
+struct StoredHistory<'a> {
     weeks: Cow<'a, [WeekFigures]>,
     running_week: Cow<'a, WeekFigures>,
     decisions: Cow<'a, [Decisions]>,
     notices: Cow<'a, [(u32, String)]>,
     feed: Cow<'a, Feed>,
-    done: Cow<'a, [Irrevocable]>,
+    done: Cow<'a, [IrrevocableAction]>,
     journal: Cow<'a, [JournalEntry]>,
     asked: Cow<'a, [String]>,
     notebook: Cow<'a, Notebook>,
-    calculated: Cow<'a, [Calculated]>,
+    calculated: Cow<'a, [CalculationOutput]>,
     #[serde(default)]
     last_dashboard: Option<Cow<'a, str>>,
     facts_chain: (String, bool),
-    ended: Option<Ended>,
+    ended: Option<RunEndReason>,
     /// Responses to weeks whose requests have an id.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    answered_weeks: Vec<(RequestId, Week)>,
+    answered_weeks: Vec<(RequestId, WeekResult)>,
 }
 
-impl Notes<'_> {
+impl StoredHistory<'_> {
     /// Compresses, because a journal with thousands of offers is repetitive.
-    fn packed(&self) -> Vec<u8> {
+    fn compress(&self) -> Vec<u8> {
         let mut encoder = DeflateEncoder::new(Vec::new(), Compression::fast());
         let written = encoder.write_all(&serde_json::to_vec(self).unwrap_or_default());
         written.and_then(|()| encoder.finish()).unwrap_or_default()
     }
 
-    fn unpacked(bytes: &[u8]) -> Option<Notes<'static>> {
+    fn decompress(bytes: &[u8]) -> Option<StoredHistory<'static>> {
         let mut text = String::new();
         DeflateDecoder::new(bytes).read_to_string(&mut text).ok()?;
         serde_json::from_str(&text).ok()
     }
 
-    fn cannot_have_a_dashboard(&self) -> bool {
+    fn is_before_first_day(&self) -> bool {
         self.weeks.is_empty() && self.running_week.days_run == 0
     }
 }
@@ -109,10 +109,10 @@ pub(crate) struct Snapshot {
     header: Header,
     /// Title, envelope and the unsealed rest.
     file: Vec<u8>,
-    notes_at: usize,
+    history_offset: usize,
 }
 
-pub(crate) struct Recalled {
+pub(crate) struct RestoredSession {
     pub(crate) simulation: Simulation,
     pub(crate) history: History,
     pub(crate) notebook: Notebook,
@@ -124,22 +124,22 @@ impl Snapshot {
     /// # Errors
     /// A description of the problem with the file.
     pub(crate) fn read(folder: &Path, key: &SealKey) -> Result<Option<Snapshot>, &'static str> {
-        let mut file = match std::fs::read(folder.join(FILE)) {
+        let mut file = match std::fs::read(folder.join(SNAPSHOT_FILE)) {
             Ok(file) => file,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
             Err(_) => return Err("cannot be read"),
         };
-        let sealed = open_file(&mut file, folder, key)?;
+        let sealed = unseal_file(&mut file, folder, key)?;
         let mut reader = CanonicalReader::new(&file[sealed..]);
         let header: Option<String> = reader.read();
         let header =
             header.and_then(|text| serde_json::from_str(&text).ok()).ok_or("is of another version")?;
-        let notes_at = file.len() - reader.left();
-        Ok(Some(Snapshot { header, file, notes_at }))
+        let notes_at = file.len() - reader.remaining();
+        Ok(Some(Snapshot { header, file, history_offset: notes_at }))
     }
 
-    pub(crate) fn position(&self) -> Position {
-        Position { seq: self.header.seq, line_hash: self.header.line_hash.clone() }
+    pub(crate) fn position(&self) -> ProjectionPosition {
+        ProjectionPosition { seq: self.header.seq, line_hash: self.header.line_hash.clone() }
     }
 
     /// Returns the digest of the database file at this line, if the run was closed properly.
@@ -148,109 +148,109 @@ impl Snapshot {
     }
 
     /// Replaces the digest of the database, which was rebuilt up to the same line.
-    pub(crate) fn vouch_for(mut self, place: &SnapshotPlace, database: Option<String>) {
+    pub(crate) fn certify_database(mut self, place: &SnapshotTarget, database: Option<String>) {
         let header = Header { database, ..self.header };
-        place.write(&header, &mut self.file[self.notes_at..]);
+        place.write(&header, &mut self.file[self.history_offset..]);
     }
 
-    pub(crate) fn is_of(&self, run: &str) -> bool {
+    pub(crate) fn belongs_to(&self, run: &str) -> bool {
         self.header.run == run
     }
 
     /// Whether it was written by this version with these parameters.
-    pub(crate) fn fits(&self, manifest: &Manifest) -> bool {
+    pub(crate) fn is_compatible(&self, manifest: &Manifest) -> bool {
         self.header.version == env!("CARGO_PKG_VERSION")
             && self.header.parameters_digest == manifest.parameters_digest
     }
 
     /// Restores the state of a run that started with `params` and has these lines. Returns `None` if the state does
     /// not match its hash.
-    pub(crate) fn recall(
+    pub(crate) fn restore_session(
         &self,
         manifest: &Manifest,
         params: &Arc<Params>,
         lines: &[Line],
-    ) -> Option<Recalled> {
-        let mut reader = CanonicalReader::new(&self.file[self.notes_at..]);
-        let notes = Notes::unpacked(&reader.read::<Vec<u8>>()?)?;
+    ) -> Option<RestoredSession> {
+        let mut reader = CanonicalReader::new(&self.file[self.history_offset..]);
+        let notes = StoredHistory::decompress(&reader.read::<Vec<u8>>()?)?;
         // Snapshots of earlier builds lack the dashboard, and it cannot be rebuilt from a state that has changed
         // since.
-        if notes.last_dashboard.is_none() && !notes.cannot_have_a_dashboard() {
+        if notes.last_dashboard.is_none() && !notes.is_before_first_day() {
             return None;
         }
         let chain = blake3::Hash::from_hex(&notes.facts_chain.0).ok()?;
         let past = (reader.read()?, reader.read()?);
-        let mut simulation = Simulation::of(manifest, params.clone(), past);
+        let mut simulation = Simulation::from_state(manifest, params.clone(), past);
         let seen = lines.get(..=self.header.seq as usize)?;
-        (simulation.params, simulation.overrides) = Overrides::after(params, seen, simulation.world.day)?;
+        (simulation.params, simulation.overrides) = Overrides::replay(params, seen, simulation.world.day)?;
         simulation.trace = reader.read()?;
-        simulation.facts_chain = FactsChain::resume(chain, notes.facts_chain.1);
+        simulation.facts_chain = FactsChain::from_hash(chain, notes.facts_chain.1);
         simulation.feed = notes.feed.into_owned();
-        let mut first_answers = FirstAnswers::of_weeks(notes.answered_weeks);
+        let mut first_answers = IdempotentResponses::from_weeks(notes.answered_weeks);
         for line in seen {
             if let Record::Call(call) = &line.record {
-                first_answers.note_call(call);
+                first_answers.record_call(call);
             }
         }
         let history = History {
             cash_by_day: reader.read()?,
             group_weeks: reader.read()?,
-            running_groups: reader.read()?,
-            called: reader.read()?,
-            this_week: ThisWeek {
+            current_groups: reader.read()?,
+            call_ledger: reader.read()?,
+            week_actions: WeekActions {
                 settings: reader.read()?,
                 undo: reader.read()?,
                 redo: reader.read()?,
-                done: notes.done.into_owned(),
+                irrevocable_actions: notes.done.into_owned(),
             },
             weeks: notes.weeks.into_owned(),
-            running_week: notes.running_week.into_owned(),
+            current_week: notes.running_week.into_owned(),
             decisions: notes.decisions.into_owned(),
             notices: notes.notices.into_owned(),
             journal: notes.journal.into_owned(),
-            asked: notes.asked.into_owned(),
-            calculated: notes.calculated.into_owned(),
+            query_history: notes.asked.into_owned(),
+            calculation_outputs: notes.calculated.into_owned(),
             last_dashboard: notes.last_dashboard.map(Cow::into_owned),
             ended: notes.ended,
-            first_answers,
+            idempotent_responses: first_answers,
         };
-        let same = reader.left() == 0 && simulation.state_hash().0 == self.header.state_hash;
-        same.then(|| Recalled { simulation, history, notebook: notes.notebook.into_owned() })
+        let same = reader.remaining() == 0 && simulation.state_hash().0 == self.header.state_hash;
+        same.then(|| RestoredSession { simulation, history, notebook: notes.notebook.into_owned() })
     }
 }
 
-impl Canonical for Step {
+impl Canonical for UndoStep {
     fn feed(&self, hasher: &mut CanonicalHasher) {
         self.seq.feed(hasher);
         self.tool.name().to_owned().feed(hasher);
-        self.restores.feed(hasher);
+        self.restored_settings.feed(hasher);
     }
 }
 
-impl Restore for Step {
+impl Restore for UndoStep {
     fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
         let (seq, tool): (u64, String) = reader.read()?;
-        Some(Step { seq, tool: tool.parse().ok()?, restores: reader.read()? })
+        Some(UndoStep { seq, tool: tool.parse().ok()?, restored_settings: reader.read()? })
     }
 }
 
-pub(crate) struct KeptState<'a> {
+pub(crate) struct SnapshotSource<'a> {
     pub(crate) manifest: &'a Manifest,
     pub(crate) simulation: &'a Simulation,
     pub(crate) history: &'a History,
     pub(crate) notebook: &'a Notebook,
-    pub(crate) position: Position,
+    pub(crate) position: ProjectionPosition,
 }
 
-impl KeptState<'_> {
+impl SnapshotSource<'_> {
     /// Returns a function that writes the snapshot, given the digest of the database file or `None`. The state is
     /// copied now, so the function can run on another thread while the company changes.
     pub(crate) fn writer(
         &self,
         state_hash: String,
-        place: SnapshotPlace,
+        place: SnapshotTarget,
     ) -> impl FnOnce(Option<String>) + Send + 'static {
-        let (header, mut state) = (self.header(state_hash), self.bytes());
+        let (header, mut state) = (self.header(state_hash), self.state_bytes());
         move |database| place.write(&Header { database, ..header }, &mut state)
     }
 
@@ -266,79 +266,82 @@ impl KeptState<'_> {
         }
     }
 
-    fn bytes(&self) -> Vec<u8> {
-        let KeptState { simulation, history, notebook, .. } = self;
+    fn state_bytes(&self) -> Vec<u8> {
+        let SnapshotSource { simulation, history, notebook, .. } = self;
         let chain = &simulation.facts_chain;
-        let notes = Notes {
+        let notes = StoredHistory {
             weeks: Cow::Borrowed(&history.weeks),
-            running_week: Cow::Borrowed(&history.running_week),
+            running_week: Cow::Borrowed(&history.current_week),
             decisions: Cow::Borrowed(&history.decisions),
             notices: Cow::Borrowed(&history.notices),
             feed: Cow::Borrowed(&simulation.feed),
-            done: Cow::Borrowed(&history.this_week.done),
+            done: Cow::Borrowed(&history.week_actions.irrevocable_actions),
             journal: Cow::Borrowed(&history.journal),
-            asked: Cow::Borrowed(&history.asked),
+            asked: Cow::Borrowed(&history.query_history),
             notebook: Cow::Borrowed(*notebook),
-            calculated: Cow::Borrowed(&history.calculated),
+            calculated: Cow::Borrowed(&history.calculation_outputs),
             last_dashboard: history.last_dashboard.as_deref().map(Cow::Borrowed),
             facts_chain: (chain.hash().to_hex().to_string(), chain.is_closed()),
             ended: history.ended,
-            answered_weeks: history.first_answers.weeks(),
+            answered_weeks: history.idempotent_responses.recorded_weeks(),
         };
-        let rows: u32 = simulation.world.customers.active().iter().sum();
-        let mut bytes = CanonicalHasher::collector(rows as usize * BYTES_OF_A_SUBSCRIBER);
-        notes.packed().feed(&mut bytes);
+        let rows: u32 = simulation.world.customers.active_by_group().iter().sum();
+        let mut bytes = CanonicalHasher::collector(rows as usize * BYTES_PER_SUBSCRIBER);
+        notes.compress().feed(&mut bytes);
         simulation.world.feed(&mut bytes);
         simulation.facts.feed(&mut bytes);
         simulation.trace.feed(&mut bytes);
         history.cash_by_day.feed(&mut bytes);
         history.group_weeks.feed(&mut bytes);
-        history.running_groups.feed(&mut bytes);
-        history.called.feed(&mut bytes);
-        history.this_week.settings.feed(&mut bytes);
-        history.this_week.undo.feed(&mut bytes);
-        history.this_week.redo.feed(&mut bytes);
+        history.current_groups.feed(&mut bytes);
+        history.call_ledger.feed(&mut bytes);
+        history.week_actions.settings.feed(&mut bytes);
+        history.week_actions.undo.feed(&mut bytes);
+        history.week_actions.redo.feed(&mut bytes);
         bytes.into_bytes()
     }
 }
 
 /// Unseals a file in place. Returns the offset of the unsealed part.
-fn open_file(file: &mut [u8], folder: &Path, key: &SealKey) -> Result<usize, &'static str> {
+fn unseal_file(file: &mut [u8], folder: &Path, key: &SealKey) -> Result<usize, &'static str> {
     let rest = file.strip_prefix(TITLE).ok_or("is of another version or damaged")?;
     let (&of, rest) = rest.split_first().ok_or("is truncated")?;
     let (envelope, _) = rest.split_first_chunk().ok_or("is truncated")?;
-    let envelope = Envelope::of(envelope);
-    if of == OF_STUDY && !key.has_secret() {
+    let envelope = Envelope::from_bytes(envelope);
+    if of == STUDY_KEY_MARK && !key.has_secret() {
         return Err("is sealed with the key of a study");
     }
-    let own = if of == OF_RUN { &SealKey::default() } else { key };
+    let own = if of == RUN_KEY_MARK { &SealKey::default() } else { key };
     let first =
-        hash_of_first_line(&folder.join(TRAJECTORY)).ok_or("belongs to a trajectory that is not there")?;
-    let at = TITLE.len() + 1 + Envelope::LENGTH;
-    own.for_run(&first).open(&envelope, &mut file[at..]).then_some(at).ok_or("is damaged or of another run")
+        first_line_hash(&folder.join(TRAJECTORY_FILE)).ok_or("belongs to a trajectory that is not there")?;
+    let at = TITLE.len() + 1 + Envelope::LENGTH_BYTES;
+    own.derive_run_keys(&first)
+        .open(&envelope, &mut file[at..])
+        .then_some(at)
+        .ok_or("is damaged or of another run")
 }
 
 /// The path of a run's snapshot, and the keys that seal it.
-pub(crate) struct SnapshotPlace {
+pub(crate) struct SnapshotTarget {
     path: PathBuf,
-    of: u8,
+    key_mark: u8,
     /// `None` if the trajectory is missing; then no snapshot is written.
     keys: Option<RunKeys>,
 }
 
-impl SnapshotPlace {
-    pub(crate) fn of(folder: &Path, key: &SealKey) -> SnapshotPlace {
-        let keys = hash_of_first_line(&folder.join(TRAJECTORY)).map(|first| key.for_run(&first));
-        let of = if key.has_secret() { OF_STUDY } else { OF_RUN };
-        SnapshotPlace { path: folder.join(FILE), of, keys }
+impl SnapshotTarget {
+    pub(crate) fn new(folder: &Path, key: &SealKey) -> SnapshotTarget {
+        let keys = first_line_hash(&folder.join(TRAJECTORY_FILE)).map(|first| key.derive_run_keys(&first));
+        let of = if key.has_secret() { STUDY_KEY_MARK } else { RUN_KEY_MARK };
+        SnapshotTarget { path: folder.join(SNAPSHOT_FILE), key_mark: of, keys }
     }
 
     /// Whether a program with this key may replace the snapshot in a folder. A snapshot sealed with the secret of a
     /// study is replaced only with that secret.
     pub(crate) fn may_write(folder: &Path, key: &SealKey) -> bool {
         let mut begin = [0; TITLE.len() + 1];
-        let read = File::open(folder.join(FILE)).and_then(|mut file| file.read_exact(&mut begin));
-        key.has_secret() || read.is_err() || begin[TITLE.len()] != OF_STUDY
+        let read = File::open(folder.join(SNAPSHOT_FILE)).and_then(|mut file| file.read_exact(&mut begin));
+        key.has_secret() || read.is_err() || begin[TITLE.len()] != STUDY_KEY_MARK
     }
 
     /// Writes a snapshot in place of the old one and seals the state in place. Does not sync: after a power cut the
@@ -346,10 +349,10 @@ impl SnapshotPlace {
     fn write(&self, header: &Header, state: &mut [u8]) {
         let Some(keys) = &self.keys else { return };
         let mut header = bytes_of(&serde_json::to_string(header).unwrap_or_default());
-        let envelope = keys.seal(&mut header, state).bytes();
+        let envelope = keys.seal(&mut header, state).to_bytes();
         let draft = self.path.with_extension("draft");
         // Written in pieces, because a large state is a large part of the memory.
-        let pieces = [TITLE, &[self.of], &envelope, &header, state];
+        let pieces = [TITLE, &[self.key_mark], &envelope, &header, state];
         let written = File::create(&draft)
             .and_then(|mut file| pieces.iter().try_for_each(|piece| file.write_all(piece)))
             .and_then(|()| std::fs::rename(&draft, &self.path));

@@ -4,9 +4,9 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::CompanyView;
-use crate::company::overrides::{json_of_value, refuse_outside_debug, unknown};
+use crate::company::overrides::{require_debug_mode, unknown_parameter, value_to_json};
 use novamind_record::folder::configuration::Configuration;
-use novamind_tools::Refusal;
+use novamind_tools::Rejection;
 use novamind_world::params::Params;
 
 /// A parameter whose current or scheduled value differs from the scenario.
@@ -41,8 +41,8 @@ impl<'a> CompanyView<'a> {
     ///
     /// # Errors
     /// `not_in_this_mode`.
-    pub fn debug_parameters(&self) -> Result<DebugParameters<'a>, Refusal> {
-        refuse_outside_debug(self.manifest.mode).map(|()| DebugParameters(*self))
+    pub fn debug_parameters(&self) -> Result<DebugParameters<'a>, Rejection> {
+        require_debug_mode(self.manifest.mode).map(|()| DebugParameters(*self))
     }
 }
 
@@ -51,23 +51,23 @@ impl DebugParameters<'_> {
     ///
     /// # Errors
     /// `parameter_unknown`.
-    pub fn value(&self, key: &str) -> Result<Value, Refusal> {
-        self.0.simulation.params.value(key).map(|value| json_of_value(&value)).map_err(unknown)
+    pub fn value(&self, key: &str) -> Result<Value, Rejection> {
+        self.0.simulation.params.value(key).map(|value| value_to_json(&value)).map_err(unknown_parameter)
     }
 
     /// Returns the parameters that differ from the scenario, and scheduled changes.
     ///
     /// # Errors
-    /// `not_readable`: the parameters at the start of the run cannot be read.
-    pub fn changed(&self) -> Result<ChangedParameters, Refusal> {
+    /// `unreadable_record`: the parameters at the start of the run cannot be read.
+    pub fn changes(&self) -> Result<ChangedParameters, Rejection> {
         let CompanyView { manifest, simulation, .. } = self.0;
-        let shipped = Configuration::shipped();
-        let scenario = shipped.scenario(&manifest.scenario).ok();
-        let of_scenario = scenario.as_ref().and_then(|own| shipped.parameters(own, &[], false).ok());
+        let shipped = Configuration::bundled();
+        let scenario = shipped.load_scenario(&manifest.scenario).ok();
+        let of_scenario = scenario.as_ref().and_then(|own| shipped.load_parameters(own, &[], false).ok());
         let scenario = of_scenario.as_ref().and(scenario.map(|own| own.name));
-        let base = of_scenario.map_or_else(|| manifest.params(), Ok);
-        let base = base.map_err(|error| Refusal::new("not_readable", error.to_string()))?;
-        let as_json = |value: Option<toml::Value>| value.as_ref().map_or(Value::Null, json_of_value);
+        let base = of_scenario.map_or_else(|| manifest.load_params(), Ok);
+        let base = base.map_err(|error| Rejection::new("not_readable", error.to_string()))?;
+        let as_json = |value: Option<toml::Value>| value.as_ref().map_or(Value::Null, value_to_json);
         let in_force = base.differences(&simulation.params).into_iter().map(|found| ChangedParameter {
             key: found.key,
             old: as_json(found.old),
@@ -75,10 +75,10 @@ impl DebugParameters<'_> {
             from_day: None,
         });
         let old = |key: &str, params: &Params| as_json(params.value(key).ok());
-        let waiting = simulation.overrides.waiting().map(|change| ChangedParameter {
+        let waiting = simulation.overrides.scheduled_changes().map(|change| ChangedParameter {
             key: change.key.clone(),
             old: old(&change.key, &base),
-            new: json_of_value(&change.value),
+            new: value_to_json(&change.value),
             from_day: change.from_day,
         });
         Ok(ChangedParameters { scenario, in_force: in_force.collect(), waiting: waiting.collect() })

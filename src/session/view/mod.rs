@@ -1,8 +1,8 @@
 //! A read-only view of a company for its player: no files, records or hidden state.
 
-pub(crate) mod alike_plans;
 pub(crate) mod debug_parameters;
-pub(crate) mod observe;
+pub(crate) mod identical_plans;
+pub(crate) mod observation;
 pub(crate) mod research_outlook;
 pub(crate) mod tool_limits;
 
@@ -11,25 +11,25 @@ use std::time::Duration;
 use serde_json::{Map, Value};
 
 use crate::company::history::History;
-use crate::company::overrides::DerivedOfParameters;
+use crate::company::overrides::DerivedValues;
+use crate::company::run_context::RunContext;
 use crate::company::simulation::Simulation;
-use crate::company::surroundings::RunSurroundings;
-use crate::figures::capacity_by_usage::UsageRule;
-use crate::figures::changes::{Change, Decisions, daily_cost};
+use crate::figures::capacity_by_usage::UsageCapacityRule;
+use crate::figures::cash_rate::CashRate;
+use crate::figures::changes::{Decisions, SettingChange, daily_cost};
 use crate::figures::dashboard::{DeliveredQuality, delivered_quality};
 use crate::figures::estimates::Estimates;
 use crate::figures::groups::GroupWeek;
 use crate::figures::naive;
-use crate::figures::pace::Pace;
 use crate::figures::scored_forecast::{ForecastScore, filed_forecasts};
 use crate::figures::week::Forecasts;
-use novamind_database::query::Limits;
+use novamind_database::query::QueryLimits;
 use novamind_record::figures::WeekFigures;
 use novamind_record::folder::manifest::Manifest;
-use novamind_record::trajectory::record::{Calculated, Ended};
-use novamind_tools::{GetGroupInsights, Kind, PublicPost, Tool, View, find};
-use novamind_voice::CompanyNames;
-use novamind_world::customers::numbers::CustomerNumbers;
+use novamind_record::trajectory::record::{CalculationOutput, RunEndReason};
+use novamind_tools::{GetGroupInsights, PublicPost, Tool, ToolContext, ToolKind, find};
+use novamind_voice::EnterpriseNames;
+use novamind_world::customers::customer_numbers::CustomerNumbers;
 use novamind_world::identifiers::{ByGroup, Channel, Group};
 use novamind_world::market::surges::week_end;
 use novamind_world::params::Params;
@@ -41,35 +41,35 @@ pub struct CompanyView<'a> {
     pub(crate) manifest: &'a Manifest,
     pub(crate) simulation: &'a Simulation,
     pub(crate) history: &'a History,
-    pub(crate) surroundings: &'a RunSurroundings,
-    pub(crate) derived: &'a DerivedOfParameters,
+    pub(crate) surroundings: &'a RunContext,
+    pub(crate) derived: &'a DerivedValues,
 }
 
 impl<'a> CompanyView<'a> {
     /// Returns the settings changed since the last week, with old and new values.
-    pub fn changes(&self) -> Vec<Change> {
-        self.history.changes(&self.simulation.world)
+    pub fn setting_changes(&self) -> Vec<SettingChange> {
+        self.history.setting_changes(&self.simulation.world)
     }
 
     /// Returns the current values of a tool's arguments, as a call would send them.
-    pub fn current(&self, tool: impl AsRef<str>) -> Map<String, Value> {
+    pub fn current_arguments(&self, tool: impl AsRef<str>) -> Map<String, Value> {
         find(tool.as_ref()).map(|tool| tool.current(&self.simulation.world.settings)).unwrap_or_default()
     }
 
     /// Runs a read-only tool without recording the call, for panes that refresh continuously. Returns `None` if the
     /// tool rejects the call or is not read-only.
-    pub fn look_up<T: Tool>(&self, tool: &T, args: T::Args) -> Option<T::Answer> {
-        if tool.spec().kind != Kind::Read {
+    pub fn read_tool<T: Tool>(&self, tool: &T, args: T::Args) -> Option<T::Answer> {
+        if tool.spec().kind != ToolKind::Read {
             return None;
         }
-        let planned = tool.plan(&self.for_tools(), args).ok()?;
+        let planned = tool.plan(&self.tool_view(), args).ok()?;
         let resolved = self.simulation.resolve(planned.command);
-        planned.reply.without_running(&resolved)
+        planned.reply.into_answer_without_script(&resolved)
     }
 
-    pub(crate) fn for_tools(&self) -> View<'a> {
-        View::new(&self.simulation.world, &self.simulation.params)
-            .within(self.surroundings)
+    pub(crate) fn tool_view(&self) -> ToolContext<'a> {
+        ToolContext::new(&self.simulation.world, &self.simulation.params)
+            .with_session(self.surroundings)
             .with_posts(&self.simulation.feed.posts)
     }
 
@@ -84,8 +84,8 @@ impl<'a> CompanyView<'a> {
     }
 
     /// Returns the outputs of the calculations before the last week.
-    pub fn calculated(&self) -> &'a [Calculated] {
-        &self.history.calculated
+    pub fn calculation_outputs(&self) -> &'a [CalculationOutput] {
+        &self.history.calculation_outputs
     }
 
     /// Returns the decisions before each simulated week, in order; single steps count as weeks.
@@ -104,14 +104,14 @@ impl<'a> CompanyView<'a> {
     }
 
     /// Returns the distinct SQL statements of this run, newest last.
-    pub fn asked(&self) -> &'a [String] {
-        &self.history.asked
+    pub fn query_history(&self) -> &'a [String] {
+        &self.history.query_history
     }
 
     /// Returns the limits of a query in this run.
-    pub fn query_limits(&self) -> Limits {
+    pub fn query_limits(&self) -> QueryLimits {
         let own = &self.simulation.params.limits;
-        Limits {
+        QueryLimits {
             rows: own.query_row_limit as usize,
             time: Duration::from_secs(u64::from(own.query_timeout_seconds)),
             steps: None,
@@ -119,7 +119,7 @@ impl<'a> CompanyView<'a> {
     }
 
     /// Returns the names of the enterprises.
-    pub fn company_names(&self) -> &'a CompanyNames {
+    pub fn company_names(&self) -> &'a EnterpriseNames {
         &self.simulation.names
     }
 
@@ -132,9 +132,9 @@ impl<'a> CompanyView<'a> {
     /// runs.
     pub(crate) fn score(&self) -> Option<f64> {
         match self.history.ended {
-            Some(Ended::Horizon) => Some(self.simulation.world.finance.cash),
-            Some(Ended::Bankruptcy) => Some(0.0),
-            Some(Ended::Abandoned | Ended::Lesson) | None => None,
+            Some(RunEndReason::Horizon) => Some(self.simulation.world.finance.cash),
+            Some(RunEndReason::Bankruptcy) => Some(0.0),
+            Some(RunEndReason::Abandoned | RunEndReason::Lesson) | None => None,
         }
     }
 
@@ -150,7 +150,7 @@ impl<'a> CompanyView<'a> {
     }
 
     /// Returns the quality before any improvement, and the bonus from development for all groups.
-    pub fn quality_base(&self) -> (f64, f64) {
+    pub fn base_quality(&self) -> (f64, f64) {
         (self.simulation.params.quality.base_product_quality, self.simulation.world.product.shared_bonus)
     }
 
@@ -158,17 +158,17 @@ impl<'a> CompanyView<'a> {
     pub fn estimates(&self) -> Vec<Estimates> {
         let limits = self.tool_limits();
         let of = |group: Group| {
-            let insights = self.look_up(&GetGroupInsights, group)?;
+            let insights = self.read_tool(&GetGroupInsights, group)?;
             let (level, estimates) = (insights.info_level, insights.estimates);
             let [least, most] = estimates.seat_range.unwrap_or([1, 1]);
             Some(Estimates {
                 group,
                 level,
                 as_of: self.simulation.world.market.knowledge[group].snapshot?.day,
-                noise: limits.level(level)?.noise,
+                max_relative_error: limits.study_level(level)?.noise,
                 budget: estimates.willingness_to_pay,
                 usage: estimates.usage_volume,
-                floor: estimates.quality_floor_q_min,
+                required_quality: estimates.quality_floor_q_min,
                 seats: (least as f64, most as f64),
             })
         };
@@ -179,37 +179,37 @@ impl<'a> CompanyView<'a> {
     pub fn forecast_scores(&self) -> Vec<ForecastScore> {
         let filed = filed_forecasts(&self.history.journal, &self.history.cash_by_day);
         let horizons = self.simulation.params.limits.prediction_horizons_days.iter();
-        horizons.map(|horizon| ForecastScore::of(*horizon, &filed)).collect()
+        horizons.map(|horizon| ForecastScore::from_forecasts(*horizon, &filed)).collect()
     }
 
-    pub(crate) fn pace(&self) -> Pace {
-        let running = (self.history.running_week.days_run > 0).then_some(self.history.running_week);
+    pub(crate) fn cash_rate(&self) -> CashRate {
+        let running = (self.history.current_week.days_run > 0).then_some(self.history.current_week);
         let weeks: Vec<WeekFigures> = self.history.weeks.iter().copied().chain(running).collect();
-        Pace::of(self.daily_cost(&self.simulation.world.settings), &weeks)
+        CashRate::from_weeks(self.daily_cost(&self.simulation.world.settings), &weeks)
     }
 
     /// Returns the naive forecasts of cash.
     pub fn naive_forecasts(&self) -> Forecasts {
         let horizons = &self.simulation.params.limits.prediction_horizons_days;
         let cash = self.simulation.world.finance.cash;
-        naive::forecasts(cash, &self.pace(), &self.history.weeks, horizons)
+        naive::naive_forecasts(cash, &self.cash_rate(), &self.history.weeks, horizons)
     }
 
     /// Returns the capacity tier that a rule sets now.
-    pub fn tier_by(&self, rule: UsageRule) -> u8 {
+    pub fn capacity_tier_by_rule(&self, rule: UsageCapacityRule) -> u8 {
         let now = self.simulation.world.settings.core.capacity_tier;
-        rule.tier(now, self.history.weeks.last(), &self.simulation.params)
+        rule.next_tier(now, self.history.weeks.last(), &self.simulation.params)
     }
 
     /// Returns the capacity tier one step toward the smallest that serves the mean usage of the last week at 80 %
     /// utilization.
-    pub fn capacity_towards_usage(&self) -> u8 {
-        self.tier_by(UsageRule::StepByStep)
+    pub fn capacity_step_toward_usage(&self) -> u8 {
+        self.capacity_tier_by_rule(UsageCapacityRule::StepByStep)
     }
 
     /// Returns the channel with most leads per dollar for a group at the start of the run. Only for ended runs,
     /// because players cannot see it.
-    pub fn truly_best_channel(&self, group: Group) -> Option<Channel> {
+    pub fn true_best_channel(&self, group: Group) -> Option<Channel> {
         self.history.ended.map(|_| best_starting_channel(group, &self.simulation.params))
     }
 }
@@ -230,17 +230,17 @@ mod tests {
     use novamind_record::folder::configuration::Configuration;
 
     #[test]
-    fn estimates_are_those_of_the_tool_and_their_range_holds_the_mean() {
+    fn estimates_match_the_tool_and_their_range_contains_the_mean() {
         let new = NewRun { storage: Storage::Memory, ..NewRun::default() };
-        let session = Session::create(new, &Configuration::shipped()).expect("a run");
+        let session = Session::create(new, &Configuration::bundled()).expect("a run");
         let all = session.company().estimates();
         assert_eq!(all.len(), 6);
         let s1 = all[0];
-        let answer = session.company().look_up(&GetGroupInsights, all[0].group).expect("an answer");
-        assert_eq!((s1.group.id(), s1.level, s1.noise), ("S1", 1, 0.65));
+        let answer = session.company().read_tool(&GetGroupInsights, all[0].group).expect("an answer");
+        assert_eq!((s1.group.id(), s1.level, s1.max_relative_error), ("S1", 1, 0.65));
         assert_eq!(s1.budget, answer.estimates.willingness_to_pay);
         let mean = session.params().group(s1.group).c_max_mean;
-        let (least, most) = s1.range(s1.budget);
+        let (least, most) = s1.true_range(s1.budget);
         assert!(least <= mean + 0.01 && mean <= most + 0.01, "{least} {mean} {most}");
     }
 }

@@ -6,8 +6,8 @@ use serde::Serialize;
 use super::CompanyView;
 use novamind_record::mode::Mode;
 use novamind_world::params::ResearchTier;
-use novamind_world::product::research_spread::{
-    days_for, done_within, gain_at, mean_days, mean_gain, share_of_least_gain,
+use novamind_world::product::research_distribution::{
+    duration_quantile, gain_quantile, mean_days, mean_gain, share_at_minimum_gain, share_done_within,
 };
 
 /// Outlook for a project that is started now.
@@ -62,7 +62,7 @@ pub struct LateProject {
     pub is_new: bool,
 }
 
-const QUARTERS: [f64; 3] = [0.25, 0.5, 0.75];
+const QUARTILES: [f64; 3] = [0.25, 0.5, 0.75];
 
 impl CompanyView<'_> {
     /// Returns the outlook for a project of a tier, 1..=20, that is started now.
@@ -72,28 +72,28 @@ impl CompanyView<'_> {
         let spread = || {
             let left = last_day.saturating_sub(today);
             ResearchSpread {
-                at_earliest: done_within(development.rd_min_duration_days, law, development),
-                quartile_days: QUARTERS.map(|share| today + days_for(share, law, development)),
-                by_last_day: done_within(left, law, development),
-                quartile_gains: QUARTERS.map(|share| gain_at(share, law, development)),
+                at_earliest: share_done_within(development.rd_min_duration_days, law, development),
+                quartile_days: QUARTILES.map(|share| today + duration_quantile(share, law, development)),
+                by_last_day: share_done_within(left, law, development),
+                quartile_gains: QUARTILES.map(|share| gain_quantile(share, law, development)),
                 least_gain: development.rd_min_quality_boost,
-                at_least_gain: share_of_least_gain(law, development),
+                at_least_gain: share_at_minimum_gain(law, development),
             }
         };
         ResearchOutlook {
             earliest: today + development.rd_min_duration_days,
             last_day,
-            means: self.means_of(law),
+            means: self.tier_means(law),
             spread: (self.manifest.mode != Mode::Baseline).then(spread),
         }
     }
 
     /// Returns the means of every R&D tier, lowest first.
     pub fn research_means(&self) -> Vec<ResearchMeans> {
-        self.simulation.params.research_tier.iter().map(|law| self.means_of(law)).collect()
+        self.simulation.params.research_tier.iter().map(|law| self.tier_means(law)).collect()
     }
 
-    fn means_of(&self, law: &ResearchTier) -> ResearchMeans {
+    fn tier_means(&self, law: &ResearchTier) -> ResearchMeans {
         let development = &self.simulation.params.development;
         match self.manifest.mode {
             Mode::Baseline => ResearchMeans {

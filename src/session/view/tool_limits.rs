@@ -64,12 +64,12 @@ pub struct ToolLimits {
     /// Issues of individuals that operations resolve per day: without spending, and per dollar.
     pub issues_solved: (f64, f64),
     /// Names of competitors in the news.
-    pub rivals: Vec<String>,
+    pub competitors: Vec<String>,
 }
 
 impl ToolLimits {
     /// Returns the data of a study level.
-    pub fn level(&self, level: u8) -> Option<&StudyLevel> {
+    pub fn study_level(&self, level: u8) -> Option<&StudyLevel> {
         self.levels.iter().find(|own| own.level == level)
     }
 
@@ -127,7 +127,7 @@ impl CompanyView<'_> {
                 })
                 .collect(),
             issues_solved: (params.issues.issue_resolution_base_rate, params.issues.individual_ops_scale),
-            rivals: params.competitor.competitor_names.clone(),
+            competitors: params.competitor.competitor_names.clone(),
         }
     }
 
@@ -139,7 +139,7 @@ impl CompanyView<'_> {
 
     /// Returns the quality that a day of targeted development adds for a group before the model's multiplier, at a
     /// spend in dollars a day.
-    pub fn targeted_gain(&self, dollars: f64) -> f64 {
+    pub fn targeted_development_gain(&self, dollars: f64) -> f64 {
         targeted_development_gain(dollars, &self.simulation.params.development)
     }
 

@@ -2,28 +2,28 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{AuditFinding, AuditKind};
+use super::{AuditFinding, FindingKind};
 use crate::definition::Study;
-use crate::keys::lab_public_key_of;
+use crate::keys::load_lab_public_key;
 use novamind_record::error::RunError;
 use novamind_record::folder::manifest::Manifest;
-use novamind_session::{LabPublicKey, Workshop, import_run, is_archive_name};
+use novamind_session::{LabPublicKey, TemporaryFolder, import_run, is_archive_name};
 
 /// Returns a finding for each archive of the study that is damaged or not signed by the lab. Without a public key nothing is
 /// checked.
 ///
 /// # Errors
 /// Fails if the public key cannot be read, or if there is no folder to unpack into.
-pub(super) fn not_signed(study: &Study, folders: &[PathBuf]) -> Result<Vec<AuditFinding>, RunError> {
-    let Some(lab) = lab_public_key_of(&study.folder)? else { return Ok(Vec::new()) };
-    let workshop = Workshop::within(&std::env::temp_dir())?;
+pub(super) fn unsigned_archives(study: &Study, folders: &[PathBuf]) -> Result<Vec<AuditFinding>, RunError> {
+    let Some(lab) = load_lab_public_key(&study.folder)? else { return Ok(Vec::new()) };
+    let workshop = TemporaryFolder::create_in(&std::env::temp_dir())?;
     let entries = folders.iter().flat_map(|folder| std::fs::read_dir(folder).into_iter().flatten().flatten());
     let mut archives: Vec<PathBuf> =
         entries.map(|entry| entry.path()).filter(|path| is_archive(path)).collect();
     archives.sort_unstable();
     let inspect = |(number, archive): (usize, &PathBuf)| {
         let place = workshop.path().join(number.to_string());
-        let found = inspect(study, &lab, archive, &place);
+        let found = check_signature(study, &lab, archive, &place);
         let _ = std::fs::remove_dir_all(place);
         found
     };
@@ -35,7 +35,7 @@ fn is_archive(path: &Path) -> bool {
     path.is_file() && is_archive_name(&name)
 }
 
-fn inspect(study: &Study, lab: &LabPublicKey, archive: &Path, place: &Path) -> Option<AuditFinding> {
+fn check_signature(study: &Study, lab: &LabPublicKey, archive: &Path, place: &Path) -> Option<AuditFinding> {
     let finding = |kind, run: &str, participant, words| {
         let (run, at) = (run.to_owned(), String::new());
         AuditFinding { kind, run, participant, line: None, at, words }
@@ -46,7 +46,7 @@ fn inspect(study: &Study, lab: &LabPublicKey, archive: &Path, place: &Path) -> O
     let (seal, signer, _) = match unpacked {
         Ok(unpacked) => unpacked,
         // The run of an unreadable archive is unknown.
-        Err(problem) => return Some(finding(AuditKind::Damaged, "?", None, problem.to_string())),
+        Err(problem) => return Some(finding(FindingKind::Damaged, "?", None, problem.to_string())),
     };
     let manifest = Manifest::read(&place.join(&seal.run)).ok()?;
     manifest.study.as_ref().filter(|stamp| stamp.digest == study.digest)?;
@@ -61,5 +61,5 @@ fn inspect(study: &Study, lab: &LabPublicKey, archive: &Path, place: &Path) -> O
             key.fingerprint()
         ),
     };
-    Some(finding(AuditKind::NotSigned, &seal.run, manifest.participant, words))
+    Some(finding(FindingKind::NotSigned, &seal.run, manifest.participant, words))
 }

@@ -4,10 +4,10 @@ use novamind_record::trajectory::record::{Activity, Presence};
 use novamind_record::trajectory::{Line, Record};
 
 /// Correction of a running clock that is not reported, seconds.
-const CORRECTION: f64 = 2.0;
+const MAX_CORRECTION_SECONDS: f64 = 2.0;
 /// Drift between the two clocks that is not reported, seconds per second: the fastest rate at which the Linux kernel slews a
 /// clock.
-const DRIFT: f64 = 500e-6;
+const MAX_DRIFT: f64 = 500e-6;
 
 /// Returns the lines before which the wall clock was changed, each with an explanation. Between two lines, the wall clock
 /// must not go back. Between two `session` lines of one start of the machine, it must agree with the monotonic clock.
@@ -15,14 +15,14 @@ pub(super) fn clock_changes<'a>(lines: impl IntoIterator<Item = &'a Line>) -> Ve
     let (mut found, mut before, mut earlier) = (Vec::new(), None::<&Line>, None::<(&Line, &Presence)>);
     let mut is_known = false;
     for line in lines {
-        let back = before.replace(line).map_or(0.0, |before| before.moment() - line.moment());
-        if back > CORRECTION {
+        let back = before.replace(line).map_or(0.0, |before| before.at_seconds() - line.at_seconds());
+        if back > MAX_CORRECTION_SECONDS {
             found.push((line, format!("the wall clock went back by {back:.0} seconds before this line")));
             is_known = true;
         }
         let Record::Activity(Activity::Session(presence)) = &line.record else { continue };
         if let Some(earlier) = earlier.replace((line, presence.as_ref())).filter(|_| !is_known) {
-            found.extend(disagreement(earlier, (line, presence)).map(|words| (line, words)));
+            found.extend(clock_disagreement(earlier, (line, presence)).map(|words| (line, words)));
         }
         is_known = false;
     }
@@ -30,11 +30,11 @@ pub(super) fn clock_changes<'a>(lines: impl IntoIterator<Item = &'a Line>) -> Ve
 }
 
 /// Returns an explanation if the two clocks disagree between two `session` lines.
-fn disagreement(earlier: (&Line, &Presence), later: (&Line, &Presence)) -> Option<String> {
+fn clock_disagreement(earlier: (&Line, &Presence), later: (&Line, &Presence)) -> Option<String> {
     let ((before, from), (line, to)) = (earlier, later);
     let steady = (to.monotonic_ms as f64 - from.monotonic_ms as f64) / 1e3;
-    let ahead = line.moment() - before.moment() - steady;
-    if from.boot != to.boot || ahead.abs() <= CORRECTION + DRIFT * steady.abs() {
+    let ahead = line.at_seconds() - before.at_seconds() - steady;
+    if from.boot != to.boot || ahead.abs() <= MAX_CORRECTION_SECONDS + MAX_DRIFT * steady.abs() {
         return None;
     }
     let way = if ahead < 0.0 { "behind" } else { "ahead of" };

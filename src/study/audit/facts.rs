@@ -5,7 +5,7 @@ use serde::Serialize;
 use novamind_record::folder::manifest::Manifest;
 use novamind_record::trajectory::record::{Activity, Outcome};
 use novamind_record::trajectory::{Record, Trajectory};
-use novamind_session::{Attendance, SittingCount};
+use novamind_session::{Attendance, SessionCount};
 
 /// Figures on how a run of a study was played.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -47,9 +47,9 @@ pub struct RunFacts {
 }
 
 impl RunFacts {
-    pub(super) fn of(manifest: &Manifest, trajectory: &Trajectory) -> Option<RunFacts> {
+    pub(super) fn from_trajectory(manifest: &Manifest, trajectory: &Trajectory) -> Option<RunFacts> {
         let stamp = manifest.study.as_ref()?;
-        let sittings = SittingCount::of(&trajectory.lines);
+        let sittings = SessionCount::from_lines(&trajectory.lines);
         let mut facts = RunFacts {
             run: manifest.id.clone(),
             participant: manifest.participant.clone(),
@@ -64,31 +64,31 @@ impl RunFacts {
             unclosed_sittings: sittings.not_closed,
             refusals: 0,
             naive_weeks: 0,
-            fast_weeks: Attendance::of(&trajectory.lines).fast_weeks(),
+            fast_weeks: Attendance::from_lines(&trajectory.lines).fast_week_count(),
             pasted: (sittings.in_console > 0).then_some(0),
             failed_checks: 0,
             longest_gap: 0.0,
         };
         let mut before = None::<f64>;
         for line in &trajectory.lines {
-            let moment = line.moment();
+            let moment = line.at_seconds();
             facts.longest_gap = facts.longest_gap.max(before.map_or(0.0, |before| moment - before));
             before = Some(moment);
             match &line.record {
-                Record::Call(call) if matches!(call.outcome, Outcome::Refused(_)) => facts.refusals += 1,
+                Record::Call(call) if matches!(call.outcome, Outcome::Rejected(_)) => facts.refusals += 1,
                 Record::Advance(filed) => {
-                    facts.naive_weeks += u32::from(filed.filled_naively() == Some(true));
+                    facts.naive_weeks += u32::from(filed.has_naive_forecasts() == Some(true));
                 }
                 Record::Week(_) => facts.weeks += 1,
                 Record::End(end) => facts.ended = Some(end.reason.id().to_owned()),
-                Record::Activity(activity) => facts.note(activity),
+                Record::Activity(activity) => facts.count_activity(activity),
                 _ => {}
             }
         }
         Some(facts)
     }
 
-    fn note(&mut self, activity: &Activity) {
+    fn count_activity(&mut self, activity: &Activity) {
         match activity {
             Activity::Draft(draft) => self.pasted = self.pasted.map(|own| own + draft.pasted),
             Activity::Answer(answer) => self.failed_checks += u32::from(answer.as_expected == Some(false)),

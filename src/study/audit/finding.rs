@@ -6,7 +6,7 @@ use serde::Serialize;
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct AuditFinding {
     /// Kind of finding.
-    pub kind: AuditKind,
+    pub kind: FindingKind,
     /// Run; empty if the finding is not about a run.
     pub run: String,
     /// Label of the participant, if known.
@@ -22,7 +22,7 @@ pub struct AuditFinding {
 /// The kind of a finding, in order of severity, most severe first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum AuditKind {
+pub enum FindingKind {
     /// The folders contain no run of the study.
     NothingExamined,
     /// The record is missing.
@@ -53,42 +53,42 @@ pub enum AuditKind {
     NotSigned,
 }
 
-impl AuditKind {
+impl FindingKind {
     /// Every kind, most severe first.
-    pub const ALL: [AuditKind; 14] = [
-        AuditKind::NothingExamined,
-        AuditKind::Missing,
-        AuditKind::Damaged,
-        AuditKind::Cut,
-        AuditKind::NotReached,
-        AuditKind::Unsaved,
-        AuditKind::OtherProtocol,
-        AuditKind::Manifest,
-        AuditKind::Assignment,
-        AuditKind::EarlierRuns,
-        AuditKind::HiddenState,
-        AuditKind::Clock,
-        AuditKind::SecondSession,
-        AuditKind::NotSigned,
+    pub const ALL: [FindingKind; 14] = [
+        FindingKind::NothingExamined,
+        FindingKind::Missing,
+        FindingKind::Damaged,
+        FindingKind::Cut,
+        FindingKind::NotReached,
+        FindingKind::Unsaved,
+        FindingKind::OtherProtocol,
+        FindingKind::Manifest,
+        FindingKind::Assignment,
+        FindingKind::EarlierRuns,
+        FindingKind::HiddenState,
+        FindingKind::Clock,
+        FindingKind::SecondSession,
+        FindingKind::NotSigned,
     ];
 
     /// Returns the name for reports.
     pub fn title(self) -> &'static str {
         match self {
-            AuditKind::NothingExamined => "nothing examined",
-            AuditKind::Missing => "record missing",
-            AuditKind::Damaged => "record damaged",
-            AuditKind::Cut => "lines cut",
-            AuditKind::NotReached => "states not reproduced",
-            AuditKind::Unsaved => "lines not saved",
-            AuditKind::OtherProtocol => "other protocol",
-            AuditKind::Manifest => "run.toml edited",
-            AuditKind::Assignment => "not as assigned",
-            AuditKind::EarlierRuns => "earlier runs edited",
-            AuditKind::HiddenState => "hidden state viewed",
-            AuditKind::Clock => "clock changed",
-            AuditKind::SecondSession => "second session",
-            AuditKind::NotSigned => "archive not signed",
+            FindingKind::NothingExamined => "nothing examined",
+            FindingKind::Missing => "record missing",
+            FindingKind::Damaged => "record damaged",
+            FindingKind::Cut => "lines cut",
+            FindingKind::NotReached => "states not reproduced",
+            FindingKind::Unsaved => "lines not saved",
+            FindingKind::OtherProtocol => "other protocol",
+            FindingKind::Manifest => "run.toml edited",
+            FindingKind::Assignment => "not as assigned",
+            FindingKind::EarlierRuns => "earlier runs edited",
+            FindingKind::HiddenState => "hidden state viewed",
+            FindingKind::Clock => "clock changed",
+            FindingKind::SecondSession => "second session",
+            FindingKind::NotSigned => "archive not signed",
         }
     }
 }

@@ -1,14 +1,14 @@
 //! Recorded views of the hidden state of a seed whose sessions had not ended.
 
 use super::run_record::RunRecord;
-use super::{AuditFinding, AuditKind};
+use super::{AuditFinding, FindingKind};
 use crate::definition::Study;
-use novamind_record::clock::seconds;
+use novamind_record::clock::parse_seconds;
 use novamind_record::folder::manifest::Manifest;
 use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::Activity;
 use novamind_record::trajectory::{Line, Record};
-use novamind_session::lines_afterwards;
+use novamind_session::read_afterwards;
 
 /// The first moment at which a run showed hidden state.
 struct HiddenView {
@@ -21,9 +21,9 @@ struct HiddenView {
 
 /// Returns a finding for each run that showed the hidden state of a session's seed before that session ended. The record
 /// does not identify the viewer.
-pub(super) fn views(study: &Study, runs: &[&RunRecord]) -> Vec<AuditFinding> {
+pub(super) fn hidden_view_findings(study: &Study, runs: &[&RunRecord]) -> Vec<AuditFinding> {
     let sessions: Vec<(&RunRecord, &Manifest, Option<f64>)> =
-        runs.iter().filter_map(|run| session(study, run)).collect();
+        runs.iter().filter_map(|run| study_session(study, run)).collect();
     let finding = |run: &&RunRecord| {
         let manifest = run.manifest.as_ref()?;
         let view = first_view(run, manifest)?;
@@ -47,7 +47,7 @@ pub(super) fn views(study: &Study, runs: &[&RunRecord]) -> Vec<AuditFinding> {
             labels.join(", ")
         );
         Some(AuditFinding {
-            kind: AuditKind::HiddenState,
+            kind: FindingKind::HiddenState,
             run: run.id.clone(),
             participant: manifest.participant.clone(),
             line: view.line,
@@ -59,29 +59,32 @@ pub(super) fn views(study: &Study, runs: &[&RunRecord]) -> Vec<AuditFinding> {
 }
 
 /// Returns the run if it is a session of the study, with the time at which it ended, if it has.
-fn session<'a>(study: &Study, run: &'a RunRecord) -> Option<(&'a RunRecord, &'a Manifest, Option<f64>)> {
+fn study_session<'a>(
+    study: &Study,
+    run: &'a RunRecord,
+) -> Option<(&'a RunRecord, &'a Manifest, Option<f64>)> {
     run.stamp().filter(|stamp| stamp.digest == study.digest && !stamp.practice)?;
-    let end = run.trajectory.as_ref().ok().and_then(|trajectory| trajectory.end());
-    Some((run, run.manifest.as_ref()?, end.map(Line::moment)))
+    let end = run.trajectory.as_ref().ok().and_then(|trajectory| trajectory.end_line());
+    Some((run, run.manifest.as_ref()?, end.map(Line::at_seconds)))
 }
 
 fn first_view(run: &RunRecord, manifest: &Manifest) -> Option<HiddenView> {
     if manifest.mode == Mode::Debug {
-        let (seconds, at) = (seconds(&manifest.created), manifest.created.clone());
+        let (seconds, at) = (parse_seconds(&manifest.created), manifest.created.clone());
         let words = "this debug run shows the hidden state".to_owned();
         return Some(HiddenView { seconds, at, line: None, words });
     }
     let trajectory = run.trajectory.as_ref().ok()?;
-    let afterwards = lines_afterwards(&run.folder, trajectory).map_or(Vec::new(), |after| after.lines);
+    let afterwards = read_afterwards(&run.folder, trajectory).map_or(Vec::new(), |after| after.lines);
     let mut views = trajectory.lines.iter().chain(&afterwards).filter(|line| is_view(line));
     let first = views.next()?;
     let words = match views.count() {
         0 => "its record has 1 view of the hidden state".to_owned(),
         more => format!("its record has {} views of the hidden state", more + 1),
     };
-    Some(HiddenView { seconds: first.moment(), at: first.at.clone(), line: Some(first.seq + 1), words })
+    Some(HiddenView { seconds: first.at_seconds(), at: first.at.clone(), line: Some(first.seq + 1), words })
 }
 
 fn is_view(line: &Line) -> bool {
-    matches!(line.record, Record::Activity(Activity::Xray(_)))
+    matches!(line.record, Record::Activity(Activity::Inspection(_)))
 }

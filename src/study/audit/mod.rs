@@ -17,22 +17,22 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 pub use facts::RunFacts;
-pub use finding::{AuditFinding, AuditKind};
+pub use finding::{AuditFinding, FindingKind};
 
-use crate::definition::{Study, shortened};
-use crate::visit_log::{VISITS, VisitLine, VisitSummary, finished_without_run, visits_of};
-use novamind_record::clock::seconds;
+use crate::definition::{Study, shorten_digest};
+use crate::visit_log::{VISITS_FILE, VisitLine, VisitSummary, finished_without_run, read_study_visits};
+use novamind_record::clock::parse_seconds;
 use novamind_record::error::RunError;
-use novamind_record::folder::derived::departures_of_file;
 use novamind_record::folder::manifest::Manifest;
+use novamind_record::folder::manifest_check::manifest_differences;
 use novamind_record::rules::SessionRules;
 use novamind_record::trajectory::{Line, Trajectory};
-use novamind_session::{Integrity, lines_afterwards, verify_sealed};
-use run_record::{RunRecord, runs_in};
+use novamind_session::{Integrity, read_afterwards, verify_sealed};
+use run_record::{RunRecord, read_runs};
 
 /// The result of an audit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Audit {
+pub struct AuditReport {
     /// Runs of the study, sorted by participant and run.
     pub runs: Vec<RunFacts>,
     /// Findings, sorted by run, line and kind.
@@ -47,32 +47,32 @@ pub struct Audit {
 ///
 /// # Errors
 /// Fails if the public key of the lab cannot be read.
-pub fn audit(study: &Study, machines: &[PathBuf]) -> Result<Audit, RunError> {
-    let records: Vec<Vec<RunRecord>> = machines.iter().map(|base| runs_in(base)).collect();
-    let mut audit = Audit {
+pub fn audit_study(study: &Study, machines: &[PathBuf]) -> Result<AuditReport, RunError> {
+    let records: Vec<Vec<RunRecord>> = machines.iter().map(|base| read_runs(base)).collect();
+    let mut audit = AuditReport {
         runs: Vec::new(),
         findings: Vec::new(),
         runs_of_other_studies: 0,
         visits: VisitSummary::default(),
     };
     for machine in &records {
-        for run in machine.iter().filter(|run| run.is_of(&study.digest)) {
-            let own = Inspection { study, machine, run };
+        for run in machine.iter().filter(|run| run.belongs_to_study(&study.digest)) {
+            let own = RunAudit { study, machine, run };
             audit.findings.extend(own.findings());
             audit.runs.extend(own.facts());
         }
     }
     let all: Vec<&RunRecord> = records.iter().flatten().collect();
-    audit.findings.extend(nothing_examined(study, &all, machines));
-    audit.findings.extend(all.iter().filter_map(|run| not_examined(study, run)));
-    audit.runs_of_other_studies = all.iter().filter(|run| run.is_of_another_study(study)).count();
-    audit.findings.extend(hidden_state::views(study, &all));
-    audit.findings.extend(second_sessions(study, &all));
-    audit.findings.extend(archives::not_signed(study, machines)?);
+    audit.findings.extend(nothing_examined_finding(study, &all, machines));
+    audit.findings.extend(all.iter().filter_map(|run| unexamined_run_finding(study, run)));
+    audit.runs_of_other_studies = all.iter().filter(|run| run.belongs_to_another_study(study)).count();
+    audit.findings.extend(hidden_state::hidden_view_findings(study, &all));
+    audit.findings.extend(duplicate_sessions(study, &all));
+    audit.findings.extend(archives::unsigned_archives(study, machines)?);
     let with_runs = audit.runs.iter().filter_map(|run| run.participant.as_deref()).collect();
-    let visits = visits_of(study, machines);
-    audit.visits = VisitSummary::of(&visits, &with_runs);
-    let gone = finished_without_run(&visits, &with_runs).into_iter().map(run_gone);
+    let visits = read_study_visits(study, machines);
+    audit.visits = VisitSummary::from_lines(&visits, &with_runs);
+    let gone = finished_without_run(&visits, &with_runs).into_iter().map(missing_run_finding);
     audit.findings.extend(gone);
     audit.runs.sort_by(|one, other| (&one.participant, &one.run).cmp(&(&other.participant, &other.run)));
     audit.findings.sort_by(|one, other| {
@@ -88,19 +88,23 @@ pub fn audit(study: &Study, machines: &[PathBuf]) -> Result<Audit, RunError> {
     Ok(audit)
 }
 
-fn run_gone(visit: &VisitLine) -> AuditFinding {
+fn missing_run_finding(visit: &VisitLine) -> AuditFinding {
     AuditFinding {
-        kind: AuditKind::Missing,
+        kind: FindingKind::Missing,
         run: String::new(),
         participant: Some(visit.label.clone()),
         line: None,
         at: visit.at.clone(),
-        words: format!("{VISITS} records that this participant finished, but there is no run of theirs"),
+        words: format!("{VISITS_FILE} records that this participant finished, but there is no run of theirs"),
     }
 }
 
-fn nothing_examined(study: &Study, runs: &[&RunRecord], machines: &[PathBuf]) -> Option<AuditFinding> {
-    if runs.iter().any(|run| run.is_of(&study.digest)) {
+fn nothing_examined_finding(
+    study: &Study,
+    runs: &[&RunRecord],
+    machines: &[PathBuf],
+) -> Option<AuditFinding> {
+    if runs.iter().any(|run| run.belongs_to_study(&study.digest)) {
         return None;
     }
     let folders: Vec<String> = machines.iter().map(|folder| folder.display().to_string()).collect();
@@ -111,7 +115,7 @@ fn nothing_examined(study: &Study, runs: &[&RunRecord], machines: &[PathBuf]) ->
         folders.join(", ")
     );
     Some(AuditFinding {
-        kind: AuditKind::NothingExamined,
+        kind: FindingKind::NothingExamined,
         run: String::new(),
         participant: None,
         line: None,
@@ -121,11 +125,11 @@ fn nothing_examined(study: &Study, runs: &[&RunRecord], machines: &[PathBuf]) ->
 }
 
 /// Returns a finding on a run that could not be examined although it may belong to the study.
-fn not_examined(study: &Study, run: &RunRecord) -> Option<AuditFinding> {
+fn unexamined_run_finding(study: &Study, run: &RunRecord) -> Option<AuditFinding> {
     let (kind, at, words) = match (&run.manifest, run.stamp()) {
         (None, _) => {
             let words = "neither its first line nor run.toml can be read, so its study is unknown".to_owned();
-            (AuditKind::Damaged, String::new(), words)
+            (FindingKind::Damaged, String::new(), words)
         }
         (Some(manifest), Some(stamp))
             if stamp.name == study.protocol.name && stamp.digest != study.digest =>
@@ -133,10 +137,10 @@ fn not_examined(study: &Study, run: &RunRecord) -> Option<AuditFinding> {
             let words = format!(
                 "it was played under the protocol digest {}, not {}. It was not examined. Audit it with the study \
                  folder that has its digest",
-                shortened(&stamp.digest),
+                shorten_digest(&stamp.digest),
                 study.short_digest()
             );
-            (AuditKind::OtherProtocol, manifest.created.clone(), words)
+            (FindingKind::OtherProtocol, manifest.created.clone(), words)
         }
         _ => return None,
     };
@@ -145,96 +149,96 @@ fn not_examined(study: &Study, run: &RunRecord) -> Option<AuditFinding> {
 }
 
 /// A run and all runs of its machine.
-struct Inspection<'a> {
+struct RunAudit<'a> {
     study: &'a Study,
     machine: &'a [RunRecord],
     run: &'a RunRecord,
 }
 
-impl Inspection<'_> {
+impl RunAudit<'_> {
     fn participant(&self) -> Option<String> {
         self.run.manifest.as_ref().and_then(|manifest| manifest.participant.clone())
     }
 
-    fn finding(&self, kind: AuditKind, line: Option<u64>, at: &str, words: String) -> AuditFinding {
+    fn finding(&self, kind: FindingKind, line: Option<u64>, at: &str, words: String) -> AuditFinding {
         let (run, participant) = (self.run.id.clone(), self.participant());
         AuditFinding { kind, run, participant, line, at: at.to_owned(), words }
     }
 
     fn facts(&self) -> Option<RunFacts> {
         let trajectory = self.run.trajectory.as_ref().ok()?;
-        RunFacts::of(self.run.manifest.as_ref()?, trajectory)
+        RunFacts::from_trajectory(self.run.manifest.as_ref()?, trajectory)
     }
 
     fn findings(&self) -> Vec<AuditFinding> {
-        let mut found = self.unsaved();
+        let mut found = self.check_unsaved_lines();
         match &self.run.trajectory {
             Err(RunError::Damaged { line, problem, .. }) => {
-                found.push(self.finding(AuditKind::Damaged, Some(*line as u64), "", problem.clone()));
+                found.push(self.finding(FindingKind::Damaged, Some(*line as u64), "", problem.clone()));
             }
             Err(problem) => {
-                found.push(self.finding(AuditKind::Missing, None, "", problem.to_string()));
+                found.push(self.finding(FindingKind::Missing, None, "", problem.to_string()));
             }
             Ok(trajectory) => {
-                let afterwards = lines_afterwards(&self.run.folder, trajectory);
-                let damaged = |problem| self.finding(AuditKind::Damaged, None, "", problem);
+                let afterwards = read_afterwards(&self.run.folder, trajectory);
+                let damaged = |problem| self.finding(FindingKind::Damaged, None, "", problem);
                 found.extend(afterwards.as_ref().err().map(|problem| damaged(problem.to_string())));
                 let afterwards = afterwards.map_or(Vec::new(), |after| after.lines);
-                found.extend(self.beside_database(trajectory));
-                found.extend(self.simulated());
-                found.extend(self.manifest());
-                found.extend(self.assigned(trajectory));
-                found.extend(self.clock(trajectory, &afterwards));
-                found.extend(self.earlier_runs());
+                found.extend(self.check_against_database(trajectory));
+                found.extend(self.check_simulation());
+                found.extend(self.check_manifest());
+                found.extend(self.check_assignment(trajectory));
+                found.extend(self.check_clock(trajectory, &afterwards));
+                found.extend(self.check_earlier_runs());
             }
         }
         found
     }
 
     /// Returns findings on files with lines that could not be appended to the trajectory.
-    fn unsaved(&self) -> Vec<AuditFinding> {
+    fn check_unsaved_lines(&self) -> Vec<AuditFinding> {
         let entries = std::fs::read_dir(&self.run.folder).into_iter().flatten().flatten();
         let names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
         let unsaved = names.filter(|name| name.starts_with("trajectory-unsaved"));
         let words = |name: String| {
             format!("{name}: the trajectory was moved, removed or replaced while the run was played")
         };
-        unsaved.map(|name| self.finding(AuditKind::Unsaved, None, "", words(name))).collect()
+        unsaved.map(|name| self.finding(FindingKind::Unsaved, None, "", words(name))).collect()
     }
 
     /// Returns a finding if simulation does not reproduce the recorded states.
-    fn simulated(&self) -> Option<AuditFinding> {
+    fn check_simulation(&self) -> Option<AuditFinding> {
         let problem = verify_sealed(&self.run.folder.join("trajectory.jsonl"), &self.study.seal_key).err()?;
         let line = match &problem {
             RunError::Damaged { line, .. } => Some(*line as u64),
             _ => None,
         };
-        Some(self.finding(AuditKind::NotReached, line, "", problem.to_string()))
+        Some(self.finding(FindingKind::NotReached, line, "", problem.to_string()))
     }
 
     /// Returns a finding if the database or the snapshot contains lines that the trajectory lacks.
-    fn beside_database(&self, trajectory: &Trajectory) -> Option<AuditFinding> {
+    fn check_against_database(&self, trajectory: &Trajectory) -> Option<AuditFinding> {
         let manifest = self.run.manifest.as_ref()?;
         let path = self.run.folder.join("trajectory.jsonl");
-        let integrity = Integrity::of(&self.run.folder, manifest, &self.study.seal_key);
+        let integrity = Integrity::read(&self.run.folder, manifest, &self.study.seal_key);
         match integrity.check(&path, trajectory).err()? {
             RunError::Damaged { line, problem, .. } => {
-                Some(self.finding(AuditKind::Cut, Some(line as u64), "", problem))
+                Some(self.finding(FindingKind::Cut, Some(line as u64), "", problem))
             }
-            other => Some(self.finding(AuditKind::Cut, None, "", other.to_string())),
+            other => Some(self.finding(FindingKind::Cut, None, "", other.to_string())),
         }
     }
 
     /// Returns findings on contradictions between `run.toml` and the first line.
-    fn manifest(&self) -> Vec<AuditFinding> {
+    fn check_manifest(&self) -> Vec<AuditFinding> {
         let told = self.run.manifest.iter();
-        told.flat_map(|told| departures_of_file(&self.run.folder, told))
-            .map(|words| self.finding(AuditKind::Manifest, Some(1), "", words))
+        told.flat_map(|told| manifest_differences(&self.run.folder, told))
+            .map(|words| self.finding(FindingKind::Manifest, Some(1), "", words))
             .collect()
     }
 
     /// Returns findings if participant, seed, condition, rules or consent differ from the study.
-    fn assigned(&self, trajectory: &Trajectory) -> Vec<AuditFinding> {
+    fn check_assignment(&self, trajectory: &Trajectory) -> Vec<AuditFinding> {
         let (Some(manifest), Some(first)) = (&self.run.manifest, trajectory.lines.first()) else {
             return Vec::new();
         };
@@ -251,14 +255,14 @@ impl Inspection<'_> {
         }
         // Earlier builds recorded `code_words`, which does not affect a run.
         let rules = SessionRules { code_words: None, ..manifest.recorded_rules() };
-        if rules != self.study.rules() {
+        if rules != self.study.session_rules() {
             wrong.push("its rules differ from those of the protocol".to_owned());
         }
         if self.study.consent.is_some() && manifest.consent.is_none() {
             wrong.push("it records no consent to the text of the study".to_owned());
         }
         let stamp = manifest.study.as_ref();
-        match self.study.assignment.as_ref().map(|assignment| assignment.place(&label)) {
+        match self.study.assignment.as_ref().map(|assignment| assignment.row_for(&label)) {
             Some(None) => wrong.push(format!("{label} is not in the assignment")),
             Some(Some(place)) => {
                 let practice = stamp.is_some_and(|stamp| stamp.practice);
@@ -276,27 +280,27 @@ impl Inspection<'_> {
         }
         wrong
             .into_iter()
-            .map(|words| self.finding(AuditKind::Assignment, Some(1), &first.at, words))
+            .map(|words| self.finding(FindingKind::Assignment, Some(1), &first.at, words))
             .collect()
     }
 
-    fn clock(&self, trajectory: &Trajectory, afterwards: &[Line]) -> Vec<AuditFinding> {
+    fn check_clock(&self, trajectory: &Trajectory, afterwards: &[Line]) -> Vec<AuditFinding> {
         // The closing line of the last sitting follows the end of the run.
         let changes = clock::clock_changes(trajectory.lines.iter().chain(afterwards)).into_iter();
         changes
-            .map(|(line, words)| self.finding(AuditKind::Clock, Some(line.seq + 1), &line.at, words))
+            .map(|(line, words)| self.finding(FindingKind::Clock, Some(line.seq + 1), &line.at, words))
             .collect()
     }
 
     /// Returns findings on older runs of the participant that the first line does not list.
-    fn earlier_runs(&self) -> Vec<AuditFinding> {
+    fn check_earlier_runs(&self) -> Vec<AuditFinding> {
         let Some(manifest) = &self.run.manifest else { return Vec::new() };
-        let began = seconds(&manifest.created);
+        let began = parse_seconds(&manifest.created);
         let unlisted = self.machine.iter().filter_map(|run| run.manifest.as_ref()).filter(|other| {
             other.participant == manifest.participant
                 && other.id != manifest.id
                 && other.parent.is_none()
-                && seconds(&other.created) < began
+                && parse_seconds(&other.created) < began
                 && !manifest.earlier.iter().any(|known| known.run == other.id)
         });
         unlisted
@@ -305,16 +309,16 @@ impl Inspection<'_> {
                     "run {} of this participant is older, and the first line does not list it",
                     other.id
                 );
-                self.finding(AuditKind::EarlierRuns, Some(1), &manifest.created, words)
+                self.finding(FindingKind::EarlierRuns, Some(1), &manifest.created, words)
             })
             .collect()
     }
 }
 
 /// Returns a finding for each participant with more than one session.
-fn second_sessions(study: &Study, runs: &[&RunRecord]) -> Vec<AuditFinding> {
+fn duplicate_sessions(study: &Study, runs: &[&RunRecord]) -> Vec<AuditFinding> {
     let mut sessions: BTreeMap<String, Vec<&RunRecord>> = BTreeMap::new();
-    for run in runs.iter().filter(|run| run.is_of(&study.digest)) {
+    for run in runs.iter().filter(|run| run.belongs_to_study(&study.digest)) {
         let Some(manifest) = &run.manifest else { continue };
         if manifest.study.as_ref().is_some_and(|stamp| !stamp.practice) {
             let known = sessions.entry(manifest.participant.clone().unwrap_or_default()).or_default();
@@ -330,7 +334,7 @@ fn second_sessions(study: &Study, runs: &[&RunRecord]) -> Vec<AuditFinding> {
             let names =
                 runs.iter().map(|run| run.folder.display().to_string()).collect::<Vec<_>>().join(", ");
             let finding = move |run: &RunRecord| AuditFinding {
-                kind: AuditKind::SecondSession,
+                kind: FindingKind::SecondSession,
                 run: run.id.clone(),
                 participant: Some(label.clone()),
                 line: None,

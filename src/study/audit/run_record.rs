@@ -19,7 +19,7 @@ pub(super) struct RunRecord {
 }
 
 /// Reads every run in a machine's folder of runs, those of participants included, ordered by path.
-pub(super) fn runs_in(base: &Path) -> Vec<RunRecord> {
+pub(super) fn read_runs(base: &Path) -> Vec<RunRecord> {
     let folders = all_run_folders(base);
     let entries = |folder: &PathBuf| std::fs::read_dir(folder).into_iter().flatten().flatten();
     let mut places: Vec<PathBuf> = folders.iter().flat_map(entries).map(|entry| entry.path()).collect();
@@ -34,7 +34,7 @@ impl RunRecord {
         let path = folder.join("trajectory.jsonl");
         let trajectory = Trajectory::read(&path);
         let first = trajectory.as_ref().ok().and_then(|trajectory| trajectory.lines.first());
-        let manifest = Manifest::of_start(&path, first).ok();
+        let manifest = Manifest::from_start_line(&path, first).ok();
         // The manifest may identify a run whose trajectory cannot be read.
         let manifest = manifest.or_else(|| Manifest::read(&folder).ok());
         RunRecord { id, folder, manifest, trajectory }
@@ -45,12 +45,12 @@ impl RunRecord {
     }
 
     /// Whether the run belongs to the study with this digest.
-    pub(super) fn is_of(&self, study: &str) -> bool {
+    pub(super) fn belongs_to_study(&self, study: &str) -> bool {
         self.stamp().is_some_and(|stamp| stamp.digest == study)
     }
 
     /// Whether the run belongs to a study with another name.
-    pub(super) fn is_of_another_study(&self, study: &Study) -> bool {
+    pub(super) fn belongs_to_another_study(&self, study: &Study) -> bool {
         self.stamp().is_some_and(|stamp| stamp.digest != study.digest && stamp.name != study.protocol.name)
     }
 }

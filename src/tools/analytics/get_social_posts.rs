@@ -2,57 +2,62 @@ use std::borrow::Cow;
 
 use serde::Serialize;
 
-use super::super::arguments::{Arguments, integer, wrong_type};
+use super::super::arguments::{Arguments, json_i64, wrong_type_rejection};
 use super::super::{
-    Argument, ArgumentKind, Kind, Module, Output, Planned, PublicPost, Range, Refusal, Spec, Tool, ToolId,
-    View, When,
+    Argument, ArgumentKind, EffectTiming, NumberRange, PlannedCall, PublicPost, Rejection, ResultField, Tool,
+    ToolContext, ToolId, ToolKind, ToolModule, ToolSpec,
 };
 use novamind_world::identifiers::Group;
 
-/// The tool `get_social_posts`.
+/// The tool `get_social_posts_returns_newest_first`.
 pub struct GetSocialPosts;
 
-const ANY: ArgumentKind = ArgumentKind::Integer(Range::between(f64::NEG_INFINITY, f64::INFINITY));
+const ANY_INTEGER: ArgumentKind =
+    ArgumentKind::Integer(NumberRange::between(f64::NEG_INFINITY, f64::INFINITY));
 
-static SPEC: Spec = Spec {
+static SPEC: ToolSpec = ToolSpec {
     id: ToolId::GetSocialPosts,
     code: "FEED",
-    module: Module::Analytics,
-    kind: Kind::Read,
+    module: ToolModule::Analytics,
+    kind: ToolKind::Read,
     summary: "Read public posts of others, newest first",
     arguments: &[
         Argument {
             name: "days",
             alias: None,
-            kind: ANY,
+            kind: ANY_INTEGER,
             required: false,
             unit: "days",
-            doc: "accepted but ignored: the newest posts of all time are returned",
+            description: "accepted but ignored: the newest posts of all time are returned",
         },
         Argument {
             name: "limit",
             alias: None,
-            kind: ANY,
+            kind: ANY_INTEGER,
             required: false,
             unit: "posts",
-            doc: "maximum number, {limits.get_social_posts_default_limit} if left out; 0 for none, a negative number for all",
+            description: "maximum number, {limits.get_social_posts_default_limit} if left out; 0 for none, a negative number for all",
         },
     ],
-    own_unknown: false,
-    whole: None,
-    when: When::Never,
+    has_own_unknown_code: false,
+    unnamed_argument: None,
+    effect_timing: EffectTiming::Never,
     effect: "",
     cost: "nothing",
-    writes: &[],
-    refusals: &[],
-    returns: &[
-        Output {
+    written_tables: &[],
+    rejection_codes: &[],
+    result_fields: &[
+        ResultField {
             name: "posts",
             kind: "list of {post_id, day, content, reply_to_agent_post_id, source_group_id, group_id, customer_type, custom_name, persona_name, replying_to_your_post}",
-            doc: "group of the author; the press writes as S1; the last field is present only on comments on \
+            description: "group of the author; the press writes as S1; the last field is present only on comments on \
                   your posts",
         },
-        Output { name: "total", kind: "integer", doc: "number of returned posts; absent if there are none" },
+        ResultField {
+            name: "total",
+            kind: "integer",
+            description: "number of returned posts; absent if there are none",
+        },
     ],
     example: r#"{"limit": 1}"#,
 };
@@ -61,7 +66,7 @@ static SPEC: Spec = Spec {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PostLimit {
     /// The default number.
-    Usual,
+    Default,
     /// At most this number.
     Newest(usize),
     /// No limit.
@@ -108,38 +113,39 @@ impl Tool for GetSocialPosts {
     type Args = PostLimit;
     type Answer = SocialPosts;
 
-    fn spec(&self) -> &'static Spec {
+    fn spec(&self) -> &'static ToolSpec {
         &SPEC
     }
 
-    fn read(&self, _: &View<'_>, arguments: &Arguments) -> Result<PostLimit, Refusal> {
+    fn read(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<PostLimit, Rejection> {
         let number = |name| {
-            arguments
-                .read(name, |value, name| integer(value).ok_or_else(|| wrong_type(name, "a whole number")))
+            arguments.read(name, |value, name| {
+                json_i64(value).ok_or_else(|| wrong_type_rejection(name, "a whole number"))
+            })
         };
         number("days")?;
         Ok(match number("limit")? {
-            None => PostLimit::Usual,
+            None => PostLimit::Default,
             Some(limit) => usize::try_from(limit).map_or(PostLimit::All, PostLimit::Newest),
         })
     }
 
-    fn plan(&self, view: &View<'_>, limit: PostLimit) -> Result<Planned<SocialPosts>, Refusal> {
+    fn plan(&self, view: &ToolContext<'_>, limit: PostLimit) -> Result<PlannedCall<SocialPosts>, Rejection> {
         let limit = match limit {
-            PostLimit::Usual => {
+            PostLimit::Default => {
                 usize::try_from(view.params().limits.get_social_posts_default_limit).unwrap_or(usize::MAX)
             }
             PostLimit::Newest(limit) => limit,
             PostLimit::All => usize::MAX,
         };
         let newest = view.posts().iter().rev().take(limit);
-        let posts: Vec<SocialPost> = newest.map(|post| told(post, view)).collect();
+        let posts: Vec<SocialPost> = newest.map(|post| to_social_post(post, view)).collect();
         let total = (!posts.is_empty()).then_some(posts.len());
-        Ok(Planned::reading(SocialPosts { posts, total }))
+        Ok(PlannedCall::read_only(SocialPosts { posts, total }))
     }
 }
 
-fn told(post: &PublicPost, view: &View<'_>) -> SocialPost {
+fn to_social_post(post: &PublicPost, view: &ToolContext<'_>) -> SocialPost {
     // The market observer counts as an individual of the first group.
     let group = post.written_by.or_else(|| Group::at(0));
     let company = group.is_some_and(Group::is_enterprise);

@@ -3,65 +3,71 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::super::arguments::{
-    Arguments, as_data, per_customer, per_group, per_group_plan, per_plan, replace,
+    Arguments, parse_per_customer, parse_per_group, parse_per_group_plan, parse_per_plan, replace_if_given,
+    to_json,
 };
 use super::super::marketing::BUDGET;
 use super::super::{
-    Argument, ArgumentKind, Key, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View,
-    When,
+    Argument, ArgumentKind, EffectTiming, MapKey, NumberRange, PlannedCall, Rejection, ResultField, Tool,
+    ToolContext, ToolId, ToolKind, ToolModule, ToolSpec,
 };
 use novamind_world::identifiers::Group;
 use novamind_world::settings::{PerCustomer, PerGroup, PerPlan, Settings, SettingsChange};
 
-/// The tool `set_targeted_ops_spend`.
+/// The tool `set_targeted_ops_spend_keeps_other_scopes`.
 pub struct SetTargetedOpsSpend;
 
-const fn scope(
+const fn scope_argument(
     name: &'static str,
     alias: Option<&'static str>,
     kind: ArgumentKind,
     doc: &'static str,
 ) -> Argument {
-    Argument { name, alias, kind, required: false, unit: "$/day", doc }
+    Argument { name, alias, kind, required: false, unit: "$/day", description: doc }
 }
 
-static SPEC: Spec = Spec {
+static SPEC: ToolSpec = ToolSpec {
     id: ToolId::SetTargetedOpsSpend,
     code: "TOPS",
-    module: Module::Analytics,
-    kind: Kind::Setting,
+    module: ToolModule::Analytics,
+    kind: ToolKind::Setting,
     summary: "Set extra support budgets for groups, plans or customers",
     arguments: &[
-        scope(
+        scope_argument(
             "by_group",
             Some("targeted_spend"),
-            ArgumentKind::Map(Key::Group, Range::AT_LEAST_ZERO),
+            ArgumentKind::Map(MapKey::Group, NumberRange::AT_LEAST_ZERO),
             "issues of a group",
         ),
-        scope("by_plan", None, ArgumentKind::Map(Key::Plan, Range::AT_LEAST_ZERO), "issues on a plan"),
-        scope(
+        scope_argument(
+            "by_plan",
+            None,
+            ArgumentKind::Map(MapKey::Plan, NumberRange::AT_LEAST_ZERO),
+            "issues on a plan",
+        ),
+        scope_argument(
             "by_group_plan",
             None,
-            ArgumentKind::Matrix(Key::Group, Key::Plan, Range::AT_LEAST_ZERO),
+            ArgumentKind::Matrix(MapKey::Group, MapKey::Plan, NumberRange::AT_LEAST_ZERO),
             "issues of a group on a plan",
         ),
-        scope(
+        scope_argument(
             "by_customer",
             None,
-            ArgumentKind::Map(Key::Customer, Range::AT_LEAST_ZERO),
+            ArgumentKind::Map(MapKey::Customer, NumberRange::AT_LEAST_ZERO),
             "the issue of one customer",
         ),
     ],
-    own_unknown: false,
-    whole: Some("targeted_spend"),
-    when: When::NextDay,
+    has_own_unknown_code: false,
+    unnamed_argument: Some("targeted_spend"),
+    effect_timing: EffectTiming::NextDay,
     effect: "Every entry resolves open issues of its scope after the general budget: about \
              {issues.individual_ops_scale} per day and dollar for individuals, {issues.enterprise_ops_scale} \
              for enterprises. It does not affect outages. A map replaces its whole scope, {} clears it, and a \
              scope that is left out does not change.",
     cost: "the sum of all entries on every simulated day, even without open issues",
-    writes: &["config_overrides"],
-    refusals: &[
+    written_tables: &["config_overrides"],
+    rejection_codes: &[
         "both_aliases",
         "not_a_map",
         "unknown_group",
@@ -70,13 +76,17 @@ static SPEC: Spec = Spec {
         "customer_not_integer",
         "amount_too_large",
     ],
-    returns: &[
-        Output { name: "by_group", kind: "map group -> number", doc: "$/day" },
-        Output { name: "by_plan", kind: "map plan -> number", doc: "$/day" },
-        Output { name: "by_group_plan", kind: "map group -> map plan -> number", doc: "$/day" },
-        Output { name: "by_customer", kind: "map customer -> number", doc: "$/day" },
-        Output { name: "total_extra_per_day", kind: "number", doc: "sum of all scopes, $/day" },
-        Output { name: "targeted_spend", kind: "map group -> number", doc: "the same as by_group" },
+    result_fields: &[
+        ResultField { name: "by_group", kind: "map group -> number", description: "$/day" },
+        ResultField { name: "by_plan", kind: "map plan -> number", description: "$/day" },
+        ResultField { name: "by_group_plan", kind: "map group -> map plan -> number", description: "$/day" },
+        ResultField { name: "by_customer", kind: "map customer -> number", description: "$/day" },
+        ResultField { name: "total_extra_per_day", kind: "number", description: "sum of all scopes, $/day" },
+        ResultField {
+            name: "targeted_spend",
+            kind: "map group -> number",
+            description: "the same as by_group",
+        },
     ],
     example: r#"{"by_group": {"E2": 90}}"#,
 };
@@ -110,41 +120,46 @@ impl Tool for SetTargetedOpsSpend {
     type Args = SupportScopes;
     type Answer = SupportBudgets;
 
-    fn spec(&self) -> &'static Spec {
+    fn spec(&self) -> &'static ToolSpec {
         &SPEC
     }
 
     fn current(&self, settings: &Settings) -> Map<String, Value> {
-        match as_data(&settings.targeted_operations) {
+        match to_json(&settings.targeted_operations) {
             Value::Object(map) => map,
             _ => Map::new(),
         }
     }
 
-    fn read(&self, view: &View<'_>, arguments: &Arguments) -> Result<SupportScopes, Refusal> {
+    fn read(&self, view: &ToolContext<'_>, arguments: &Arguments) -> Result<SupportScopes, Rejection> {
         let field = match (arguments.get("by_group"), arguments.get("targeted_spend")) {
             (Some(_), Some(_)) => {
                 let message = "give targeted_spend or by_group, not both";
-                return Err(Refusal::at("targeted_spend", "both_aliases", message));
+                return Err(Rejection::for_field("targeted_spend", "both_aliases", message));
             }
             (Some(_), None) => "by_group",
             (None, _) => "targeted_spend",
         };
         Ok(SupportScopes {
-            by_group: arguments.read(field, |value, name| per_group(value, name, BUDGET, view))?,
-            by_plan: arguments.read("by_plan", |value, name| per_plan(value, name, BUDGET))?,
+            by_group: arguments.read(field, |value, name| parse_per_group(value, name, BUDGET, view))?,
+            by_plan: arguments.read("by_plan", |value, name| parse_per_plan(value, name, BUDGET))?,
             by_group_plan: arguments
-                .read("by_group_plan", |value, name| per_group_plan(value, name, BUDGET, view))?,
-            by_customer: arguments.read("by_customer", |value, name| per_customer(value, name, BUDGET))?,
+                .read("by_group_plan", |value, name| parse_per_group_plan(value, name, BUDGET, view))?,
+            by_customer: arguments
+                .read("by_customer", |value, name| parse_per_customer(value, name, BUDGET))?,
         })
     }
 
-    fn plan(&self, view: &View<'_>, given: SupportScopes) -> Result<Planned<SupportBudgets>, Refusal> {
+    fn plan(
+        &self,
+        view: &ToolContext<'_>,
+        given: SupportScopes,
+    ) -> Result<PlannedCall<SupportBudgets>, Rejection> {
         let mut operations = view.settings().targeted_operations.clone();
-        replace(&mut operations.by_group, given.by_group);
-        replace(&mut operations.by_plan, given.by_plan);
-        replace(&mut operations.by_group_plan, given.by_group_plan);
-        replace(&mut operations.by_customer, given.by_customer);
+        replace_if_given(&mut operations.by_group, given.by_group);
+        replace_if_given(&mut operations.by_plan, given.by_plan);
+        replace_if_given(&mut operations.by_group_plan, given.by_group_plan);
+        replace_if_given(&mut operations.by_customer, given.by_customer);
         let own = operations.clone();
         let answer = SupportBudgets {
             targeted_spend: own.by_group.clone(),
@@ -154,6 +169,6 @@ impl Tool for SetTargetedOpsSpend {
             by_customer: own.by_customer,
             total_extra_per_day: operations.total(),
         };
-        Ok(Planned::setting(SettingsChange::TargetedOperations(operations), answer))
+        Ok(PlannedCall::with_settings_change(SettingsChange::TargetedOperations(operations), answer))
     }
 }

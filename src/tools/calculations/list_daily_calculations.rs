@@ -1,31 +1,34 @@
 use serde::Serialize;
 
 use super::super::arguments::Arguments;
-use super::super::keeping::owned;
-use super::super::{Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When};
-use super::kept;
+use super::super::stored_code::to_owned_names;
+use super::super::{
+    EffectTiming, PlannedCall, Rejection, ResultField, Tool, ToolContext, ToolId, ToolKind, ToolModule,
+    ToolSpec,
+};
+use super::calculations;
 
 /// The tool `list_daily_calculations`.
 pub struct ListDailyCalculations;
 
-static SPEC: Spec = Spec {
+static SPEC: ToolSpec = ToolSpec {
     id: ToolId::ListDailyCalculations,
     code: "CALCS",
-    module: Module::Time,
-    kind: Kind::Engine,
+    module: ToolModule::Time,
+    kind: ToolKind::Engine,
     summary: "List the names of the registered calculations",
     arguments: &[],
-    own_unknown: false,
-    whole: None,
-    when: When::Never,
+    has_own_unknown_code: false,
+    unnamed_argument: None,
+    effect_timing: EffectTiming::Never,
     effect: "",
     cost: "nothing",
-    writes: &[],
-    refusals: &[],
-    returns: &[Output {
+    written_tables: &[],
+    rejection_codes: &[],
+    result_fields: &[ResultField {
         name: "calculations",
         kind: "list of text",
-        doc: "names in the order in which they were registered",
+        description: "names in the order in which they were registered",
     }],
     example: r#"{}"#,
 };
@@ -41,15 +44,15 @@ impl Tool for ListDailyCalculations {
     type Args = ();
     type Answer = Calculations;
 
-    fn spec(&self) -> &'static Spec {
+    fn spec(&self) -> &'static ToolSpec {
         &SPEC
     }
 
-    fn read(&self, _: &View<'_>, _: &Arguments) -> Result<(), Refusal> {
+    fn read(&self, _: &ToolContext<'_>, _: &Arguments) -> Result<(), Rejection> {
         Ok(())
     }
 
-    fn plan(&self, view: &View<'_>, (): ()) -> Result<Planned<Calculations>, Refusal> {
-        Ok(Planned::reading(Calculations { calculations: owned(kept(view).names()) }))
+    fn plan(&self, view: &ToolContext<'_>, (): ()) -> Result<PlannedCall<Calculations>, Rejection> {
+        Ok(PlannedCall::read_only(Calculations { calculations: to_owned_names(calculations(view).names()) }))
     }
 }

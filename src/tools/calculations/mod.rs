@@ -8,20 +8,24 @@ pub use list_daily_calculations::ListDailyCalculations;
 pub use register_daily_calculation::RegisterDailyCalculation;
 pub use remove_daily_calculation::RemoveDailyCalculation;
 
-use super::notebook::{Kept, NamedStatements};
-use super::refusal::Refusal;
-use super::view::View;
+use super::notebook::{NamedStatements, NotebookSection};
+use super::rejection::Rejection;
+use super::tool_context::ToolContext;
 
-fn kept<'a>(view: &View<'a>) -> &'a NamedStatements {
-    view.surroundings().notebook().statements(Kept::Calculation)
+fn calculations<'a>(view: &ToolContext<'a>) -> &'a NamedStatements {
+    view.session().notebook().statements(NotebookSection::Calculation)
 }
 
-fn not_found(name: &str, view: &View<'_>) -> Refusal {
-    let names = kept(view).names();
+fn not_found_rejection(name: &str, view: &ToolContext<'_>) -> Rejection {
+    let names = calculations(view).names();
     let known = if names.is_empty() {
         "none is registered".to_owned()
     } else {
         format!("registered: {}", names.join(", "))
     };
-    Refusal::at("name", "calculation_not_found", format!("calculation {name} does not exist; {known}"))
+    Rejection::for_field(
+        "name",
+        "calculation_not_found",
+        format!("calculation {name} does not exist; {known}"),
+    )
 }

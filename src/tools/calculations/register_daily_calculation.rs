@@ -1,19 +1,20 @@
-use super::super::arguments::{Arguments, text};
-use super::super::keeping::{KeptCode, NamedCode};
+use super::super::arguments::{Arguments, text_argument};
 use super::super::notebook::QUOTA_EXCEEDED;
-use super::super::scripts::CODE;
+use super::super::scripts::CODE_DESCRIPTION;
+use super::super::stored_code::{NamedCode, StoredCode};
 use super::super::{
-    Argument, ArgumentKind, Kept, Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When,
+    Argument, ArgumentKind, EffectTiming, NotebookSection, PlannedCall, Rejection, ResultField, Tool,
+    ToolContext, ToolId, ToolKind, ToolModule, ToolSpec,
 };
 
 /// The tool `register_daily_calculation`.
 pub struct RegisterDailyCalculation;
 
-static SPEC: Spec = Spec {
+static SPEC: ToolSpec = ToolSpec {
     id: ToolId::RegisterDailyCalculation,
     code: "CALC",
-    module: Module::Time,
-    kind: Kind::Engine,
+    module: ToolModule::Time,
+    kind: ToolKind::Engine,
     summary: "Register a named calculation: it runs before every week, and the dashboard shows its output",
     arguments: &[
         Argument {
@@ -22,40 +23,50 @@ static SPEC: Spec = Spec {
             kind: ArgumentKind::Text,
             required: true,
             unit: "",
-            doc: "name of the calculation",
+            description: "name of the calculation",
         },
-        Argument { name: "code", alias: None, kind: ArgumentKind::Text, required: true, unit: "", doc: CODE },
+        Argument {
+            name: "code",
+            alias: None,
+            kind: ArgumentKind::Text,
+            required: true,
+            unit: "",
+            description: CODE_DESCRIPTION,
+        },
     ],
-    own_unknown: false,
-    whole: None,
-    when: When::NextDay,
+    has_own_unknown_code: false,
+    unnamed_argument: None,
+    effect_timing: EffectTiming::NextDay,
     effect: "From the next week on, the code runs before each week, on the state of the company at that time. The \
              dashboard shows the first {limits.dashboard_calculation_max_chars} characters of the output. A calculation of the same name is \
              replaced. At most 100 calculations are stored, each with a name of at \
              most 200 bytes and at most 262,144 bytes of code. Scripts and calculations together have at most 4,194,304 bytes.",
     cost: "nothing",
-    writes: &[],
-    refusals: &[QUOTA_EXCEEDED],
-    returns: &[
-        Output { name: "name", kind: "text", doc: "the name" },
-        Output { name: "code_length", kind: "integer", doc: "characters" },
+    written_tables: &[],
+    rejection_codes: &[QUOTA_EXCEEDED],
+    result_fields: &[
+        ResultField { name: "name", kind: "text", description: "the name" },
+        ResultField { name: "code_length", kind: "integer", description: "characters" },
     ],
     example: r#"{"name": "cash", "code": "SELECT SUM(amount) AS cash FROM ledger"}"#,
 };
 
 impl Tool for RegisterDailyCalculation {
     type Args = NamedCode;
-    type Answer = KeptCode;
+    type Answer = StoredCode;
 
-    fn spec(&self) -> &'static Spec {
+    fn spec(&self) -> &'static ToolSpec {
         &SPEC
     }
 
-    fn read(&self, _: &View<'_>, arguments: &Arguments) -> Result<NamedCode, Refusal> {
-        Ok(NamedCode { name: text(arguments, "name")?.to_owned(), code: text(arguments, "code")?.to_owned() })
+    fn read(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<NamedCode, Rejection> {
+        Ok(NamedCode {
+            name: text_argument(arguments, "name")?.to_owned(),
+            code: text_argument(arguments, "code")?.to_owned(),
+        })
     }
 
-    fn plan(&self, _: &View<'_>, given: NamedCode) -> Result<Planned<KeptCode>, Refusal> {
-        Ok(given.keep(Kept::Calculation))
+    fn plan(&self, _: &ToolContext<'_>, given: NamedCode) -> Result<PlannedCall<StoredCode>, Rejection> {
+        Ok(given.store(NotebookSection::Calculation))
     }
 }

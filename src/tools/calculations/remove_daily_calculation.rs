@@ -1,18 +1,19 @@
-use super::super::arguments::{Arguments, text};
-use super::super::keeping::Remaining;
+use super::super::arguments::{Arguments, text_argument};
+use super::super::stored_code::RemainingNames;
 use super::super::{
-    Argument, ArgumentKind, Kept, Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When,
+    Argument, ArgumentKind, EffectTiming, NotebookSection, PlannedCall, Rejection, ResultField, Tool,
+    ToolContext, ToolId, ToolKind, ToolModule, ToolSpec,
 };
-use super::{kept, not_found};
+use super::{calculations, not_found_rejection};
 
 /// The tool `remove_daily_calculation`.
 pub struct RemoveDailyCalculation;
 
-static SPEC: Spec = Spec {
+static SPEC: ToolSpec = ToolSpec {
     id: ToolId::RemoveDailyCalculation,
     code: "UNCAL",
-    module: Module::Time,
-    kind: Kind::Engine,
+    module: ToolModule::Time,
+    kind: ToolKind::Engine,
     summary: "Remove a named calculation",
     arguments: &[Argument {
         name: "name",
@@ -20,38 +21,40 @@ static SPEC: Spec = Spec {
         kind: ArgumentKind::Text,
         required: true,
         unit: "",
-        doc: "name of the calculation",
+        description: "name of the calculation",
     }],
-    own_unknown: false,
-    whole: None,
-    when: When::Now,
+    has_own_unknown_code: false,
+    unnamed_argument: None,
+    effect_timing: EffectTiming::Now,
     effect: "The calculation no longer runs.",
     cost: "nothing",
-    writes: &[],
-    refusals: &["calculation_not_found"],
-    returns: &[
-        Output { name: "name", kind: "text", doc: "the name" },
-        Output { name: "remaining", kind: "list of text", doc: "remaining names" },
+    written_tables: &[],
+    rejection_codes: &["calculation_not_found"],
+    result_fields: &[
+        ResultField { name: "name", kind: "text", description: "the name" },
+        ResultField { name: "remaining", kind: "list of text", description: "remaining names" },
     ],
     example: r#"{"name": "cash"}"#,
 };
 
 impl Tool for RemoveDailyCalculation {
     type Args = String;
-    type Answer = Remaining;
+    type Answer = RemainingNames;
 
-    fn spec(&self) -> &'static Spec {
+    fn spec(&self) -> &'static ToolSpec {
         &SPEC
     }
 
-    fn read(&self, _: &View<'_>, arguments: &Arguments) -> Result<String, Refusal> {
-        text(arguments, "name").map(str::to_owned)
+    fn read(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<String, Rejection> {
+        text_argument(arguments, "name").map(str::to_owned)
     }
 
-    fn plan(&self, view: &View<'_>, name: String) -> Result<Planned<Remaining>, Refusal> {
-        match kept(view).get(&name) {
-            Some(_) => Ok(Remaining::without(kept(view), Kept::Calculation, name)),
-            None => Err(not_found(&name, view)),
+    fn plan(&self, view: &ToolContext<'_>, name: String) -> Result<PlannedCall<RemainingNames>, Rejection> {
+        match calculations(view).get(&name) {
+            Some(_) => {
+                Ok(RemainingNames::after_removal(calculations(view), NotebookSection::Calculation, name))
+            }
+            None => Err(not_found_rejection(&name, view)),
         }
     }
 }

@@ -1,21 +1,22 @@
 use indexmap::IndexMap;
 
 use super::super::arguments::Arguments;
-use super::super::describe::{ToolDocument, document};
-use super::super::documentation::Choice;
+use super::super::describe::{ToolDocument, document_tool};
+use super::super::documentation::NameSelection;
 use super::super::{
-    Argument, ArgumentKind, Kind, Module, Numbers, Output, Planned, Refusal, Spec, Tool, ToolId, View, When,
+    Argument, ArgumentKind, EffectTiming, ParameterNumbers, PlannedCall, Rejection, ResultField, Tool,
+    ToolContext, ToolId, ToolKind, ToolModule, ToolSpec,
 };
 use super::CATALOGUE;
 
 /// The tool `get_tool_documentation`.
 pub struct GetToolDocumentation;
 
-static SPEC: Spec = Spec {
+static SPEC: ToolSpec = ToolSpec {
     id: ToolId::GetToolDocumentation,
     code: "DOC",
-    module: Module::Time,
-    kind: Kind::Engine,
+    module: ToolModule::Time,
+    kind: ToolKind::Engine,
     summary: "Show the documentation of tools: arguments, effect, cost, rejections, results",
     arguments: &[Argument {
         name: "tool_names",
@@ -23,40 +24,44 @@ static SPEC: Spec = Spec {
         kind: ArgumentKind::Structure("a name, a list of names, or all"),
         required: false,
         unit: "",
-        doc: "names of tools; all if left out",
+        description: "names of tools; all if left out",
     }],
-    own_unknown: false,
-    whole: None,
-    when: When::Never,
+    has_own_unknown_code: false,
+    unnamed_argument: None,
+    effect_timing: EffectTiming::Never,
     effect: "",
     cost: "nothing",
-    writes: &[],
-    refusals: &["tool_not_found"],
-    returns: &[Output { name: "<tool>", kind: "object", doc: "one field per tool with its documentation" }],
+    written_tables: &[],
+    rejection_codes: &["tool_not_found"],
+    result_fields: &[ResultField {
+        name: "<tool>",
+        kind: "object",
+        description: "one field per tool with its documentation",
+    }],
     example: r#"{"tool_names": "set_prices"}"#,
 };
 
 impl Tool for GetToolDocumentation {
-    type Args = Choice;
+    type Args = NameSelection;
     type Answer = IndexMap<&'static str, ToolDocument>;
 
-    fn spec(&self) -> &'static Spec {
+    fn spec(&self) -> &'static ToolSpec {
         &SPEC
     }
 
-    fn read(&self, _: &View<'_>, arguments: &Arguments) -> Result<Choice, Refusal> {
-        Choice::read(arguments, "tool_names")
+    fn read(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<NameSelection, Rejection> {
+        NameSelection::parse(arguments, "tool_names")
     }
 
     fn plan(
         &self,
-        view: &View<'_>,
-        asked: Choice,
-    ) -> Result<Planned<IndexMap<&'static str, ToolDocument>>, Refusal> {
+        view: &ToolContext<'_>,
+        asked: NameSelection,
+    ) -> Result<PlannedCall<IndexMap<&'static str, ToolDocument>>, Rejection> {
         let known: Vec<&str> = CATALOGUE.iter().map(|tool| tool.spec().name()).collect();
-        let names = asked.among(&known, "tool_names", "tool_not_found")?;
+        let names = asked.resolve(&known, "tool_names", "tool_not_found")?;
         let specs = CATALOGUE.iter().map(|tool| tool.spec()).filter(|spec| names.contains(&spec.name()));
-        let numbers = Numbers::of(view.params());
-        Ok(Planned::reading(specs.map(|spec| (spec.name(), document(spec, &numbers))).collect()))
+        let numbers = ParameterNumbers::for_params(view.params());
+        Ok(PlannedCall::read_only(specs.map(|spec| (spec.name(), document_tool(spec, &numbers))).collect()))
     }
 }

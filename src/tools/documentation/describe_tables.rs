@@ -3,19 +3,19 @@ use serde::Serialize;
 
 use super::super::arguments::Arguments;
 use super::super::{
-    Argument, ArgumentKind, Kind, Module, Output, Planned, Refusal, Spec, TableDocument, Tool, ToolId, View,
-    When,
+    Argument, ArgumentKind, EffectTiming, PlannedCall, Rejection, ResultField, TableDocument, Tool,
+    ToolContext, ToolId, ToolKind, ToolModule, ToolSpec,
 };
-use super::Choice;
+use super::NameSelection;
 
 /// The tool `describe_tables`.
 pub struct DescribeTables;
 
-static SPEC: Spec = Spec {
+static SPEC: ToolSpec = ToolSpec {
     id: ToolId::DescribeTables,
     code: "DESC",
-    module: Module::Time,
-    kind: Kind::Engine,
+    module: ToolModule::Time,
+    kind: ToolKind::Engine,
     summary: "Describe tables with their columns",
     arguments: &[Argument {
         name: "table_names",
@@ -23,19 +23,19 @@ static SPEC: Spec = Spec {
         kind: ArgumentKind::Structure("a name, a list of names, or all"),
         required: false,
         unit: "",
-        doc: "names of tables; all if left out",
+        description: "names of tables; all if left out",
     }],
-    own_unknown: false,
-    whole: None,
-    when: When::Never,
+    has_own_unknown_code: false,
+    unnamed_argument: None,
+    effect_timing: EffectTiming::Never,
     effect: "",
     cost: "nothing",
-    writes: &[],
-    refusals: &["table_not_found"],
-    returns: &[Output {
+    written_tables: &[],
+    rejection_codes: &["table_not_found"],
+    result_fields: &[ResultField {
         name: "tables",
         kind: "map table -> {description, columns}",
-        doc: "description of the rows; columns maps each name to its type, its values if they are few, and its meaning",
+        description: "description of the rows; columns maps each name to its type, its values if they are few, and its meaning",
     }],
     example: r#"{"table_names": "predictions"}"#,
 };
@@ -57,26 +57,30 @@ pub struct TableDescription {
 }
 
 impl Tool for DescribeTables {
-    type Args = Choice;
+    type Args = NameSelection;
     type Answer = TableDescriptions;
 
-    fn spec(&self) -> &'static Spec {
+    fn spec(&self) -> &'static ToolSpec {
         &SPEC
     }
 
-    fn read(&self, _: &View<'_>, arguments: &Arguments) -> Result<Choice, Refusal> {
-        Choice::read(arguments, "table_names")
+    fn read(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<NameSelection, Rejection> {
+        NameSelection::parse(arguments, "table_names")
     }
 
-    fn plan(&self, view: &View<'_>, asked: Choice) -> Result<Planned<TableDescriptions>, Refusal> {
-        let tables = view.surroundings().tables();
+    fn plan(
+        &self,
+        view: &ToolContext<'_>,
+        asked: NameSelection,
+    ) -> Result<PlannedCall<TableDescriptions>, Rejection> {
+        let tables = view.session().tables();
         let known: Vec<&str> = tables.iter().map(|table| table.name).collect();
-        let names = asked.among(&known, "table_names", "table_not_found")?;
+        let names = asked.resolve(&known, "table_names", "table_not_found")?;
         let entry = |table: &TableDocument| {
-            let columns = table.columns.iter().map(|own| (own.name, own.line())).collect();
+            let columns = table.columns.iter().map(|own| (own.name, own.format_line())).collect();
             (table.name, TableDescription { description: table.description, columns })
         };
         let tables = tables.iter().filter(|table| names.contains(&table.name)).map(entry).collect();
-        Ok(Planned::reading(TableDescriptions { tables }))
+        Ok(PlannedCall::read_only(TableDescriptions { tables }))
     }
 }

@@ -2,28 +2,31 @@ use indexmap::IndexMap;
 use serde::Serialize;
 
 use super::super::arguments::Arguments;
-use super::super::{Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When};
+use super::super::{
+    EffectTiming, PlannedCall, Rejection, ResultField, Tool, ToolContext, ToolId, ToolKind, ToolModule,
+    ToolSpec,
+};
 
 /// The tool `list_all_tables`.
 pub struct ListAllTables;
 
-static SPEC: Spec = Spec {
+static SPEC: ToolSpec = ToolSpec {
     id: ToolId::ListAllTables,
     code: "TABS",
-    module: Module::Time,
-    kind: Kind::Engine,
+    module: ToolModule::Time,
+    kind: ToolKind::Engine,
     summary: "List the tables that can be queried, one line each",
     arguments: &[],
-    own_unknown: false,
-    whole: None,
-    when: When::Never,
+    has_own_unknown_code: false,
+    unnamed_argument: None,
+    effect_timing: EffectTiming::Never,
     effect: "",
     cost: "nothing",
-    writes: &[],
-    refusals: &[],
-    returns: &[
-        Output { name: "tables", kind: "map table -> text", doc: "description of the rows" },
-        Output { name: "count", kind: "integer", doc: "number of tables, 19" },
+    written_tables: &[],
+    rejection_codes: &[],
+    result_fields: &[
+        ResultField { name: "tables", kind: "map table -> text", description: "description of the rows" },
+        ResultField { name: "count", kind: "integer", description: "number of tables, 19" },
     ],
     example: r#"{}"#,
 };
@@ -41,17 +44,17 @@ impl Tool for ListAllTables {
     type Args = ();
     type Answer = TableList;
 
-    fn spec(&self) -> &'static Spec {
+    fn spec(&self) -> &'static ToolSpec {
         &SPEC
     }
 
-    fn read(&self, _: &View<'_>, _: &Arguments) -> Result<(), Refusal> {
+    fn read(&self, _: &ToolContext<'_>, _: &Arguments) -> Result<(), Rejection> {
         Ok(())
     }
 
-    fn plan(&self, view: &View<'_>, (): ()) -> Result<Planned<TableList>, Refusal> {
-        let tables = view.surroundings().tables();
+    fn plan(&self, view: &ToolContext<'_>, (): ()) -> Result<PlannedCall<TableList>, Rejection> {
+        let tables = view.session().tables();
         let tables: IndexMap<_, _> = tables.iter().map(|table| (table.name, table.description)).collect();
-        Ok(Planned::reading(TableList { count: tables.len(), tables }))
+        Ok(PlannedCall::read_only(TableList { count: tables.len(), tables }))
     }
 }

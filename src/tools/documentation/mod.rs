@@ -7,52 +7,52 @@ pub use describe_tables::DescribeTables;
 pub use list_all_tables::ListAllTables;
 use serde_json::Value;
 
-use super::arguments::{Arguments, wrong_type};
-use super::refusal::Refusal;
-use novamind_base::nearest;
+use super::arguments::{Arguments, wrong_type_rejection};
+use super::rejection::Rejection;
+use novamind_base::similar_names;
 
 /// Requested names.
-pub enum Choice {
+pub enum NameSelection {
     /// All names.
     All,
     /// These names.
     Named(Vec<String>),
 }
 
-impl Choice {
+impl NameSelection {
     /// Parses a name, a list of names, `all` alone or in the list, or nothing for all.
-    pub(super) fn read(arguments: &Arguments, field: &'static str) -> Result<Choice, Refusal> {
-        let wrong = || wrong_type(field, "a name, a list of names, or all");
+    pub(super) fn parse(arguments: &Arguments, field: &'static str) -> Result<NameSelection, Rejection> {
+        let wrong = || wrong_type_rejection(field, "a name, a list of names, or all");
         match arguments.get(field) {
-            None => Ok(Choice::All),
-            Some(Value::String(name)) if name == "all" => Ok(Choice::All),
-            Some(Value::String(name)) => Ok(Choice::Named(vec![name.clone()])),
-            Some(Value::Array(names)) if names.iter().any(|name| name == "all") => Ok(Choice::All),
+            None => Ok(NameSelection::All),
+            Some(Value::String(name)) if name == "all" => Ok(NameSelection::All),
+            Some(Value::String(name)) => Ok(NameSelection::Named(vec![name.clone()])),
+            Some(Value::Array(names)) if names.iter().any(|name| name == "all") => Ok(NameSelection::All),
             Some(Value::Array(names)) => {
                 let names = names.iter().map(|name| name.as_str().map(str::to_owned));
-                names.collect::<Option<_>>().map(Choice::Named).ok_or_else(wrong)
+                names.collect::<Option<_>>().map(NameSelection::Named).ok_or_else(wrong)
             }
             Some(_) => Err(wrong()),
         }
     }
 
     /// Returns the requested names that are known. Rejects the call only if none is known.
-    pub(super) fn among<'a>(
+    pub(super) fn resolve<'a>(
         &self,
         known: &[&'a str],
         field: &'static str,
         code: &'static str,
-    ) -> Result<Vec<&'a str>, Refusal> {
-        let Choice::Named(asked) = self else { return Ok(known.to_vec()) };
+    ) -> Result<Vec<&'a str>, Rejection> {
+        let NameSelection::Named(asked) = self else { return Ok(known.to_vec()) };
         let found: Vec<&str> =
             known.iter().copied().filter(|name| asked.iter().any(|own| own == name)).collect();
         if !found.is_empty() {
             return Ok(found);
         }
-        let near = nearest(asked.first().map_or("", String::as_str), known.iter().copied());
+        let near = similar_names(asked.first().map_or("", String::as_str), known.iter().copied());
         let near =
             if near.is_empty() { known.join(", ") } else { format!("did you mean {}?", near.join(" or ")) };
         let asked = if asked.is_empty() { "an empty list".to_owned() } else { asked.join(", ") };
-        Err(Refusal::at(field, code, format!("{asked} names nothing that exists; {near}")))
+        Err(Rejection::for_field(field, code, format!("{asked} names nothing that exists; {near}")))
     }
 }

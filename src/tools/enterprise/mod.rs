@@ -1,90 +1,96 @@
 //! Negotiations with enterprises.
 
-mod addressed;
-mod reading;
+mod parsing;
 mod reject_enterprise_deal;
+mod remapping;
 mod send_enterprise_deal;
 
-pub use addressed::{highest_named, readdressed};
 pub use reject_enterprise_deal::RejectEnterpriseDeal;
+pub use remapping::{highest_customer, remap_customers};
 pub use send_enterprise_deal::SendEnterpriseDeal;
 
-use super::refusal::Refusal;
-use super::refusal::{DealResult, DealResults};
-use super::spec::Output;
+use super::rejection::Rejection;
+use super::rejection::{DealResult, DealResults};
+use super::spec::ResultField;
 
 #[derive(Debug, Clone, PartialEq)]
-enum Fate {
+enum ElementOutcome {
     /// Sent to this customer.
-    Done(u32),
+    Sent(u32),
     /// Not sent.
-    Failed(Failure),
+    Failed(ElementFailure),
 }
 
-impl Fate {
-    fn of(outcome: Result<u32, Failure>) -> Fate {
-        outcome.map_or_else(Fate::Failed, Fate::Done)
+impl ElementOutcome {
+    fn from_result(outcome: Result<u32, ElementFailure>) -> ElementOutcome {
+        outcome.map_or_else(ElementOutcome::Failed, ElementOutcome::Sent)
     }
 }
 
 /// Why an element of a list of deals was not sent. Other elements are sent.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Failure {
+pub struct ElementFailure {
     /// Customer, if the element names one.
     customer: Option<i64>,
     /// Error in the result.
     error: String,
     /// Rejection of the call, if no element is sent.
-    refusal: Box<Refusal>,
+    refusal: Box<Rejection>,
     /// Whether the element could not be parsed. Such elements come first in the result.
-    unreadable: bool,
+    is_unreadable: bool,
 }
 
-impl Failure {
-    fn unreadable(customer: Option<i64>, error: impl Into<String>, refusal: Refusal) -> Failure {
-        Failure { customer, error: error.into(), refusal: refusal.into(), unreadable: true }
+impl ElementFailure {
+    fn unreadable(customer: Option<i64>, error: impl Into<String>, refusal: Rejection) -> ElementFailure {
+        ElementFailure { customer, error: error.into(), refusal: refusal.into(), is_unreadable: true }
     }
 
-    fn of(customer: i64, error: &str, refusal: Refusal) -> Failure {
-        Failure {
+    fn new(customer: i64, error: &str, refusal: Rejection) -> ElementFailure {
+        ElementFailure {
             customer: Some(customer),
             error: error.to_owned(),
             refusal: refusal.into(),
-            unreadable: false,
+            is_unreadable: false,
         }
     }
 }
 
-fn results(fates: Vec<Fate>) -> DealResults {
-    let unreadable = |fate: &Fate| matches!(fate, Fate::Failed(Failure { unreadable: true, .. }));
-    let (first, rest): (Vec<Fate>, Vec<Fate>) = fates.into_iter().partition(unreadable);
-    DealResults { results: first.into_iter().chain(rest).map(result).collect() }
+fn to_deal_results(fates: Vec<ElementOutcome>) -> DealResults {
+    let unreadable = |fate: &ElementOutcome| {
+        matches!(fate, ElementOutcome::Failed(ElementFailure { is_unreadable: true, .. }))
+    };
+    let (first, rest): (Vec<ElementOutcome>, Vec<ElementOutcome>) = fates.into_iter().partition(unreadable);
+    DealResults { results: first.into_iter().chain(rest).map(to_deal_result).collect() }
 }
 
-fn result(fate: Fate) -> DealResult {
+fn to_deal_result(fate: ElementOutcome) -> DealResult {
     match fate {
-        Fate::Done(customer_id) => DealResult::Done { customer_id, success: true },
-        Fate::Failed(failure) => DealResult::Failed { customer_id: failure.customer, error: failure.error },
+        ElementOutcome::Sent(customer_id) => DealResult::Done { customer_id, success: true },
+        ElementOutcome::Failed(failure) => {
+            DealResult::Failed { customer_id: failure.customer, error: failure.error }
+        }
     }
 }
 
 /// Rejects a call if no element was sent, with the reason of the first element and the results of all.
-fn unless_all_failed(fates: Vec<Fate>) -> Result<DealResults, Refusal> {
+fn reject_if_all_failed(fates: Vec<ElementOutcome>) -> Result<DealResults, Rejection> {
     let refused = match fates.first() {
-        Some(Fate::Failed(first)) if fates.iter().all(|fate| matches!(fate, Fate::Failed(_))) => {
+        Some(ElementOutcome::Failed(first))
+            if fates.iter().all(|fate| matches!(fate, ElementOutcome::Failed(_))) =>
+        {
             Some((*first.refusal).clone())
         }
         _ => None,
     };
-    let DealResults { results } = results(fates);
+    let DealResults { results } = to_deal_results(fates);
     match refused {
-        Some(refusal) => Err(Refusal { results, ..refusal }),
+        Some(refusal) => Err(Rejection { results, ..refusal }),
         None => Ok(DealResults { results }),
     }
 }
 
-const RESULTS: &[Output] = &[Output {
+const RESULT_FIELDS: &[ResultField] = &[ResultField {
     name: "results",
     kind: "list of {customer_id, success} or {customer_id, error}",
-    doc: "one entry per deal: first those that could not be parsed, then the others in the order of the call",
+    description: "one entry per deal: first those that could not be parsed, then the others in the order of the call",
 }];

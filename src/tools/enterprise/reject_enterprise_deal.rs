@@ -1,27 +1,30 @@
 use serde_json::Value;
 
 use super::super::arguments::Arguments;
-use super::super::refusal::DealResults;
-use super::super::{Argument, ArgumentKind, Kind, Module, Planned, Refusal, Spec, Tool, ToolId, View, When};
-use super::reading::{Unreadable, customer, elements, malformed};
-use super::{Failure, Fate, RESULTS, unless_all_failed};
+use super::super::rejection::DealResults;
+use super::super::{
+    Argument, ArgumentKind, EffectTiming, PlannedCall, Rejection, Tool, ToolContext, ToolId, ToolKind,
+    ToolModule, ToolSpec,
+};
+use super::parsing::{ElementError, malformed_element, parse_deal_customer, parse_elements};
+use super::{ElementFailure, ElementOutcome, RESULT_FIELDS, reject_if_all_failed};
 use novamind_world::command::Command;
 
-/// The tool `reject_enterprise_deal`.
+/// The tool `reject_enterprise_deal_ends_threads`.
 pub struct RejectEnterpriseDeal;
 
 /// A thread to end.
-pub struct Rejection {
+pub struct ThreadToEnd {
     customer: i64,
     /// Path of the customer number.
     field: String,
 }
 
-static SPEC: Spec = Spec {
+static SPEC: ToolSpec = ToolSpec {
     id: ToolId::RejectEnterpriseDeal,
     code: "REJ",
-    module: Module::Enterprise,
-    kind: Kind::OneShot,
+    module: ToolModule::Enterprise,
+    kind: ToolKind::OneShot,
     summary: "End open enterprise threads without a deal",
     arguments: &[Argument {
         name: "deals",
@@ -29,70 +32,72 @@ static SPEC: Spec = Spec {
         kind: ArgumentKind::Structure("list of customer numbers, [customer_id] or {customer_id}"),
         required: false,
         unit: "",
-        doc: "the enterprises whose open threads end",
+        description: "the enterprises whose open threads end",
     }],
-    own_unknown: false,
-    whole: Some("deals"),
-    when: When::Now,
+    has_own_unknown_code: false,
+    unnamed_argument: Some("deals"),
+    effect_timing: EffectTiming::Now,
     effect: "A new lead is lost. For a subscriber, only the thread ends: the enterprise keeps its \
              terms, and can open another thread from the next day.",
     cost: "nothing",
-    writes: &["enterprise_turns", "subscriptions"],
-    refusals: &["deals_missing", "deal_malformed", "customer_missing", "no_active_thread"],
-    returns: RESULTS,
+    written_tables: &["enterprise_turns", "subscriptions"],
+    rejection_codes: &["deals_missing", "deal_malformed", "customer_missing", "no_active_thread"],
+    result_fields: RESULT_FIELDS,
     example: r#"{"deals": [{"customer_id": 207}]}"#,
 };
 
 impl Tool for RejectEnterpriseDeal {
-    type Args = Vec<Result<Rejection, Failure>>;
+    type Args = Vec<Result<ThreadToEnd, ElementFailure>>;
     type Answer = DealResults;
 
-    fn spec(&self) -> &'static Spec {
+    fn spec(&self) -> &'static ToolSpec {
         &SPEC
     }
 
-    fn read(&self, _: &View<'_>, arguments: &Arguments) -> Result<Self::Args, Refusal> {
-        let elements = elements(arguments.get("deals"), "[{\"customer_id\": 207}]")?;
+    fn read(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<Self::Args, Rejection> {
+        let elements = parse_elements(arguments.get("deals"), "[{\"customer_id\": 207}]")?;
         let read = |(at, element): (usize, &Value)| {
             let path = format!("deals.{at}");
-            let customer = named(element, &path).map_err(Unreadable::of_element)?;
-            Ok(Rejection { customer, field: format!("{path}.customer_id") })
+            let customer =
+                parse_element_customer(element, &path).map_err(ElementError::into_element_failure)?;
+            Ok(ThreadToEnd { customer, field: format!("{path}.customer_id") })
         };
         Ok(elements.iter().enumerate().map(read).collect())
     }
 
-    fn plan(&self, view: &View<'_>, given: Self::Args) -> Result<Planned<DealResults>, Refusal> {
+    fn plan(&self, view: &ToolContext<'_>, given: Self::Args) -> Result<PlannedCall<DealResults>, Rejection> {
         let mut threads = Vec::new();
         let mut open = view.world().enterprise.open_threads();
-        let mut end = |rejection: Rejection| {
+        let mut end = |rejection: ThreadToEnd| {
             let number = u32::try_from(rejection.customer).ok();
-            match (number, number.and_then(|customer| open.take_newest(customer))) {
+            match (number, number.and_then(|customer| open.pop_newest(customer))) {
                 (Some(customer), Some(thread)) => {
                     threads.push(thread.number);
                     Ok(customer)
                 }
-                _ => Err(rejection.without_thread()),
+                _ => Err(rejection.no_thread_failure()),
             }
         };
-        let fates: Vec<Fate> = given.into_iter().map(|given| Fate::of(given.and_then(&mut end))).collect();
-        let results = unless_all_failed(fates)?;
-        Ok(Planned::doing(Command::RejectDeals(threads), results))
+        let fates: Vec<ElementOutcome> =
+            given.into_iter().map(|given| ElementOutcome::from_result(given.and_then(&mut end))).collect();
+        let results = reject_if_all_failed(fates)?;
+        Ok(PlannedCall::with_command(Command::RejectDeals(threads), results))
     }
 }
 
-impl Rejection {
-    fn without_thread(self) -> Failure {
+impl ThreadToEnd {
+    fn no_thread_failure(self) -> ElementFailure {
         let message = format!("customer {} has no open thread to end", self.customer);
-        let refusal = Refusal::at(self.field, "no_active_thread", message);
-        Failure::of(self.customer, "no active thread", refusal)
+        let refusal = Rejection::for_field(self.field, "no_active_thread", message);
+        ElementFailure::new(self.customer, "no active thread", refusal)
     }
 }
 
-fn named(element: &Value, path: &str) -> Result<i64, Unreadable> {
+fn parse_element_customer(element: &Value, path: &str) -> Result<i64, ElementError> {
     match element {
-        Value::Object(map) => customer(map.get("customer_id"), path),
-        Value::Array(single) if single.len() == 1 => customer(single.first(), path),
-        Value::Number(_) | Value::String(_) => customer(Some(element), path),
-        _ => Err(malformed(path, "write it as {\"customer_id\": 207}, [207] or 207")),
+        Value::Object(map) => parse_deal_customer(map.get("customer_id"), path),
+        Value::Array(single) if single.len() == 1 => parse_deal_customer(single.first(), path),
+        Value::Number(_) | Value::String(_) => parse_deal_customer(Some(element), path),
+        _ => Err(malformed_element(path, "write it as {\"customer_id\": 207}, [207] or 207")),
     }
 }

@@ -1,17 +1,20 @@
 use serde_json::Value;
 
 use super::super::arguments::Arguments;
-use super::super::refusal::DealResults;
-use super::super::{Argument, ArgumentKind, Kind, Module, Planned, Refusal, Spec, Tool, ToolId, View, When};
-use super::reading::{Unreadable, customer, elements, malformed, offerings};
-use super::{Failure, Fate, RESULTS, unless_all_failed};
+use super::super::rejection::DealResults;
+use super::super::{
+    Argument, ArgumentKind, EffectTiming, PlannedCall, Rejection, Tool, ToolContext, ToolId, ToolKind,
+    ToolModule, ToolSpec,
+};
+use super::parsing::{ElementError, malformed_element, parse_deal_customer, parse_elements, parse_offerings};
+use super::{ElementFailure, ElementOutcome, RESULT_FIELDS, reject_if_all_failed};
 use novamind_world::command::Command;
 use novamind_world::customers::FIRST_CUSTOMER;
 use novamind_world::enterprise::OpenThreads;
-use novamind_world::enterprise::letters::Proposal;
+use novamind_world::enterprise::messages::OfferDraft;
 use novamind_world::events::Offering;
 
-/// The tool `send_enterprise_deal`.
+/// The tool `send_enterprise_deal_rejects_invalid_deals`.
 pub struct SendEnterpriseDeal;
 
 const EXAMPLE: &str = r#"[[207, [["B", 31.5], ["C", 54]]]]"#;
@@ -24,11 +27,11 @@ pub struct Deal {
     field: String,
 }
 
-static SPEC: Spec = Spec {
+static SPEC: ToolSpec = ToolSpec {
     id: ToolId::SendEnterpriseDeal,
     code: "DEAL",
-    module: Module::Enterprise,
-    kind: Kind::OneShot,
+    module: ToolModule::Enterprise,
+    kind: ToolKind::OneShot,
     summary: "Offer enterprises plans at a price per seat; replies in the open thread, or opens one",
     arguments: &[Argument {
         name: "deals",
@@ -38,11 +41,11 @@ static SPEC: Spec = Spec {
         ),
         required: false,
         unit: "$/seat and month",
-        doc: "one to {enterprise.enterprise_max_offerings_per_turn:word} offerings per enterprise, of which it accepts at most one; contracts last a month and renew at the agreed price",
+        description: "one to {enterprise.enterprise_max_offerings_per_turn:word} offerings per enterprise, of which it accepts at most one; contracts last a month and renew at the agreed price",
     }],
-    own_unknown: false,
-    whole: Some("deals"),
-    when: When::CustomerReply,
+    has_own_unknown_code: false,
+    unnamed_argument: Some("deals"),
+    effect_timing: EffectTiming::CustomerReply,
     effect: "The enterprise replies at least a day later, at its own pace: it accepts the best offering, names its \
              own price, or stops replying once its turns are used up or no price \
              is acceptable. Every offer uses up a turn, and only the latest one gets a reply. Each day beyond \
@@ -53,8 +56,8 @@ static SPEC: Spec = Spec {
              thread that ended without a reply keeps acting: a lead's repeats its notice every day, a subscriber's \
              damages the reputation of its group every day. Rejecting in time prevents this.",
     cost: "nothing",
-    writes: &["enterprise_turns"],
-    refusals: &[
+    written_tables: &["enterprise_turns"],
+    rejection_codes: &[
         "deals_missing",
         "deal_malformed",
         "customer_missing",
@@ -67,68 +70,73 @@ static SPEC: Spec = Spec {
         "no_subscription",
         "amount_too_large",
     ],
-    returns: RESULTS,
+    result_fields: RESULT_FIELDS,
     example: r#"{"deals": [[207, [["B", 31.5], ["C", 54]]], [9, [["A", 8]]]]}"#,
 };
 
 impl Tool for SendEnterpriseDeal {
-    type Args = Vec<Result<Deal, Failure>>;
+    type Args = Vec<Result<Deal, ElementFailure>>;
     type Answer = DealResults;
 
-    fn spec(&self) -> &'static Spec {
+    fn spec(&self) -> &'static ToolSpec {
         &SPEC
     }
 
-    fn read(&self, view: &View<'_>, arguments: &Arguments) -> Result<Self::Args, Refusal> {
-        let elements = elements(arguments.get("deals"), EXAMPLE)?;
-        let read = |(at, element): (usize, &Value)| match deal(element, &format!("deals.{at}"), view) {
-            Err(Unreadable::Call(refusal)) => Err(refusal),
-            Err(Unreadable::Element(failure)) => Ok(Err(failure)),
+    fn read(&self, view: &ToolContext<'_>, arguments: &Arguments) -> Result<Self::Args, Rejection> {
+        let elements = parse_elements(arguments.get("deals"), EXAMPLE)?;
+        let read = |(at, element): (usize, &Value)| match parse_deal(element, &format!("deals.{at}"), view) {
+            Err(ElementError::Call(refusal)) => Err(refusal),
+            Err(ElementError::Element(failure)) => Ok(Err(failure)),
             Ok(deal) => Ok(Ok(deal)),
         };
         elements.iter().enumerate().map(read).collect()
     }
 
-    fn plan(&self, view: &View<'_>, given: Self::Args) -> Result<Planned<DealResults>, Refusal> {
+    fn plan(&self, view: &ToolContext<'_>, given: Self::Args) -> Result<PlannedCall<DealResults>, Rejection> {
         let mut proposals = Vec::new();
         let open = view.world().enterprise.open_threads();
         let mut send = |deal: Deal| {
-            let proposal = reachable(deal, view, &open)?;
+            let proposal = to_proposal(deal, view, &open)?;
             let customer = proposal.customer;
             proposals.push(proposal);
             Ok(customer)
         };
-        let fates: Vec<Fate> = given.into_iter().map(|given| Fate::of(given.and_then(&mut send))).collect();
-        let results = unless_all_failed(fates)?;
-        Ok(Planned::doing(Command::SendDeals(proposals), results))
+        let fates: Vec<ElementOutcome> =
+            given.into_iter().map(|given| ElementOutcome::from_result(given.and_then(&mut send))).collect();
+        let results = reject_if_all_failed(fates)?;
+        Ok(PlannedCall::with_command(Command::SendDeals(proposals), results))
     }
 }
 
-fn deal(element: &Value, path: &str, view: &View<'_>) -> Result<Deal, Unreadable> {
+fn parse_deal(element: &Value, path: &str, view: &ToolContext<'_>) -> Result<Deal, ElementError> {
     let (who, what) = match element {
         Value::Array(pair) if pair.len() >= 2 => (pair.first(), pair.get(1)),
         Value::Object(map) => (map.get("customer_id"), map.get("offerings")),
-        _ => return Err(malformed(path, "write it as [customer_id, [[plan, price_per_seat], …]]")),
+        _ => return Err(malformed_element(path, "write it as [customer_id, [[plan, price_per_seat], …]]")),
     };
     let most = view.params().enterprise.enterprise_max_offerings_per_turn as usize;
-    let customer = customer(who, path)?;
+    let customer = parse_deal_customer(who, path)?;
     Ok(Deal {
         customer,
-        offerings: offerings(what, customer, most, path)?,
+        offerings: parse_offerings(what, customer, most, path)?,
         field: format!("{path}.customer_id"),
     })
 }
 
 /// Returns the proposal if the customer is an enterprise with an open thread or a subscription.
-fn reachable(deal: Deal, view: &View<'_>, open: &OpenThreads<'_>) -> Result<Proposal, Failure> {
+fn to_proposal(
+    deal: Deal,
+    view: &ToolContext<'_>,
+    open: &OpenThreads<'_>,
+) -> Result<OfferDraft, ElementFailure> {
     let Deal { customer: given, offerings, field } = deal;
     let world = view.world();
     let failed = |code: &'static str, error: &str, message: String| {
-        Failure::of(given, error, Refusal::at(field.clone(), code, message))
+        ElementFailure::new(given, error, Rejection::for_field(field.clone(), code, message))
     };
     let number = u32::try_from(given).ok();
     if let Some(customer) = number.filter(|customer| open.newest(*customer).is_some()) {
-        return Ok(Proposal { customer, offerings });
+        return Ok(OfferDraft { customer, offerings });
     }
     // The market observer is in the table of customers, too.
     let observer = number.is_some_and(|customer| customer > 0 && customer < FIRST_CUSTOMER);
@@ -139,7 +147,7 @@ fn reachable(deal: Deal, view: &View<'_>, open: &OpenThreads<'_>) -> Result<Prop
         }
         Some((customer, group)) if group.is_enterprise() => {
             if world.enterprise.company(customer).is_some_and(|company| company.is_subscriber()) {
-                return Ok(Proposal { customer, offerings });
+                return Ok(OfferDraft { customer, offerings });
             }
             let message = format!(
                 "customer {given} has neither an open thread nor a subscription: it was lost, or never asked \

@@ -2,41 +2,44 @@ use indexmap::IndexMap;
 use serde::Serialize;
 
 use super::super::arguments::Arguments;
-use super::super::{Kind, Module, Output, Planned, REMARK, Refusal, Spec, Tool, ToolId, View, When};
+use super::super::{
+    EffectTiming, PlannedCall, REMARK_TYPE, Rejection, ResultField, Tool, ToolContext, ToolId, ToolKind,
+    ToolModule, ToolSpec,
+};
 use novamind_world::params::Params;
 
 /// The tool `get_cost_info`.
 pub struct GetCostInfo;
 
-static SPEC: Spec = Spec {
+static SPEC: ToolSpec = ToolSpec {
     id: ToolId::GetCostInfo,
     code: "COST",
-    module: Module::Infrastructure,
-    kind: Kind::Read,
+    module: ToolModule::Infrastructure,
+    kind: ToolKind::Read,
     summary: "Show unit cost and quality of the model tiers, and the capacity prices",
     arguments: &[],
-    own_unknown: false,
-    whole: None,
-    when: When::Never,
+    has_own_unknown_code: false,
+    unnamed_argument: None,
+    effect_timing: EffectTiming::Never,
     effect: "",
     cost: "nothing",
-    writes: &[],
-    refusals: &[],
-    returns: &[
-        Output {
+    written_tables: &[],
+    rejection_codes: &[],
+    result_fields: &[
+        ResultField {
             name: "model_tiers",
             kind: "map tier -> {cost_per_usage_unit, quality_multiplier, class}",
-            doc: "$ per unit; exact",
+            description: "$ per unit; exact",
         },
-        Output {
+        ResultField {
             name: "capacity_tiers",
             kind: "map tier -> {capacity_units, cost_per_day}",
-            doc: "units/day, $/day",
+            description: "units/day, $/day",
         },
-        Output {
+        ResultField {
             name: "note",
-            kind: REMARK,
-            doc: "definition of a unit, the neutral model tier, and the billing of both",
+            kind: REMARK_TYPE,
+            description: "definition of a unit, the neutral model tier, and the billing of both",
         },
     ],
     example: "{}",
@@ -73,7 +76,7 @@ pub struct CapacityTierFacts {
     pub cost_per_day: u32,
 }
 
-fn note(params: &Params) -> String {
+fn cost_note(params: &Params) -> String {
     let neutral = params.model_tier.iter().find(|tier| tier.quality_multiplier == 1.0);
     let neutral = neutral.map_or_else(String::new, |tier| format!("; tier {} = 1.0×", tier.tier));
     format!(
@@ -86,15 +89,15 @@ impl Tool for GetCostInfo {
     type Args = ();
     type Answer = PriceList;
 
-    fn spec(&self) -> &'static Spec {
+    fn spec(&self) -> &'static ToolSpec {
         &SPEC
     }
 
-    fn read(&self, _: &View<'_>, _: &Arguments) -> Result<(), Refusal> {
+    fn read(&self, _: &ToolContext<'_>, _: &Arguments) -> Result<(), Rejection> {
         Ok(())
     }
 
-    fn plan(&self, view: &View<'_>, (): ()) -> Result<Planned<PriceList>, Refusal> {
+    fn plan(&self, view: &ToolContext<'_>, (): ()) -> Result<PlannedCall<PriceList>, Rejection> {
         let models = view.params().model_tier.iter().map(|tier| {
             let facts = ModelTierFacts {
                 cost_per_usage_unit: tier.unit_cost,
@@ -108,10 +111,10 @@ impl Tool for GetCostInfo {
                 CapacityTierFacts { capacity_units: tier.capacity_units, cost_per_day: tier.cost_per_day };
             (tier.tier, facts)
         });
-        Ok(Planned::reading(PriceList {
+        Ok(PlannedCall::read_only(PriceList {
             model_tiers: models.collect(),
             capacity_tiers: capacities.collect(),
-            note: note(view.params()),
+            note: cost_note(view.params()),
         }))
     }
 }

@@ -3,20 +3,21 @@ use serde_json::{Map, Value};
 
 use super::super::arguments::Arguments;
 use super::super::{
-    Argument, ArgumentKind, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View, When,
+    Argument, ArgumentKind, EffectTiming, NumberRange, PlannedCall, Rejection, ResultField, Tool,
+    ToolContext, ToolId, ToolKind, ToolModule, ToolSpec,
 };
 use novamind_world::settings::{CoreSettings, Settings, SettingsChange};
 
-/// The tool `set_capacity_tier`.
+/// The tool `set_capacity_tier_validates_and_updates`.
 pub struct SetCapacityTier;
 
-const TIERS: Range = Range::between(0.0, 7.0);
+const TIERS: NumberRange = NumberRange::between(0.0, 7.0);
 
-static SPEC: Spec = Spec {
+static SPEC: ToolSpec = ToolSpec {
     id: ToolId::SetCapacityTier,
     code: "CAP",
-    module: Module::Infrastructure,
-    kind: Kind::Setting,
+    module: ToolModule::Infrastructure,
+    kind: ToolKind::Setting,
     summary: "Rent a capacity tier; usage above it overloads the service",
     arguments: &[Argument {
         name: "tier",
@@ -24,20 +25,20 @@ static SPEC: Spec = Spec {
         kind: ArgumentKind::Integer(TIERS),
         required: true,
         unit: "tier",
-        doc: "capacity tier 0 to 7; any jump is allowed and free",
+        description: "capacity tier 0 to 7; any jump is allowed and free",
     }],
-    own_unknown: false,
-    whole: None,
-    when: When::NextDay,
+    has_own_unknown_code: false,
+    unnamed_argument: None,
+    effect_timing: EffectTiming::NextDay,
     effect: "Overload is usage above capacity. It slows the service, makes outages more likely and lowers the \
              quality that subscribers perceive.",
     cost: "the price of the tier on every simulated day",
-    writes: &["config_history"],
-    refusals: &["capacity_out_of_range"],
-    returns: &[
-        Output { name: "tier", kind: "integer", doc: "0 to 7" },
-        Output { name: "capacity_units", kind: "integer", doc: "units/day" },
-        Output { name: "cost_per_day", kind: "integer", doc: "$/day" },
+    written_tables: &["config_history"],
+    rejection_codes: &["capacity_out_of_range"],
+    result_fields: &[
+        ResultField { name: "tier", kind: "integer", description: "0 to 7" },
+        ResultField { name: "capacity_units", kind: "integer", description: "units/day" },
+        ResultField { name: "cost_per_day", kind: "integer", description: "$/day" },
     ],
     example: r#"{"tier": 2}"#,
 };
@@ -57,7 +58,7 @@ impl Tool for SetCapacityTier {
     type Args = u8;
     type Answer = RentedCapacity;
 
-    fn spec(&self) -> &'static Spec {
+    fn spec(&self) -> &'static ToolSpec {
         &SPEC
     }
 
@@ -65,18 +66,22 @@ impl Tool for SetCapacityTier {
         Map::from_iter([("tier".to_owned(), Value::from(settings.core.capacity_tier))])
     }
 
-    fn read(&self, _: &View<'_>, arguments: &Arguments) -> Result<u8, Refusal> {
+    fn read(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<u8, Rejection> {
         let given = arguments.get("tier").or_else(|| arguments.get("capacity_tier")).unwrap_or(&Value::Null);
-        TIERS.whole(given).ok_or_else(|| {
-            Refusal::at(
+        TIERS.parse_integer(given).ok_or_else(|| {
+            Rejection::for_field(
                 "tier",
                 "capacity_out_of_range",
-                format!("the capacity tier must be {}", TIERS.words()),
+                format!("the capacity tier must be {}", TIERS.describe()),
             )
         })
     }
 
-    fn plan(&self, view: &View<'_>, capacity_tier: u8) -> Result<Planned<RentedCapacity>, Refusal> {
+    fn plan(
+        &self,
+        view: &ToolContext<'_>,
+        capacity_tier: u8,
+    ) -> Result<PlannedCall<RentedCapacity>, Rejection> {
         let core = CoreSettings { capacity_tier, ..view.settings().core };
         let tier = view.params().capacity(capacity_tier);
         let answer = RentedCapacity {
@@ -84,6 +89,6 @@ impl Tool for SetCapacityTier {
             capacity_units: tier.capacity_units,
             cost_per_day: tier.cost_per_day,
         };
-        Ok(Planned::setting(SettingsChange::Core(core), answer))
+        Ok(PlannedCall::with_settings_change(SettingsChange::Core(core), answer))
     }
 }

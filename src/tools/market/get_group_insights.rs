@@ -3,21 +3,22 @@ use serde::Serialize;
 
 use super::super::arguments::Arguments;
 use super::super::{
-    Argument, ArgumentKind, Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When,
+    Argument, ArgumentKind, EffectTiming, PlannedCall, Rejection, ResultField, Tool, ToolContext, ToolId,
+    ToolKind, ToolModule, ToolSpec,
 };
-use super::{group_argument, noise_label, not_discovered, segment};
+use super::{noise_label, not_discovered_rejection, parse_group_argument, segment_label};
 use novamind_world::command::{Command, ResolvedCommand};
 use novamind_world::identifiers::Group;
 use novamind_world::market::insights::Insights;
 
-/// The tool `get_group_insights`.
+/// The tool `get_group_insights_returns_known_groups_only`.
 pub struct GetGroupInsights;
 
-static SPEC: Spec = Spec {
+static SPEC: ToolSpec = ToolSpec {
     id: ToolId::GetGroupInsights,
     code: "INS",
-    module: Module::Market,
-    kind: Kind::Read,
+    module: ToolModule::Market,
+    kind: ToolKind::Read,
     summary: "Show the estimates of a known group, as of its last study",
     arguments: &[Argument {
         name: "group_id",
@@ -25,42 +26,42 @@ static SPEC: Spec = Spec {
         kind: ArgumentKind::Text,
         required: true,
         unit: "group",
-        doc: "a known group, for instance S1",
+        description: "a known group, for instance S1",
     }],
-    own_unknown: false,
-    whole: None,
-    when: When::Never,
+    has_own_unknown_code: false,
+    unnamed_argument: None,
+    effect_timing: EffectTiming::Never,
     effect: "",
     cost: "nothing",
-    writes: &[],
-    refusals: &["group_not_discovered"],
-    returns: &[
-        Output { name: "group_id", kind: "text", doc: "the group" },
-        Output { name: "group_name", kind: "text", doc: "its name" },
-        Output { name: "segment", kind: "Individual or Enterprise", doc: "its segment" },
-        Output {
+    written_tables: &[],
+    rejection_codes: &["group_not_discovered"],
+    result_fields: &[
+        ResultField { name: "group_id", kind: "text", description: "the group" },
+        ResultField { name: "group_name", kind: "text", description: "its name" },
+        ResultField { name: "segment", kind: "Individual or Enterprise", description: "its segment" },
+        ResultField {
             name: "info_level",
             kind: "integer",
-            doc: "study level, 1 to {group_research.max_target_level}",
+            description: "study level, 1 to {group_research.max_target_level}",
         },
-        Output { name: "noise", kind: "text", doc: "maximum error of the estimates" },
-        Output {
+        ResultField { name: "noise", kind: "text", description: "maximum error of the estimates" },
+        ResultField {
             name: "estimates",
             kind: "{willingness_to_pay, usage_volume, quality_floor_q_min, contract_lockin_aversion, market_cap, \
                    annual_market_cap_growth_rate}, for enterprises also {seat_range, decision_rounds, \
                    avg_response_days}",
-            doc: "means of the group: $/month, units/day (per seat for enterprises), quality, customers, share per year, \
+            description: "means of the group: $/month, units/day (per seat for enterprises), quality, customers, share per year, \
                   days; budget, required quality and market as of the last study",
         },
-        Output {
+        ResultField {
             name: "network_influence",
             kind: "{outgoing, incoming}: map group -> number",
-            doc: "leads per subscriber and day from the group to known groups, and from them to it",
+            description: "leads per subscriber and day from the group to known groups, and from them to it",
         },
-        Output {
+        ResultField {
             name: "reputation_influence",
             kind: "{outgoing, incoming}: map group -> number",
-            doc: "weight of its reputation for known groups, and of theirs for it, 0 to 1",
+            description: "weight of its reputation for known groups, and of theirs for it, 0 to 1",
         },
     ],
     example: r#"{"group_id": "S1"}"#,
@@ -126,36 +127,36 @@ impl Tool for GetGroupInsights {
     type Args = Group;
     type Answer = GroupInsights;
 
-    fn spec(&self) -> &'static Spec {
+    fn spec(&self) -> &'static ToolSpec {
         &SPEC
     }
 
-    fn read(&self, view: &View<'_>, arguments: &Arguments) -> Result<Group, Refusal> {
-        group_argument(arguments, view)
+    fn read(&self, view: &ToolContext<'_>, arguments: &Arguments) -> Result<Group, Rejection> {
+        parse_group_argument(arguments, view)
     }
 
-    fn plan(&self, view: &View<'_>, group: Group) -> Result<Planned<GroupInsights>, Refusal> {
-        if !view.knows(group) {
-            return Err(not_discovered(group.id(), view));
+    fn plan(&self, view: &ToolContext<'_>, group: Group) -> Result<PlannedCall<GroupInsights>, Rejection> {
+        if !view.is_known(group) {
+            return Err(not_discovered_rejection(group.id(), view));
         }
         let group_name = view.params().group(group).name.clone();
-        Ok(Planned::drawing(Command::ReadInsights(group), move |resolved| match resolved {
+        Ok(PlannedCall::with_draws(Command::ReadInsights(group), move |resolved| match resolved {
             ResolvedCommand::ReadInsights(insights) => {
-                insights.as_ref().map(|insights| told(insights, group_name))
+                insights.as_ref().map(|insights| to_group_insights(insights, group_name))
             }
             _ => None,
         }))
     }
 }
 
-fn told(insights: &Insights, group_name: String) -> GroupInsights {
+fn to_group_insights(insights: &Insights, group_name: String) -> GroupInsights {
     GroupInsights {
         group_id: insights.group,
         group_name,
-        segment: segment(insights.group),
+        segment: segment_label(insights.group),
         info_level: insights.level,
         noise: noise_label(insights.noise),
-        estimates: estimates(insights),
+        estimates: to_estimates(insights),
         network_influence: Influence {
             outgoing: insights.referrals_to.iter().copied().collect(),
             incoming: insights.referrals_from.iter().copied().collect(),
@@ -167,8 +168,8 @@ fn told(insights: &Insights, group_name: String) -> GroupInsights {
     }
 }
 
-fn estimates(insights: &Insights) -> Estimates {
-    let company = insights.company.as_ref();
+fn to_estimates(insights: &Insights) -> Estimates {
+    let company = insights.enterprise.as_ref();
     Estimates {
         willingness_to_pay: insights.willingness_to_pay,
         usage_volume: insights.usage_volume,
@@ -176,7 +177,7 @@ fn estimates(insights: &Insights) -> Estimates {
         contract_lockin_aversion: insights.lockin_aversion,
         market_cap: insights.market_cap,
         annual_market_cap_growth_rate: insights.growth_rate,
-        seat_range: company.map(|company| [company.seats_least, company.seats_most]),
+        seat_range: company.map(|company| [company.min_seats, company.max_seats]),
         decision_rounds: company.map(|company| company.decision_rounds),
         avg_response_days: company.map(|company| company.response_days),
     }

@@ -1,39 +1,42 @@
 use serde::Serialize;
 
 use super::super::arguments::Arguments;
-use super::super::{Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When};
-use super::{noise_label, segment};
+use super::super::{
+    EffectTiming, PlannedCall, Rejection, ResultField, Tool, ToolContext, ToolId, ToolKind, ToolModule,
+    ToolSpec,
+};
+use super::{noise_label, segment_label};
 use novamind_world::events::{Phase, Reading, Trend};
 use novamind_world::identifiers::Group;
 
-/// The tool `get_market_overview`.
+/// The tool `get_market_overview_lists_known_groups_and_economy`.
 pub struct GetMarketOverview;
 
-static SPEC: Spec = Spec {
+static SPEC: ToolSpec = ToolSpec {
     id: ToolId::GetMarketOverview,
     code: "MKT",
-    module: Module::Market,
-    kind: Kind::Read,
+    module: ToolModule::Market,
+    kind: ToolKind::Read,
     summary: "Show the known groups, the number of unknown ones, and the latest published index",
     arguments: &[],
-    own_unknown: false,
-    whole: None,
-    when: When::Never,
+    has_own_unknown_code: false,
+    unnamed_argument: None,
+    effect_timing: EffectTiming::Never,
     effect: "",
     cost: "nothing",
-    writes: &[],
-    refusals: &[],
-    returns: &[
-        Output {
+    written_tables: &[],
+    rejection_codes: &[],
+    result_fields: &[
+        ResultField {
             name: "known_groups",
             kind: "list of {group_id, group_name, segment, info_level, noise}",
-            doc: "by group_id; noise is the maximum error of estimates at that level",
+            description: "by group_id; noise is the maximum error of estimates at that level",
         },
-        Output { name: "undiscovered_count", kind: "integer", doc: "number of unknown groups" },
-        Output {
+        ResultField { name: "undiscovered_count", kind: "integer", description: "number of unknown groups" },
+        ResultField {
             name: "macroeconomic",
             kind: "{pmi_value, pmi_trend, pmi_change, cycle_phase, description} or null",
-            doc: "latest published index of the economy; null before day {macro.macro_pmi_publication_delay_days:+1}",
+            description: "latest published index of the economy; null before day {macro.macro_pmi_publication_delay_days:+1}",
         },
     ],
     example: "{}",
@@ -84,43 +87,43 @@ impl Tool for GetMarketOverview {
     type Args = ();
     type Answer = MarketOverview;
 
-    fn spec(&self) -> &'static Spec {
+    fn spec(&self) -> &'static ToolSpec {
         &SPEC
     }
 
-    fn read(&self, _: &View<'_>, _: &Arguments) -> Result<(), Refusal> {
+    fn read(&self, _: &ToolContext<'_>, _: &Arguments) -> Result<(), Rejection> {
         Ok(())
     }
 
-    fn plan(&self, view: &View<'_>, (): ()) -> Result<Planned<MarketOverview>, Refusal> {
+    fn plan(&self, view: &ToolContext<'_>, (): ()) -> Result<PlannedCall<MarketOverview>, Rejection> {
         let mut known: Vec<Group> = view.known_groups().collect();
         known.sort_by_key(|group| group.id());
         let market = &view.world().market;
-        Ok(Planned::reading(MarketOverview {
-            known_groups: known.into_iter().map(|group| entry(group, view)).collect(),
+        Ok(PlannedCall::read_only(MarketOverview {
+            known_groups: known.into_iter().map(|group| to_known_group(group, view)).collect(),
             undiscovered_count: market.undiscovered().count(),
-            macroeconomic: market.economy.published.map(|reading| economy(&reading, view)),
+            macroeconomic: market.economy.published.map(|reading| to_macroeconomy(&reading, view)),
         }))
     }
 }
 
-fn entry(group: Group, view: &View<'_>) -> KnownGroup {
+fn to_known_group(group: Group, view: &ToolContext<'_>) -> KnownGroup {
     let level = view.world().market.knowledge[group].level;
     KnownGroup {
         group_id: group,
         group_name: view.params().group(group).name.clone(),
-        segment: segment(group),
+        segment: segment_label(group),
         info_level: level,
         noise: noise_label(view.params().level(level).noise),
     }
 }
 
-fn economy(reading: &Reading, view: &View<'_>) -> Macroeconomy {
+fn to_macroeconomy(reading: &Reading, view: &ToolContext<'_>) -> Macroeconomy {
     Macroeconomy {
         pmi_value: reading.value,
         pmi_trend: reading.trend,
         pmi_change: reading.change,
         cycle_phase: reading.phase,
-        description: view.surroundings().describe(reading),
+        description: view.session().describe_economy(reading),
     }
 }

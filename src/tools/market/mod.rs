@@ -12,27 +12,27 @@ pub use get_market_overview::{GetMarketOverview, MarketOverview};
 pub use research_group::{OrderedStudy, ResearchGroup};
 pub use research_market::{DiscoveryAttempt, ResearchMarket};
 
-use super::arguments::{Arguments, wrong_type};
-use super::refusal::Refusal;
-use super::view::View;
+use super::arguments::{Arguments, wrong_type_rejection};
+use super::rejection::Rejection;
+use super::tool_context::ToolContext;
 use novamind_world::identifiers::Group;
 
-fn group_argument(arguments: &Arguments, view: &View<'_>) -> Result<Group, Refusal> {
+fn parse_group_argument(arguments: &Arguments, view: &ToolContext<'_>) -> Result<Group, Rejection> {
     let given = arguments.get("group_id").unwrap_or(&Value::Null);
-    let id = given.as_str().ok_or_else(|| wrong_type("group_id", "text, for instance S1"))?;
-    Group::parse(id).filter(|group| view.knows(*group)).ok_or_else(|| not_discovered(id, view))
+    let id = given.as_str().ok_or_else(|| wrong_type_rejection("group_id", "text, for instance S1"))?;
+    Group::parse(id).filter(|group| view.is_known(*group)).ok_or_else(|| not_discovered_rejection(id, view))
 }
 
-fn not_discovered(id: &str, view: &View<'_>) -> Refusal {
+fn not_discovered_rejection(id: &str, view: &ToolContext<'_>) -> Rejection {
     let known: Vec<&str> = view.known_groups().map(Group::id).collect();
     let message = format!(
         "group {id} is not known yet; the known groups are {}; research_market finds others",
         known.join(", ")
     );
-    Refusal::at("group_id", "group_not_discovered", message)
+    Rejection::for_field("group_id", "group_not_discovered", message)
 }
 
-fn segment(group: Group) -> &'static str {
+fn segment_label(group: Group) -> &'static str {
     if group.is_enterprise() { "Enterprise" } else { "Individual" }
 }
 

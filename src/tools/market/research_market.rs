@@ -1,34 +1,41 @@
 use serde::Serialize;
 
 use super::super::arguments::Arguments;
-use super::super::research::affordable;
-use super::super::{Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When};
+use super::super::research::check_affordable;
+use super::super::{
+    EffectTiming, PlannedCall, Rejection, ResultField, Tool, ToolContext, ToolId, ToolKind, ToolModule,
+    ToolSpec,
+};
 use novamind_world::command::{Command, ResolvedCommand};
 use novamind_world::identifiers::Group;
 
-/// The tool `research_market`.
+/// The tool `research_market_discovers_every_group`.
 pub struct ResearchMarket;
 
-static SPEC: Spec = Spec {
+static SPEC: ToolSpec = ToolSpec {
     id: ToolId::ResearchMarket,
     code: "FIND",
-    module: Module::Market,
-    kind: Kind::Purchase,
+    module: ToolModule::Market,
+    kind: ToolKind::Purchase,
     summary: "Pay for one attempt to discover an unknown customer group",
     arguments: &[],
-    own_unknown: false,
-    whole: None,
-    when: When::Now,
+    has_own_unknown_code: false,
+    unnamed_argument: None,
+    effect_timing: EffectTiming::Now,
     effect: "{market_research.market_research_discover_prob:tenths} attempts in ten find one of the unknown groups, all equally likely. A discovered group \
              is known at level 1 at once: it brings leads by word of mouth from the next day, and \
              ads, development, operations and discounts can target it. The number of attempts per week is not limited; \
              once all groups are known, an attempt is still charged.",
     cost: "{market_research.discovery_cost_level_1:$} per attempt, at once",
-    writes: &["ledger", "segment_discovery", "group_info_levels", "notifications"],
-    refusals: &["insufficient_funds"],
-    returns: &[
-        Output { name: "discovered_group_id", kind: "text", doc: "the group, only if one was found" },
-        Output { name: "cost", kind: "number", doc: "$, only if none was found" },
+    written_tables: &["ledger", "segment_discovery", "group_info_levels", "notifications"],
+    rejection_codes: &["insufficient_funds"],
+    result_fields: &[
+        ResultField {
+            name: "discovered_group_id",
+            kind: "text",
+            description: "the group, only if one was found",
+        },
+        ResultField { name: "cost", kind: "number", description: "$, only if none was found" },
     ],
     example: "{}",
 };
@@ -53,17 +60,17 @@ impl Tool for ResearchMarket {
     type Args = ();
     type Answer = DiscoveryAttempt;
 
-    fn spec(&self) -> &'static Spec {
+    fn spec(&self) -> &'static ToolSpec {
         &SPEC
     }
 
-    fn read(&self, _: &View<'_>, _: &Arguments) -> Result<(), Refusal> {
+    fn read(&self, _: &ToolContext<'_>, _: &Arguments) -> Result<(), Rejection> {
         Ok(())
     }
 
-    fn plan(&self, view: &View<'_>, (): ()) -> Result<Planned<DiscoveryAttempt>, Refusal> {
-        affordable(view.params().market_research.discovery_cost_level_1, view)?;
-        Ok(Planned::drawing(Command::ResearchMarket, |resolved| match resolved {
+    fn plan(&self, view: &ToolContext<'_>, (): ()) -> Result<PlannedCall<DiscoveryAttempt>, Rejection> {
+        check_affordable(view.params().market_research.discovery_cost_level_1, view)?;
+        Ok(PlannedCall::with_draws(Command::ResearchMarket, |resolved| match resolved {
             ResolvedCommand::ResearchMarket(attempt) => Some(match attempt.found {
                 Some(group) => DiscoveryAttempt::Found { discovered_group_id: group },
                 None => DiscoveryAttempt::Nothing { cost: attempt.cost },

@@ -12,12 +12,12 @@ pub use set_daily_spend::SetDailySpend;
 pub use set_lead_promotion::SetLeadPromotion;
 pub use set_targeted_ad_spend::SetTargetedAdSpend;
 
-use super::arguments::Amount;
-use super::spec::Range;
+use super::arguments::AmountRule;
+use super::spec::NumberRange;
 
 /// Rule for daily budgets.
-pub(super) const BUDGET: Amount = Amount {
+pub(super) const BUDGET: AmountRule = AmountRule {
     code: "amount_invalid",
-    words: "must be a number of at least zero, in dollars a day",
-    range: Range::AT_LEAST_ZERO,
+    requirement: "must be a number of at least zero, in dollars a day",
+    range: NumberRange::AT_LEAST_ZERO,
 };

@@ -1,56 +1,66 @@
 use serde_json::{Map, Value};
 
-use super::super::arguments::{Amount, Arguments, as_data, number, per_customer, per_group, replace};
-use super::super::{
-    Argument, ArgumentKind, Key, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View,
-    When,
+use super::super::arguments::{
+    AmountRule, Arguments, json_f64, parse_per_customer, parse_per_group, replace_if_given, to_json,
 };
-use novamind_base::notation::json_number;
+use super::super::{
+    Argument, ArgumentKind, EffectTiming, MapKey, NumberRange, PlannedCall, Rejection, ResultField, Tool,
+    ToolContext, ToolId, ToolKind, ToolModule, ToolSpec,
+};
+use novamind_base::formatting::json_number;
 use novamind_world::settings::{AdsStrength, PerCustomer, PerGroup, Settings, SettingsChange};
 
-/// The tool `set_ads_strength`.
+/// The tool `set_ads_strength_applies_nothing_after_an_error`.
 pub struct SetAdsStrength;
 
-const STRENGTH: Amount = Amount {
+const STRENGTH: AmountRule = AmountRule {
     code: "strength_out_of_range",
-    words: "must be an ads strength between 0 and 1",
-    range: Range::SHARE,
+    requirement: "must be an ads strength between 0 and 1",
+    range: NumberRange::SHARE,
 };
 
-const fn level(name: &'static str, kind: ArgumentKind, doc: &'static str) -> Argument {
-    Argument { name, alias: None, kind, required: false, unit: "0 to 1", doc }
+const fn strength_argument(name: &'static str, kind: ArgumentKind, doc: &'static str) -> Argument {
+    Argument { name, alias: None, kind, required: false, unit: "0 to 1", description: doc }
 }
 
-static SPEC: Spec = Spec {
+static SPEC: ToolSpec = ToolSpec {
     id: ToolId::SetAdsStrength,
     code: "INAD",
-    module: Module::Marketing,
-    kind: Kind::Setting,
+    module: ToolModule::Marketing,
+    kind: ToolKind::Setting,
     summary: "Set the strength of in-app advertising; the scopes add up",
     arguments: &[
-        level("global_strength", ArgumentKind::Number(Range::SHARE), "for all subscribers"),
-        level("by_group", ArgumentKind::Map(Key::Group, Range::SHARE), "for subscribers of a group"),
-        level("by_customer", ArgumentKind::Map(Key::Customer, Range::SHARE), "for single customers"),
+        strength_argument("global_strength", ArgumentKind::Number(NumberRange::SHARE), "for all subscribers"),
+        strength_argument(
+            "by_group",
+            ArgumentKind::Map(MapKey::Group, NumberRange::SHARE),
+            "for subscribers of a group",
+        ),
+        strength_argument(
+            "by_customer",
+            ArgumentKind::Map(MapKey::Customer, NumberRange::SHARE),
+            "for single customers",
+        ),
     ],
-    own_unknown: false,
-    whole: None,
-    when: When::NextDay,
+    has_own_unknown_code: false,
+    unnamed_argument: None,
+    effect_timing: EffectTiming::NextDay,
     effect: "Every subscriber who sees ads brings a small revenue each day but perceives lower quality. The \
              effective load is log{ads.log_curve_k:+1}(1 + {ads.log_curve_k} s) of the summed strength s, so a small strength already brings much \
              of the revenue of full strength.",
     cost: "nothing; perceived quality falls",
-    writes: &["config_overrides"],
-    refusals: &[
+    written_tables: &["config_overrides"],
+    rejection_codes: &[
         "global_strength_out_of_range",
         "not_a_map",
         "unknown_group",
         "strength_out_of_range",
         "customer_not_integer",
     ],
-    returns: &[
-        Output { name: "global", kind: "number", doc: "0 to 1" },
-        Output { name: "by_group", kind: "map group -> number", doc: "0 to 1" },
-        Output { name: "by_customer", kind: "map customer -> number", doc: "0 to 1" },
+    result_fields: &[
+        ResultField { name: "global", kind: "number", description: "0 to 1" },
+        ResultField { name: "by_group", kind: "map group -> number", description: "0 to 1" },
+        ResultField { name: "by_customer", kind: "map customer -> number", description: "0 to 1" },
     ],
     example: r#"{"global_strength": 0.05}"#,
 };
@@ -66,7 +76,7 @@ impl Tool for SetAdsStrength {
     type Args = AdStrengths;
     type Answer = AdsStrength;
 
-    fn spec(&self) -> &'static Spec {
+    fn spec(&self) -> &'static ToolSpec {
         &SPEC
     }
 
@@ -74,29 +84,35 @@ impl Tool for SetAdsStrength {
         let ads = &settings.ads_strength;
         Map::from_iter([
             ("global_strength".to_owned(), json_number(ads.global)),
-            ("by_group".to_owned(), as_data(&ads.by_group)),
-            ("by_customer".to_owned(), as_data(&ads.by_customer)),
+            ("by_group".to_owned(), to_json(&ads.by_group)),
+            ("by_customer".to_owned(), to_json(&ads.by_customer)),
         ])
     }
 
-    fn read(&self, view: &View<'_>, arguments: &Arguments) -> Result<AdStrengths, Refusal> {
+    fn read(&self, view: &ToolContext<'_>, arguments: &Arguments) -> Result<AdStrengths, Rejection> {
         Ok(AdStrengths {
             global: arguments.read("global_strength", |value, name| {
-                number(value).filter(|strength| Range::SHARE.holds(*strength)).ok_or_else(|| {
+                json_f64(value).filter(|strength| NumberRange::SHARE.contains(*strength)).ok_or_else(|| {
                     let message = "the global ads strength must be between 0 and 1";
-                    Refusal::at(name, "global_strength_out_of_range", message)
+                    Rejection::for_field(name, "global_strength_out_of_range", message)
                 })
             })?,
-            by_group: arguments.read("by_group", |value, name| per_group(value, name, STRENGTH, view))?,
-            by_customer: arguments.read("by_customer", |value, name| per_customer(value, name, STRENGTH))?,
+            by_group: arguments
+                .read("by_group", |value, name| parse_per_group(value, name, STRENGTH, view))?,
+            by_customer: arguments
+                .read("by_customer", |value, name| parse_per_customer(value, name, STRENGTH))?,
         })
     }
 
-    fn plan(&self, view: &View<'_>, given: AdStrengths) -> Result<Planned<AdsStrength>, Refusal> {
+    fn plan(
+        &self,
+        view: &ToolContext<'_>,
+        given: AdStrengths,
+    ) -> Result<PlannedCall<AdsStrength>, Rejection> {
         let mut ads = view.settings().ads_strength.clone();
-        replace(&mut ads.global, given.global);
-        replace(&mut ads.by_group, given.by_group);
-        replace(&mut ads.by_customer, given.by_customer);
-        Ok(Planned::setting(SettingsChange::AdsStrength(ads.clone()), ads))
+        replace_if_given(&mut ads.global, given.global);
+        replace_if_given(&mut ads.by_group, given.by_group);
+        replace_if_given(&mut ads.by_customer, given.by_customer);
+        Ok(PlannedCall::with_settings_change(SettingsChange::AdsStrength(ads.clone()), ads))
     }
 }

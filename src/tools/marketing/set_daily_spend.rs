@@ -3,34 +3,35 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 use strum::{EnumString, IntoStaticStr};
 
-use super::super::arguments::{Arguments, Sent, wrong_type};
+use super::super::arguments::{Arguments, SentNumber, wrong_type_rejection};
 use super::super::{
-    Argument, ArgumentKind, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View, When,
+    Argument, ArgumentKind, EffectTiming, NumberRange, PlannedCall, Rejection, ResultField, Tool,
+    ToolContext, ToolId, ToolKind, ToolModule, ToolSpec,
 };
-use novamind_base::notation::json_number;
+use novamind_base::formatting::json_number;
 use novamind_world::settings::{Settings, SettingsChange};
 
-/// The tool `set_daily_spend`.
+/// The tool `set_daily_spend_validates_and_updates`.
 pub struct SetDailySpend;
 
-const fn budget(name: &'static str, doc: &'static str) -> Argument {
-    let kind = ArgumentKind::Number(Range::AT_LEAST_ZERO);
-    Argument { name, alias: None, kind, required: false, unit: "$/day", doc }
+const fn budget_argument(name: &'static str, doc: &'static str) -> Argument {
+    let kind = ArgumentKind::Number(NumberRange::AT_LEAST_ZERO);
+    Argument { name, alias: None, kind, required: false, unit: "$/day", description: doc }
 }
 
-static SPEC: Spec = Spec {
+static SPEC: ToolSpec = ToolSpec {
     id: ToolId::SetDailySpend,
     code: "OPS",
-    module: Module::Marketing,
-    kind: Kind::Setting,
+    module: ToolModule::Marketing,
+    kind: ToolKind::Setting,
     summary: "Set the daily budgets of operations and development",
     arguments: &[
-        budget("operations", "fewer outages, and resolved issues of all customers"),
-        budget("development", "quality for all groups"),
+        budget_argument("operations", "fewer outages, and resolved issues of all customers"),
+        budget_argument("development", "quality for all groups"),
     ],
-    own_unknown: true,
-    whole: None,
-    when: When::NextDay,
+    has_own_unknown_code: true,
+    unnamed_argument: None,
+    effect_timing: EffectTiming::NextDay,
     effect: "Operations reduce outages: the probability of one on a day is {operations.base_outage_prob} \
              exp(-spend / {operations.ops_outage_reduction_scale}), at least {operations.ops_outage_min_prob}, and more \
              often above capacity. They resolve open issues: {issues.issue_resolution_base_rate} per day without spending, plus \
@@ -38,17 +39,17 @@ static SPEC: Spec = Spec {
              Development permanently raises the quality for all groups every day, by \
              {development.dev_improvement_coef} ln(1 + spend / {development.dev_spend_scale}).",
     cost: "both amounts on every simulated day",
-    writes: &["config_history"],
-    refusals: &[
+    written_tables: &["config_history"],
+    rejection_codes: &[
         "nothing_given",
         "unknown_category",
         "advertising_not_here",
         "spend_negative",
         "amount_too_large",
     ],
-    returns: &[
-        Output { name: "updated", kind: "map -> number", doc: "sent budgets, $/day" },
-        Output { name: "current", kind: "map -> number", doc: "both budgets, $/day" },
+    result_fields: &[
+        ResultField { name: "updated", kind: "map -> number", description: "sent budgets, $/day" },
+        ResultField { name: "current", kind: "map -> number", description: "both budgets, $/day" },
     ],
     example: r#"{"operations": 350}"#,
 };
@@ -68,7 +69,7 @@ pub enum DailyBudget {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DailySpend {
     /// Sent budgets, dollars per day.
-    pub updated: IndexMap<DailyBudget, Sent>,
+    pub updated: IndexMap<DailyBudget, SentNumber>,
     /// Budgets in force.
     pub current: DailyBudgets,
 }
@@ -77,16 +78,16 @@ pub struct DailySpend {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DailyBudgets {
     /// Operations.
-    pub operations: Sent,
+    pub operations: SentNumber,
     /// Development.
-    pub development: Sent,
+    pub development: SentNumber,
 }
 
 impl Tool for SetDailySpend {
-    type Args = IndexMap<DailyBudget, Sent>;
+    type Args = IndexMap<DailyBudget, SentNumber>;
     type Answer = DailySpend;
 
-    fn spec(&self) -> &'static Spec {
+    fn spec(&self) -> &'static ToolSpec {
         &SPEC
     }
 
@@ -97,9 +98,13 @@ impl Tool for SetDailySpend {
         ])
     }
 
-    fn read(&self, _: &View<'_>, arguments: &Arguments) -> Result<IndexMap<DailyBudget, Sent>, Refusal> {
+    fn read(
+        &self,
+        _: &ToolContext<'_>,
+        arguments: &Arguments,
+    ) -> Result<IndexMap<DailyBudget, SentNumber>, Rejection> {
         if arguments.is_empty() {
-            return Err(Refusal::new(
+            return Err(Rejection::new(
                 "nothing_given",
                 "no value was given; give operations, development or both",
             ));
@@ -107,16 +112,16 @@ impl Tool for SetDailySpend {
         let unknown = |key: &&String| key.parse::<DailyBudget>().is_err();
         if arguments.get("advertising").is_some() {
             let message = "set advertising per channel and group with set_targeted_ad_spend";
-            return Err(Refusal::at("advertising", "advertising_not_here", message));
+            return Err(Rejection::for_field("advertising", "advertising_not_here", message));
         }
         if let Some(key) = arguments.as_map().keys().find(unknown) {
             let message = format!("category {key} does not exist; use operations or development");
-            return Err(Refusal::at(key.clone(), "unknown_category", message));
+            return Err(Rejection::for_field(key.clone(), "unknown_category", message));
         }
         let entry = |(key, value): (&String, &Value)| {
-            let amount = Sent::of(value).ok_or_else(|| wrong_type(key, "a number"))?;
+            let amount = SentNumber::from_json(value).ok_or_else(|| wrong_type_rejection(key, "a number"))?;
             if amount.value < 0.0 {
-                return Err(Refusal::at(
+                return Err(Rejection::for_field(
                     key.clone(),
                     "spend_negative",
                     format!("{key} must not be negative"),
@@ -129,9 +134,9 @@ impl Tool for SetDailySpend {
 
     fn plan(
         &self,
-        view: &View<'_>,
-        updated: IndexMap<DailyBudget, Sent>,
-    ) -> Result<Planned<DailySpend>, Refusal> {
+        view: &ToolContext<'_>,
+        updated: IndexMap<DailyBudget, SentNumber>,
+    ) -> Result<PlannedCall<DailySpend>, Rejection> {
         let mut core = view.settings().core;
         for (budget, sent) in &updated {
             match budget {
@@ -140,12 +145,12 @@ impl Tool for SetDailySpend {
             }
         }
         let current = |budget: DailyBudget, stored: f64| {
-            updated.get(&budget).cloned().unwrap_or_else(|| Sent::stored(stored))
+            updated.get(&budget).cloned().unwrap_or_else(|| SentNumber::from_setting(stored))
         };
         let current = DailyBudgets {
             operations: current(DailyBudget::Operations, core.operations),
             development: current(DailyBudget::Development, core.development),
         };
-        Ok(Planned::setting(SettingsChange::Core(core), DailySpend { updated, current }))
+        Ok(PlannedCall::with_settings_change(SettingsChange::Core(core), DailySpend { updated, current }))
     }
 }

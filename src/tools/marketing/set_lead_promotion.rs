@@ -1,52 +1,62 @@
 use indexmap::IndexMap;
 use serde_json::{Map, Value};
 
-use super::super::arguments::{Arguments, as_data, per_channel, per_channel_group, per_group, replace};
-use super::super::pricing::{DISCOUNT, global_discount};
-use super::super::{
-    Argument, ArgumentKind, Key, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View,
-    When,
+use super::super::arguments::{
+    Arguments, parse_per_channel, parse_per_channel_group, parse_per_group, replace_if_given, to_json,
 };
-use novamind_base::notation::json_number;
+use super::super::pricing::{DISCOUNT, parse_global_discount};
+use super::super::{
+    Argument, ArgumentKind, EffectTiming, MapKey, NumberRange, PlannedCall, Rejection, ResultField, Tool,
+    ToolContext, ToolId, ToolKind, ToolModule, ToolSpec,
+};
+use novamind_base::formatting::json_number;
 use novamind_world::identifiers::Channel;
 use novamind_world::settings::{LeadPromotion, PerGroup, Settings, SettingsChange};
 
-/// The tool `set_lead_promotion`.
+/// The tool `set_lead_promotion_validates_and_updates`.
 pub struct SetLeadPromotion;
 
-const fn scope(name: &'static str, kind: ArgumentKind, doc: &'static str) -> Argument {
-    Argument { name, alias: None, kind, required: false, unit: "$/month", doc }
+const fn scope_argument(name: &'static str, kind: ArgumentKind, doc: &'static str) -> Argument {
+    Argument { name, alias: None, kind, required: false, unit: "$/month", description: doc }
 }
 
-static SPEC: Spec = Spec {
+static SPEC: ToolSpec = ToolSpec {
     id: ToolId::SetLeadPromotion,
     code: "LPR",
-    module: Module::Marketing,
-    kind: Kind::Setting,
+    module: ToolModule::Marketing,
+    kind: ToolKind::Setting,
     summary: "Grant discounts on the first bill of new individuals; the scopes add up",
     arguments: &[
-        scope("global_promotion", ArgumentKind::Number(Range::AT_LEAST_ZERO), "for every lead"),
-        scope("by_group", ArgumentKind::Map(Key::Group, Range::AT_LEAST_ZERO), "for leads of a group"),
-        scope(
+        scope_argument(
+            "global_promotion",
+            ArgumentKind::Number(NumberRange::AT_LEAST_ZERO),
+            "for every lead",
+        ),
+        scope_argument(
+            "by_group",
+            ArgumentKind::Map(MapKey::Group, NumberRange::AT_LEAST_ZERO),
+            "for leads of a group",
+        ),
+        scope_argument(
             "by_channel",
-            ArgumentKind::Map(Key::Channel, Range::AT_LEAST_ZERO),
+            ArgumentKind::Map(MapKey::Channel, NumberRange::AT_LEAST_ZERO),
             "for leads of an ad channel",
         ),
-        scope(
+        scope_argument(
             "by_channel_group",
-            ArgumentKind::Matrix(Key::Channel, Key::Group, Range::AT_LEAST_ZERO),
+            ArgumentKind::Matrix(MapKey::Channel, MapKey::Group, NumberRange::AT_LEAST_ZERO),
             "for a group's leads of an ad channel",
         ),
     ],
-    own_unknown: false,
-    whole: None,
-    when: When::NextDay,
+    has_own_unknown_code: false,
+    unnamed_argument: None,
+    effect_timing: EffectTiming::NextDay,
     effect: "Leads choose their plan at the discounted price and pay it when they sign up; from \
              the second bill on, the discount no longer applies. Channel scopes apply only to leads from \
              ads. Enterprises get no discount.",
     cost: "less revenue from first bills",
-    writes: &["config_overrides"],
-    refusals: &[
+    written_tables: &["config_overrides"],
+    rejection_codes: &[
         "global_promotion_negative",
         "not_a_map",
         "unknown_group",
@@ -54,11 +64,15 @@ static SPEC: Spec = Spec {
         "promotion_negative",
         "amount_too_large",
     ],
-    returns: &[
-        Output { name: "global", kind: "number", doc: "$/month" },
-        Output { name: "by_group", kind: "map group -> number", doc: "$/month" },
-        Output { name: "by_channel", kind: "map channel -> number", doc: "$/month" },
-        Output { name: "by_channel_group", kind: "map channel -> map group -> number", doc: "$/month" },
+    result_fields: &[
+        ResultField { name: "global", kind: "number", description: "$/month" },
+        ResultField { name: "by_group", kind: "map group -> number", description: "$/month" },
+        ResultField { name: "by_channel", kind: "map channel -> number", description: "$/month" },
+        ResultField {
+            name: "by_channel_group",
+            kind: "map channel -> map group -> number",
+            description: "$/month",
+        },
     ],
     example: r#"{"by_channel": {"social_media": 3}}"#,
 };
@@ -75,7 +89,7 @@ impl Tool for SetLeadPromotion {
     type Args = LeadDiscounts;
     type Answer = LeadPromotion;
 
-    fn spec(&self) -> &'static Spec {
+    fn spec(&self) -> &'static ToolSpec {
         &SPEC
     }
 
@@ -83,28 +97,35 @@ impl Tool for SetLeadPromotion {
         let promotion = &settings.lead_promotion;
         Map::from_iter([
             ("global_promotion".to_owned(), json_number(promotion.global)),
-            ("by_group".to_owned(), as_data(&promotion.by_group)),
-            ("by_channel".to_owned(), as_data(&promotion.by_channel)),
-            ("by_channel_group".to_owned(), as_data(&promotion.by_channel_group)),
+            ("by_group".to_owned(), to_json(&promotion.by_group)),
+            ("by_channel".to_owned(), to_json(&promotion.by_channel)),
+            ("by_channel_group".to_owned(), to_json(&promotion.by_channel_group)),
         ])
     }
 
-    fn read(&self, view: &View<'_>, arguments: &Arguments) -> Result<LeadDiscounts, Refusal> {
+    fn read(&self, view: &ToolContext<'_>, arguments: &Arguments) -> Result<LeadDiscounts, Rejection> {
         Ok(LeadDiscounts {
-            global: arguments.read("global_promotion", global_discount)?,
-            by_group: arguments.read("by_group", |value, name| per_group(value, name, DISCOUNT, view))?,
-            by_channel: arguments.read("by_channel", |value, name| per_channel(value, name, DISCOUNT))?,
-            by_channel_group: arguments
-                .read("by_channel_group", |value, name| per_channel_group(value, name, DISCOUNT, view))?,
+            global: arguments.read("global_promotion", parse_global_discount)?,
+            by_group: arguments
+                .read("by_group", |value, name| parse_per_group(value, name, DISCOUNT, view))?,
+            by_channel: arguments
+                .read("by_channel", |value, name| parse_per_channel(value, name, DISCOUNT))?,
+            by_channel_group: arguments.read("by_channel_group", |value, name| {
+                parse_per_channel_group(value, name, DISCOUNT, view)
+            })?,
         })
     }
 
-    fn plan(&self, view: &View<'_>, given: LeadDiscounts) -> Result<Planned<LeadPromotion>, Refusal> {
+    fn plan(
+        &self,
+        view: &ToolContext<'_>,
+        given: LeadDiscounts,
+    ) -> Result<PlannedCall<LeadPromotion>, Rejection> {
         let mut promotion = view.settings().lead_promotion.clone();
-        replace(&mut promotion.global, given.global);
-        replace(&mut promotion.by_group, given.by_group);
-        replace(&mut promotion.by_channel, given.by_channel);
-        replace(&mut promotion.by_channel_group, given.by_channel_group);
-        Ok(Planned::setting(SettingsChange::LeadPromotion(promotion.clone()), promotion))
+        replace_if_given(&mut promotion.global, given.global);
+        replace_if_given(&mut promotion.by_group, given.by_group);
+        replace_if_given(&mut promotion.by_channel, given.by_channel);
+        replace_if_given(&mut promotion.by_channel_group, given.by_channel_group);
+        Ok(PlannedCall::with_settings_change(SettingsChange::LeadPromotion(promotion.clone()), promotion))
     }
 }

@@ -4,41 +4,41 @@ use indexmap::IndexMap;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
-use super::super::arguments::{Arguments, Sent, as_data, channel, sent_per_channel_group};
+use super::super::arguments::{Arguments, SentNumber, parse_channel, parse_sent_per_channel_group, to_json};
 use super::super::{
-    Argument, ArgumentKind, Key, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View,
-    When,
+    Argument, ArgumentKind, EffectTiming, MapKey, NumberRange, PlannedCall, Rejection, ResultField, Tool,
+    ToolContext, ToolId, ToolKind, ToolModule, ToolSpec,
 };
 use super::BUDGET;
 use novamind_world::identifiers::{Channel, Group};
 use novamind_world::settings::{PerGroup, Settings, SettingsChange, TargetedAds};
 
-/// The tool `set_targeted_ad_spend`.
+/// The tool `set_targeted_ad_spend_validates_and_transposes`.
 pub struct SetTargetedAdSpend;
 
-static SPEC: Spec = Spec {
+static SPEC: ToolSpec = ToolSpec {
     id: ToolId::SetTargetedAdSpend,
     code: "ADS",
-    module: Module::Marketing,
-    kind: Kind::Setting,
+    module: ToolModule::Marketing,
+    kind: ToolKind::Setting,
     summary: "Set the advertising budget per channel and group; replaces the whole matrix",
     arguments: &[Argument {
         name: "targeted_spend",
         alias: None,
-        kind: ArgumentKind::Matrix(Key::Channel, Key::Group, Range::AT_LEAST_ZERO),
+        kind: ArgumentKind::Matrix(MapKey::Channel, MapKey::Group, NumberRange::AT_LEAST_ZERO),
         required: true,
         unit: "$/day",
-        doc: "budget by channel (social_media, search_ads, linkedin, content_marketing, referral_program), then \
+        description: "budget by channel (social_media, search_ads, linkedin, content_marketing, referral_program), then \
                   group; other pairs get no budget",
     }],
-    own_unknown: false,
-    whole: Some("targeted_spend"),
-    when: When::NextDay,
+    has_own_unknown_code: false,
+    unnamed_argument: Some("targeted_spend"),
+    effect_timing: EffectTiming::NextDay,
     effect: "Brings leads of the group from the next day. The number of leads per channel differs by group and changes \
              every month. ad_channel_leads counts them per pair.",
     cost: "the sum of the matrix on every simulated day, and {leads.lead_acquisition_cost:$} for every lead",
-    writes: &["config_overrides"],
-    refusals: &[
+    written_tables: &["config_overrides"],
+    rejection_codes: &[
         "unknown_channel",
         "nesting_inverted",
         "not_a_map",
@@ -46,9 +46,13 @@ static SPEC: Spec = Spec {
         "amount_invalid",
         "amount_too_large",
     ],
-    returns: &[
-        Output { name: "targeted_spend", kind: "map channel -> map group -> number", doc: "$/day" },
-        Output { name: "total_per_day", kind: "number", doc: "sum of the matrix, $/day" },
+    result_fields: &[
+        ResultField {
+            name: "targeted_spend",
+            kind: "map channel -> map group -> number",
+            description: "$/day",
+        },
+        ResultField { name: "total_per_day", kind: "number", description: "sum of the matrix, $/day" },
     ],
     example: r#"{"targeted_spend": {"linkedin": {"E1": 120}, "search_ads": {"S1": 80, "S3": 40}}}"#,
 };
@@ -57,13 +61,13 @@ static SPEC: Spec = Spec {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AdBudgets {
     /// Dollars per day by channel and group.
-    pub targeted_spend: IndexMap<Channel, IndexMap<Group, Sent>>,
+    pub targeted_spend: IndexMap<Channel, IndexMap<Group, SentNumber>>,
     /// Their sum, dollars per day.
-    pub total_per_day: Sent,
+    pub total_per_day: SentNumber,
 }
 
 /// Converts a map of groups to channels to a map of channels to groups. Drops inner values that are not maps.
-fn transposed(map: &Map<String, Value>) -> Map<String, Value> {
+fn transpose(map: &Map<String, Value>) -> Map<String, Value> {
     let mut turned = Map::new();
     for (group, channels) in map {
         for (channel, amount) in channels.as_object().into_iter().flatten() {
@@ -77,52 +81,52 @@ fn transposed(map: &Map<String, Value>) -> Map<String, Value> {
 }
 
 /// Returns the matrix with channels as outer keys, for both accepted orders.
-fn upright<'a>(given: &'a Value, view: &View<'_>) -> Result<Cow<'a, Value>, Refusal> {
+fn with_channels_outside<'a>(given: &'a Value, view: &ToolContext<'_>) -> Result<Cow<'a, Value>, Rejection> {
     let Some(map) = given.as_object() else { return Ok(Cow::Borrowed(given)) };
     let stray = |map: &Map<String, Value>| map.keys().find(|key| Channel::parse(key).is_none()).cloned();
     let Some(first) = stray(map) else { return Ok(Cow::Borrowed(given)) };
-    let is_group = |key: &String| Group::parse(key).is_some_and(|group| view.knows(group));
+    let is_group = |key: &String| Group::parse(key).is_some_and(|group| view.is_known(group));
     if !map.keys().any(is_group) {
-        channel(&first, &format!("targeted_spend.{first}"))?;
+        parse_channel(&first, &format!("targeted_spend.{first}"))?;
     }
-    let turned = transposed(map);
+    let turned = transpose(map);
     match stray(&turned) {
         Some(key) => {
             let message = "the order is channel, then group";
-            Err(Refusal::at(format!("targeted_spend.{key}"), "nesting_inverted", message))
+            Err(Rejection::for_field(format!("targeted_spend.{key}"), "nesting_inverted", message))
         }
         None => Ok(Cow::Owned(Value::Object(turned))),
     }
 }
 
 impl Tool for SetTargetedAdSpend {
-    type Args = IndexMap<Channel, IndexMap<Group, Sent>>;
+    type Args = IndexMap<Channel, IndexMap<Group, SentNumber>>;
     type Answer = AdBudgets;
 
-    fn spec(&self) -> &'static Spec {
+    fn spec(&self) -> &'static ToolSpec {
         &SPEC
     }
 
     fn current(&self, settings: &Settings) -> Map<String, Value> {
-        Map::from_iter([("targeted_spend".to_owned(), as_data(&settings.targeted_ads.targeted_spend))])
+        Map::from_iter([("targeted_spend".to_owned(), to_json(&settings.targeted_ads.targeted_spend))])
     }
 
-    fn read(&self, view: &View<'_>, arguments: &Arguments) -> Result<Self::Args, Refusal> {
+    fn read(&self, view: &ToolContext<'_>, arguments: &Arguments) -> Result<Self::Args, Rejection> {
         let given = arguments.get("targeted_spend").unwrap_or(&Value::Null);
-        sent_per_channel_group(&*upright(given, view)?, "targeted_spend", BUDGET, view)
+        parse_sent_per_channel_group(&*with_channels_outside(given, view)?, "targeted_spend", BUDGET, view)
     }
 
-    fn plan(&self, _: &View<'_>, sent: Self::Args) -> Result<Planned<AdBudgets>, Refusal> {
+    fn plan(&self, _: &ToolContext<'_>, sent: Self::Args) -> Result<PlannedCall<AdBudgets>, Rejection> {
         let row = json!({ "targeted_spend": sent });
-        let amounts = |groups: &IndexMap<Group, Sent>| -> PerGroup {
+        let amounts = |groups: &IndexMap<Group, SentNumber>| -> PerGroup {
             groups.iter().map(|(group, sent)| (*group, sent.value)).collect()
         };
         let ads = TargetedAds {
             targeted_spend: sent.iter().map(|(channel, groups)| (*channel, amounts(groups))).collect(),
         };
-        let total_per_day = Sent::sum(ads.total(), sent.values().flat_map(IndexMap::values));
+        let total_per_day = SentNumber::sum(ads.total(), sent.values().flat_map(IndexMap::values));
         let answer = AdBudgets { targeted_spend: sent, total_per_day };
-        Ok(Planned::setting(SettingsChange::TargetedAds(ads), answer).with_row(row))
+        Ok(PlannedCall::with_settings_change(SettingsChange::TargetedAds(ads), answer).with_settings_row(row))
     }
 }
 
@@ -131,8 +135,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn its_text_names_every_channel() {
+    fn argument_description_names_every_channel() {
         let channels = Channel::ALL.map(|channel| channel.id()).join(", ");
-        assert!(SPEC.arguments[0].doc.contains(&format!("({channels})")), "{channels}");
+        assert!(SPEC.arguments[0].description.contains(&format!("({channels})")), "{channels}");
     }
 }

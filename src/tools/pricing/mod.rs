@@ -14,9 +14,9 @@ use indexmap::IndexMap;
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-use super::arguments::{Amount, Arguments, number, plan};
-use super::refusal::Refusal;
-use super::spec::Range;
+use super::arguments::{AmountRule, Arguments, json_f64, parse_plan};
+use super::rejection::Rejection;
+use super::spec::NumberRange;
 use novamind_world::identifiers::Plan;
 
 /// Sent values and values in force, for tools that set one number per plan.
@@ -29,37 +29,37 @@ pub struct PlanUpdate<T: Serialize> {
 }
 
 /// Rule for discounts of a scope.
-pub(super) const DISCOUNT: Amount = Amount {
+pub(super) const DISCOUNT: AmountRule = AmountRule {
     code: "promotion_negative",
-    words: "must be a number of at least zero, in dollars a month",
-    range: Range::AT_LEAST_ZERO,
+    requirement: "must be a number of at least zero, in dollars a month",
+    range: NumberRange::AT_LEAST_ZERO,
 };
 
 /// Parses the global discount of a promotion.
-pub(super) fn global_discount(value: &Value, field: &str) -> Result<f64, Refusal> {
-    number(value).filter(|number| Range::AT_LEAST_ZERO.holds(*number)).ok_or_else(|| {
+pub(super) fn parse_global_discount(value: &Value, field: &str) -> Result<f64, Rejection> {
+    json_f64(value).filter(|number| NumberRange::AT_LEAST_ZERO.contains(*number)).ok_or_else(|| {
         let message = "the global discount must be a number of at least zero, in dollars a month";
-        Refusal::at(field, "global_promotion_negative", message)
+        Rejection::for_field(field, "global_promotion_negative", message)
     })
 }
 
 /// Parses the values of the plans in a call. Rejects a call without values or with an unknown plan.
-fn per_named_plan<T>(
+fn parse_per_plan_arguments<T>(
     arguments: &Arguments,
-    read: impl Fn(Plan, &Value) -> Result<T, Refusal>,
-) -> Result<IndexMap<Plan, T>, Refusal> {
+    read: impl Fn(Plan, &Value) -> Result<T, Rejection>,
+) -> Result<IndexMap<Plan, T>, Rejection> {
     if arguments.is_empty() {
-        return Err(Refusal::new("nothing_given", "no value was given; give at least one of A, B, C"));
+        return Err(Rejection::new("nothing_given", "no value was given; give at least one of A, B, C"));
     }
-    let named = arguments.as_map().iter().map(|(key, value)| Ok((plan(key, key)?, value)));
-    let named: Vec<(Plan, &Value)> = named.collect::<Result<_, Refusal>>()?;
+    let named = arguments.as_map().iter().map(|(key, value)| Ok((parse_plan(key, key)?, value)));
+    let named: Vec<(Plan, &Value)> = named.collect::<Result<_, Rejection>>()?;
     named.into_iter().map(|(plan, value)| Ok((plan, read(plan, value)?))).collect()
 }
 
-fn by_plan<T>(value: impl Fn(Plan) -> T) -> IndexMap<Plan, T> {
+fn map_plans<T>(value: impl Fn(Plan) -> T) -> IndexMap<Plan, T> {
     Plan::ALL.into_iter().map(|plan| (plan, value(plan))).collect()
 }
 
-fn plan_map(value: impl Fn(Plan) -> Value) -> Map<String, Value> {
+fn plan_values_json(value: impl Fn(Plan) -> Value) -> Map<String, Value> {
     Plan::ALL.into_iter().map(|plan| (plan.id().to_owned(), value(plan))).collect()
 }

@@ -1,48 +1,62 @@
 use indexmap::IndexMap;
 use serde_json::{Map, Value};
 
-use super::super::arguments::{Arguments, as_data, per_customer, per_group, per_group_plan, replace};
-use super::super::{
-    Argument, ArgumentKind, Key, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View,
-    When,
+use super::super::arguments::{
+    Arguments, parse_per_customer, parse_per_group, parse_per_group_plan, replace_if_given, to_json,
 };
-use super::{DISCOUNT, global_discount};
-use novamind_base::notation::json_number;
+use super::super::{
+    Argument, ArgumentKind, EffectTiming, MapKey, NumberRange, PlannedCall, Rejection, ResultField, Tool,
+    ToolContext, ToolId, ToolKind, ToolModule, ToolSpec,
+};
+use super::{DISCOUNT, parse_global_discount};
+use novamind_base::formatting::json_number;
 use novamind_world::identifiers::Group;
 use novamind_world::settings::{PerCustomer, PerGroup, PerPlan, Promotion, Settings, SettingsChange};
 
-/// The tool `set_promotion`.
+/// The tool `set_promotion_validates_and_updates`.
 pub struct SetPromotion;
 
-const fn scope(name: &'static str, kind: ArgumentKind, doc: &'static str) -> Argument {
-    Argument { name, alias: None, kind, required: false, unit: "$/month", doc }
+const fn scope_argument(name: &'static str, kind: ArgumentKind, doc: &'static str) -> Argument {
+    Argument { name, alias: None, kind, required: false, unit: "$/month", description: doc }
 }
 
-static SPEC: Spec = Spec {
+static SPEC: ToolSpec = ToolSpec {
     id: ToolId::SetPromotion,
     code: "PRO",
-    module: Module::Pricing,
-    kind: Kind::Setting,
+    module: ToolModule::Pricing,
+    kind: ToolKind::Setting,
     summary: "Grant lasting discounts to subscribers; the scopes add up",
     arguments: &[
-        scope("global_promotion", ArgumentKind::Number(Range::AT_LEAST_ZERO), "for all subscribers"),
-        scope("by_group", ArgumentKind::Map(Key::Group, Range::AT_LEAST_ZERO), "for subscribers of a group"),
-        scope("by_customer", ArgumentKind::Map(Key::Customer, Range::AT_LEAST_ZERO), "for single customers"),
-        scope(
+        scope_argument(
+            "global_promotion",
+            ArgumentKind::Number(NumberRange::AT_LEAST_ZERO),
+            "for all subscribers",
+        ),
+        scope_argument(
+            "by_group",
+            ArgumentKind::Map(MapKey::Group, NumberRange::AT_LEAST_ZERO),
+            "for subscribers of a group",
+        ),
+        scope_argument(
+            "by_customer",
+            ArgumentKind::Map(MapKey::Customer, NumberRange::AT_LEAST_ZERO),
+            "for single customers",
+        ),
+        scope_argument(
             "by_group_plan",
-            ArgumentKind::Matrix(Key::Group, Key::Plan, Range::AT_LEAST_ZERO),
+            ArgumentKind::Matrix(MapKey::Group, MapKey::Plan, NumberRange::AT_LEAST_ZERO),
             "for a group's subscribers on a plan",
         ),
     ],
-    own_unknown: false,
-    whole: None,
-    when: When::NextBilling,
+    has_own_unknown_code: false,
+    unnamed_argument: None,
+    effect_timing: EffectTiming::NextBilling,
     effect: "Discounts apply on each customer's billing day, when they also influence the decision to \
              stay, and affect satisfaction from then on. Enterprises judge offers without them. A map replaces its whole \
              scope, {} clears it, and a scope that is left out does not change.",
     cost: "less revenue",
-    writes: &["config_overrides"],
-    refusals: &[
+    written_tables: &["config_overrides"],
+    rejection_codes: &[
         "global_promotion_negative",
         "not_a_map",
         "unknown_group",
@@ -51,11 +65,15 @@ static SPEC: Spec = Spec {
         "unknown_plan",
         "amount_too_large",
     ],
-    returns: &[
-        Output { name: "global", kind: "number", doc: "$/month and seat" },
-        Output { name: "by_group", kind: "map group -> number", doc: "$/month and seat" },
-        Output { name: "by_customer", kind: "map customer -> number", doc: "$/month and seat" },
-        Output { name: "by_group_plan", kind: "map group -> map plan -> number", doc: "$/month and seat" },
+    result_fields: &[
+        ResultField { name: "global", kind: "number", description: "$/month and seat" },
+        ResultField { name: "by_group", kind: "map group -> number", description: "$/month and seat" },
+        ResultField { name: "by_customer", kind: "map customer -> number", description: "$/month and seat" },
+        ResultField {
+            name: "by_group_plan",
+            kind: "map group -> map plan -> number",
+            description: "$/month and seat",
+        },
     ],
     example: r#"{"by_group": {"S2": 4}}"#,
 };
@@ -72,7 +90,7 @@ impl Tool for SetPromotion {
     type Args = Discounts;
     type Answer = Promotion;
 
-    fn spec(&self) -> &'static Spec {
+    fn spec(&self) -> &'static ToolSpec {
         &SPEC
     }
 
@@ -80,28 +98,30 @@ impl Tool for SetPromotion {
         let promotion = &settings.promotion;
         Map::from_iter([
             ("global_promotion".to_owned(), json_number(promotion.global)),
-            ("by_group".to_owned(), as_data(&promotion.by_group)),
-            ("by_customer".to_owned(), as_data(&promotion.by_customer)),
-            ("by_group_plan".to_owned(), as_data(&promotion.by_group_plan)),
+            ("by_group".to_owned(), to_json(&promotion.by_group)),
+            ("by_customer".to_owned(), to_json(&promotion.by_customer)),
+            ("by_group_plan".to_owned(), to_json(&promotion.by_group_plan)),
         ])
     }
 
-    fn read(&self, view: &View<'_>, arguments: &Arguments) -> Result<Discounts, Refusal> {
+    fn read(&self, view: &ToolContext<'_>, arguments: &Arguments) -> Result<Discounts, Rejection> {
         Ok(Discounts {
-            global: arguments.read("global_promotion", global_discount)?,
-            by_group: arguments.read("by_group", |value, name| per_group(value, name, DISCOUNT, view))?,
-            by_customer: arguments.read("by_customer", |value, name| per_customer(value, name, DISCOUNT))?,
+            global: arguments.read("global_promotion", parse_global_discount)?,
+            by_group: arguments
+                .read("by_group", |value, name| parse_per_group(value, name, DISCOUNT, view))?,
+            by_customer: arguments
+                .read("by_customer", |value, name| parse_per_customer(value, name, DISCOUNT))?,
             by_group_plan: arguments
-                .read("by_group_plan", |value, name| per_group_plan(value, name, DISCOUNT, view))?,
+                .read("by_group_plan", |value, name| parse_per_group_plan(value, name, DISCOUNT, view))?,
         })
     }
 
-    fn plan(&self, view: &View<'_>, given: Discounts) -> Result<Planned<Promotion>, Refusal> {
+    fn plan(&self, view: &ToolContext<'_>, given: Discounts) -> Result<PlannedCall<Promotion>, Rejection> {
         let mut promotion = view.settings().promotion.clone();
-        replace(&mut promotion.global, given.global);
-        replace(&mut promotion.by_group, given.by_group);
-        replace(&mut promotion.by_customer, given.by_customer);
-        replace(&mut promotion.by_group_plan, given.by_group_plan);
-        Ok(Planned::setting(SettingsChange::Promotion(promotion.clone()), promotion))
+        replace_if_given(&mut promotion.global, given.global);
+        replace_if_given(&mut promotion.by_group, given.by_group);
+        replace_if_given(&mut promotion.by_customer, given.by_customer);
+        replace_if_given(&mut promotion.by_group_plan, given.by_group_plan);
+        Ok(PlannedCall::with_settings_change(SettingsChange::Promotion(promotion.clone()), promotion))
     }
 }

@@ -1,31 +1,34 @@
 use serde::Serialize;
 
-use super::super::arguments::{Arguments, plain};
-use super::super::{Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When};
-use novamind_base::notation::round_to;
+use super::super::arguments::{Arguments, serialize_whole_as_integer};
+use super::super::{
+    EffectTiming, PlannedCall, Rejection, ResultField, Tool, ToolContext, ToolId, ToolKind, ToolModule,
+    ToolSpec,
+};
+use novamind_base::formatting::round_to;
 use novamind_world::params::ResearchTier;
 
 /// The tool `list_research_projects`.
 pub struct ListResearchProjects;
 
-static SPEC: Spec = Spec {
+static SPEC: ToolSpec = ToolSpec {
     id: ToolId::ListResearchProjects,
     code: "PROJ",
-    module: Module::Research,
-    kind: Kind::Read,
+    module: ToolModule::Research,
+    kind: ToolKind::Read,
     summary: "List the twenty R&D tiers with price, means and progress",
     arguments: &[],
-    own_unknown: false,
-    whole: None,
-    when: When::Never,
+    has_own_unknown_code: false,
+    unnamed_argument: None,
+    effect_timing: EffectTiming::Never,
     effect: "",
     cost: "nothing",
-    writes: &[],
-    refusals: &[],
-    returns: &[Output {
+    written_tables: &[],
+    rejection_codes: &[],
+    result_fields: &[ResultField {
         name: "tiers",
         kind: "list of {tier, name, cost, mean_days, mean_quality_boost, in_progress, completed, total_quality_boost}",
-        doc: "$; mean days and quality before the minimum duration and gain apply; counts of projects",
+        description: "$; mean days and quality before the minimum duration and gain apply; counts of projects",
     }],
     example: "{}",
 };
@@ -47,7 +50,7 @@ pub struct ResearchTierFacts {
     /// Dollars.
     pub cost: u32,
     /// Mean days of a project before the minimum duration applies.
-    #[serde(serialize_with = "plain")]
+    #[serde(serialize_with = "serialize_whole_as_integer")]
     pub mean_days: f64,
     /// Mean quality gain of a project before the minimum gain applies.
     pub mean_quality_boost: f64,
@@ -56,7 +59,7 @@ pub struct ResearchTierFacts {
     /// Completed projects.
     pub completed: usize,
     /// Quality gain of the completed projects.
-    #[serde(serialize_with = "plain")]
+    #[serde(serialize_with = "serialize_whole_as_integer")]
     pub total_quality_boost: f64,
 }
 
@@ -64,21 +67,21 @@ impl Tool for ListResearchProjects {
     type Args = ();
     type Answer = ResearchProjects;
 
-    fn spec(&self) -> &'static Spec {
+    fn spec(&self) -> &'static ToolSpec {
         &SPEC
     }
 
-    fn read(&self, _: &View<'_>, _: &Arguments) -> Result<(), Refusal> {
+    fn read(&self, _: &ToolContext<'_>, _: &Arguments) -> Result<(), Rejection> {
         Ok(())
     }
 
-    fn plan(&self, view: &View<'_>, (): ()) -> Result<Planned<ResearchProjects>, Refusal> {
-        let tiers = view.params().research_tier.iter().map(|tier| facts(tier, view)).collect();
-        Ok(Planned::reading(ResearchProjects { tiers }))
+    fn plan(&self, view: &ToolContext<'_>, (): ()) -> Result<PlannedCall<ResearchProjects>, Rejection> {
+        let tiers = view.params().research_tier.iter().map(|tier| tier_facts(tier, view)).collect();
+        Ok(PlannedCall::read_only(ResearchProjects { tiers }))
     }
 }
 
-fn facts(tier: &ResearchTier, view: &View<'_>) -> ResearchTierFacts {
+fn tier_facts(tier: &ResearchTier, view: &ToolContext<'_>) -> ResearchTierFacts {
     let decimals = view.params().development.rd_report_decimals;
     let own = || view.world().product.research.iter().filter(|project| project.tier == tier.tier);
     let completed = || own().filter(|project| project.completed_day.is_some());

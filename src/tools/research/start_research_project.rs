@@ -1,25 +1,26 @@
 use serde::Serialize;
 use serde_json::Value;
 
-use super::super::arguments::{Arguments, plain};
+use super::super::arguments::{Arguments, serialize_whole_as_integer};
 use super::super::{
-    Argument, ArgumentKind, Kind, Module, Output, Planned, Range, Refusal, Spec, Tool, ToolId, View, When,
+    Argument, ArgumentKind, EffectTiming, NumberRange, PlannedCall, Rejection, ResultField, Tool,
+    ToolContext, ToolId, ToolKind, ToolModule, ToolSpec,
 };
-use super::affordable;
-use novamind_base::notation::round_to;
+use super::check_affordable;
+use novamind_base::formatting::round_to;
 use novamind_world::command::{Command, ResolvedCommand};
 use novamind_world::events::Project;
 
-/// The tool `start_research_project`.
+/// The tool `start_research_project_charges_the_price_once`.
 pub struct StartResearchProject;
 
-const TIERS: Range = Range::between(1.0, 20.0);
+const TIERS: NumberRange = NumberRange::between(1.0, 20.0);
 
-static SPEC: Spec = Spec {
+static SPEC: ToolSpec = ToolSpec {
     id: ToolId::StartResearchProject,
     code: "RND",
-    module: Module::Research,
-    kind: Kind::Purchase,
+    module: ToolModule::Research,
+    kind: ToolKind::Purchase,
     summary: "Buy an R&D project; its duration and gain are known at once",
     arguments: &[Argument {
         name: "tier",
@@ -27,32 +28,32 @@ static SPEC: Spec = Spec {
         kind: ArgumentKind::Integer(TIERS),
         required: true,
         unit: "tier",
-        doc: "R&D tier 1 to 20; list_research_projects shows prices and means",
+        description: "R&D tier 1 to 20; list_research_projects shows prices and means",
     }],
-    own_unknown: false,
-    whole: None,
-    when: When::AtCompletion,
+    has_own_unknown_code: false,
+    unnamed_argument: None,
+    effect_timing: EffectTiming::AtCompletion,
     effect: "On its completion day the gain is permanently added to the quality for all groups. Projects take \
              at least {development.rd_min_duration_days} days; tiers are independent, can be repeated, and \
              run in parallel, one per tier at a time.",
     cost: "the price of the tier, at once",
-    writes: &["ledger", "research_projects"],
-    refusals: &["rd_tier_unknown", "rd_in_progress", "insufficient_funds"],
-    returns: &[
-        Output {
+    written_tables: &["ledger", "research_projects"],
+    rejection_codes: &["rd_tier_unknown", "rd_in_progress", "insufficient_funds"],
+    result_fields: &[
+        ResultField {
             name: "project_id",
             kind: "text",
-            doc: "t<tier>_<n>, where n counts the starts of the tier",
+            description: "t<tier>_<n>, where n counts the starts of the tier",
         },
-        Output { name: "tier", kind: "integer", doc: "1 to 20" },
-        Output { name: "name", kind: "text", doc: "name of the tier" },
-        Output { name: "cost", kind: "integer", doc: "$" },
-        Output { name: "expected_completion_day", kind: "integer", doc: "day" },
-        Output { name: "expected_duration_days", kind: "integer", doc: "days" },
-        Output {
+        ResultField { name: "tier", kind: "integer", description: "1 to 20" },
+        ResultField { name: "name", kind: "text", description: "name of the tier" },
+        ResultField { name: "cost", kind: "integer", description: "$" },
+        ResultField { name: "expected_completion_day", kind: "integer", description: "day" },
+        ResultField { name: "expected_duration_days", kind: "integer", description: "days" },
+        ResultField {
             name: "expected_quality_boost",
             kind: "number",
-            doc: "quality, {development.rd_report_decimals} decimals",
+            description: "quality, {development.rd_report_decimals} decimals",
         },
     ],
     example: r#"{"tier": 2}"#,
@@ -68,7 +69,7 @@ pub struct StartedProject {
     /// Name of the tier.
     pub name: String,
     /// Dollars paid.
-    #[serde(serialize_with = "plain")]
+    #[serde(serialize_with = "serialize_whole_as_integer")]
     pub cost: f64,
     /// Completion day.
     pub expected_completion_day: u32,
@@ -82,28 +83,28 @@ impl Tool for StartResearchProject {
     type Args = u8;
     type Answer = StartedProject;
 
-    fn spec(&self) -> &'static Spec {
+    fn spec(&self) -> &'static ToolSpec {
         &SPEC
     }
 
-    fn read(&self, _: &View<'_>, arguments: &Arguments) -> Result<u8, Refusal> {
+    fn read(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<u8, Rejection> {
         let given = arguments.get("tier").unwrap_or(&Value::Null);
-        TIERS.whole(given).ok_or_else(|| {
-            let message = format!("R&D tier {given} does not exist; the tiers are {}", TIERS.words());
-            Refusal::at("tier", "rd_tier_unknown", message)
+        TIERS.parse_integer(given).ok_or_else(|| {
+            let message = format!("R&D tier {given} does not exist; the tiers are {}", TIERS.describe());
+            Rejection::for_field("tier", "rd_tier_unknown", message)
         })
     }
 
-    fn plan(&self, view: &View<'_>, tier: u8) -> Result<Planned<StartedProject>, Refusal> {
+    fn plan(&self, view: &ToolContext<'_>, tier: u8) -> Result<PlannedCall<StartedProject>, Rejection> {
         let running = |project: &&Project| project.tier == tier && project.completed_day.is_none();
         if let Some(project) = view.world().product.research.iter().find(running) {
             let message = format!("tier {tier} is already running until day {}", project.due_day);
-            return Err(Refusal::at("tier", "rd_in_progress", message));
+            return Err(Rejection::for_field("tier", "rd_in_progress", message));
         }
         let facts = view.params().research(tier);
-        affordable(f64::from(facts.cost), view)?;
+        check_affordable(f64::from(facts.cost), view)?;
         let (name, decimals) = (facts.name.clone(), view.params().development.rd_report_decimals);
-        Ok(Planned::drawing(Command::StartResearch(tier), move |resolved| match resolved {
+        Ok(PlannedCall::with_draws(Command::StartResearch(tier), move |resolved| match resolved {
             ResolvedCommand::StartResearch(project, cost) => Some(StartedProject {
                 project_id: project.id(),
                 tier: project.tier,

@@ -1,18 +1,19 @@
 use super::super::arguments::Arguments;
-use super::super::keeping::Remaining;
+use super::super::stored_code::RemainingNames;
 use super::super::{
-    Argument, ArgumentKind, Kept, Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When,
+    Argument, ArgumentKind, EffectTiming, NotebookSection, PlannedCall, Rejection, ResultField, Tool,
+    ToolContext, ToolId, ToolKind, ToolModule, ToolSpec,
 };
-use super::{find, name_of, stored};
+use super::{find_script, script_name, stored_scripts};
 
 /// The tool `delete_script`.
 pub struct DeleteScript;
 
-static SPEC: Spec = Spec {
+static SPEC: ToolSpec = ToolSpec {
     id: ToolId::DeleteScript,
     code: "DELS",
-    module: Module::Time,
-    kind: Kind::Engine,
+    module: ToolModule::Time,
+    kind: ToolKind::Engine,
     summary: "Delete a stored script",
     arguments: &[Argument {
         name: "name",
@@ -20,36 +21,36 @@ static SPEC: Spec = Spec {
         kind: ArgumentKind::Text,
         required: true,
         unit: "",
-        doc: "name of the script",
+        description: "name of the script",
     }],
-    own_unknown: false,
-    whole: None,
-    when: When::Now,
+    has_own_unknown_code: false,
+    unnamed_argument: None,
+    effect_timing: EffectTiming::Now,
     effect: "The script is deleted.",
     cost: "nothing",
-    writes: &[],
-    refusals: &["script_not_found"],
-    returns: &[
-        Output { name: "name", kind: "text", doc: "the name" },
-        Output { name: "remaining", kind: "list of text", doc: "remaining names" },
+    written_tables: &[],
+    rejection_codes: &["script_not_found"],
+    result_fields: &[
+        ResultField { name: "name", kind: "text", description: "the name" },
+        ResultField { name: "remaining", kind: "list of text", description: "remaining names" },
     ],
     example: r#"{"name": "churn"}"#,
 };
 
 impl Tool for DeleteScript {
     type Args = String;
-    type Answer = Remaining;
+    type Answer = RemainingNames;
 
-    fn spec(&self) -> &'static Spec {
+    fn spec(&self) -> &'static ToolSpec {
         &SPEC
     }
 
-    fn read(&self, _: &View<'_>, arguments: &Arguments) -> Result<String, Refusal> {
-        name_of(arguments)
+    fn read(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<String, Rejection> {
+        script_name(arguments)
     }
 
-    fn plan(&self, view: &View<'_>, name: String) -> Result<Planned<Remaining>, Refusal> {
-        find(&name, view)?;
-        Ok(Remaining::without(stored(view), Kept::Script, name))
+    fn plan(&self, view: &ToolContext<'_>, name: String) -> Result<PlannedCall<RemainingNames>, Rejection> {
+        find_script(&name, view)?;
+        Ok(RemainingNames::after_removal(stored_scripts(view), NotebookSection::Script, name))
     }
 }

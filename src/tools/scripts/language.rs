@@ -11,7 +11,7 @@ pub enum Language {
 
 impl Language {
     /// Returns the language of code. Code that starts with `#` is Python, because no SQL statement does.
-    pub fn of(code: &str) -> Language {
+    pub fn detect(code: &str) -> Language {
         match code.trim_start_matches('\u{feff}').trim_start().starts_with('#') {
             true => Language::Python,
             false => Language::Sql,
@@ -20,7 +20,7 @@ impl Language {
 }
 
 /// Returns a hint on marking Python code, if code without the mark looks like Python.
-pub fn hint_at_python(code: &str) -> Option<&'static str> {
+pub fn python_marker_hint(code: &str) -> Option<&'static str> {
     let is_python = |line: &str| {
         let begins = ["import ", "def ", "class ", "print("].iter().any(|word| line.starts_with(word));
         let takes_from = line.starts_with("from ") && line.contains(" import ");
@@ -28,7 +28,7 @@ pub fn hint_at_python(code: &str) -> Option<&'static str> {
         begins || takes_from || is_block || line.contains("query(\"") || line.contains("query('")
     };
     let looks_like_it =
-        Language::of(code) == Language::Sql && code.lines().map(str::trim_start).any(is_python);
+        Language::detect(code) == Language::Sql && code.lines().map(str::trim_start).any(is_python);
     looks_like_it.then_some("this looks like Python: let its first line be `# python`")
 }
 
@@ -37,18 +37,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_first_sign_tells_the_language() {
+    fn first_character_determines_the_language() {
         for code in ["# python\nprint(1)", "#!/usr/bin/env python3", "\n  # x", "\u{feff}#"] {
-            assert_eq!(Language::of(code), Language::Python, "{code}");
-            assert_eq!(hint_at_python(code), None, "{code}");
+            assert_eq!(Language::detect(code), Language::Python, "{code}");
+            assert_eq!(python_marker_hint(code), None, "{code}");
         }
         for code in ["SELECT 1", "", "-- # python\nSELECT 1", "print(1)\n# python"] {
-            assert_eq!(Language::of(code), Language::Sql, "{code}");
+            assert_eq!(Language::detect(code), Language::Sql, "{code}");
         }
     }
 
     #[test]
-    fn what_looks_like_python_is_told_how_to_say_so() {
+    fn unmarked_python_gets_a_hint() {
         for code in [
             "print('hello')",
             "import math",
@@ -57,12 +57,12 @@ mod tests {
             "for row in rows:\n  pass",
             "rows = query(\"SELECT 1\")",
         ] {
-            assert!(hint_at_python(code).is_some(), "{code}");
+            assert!(python_marker_hint(code).is_some(), "{code}");
         }
         for code in
             ["SELECT 1", "SELECT day\nfrom ledger -- import", "SELECT 1 AS import_", "SELECT 'for all':"]
         {
-            assert_eq!(hint_at_python(code), None, "{code}");
+            assert_eq!(python_marker_hint(code), None, "{code}");
         }
     }
 }

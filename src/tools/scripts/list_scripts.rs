@@ -1,31 +1,34 @@
 use serde::Serialize;
 
 use super::super::arguments::Arguments;
-use super::super::keeping::owned;
-use super::super::{Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When};
-use super::stored;
+use super::super::stored_code::to_owned_names;
+use super::super::{
+    EffectTiming, PlannedCall, Rejection, ResultField, Tool, ToolContext, ToolId, ToolKind, ToolModule,
+    ToolSpec,
+};
+use super::stored_scripts;
 
 /// The tool `list_scripts`.
 pub struct ListScripts;
 
-static SPEC: Spec = Spec {
+static SPEC: ToolSpec = ToolSpec {
     id: ToolId::ListScripts,
     code: "SCRS",
-    module: Module::Time,
-    kind: Kind::Engine,
+    module: ToolModule::Time,
+    kind: ToolKind::Engine,
     summary: "List the names of the stored scripts",
     arguments: &[],
-    own_unknown: false,
-    whole: None,
-    when: When::Never,
+    has_own_unknown_code: false,
+    unnamed_argument: None,
+    effect_timing: EffectTiming::Never,
     effect: "",
     cost: "nothing",
-    writes: &[],
-    refusals: &[],
-    returns: &[Output {
+    written_tables: &[],
+    rejection_codes: &[],
+    result_fields: &[ResultField {
         name: "scripts",
         kind: "list of text",
-        doc: "names in the order in which they were stored",
+        description: "names in the order in which they were stored",
     }],
     example: r#"{}"#,
 };
@@ -41,15 +44,15 @@ impl Tool for ListScripts {
     type Args = ();
     type Answer = Scripts;
 
-    fn spec(&self) -> &'static Spec {
+    fn spec(&self) -> &'static ToolSpec {
         &SPEC
     }
 
-    fn read(&self, _: &View<'_>, _: &Arguments) -> Result<(), Refusal> {
+    fn read(&self, _: &ToolContext<'_>, _: &Arguments) -> Result<(), Rejection> {
         Ok(())
     }
 
-    fn plan(&self, view: &View<'_>, (): ()) -> Result<Planned<Scripts>, Refusal> {
-        Ok(Planned::reading(Scripts { scripts: owned(stored(view).names()) }))
+    fn plan(&self, view: &ToolContext<'_>, (): ()) -> Result<PlannedCall<Scripts>, Rejection> {
+        Ok(PlannedCall::read_only(Scripts { scripts: to_owned_names(stored_scripts(view).names()) }))
     }
 }

@@ -1,45 +1,59 @@
-use super::super::arguments::{Arguments, number, text, wrong_type};
+use super::super::arguments::{Arguments, json_f64, text_argument, wrong_type_rejection};
 use super::super::{
-    Argument, ArgumentKind, Kind, Module, Output, Planned, Range, Refusal, Script, ScriptOutput, Spec, Tool,
-    ToolId, View, When,
+    Argument, ArgumentKind, EffectTiming, NumberRange, PlannedCall, Rejection, ResultField, Script,
+    ScriptOutput, Tool, ToolContext, ToolId, ToolKind, ToolModule, ToolSpec,
 };
-use super::{CODE, LONGEST_SECONDS};
+use super::{CODE_DESCRIPTION, MAX_SCRIPT_SECONDS};
 
-/// The tool `python_exec`.
+/// The tool `python_exec_validates_code_and_timeout`.
 pub struct PythonExec;
 
-static SPEC: Spec = Spec {
+static SPEC: ToolSpec = ToolSpec {
     id: ToolId::PythonExec,
     code: "PYX",
-    module: Module::Time,
-    kind: Kind::Engine,
+    module: ToolModule::Time,
+    kind: ToolKind::Engine,
     summary: "Run SQL statements or Python over the visible tables",
     arguments: &[
-        Argument { name: "code", alias: None, kind: ArgumentKind::Text, required: true, unit: "", doc: CODE },
+        Argument {
+            name: "code",
+            alias: None,
+            kind: ArgumentKind::Text,
+            required: true,
+            unit: "",
+            description: CODE_DESCRIPTION,
+        },
         Argument {
             name: "timeout_seconds",
             alias: None,
-            kind: ArgumentKind::Number(Range { above: true, ..Range::between(0.0, LONGEST_SECONDS) }),
+            kind: ArgumentKind::Number(NumberRange {
+                excludes_min: true,
+                ..NumberRange::between(0.0, MAX_SCRIPT_SECONDS)
+            }),
             required: false,
             unit: "s",
-            doc: "time limit of the whole script; 600 if left out",
+            description: "time limit of the whole script; 600 if left out",
         },
     ],
-    own_unknown: false,
-    whole: None,
-    when: When::Never,
+    has_own_unknown_code: false,
+    unnamed_argument: None,
+    effect_timing: EffectTiming::Never,
     effect: "",
     cost: "nothing",
-    writes: &[],
-    refusals: &["script_failed", "script_timeout"],
-    returns: &[
-        Output { name: "returncode", kind: "integer", doc: "0: the script ran to its end" },
-        Output {
+    written_tables: &[],
+    rejection_codes: &["script_failed", "script_timeout"],
+    result_fields: &[
+        ResultField { name: "returncode", kind: "integer", description: "0: the script ran to its end" },
+        ResultField {
             name: "stdout",
             kind: "text",
-            doc: "results as tables, or the output of Python; the first 5,000 characters",
+            description: "results as tables, or the output of Python; the first 5,000 characters",
         },
-        Output { name: "stderr", kind: "text", doc: "warnings and hints, the first 2,000 characters" },
+        ResultField {
+            name: "stderr",
+            kind: "text",
+            description: "warnings and hints, the first 2,000 characters",
+        },
     ],
     example: r#"{"code": "SELECT COUNT(*) AS n FROM customers"}"#,
 };
@@ -48,21 +62,21 @@ impl Tool for PythonExec {
     type Args = Script;
     type Answer = ScriptOutput;
 
-    fn spec(&self) -> &'static Spec {
+    fn spec(&self) -> &'static ToolSpec {
         &SPEC
     }
 
-    fn read(&self, _: &View<'_>, arguments: &Arguments) -> Result<Script, Refusal> {
-        let code = text(arguments, "code")?.to_owned();
+    fn read(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<Script, Rejection> {
+        let code = text_argument(arguments, "code")?.to_owned();
         let seconds = arguments.read("timeout_seconds", |value, name| {
-            number(value)
-                .filter(|seconds| *seconds > 0.0 && *seconds <= LONGEST_SECONDS)
-                .ok_or_else(|| wrong_type(name, &format!("a number above 0, at most {LONGEST_SECONDS}")))
+            json_f64(value).filter(|seconds| *seconds > 0.0 && *seconds <= MAX_SCRIPT_SECONDS).ok_or_else(
+                || wrong_type_rejection(name, &format!("a number above 0, at most {MAX_SCRIPT_SECONDS}")),
+            )
         })?;
-        Ok(Script { code, seconds: seconds.unwrap_or(LONGEST_SECONDS) })
+        Ok(Script { code, timeout_seconds: seconds.unwrap_or(MAX_SCRIPT_SECONDS) })
     }
 
-    fn plan(&self, _: &View<'_>, script: Script) -> Result<Planned<ScriptOutput>, Refusal> {
-        Ok(Planned::running(script))
+    fn plan(&self, _: &ToolContext<'_>, script: Script) -> Result<PlannedCall<ScriptOutput>, Rejection> {
+        Ok(PlannedCall::with_script(script))
     }
 }

@@ -1,19 +1,20 @@
-use super::super::arguments::{Arguments, text};
-use super::super::keeping::{KeptCode, NamedCode};
+use super::super::arguments::{Arguments, text_argument};
 use super::super::notebook::QUOTA_EXCEEDED;
+use super::super::stored_code::{NamedCode, StoredCode};
 use super::super::{
-    Argument, ArgumentKind, Kept, Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When,
+    Argument, ArgumentKind, EffectTiming, NotebookSection, PlannedCall, Rejection, ResultField, Tool,
+    ToolContext, ToolId, ToolKind, ToolModule, ToolSpec,
 };
-use super::CODE;
+use super::CODE_DESCRIPTION;
 
 /// The tool `register_script`.
 pub struct RegisterScript;
 
-static SPEC: Spec = Spec {
+static SPEC: ToolSpec = ToolSpec {
     id: ToolId::RegisterScript,
     code: "SCR",
-    module: Module::Time,
-    kind: Kind::Engine,
+    module: ToolModule::Time,
+    kind: ToolKind::Engine,
     summary: "Store a named script of SQL statements or Python",
     arguments: &[
         Argument {
@@ -22,42 +23,49 @@ static SPEC: Spec = Spec {
             kind: ArgumentKind::Text,
             required: true,
             unit: "",
-            doc: "name of the script",
+            description: "name of the script",
         },
-        Argument { name: "code", alias: None, kind: ArgumentKind::Text, required: true, unit: "", doc: CODE },
+        Argument {
+            name: "code",
+            alias: None,
+            kind: ArgumentKind::Text,
+            required: true,
+            unit: "",
+            description: CODE_DESCRIPTION,
+        },
     ],
-    own_unknown: false,
-    whole: None,
-    when: When::Now,
+    has_own_unknown_code: false,
+    unnamed_argument: None,
+    effect_timing: EffectTiming::Now,
     effect: "run_script runs it. A script of the same name is replaced. At most 100 scripts are stored, each with a name of at \
              most 200 bytes and at most 262,144 bytes of code. Scripts and calculations together have at most 4,194,304 bytes.",
     cost: "nothing",
-    writes: &[],
-    refusals: &["script_name_blank", QUOTA_EXCEEDED],
-    returns: &[
-        Output { name: "name", kind: "text", doc: "the name, without surrounding spaces" },
-        Output { name: "code_length", kind: "integer", doc: "characters" },
+    written_tables: &[],
+    rejection_codes: &["script_name_blank", QUOTA_EXCEEDED],
+    result_fields: &[
+        ResultField { name: "name", kind: "text", description: "the name, without surrounding spaces" },
+        ResultField { name: "code_length", kind: "integer", description: "characters" },
     ],
     example: r#"{"name": "churn", "code": "SELECT status, COUNT(*) AS n FROM subscriptions GROUP BY 1"}"#,
 };
 
 impl Tool for RegisterScript {
     type Args = NamedCode;
-    type Answer = KeptCode;
+    type Answer = StoredCode;
 
-    fn spec(&self) -> &'static Spec {
+    fn spec(&self) -> &'static ToolSpec {
         &SPEC
     }
 
-    fn read(&self, _: &View<'_>, arguments: &Arguments) -> Result<NamedCode, Refusal> {
-        let name = text(arguments, "name")?.trim();
+    fn read(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<NamedCode, Rejection> {
+        let name = text_argument(arguments, "name")?.trim();
         if name.is_empty() {
-            return Err(Refusal::at("name", "script_name_blank", "the script needs a name"));
+            return Err(Rejection::for_field("name", "script_name_blank", "the script needs a name"));
         }
-        Ok(NamedCode { name: name.to_owned(), code: text(arguments, "code")?.to_owned() })
+        Ok(NamedCode { name: name.to_owned(), code: text_argument(arguments, "code")?.to_owned() })
     }
 
-    fn plan(&self, _: &View<'_>, given: NamedCode) -> Result<Planned<KeptCode>, Refusal> {
-        Ok(given.keep(Kept::Script))
+    fn plan(&self, _: &ToolContext<'_>, given: NamedCode) -> Result<PlannedCall<StoredCode>, Rejection> {
+        Ok(given.store(NotebookSection::Script))
     }
 }

@@ -1,18 +1,18 @@
 use super::super::arguments::Arguments;
 use super::super::{
-    Argument, ArgumentKind, Kind, Module, Output, Planned, Refusal, Script, ScriptOutput, Spec, Tool, ToolId,
-    View, When,
+    Argument, ArgumentKind, EffectTiming, PlannedCall, Rejection, ResultField, Script, ScriptOutput, Tool,
+    ToolContext, ToolId, ToolKind, ToolModule, ToolSpec,
 };
-use super::{LONGEST_SECONDS, find, name_of};
+use super::{MAX_SCRIPT_SECONDS, find_script, script_name};
 
 /// The tool `run_script`.
 pub struct RunScript;
 
-static SPEC: Spec = Spec {
+static SPEC: ToolSpec = ToolSpec {
     id: ToolId::RunScript,
     code: "RUN",
-    module: Module::Time,
-    kind: Kind::Engine,
+    module: ToolModule::Time,
+    kind: ToolKind::Engine,
     summary: "Run a stored script",
     arguments: &[Argument {
         name: "name",
@@ -20,23 +20,27 @@ static SPEC: Spec = Spec {
         kind: ArgumentKind::Text,
         required: true,
         unit: "",
-        doc: "name of the script",
+        description: "name of the script",
     }],
-    own_unknown: false,
-    whole: None,
-    when: When::Never,
+    has_own_unknown_code: false,
+    unnamed_argument: None,
+    effect_timing: EffectTiming::Never,
     effect: "",
     cost: "nothing",
-    writes: &[],
-    refusals: &["script_not_found", "script_failed", "script_timeout"],
-    returns: &[
-        Output { name: "returncode", kind: "integer", doc: "0: the script ran to its end" },
-        Output {
+    written_tables: &[],
+    rejection_codes: &["script_not_found", "script_failed", "script_timeout"],
+    result_fields: &[
+        ResultField { name: "returncode", kind: "integer", description: "0: the script ran to its end" },
+        ResultField {
             name: "stdout",
             kind: "text",
-            doc: "results as tables, or the output of Python; the first 5,000 characters",
+            description: "results as tables, or the output of Python; the first 5,000 characters",
         },
-        Output { name: "stderr", kind: "text", doc: "warnings and hints, the first 2,000 characters" },
+        ResultField {
+            name: "stderr",
+            kind: "text",
+            description: "warnings and hints, the first 2,000 characters",
+        },
     ],
     example: r#"{"name": "churn"}"#,
 };
@@ -45,16 +49,16 @@ impl Tool for RunScript {
     type Args = String;
     type Answer = ScriptOutput;
 
-    fn spec(&self) -> &'static Spec {
+    fn spec(&self) -> &'static ToolSpec {
         &SPEC
     }
 
-    fn read(&self, _: &View<'_>, arguments: &Arguments) -> Result<String, Refusal> {
-        name_of(arguments)
+    fn read(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<String, Rejection> {
+        script_name(arguments)
     }
 
-    fn plan(&self, view: &View<'_>, name: String) -> Result<Planned<ScriptOutput>, Refusal> {
-        let code = find(&name, view)?.to_owned();
-        Ok(Planned::running(Script { code, seconds: LONGEST_SECONDS }))
+    fn plan(&self, view: &ToolContext<'_>, name: String) -> Result<PlannedCall<ScriptOutput>, Rejection> {
+        let code = find_script(&name, view)?.to_owned();
+        Ok(PlannedCall::with_script(Script { code, timeout_seconds: MAX_SCRIPT_SECONDS }))
     }
 }

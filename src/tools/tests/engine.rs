@@ -3,8 +3,8 @@
 use serde_json::{Value, json};
 
 use super::super::{
-    Arguments, ColumnDocument, Kept, Notebook, Numbers, Refusal, Reply, Script, Surroundings, TableDocument,
-    View, find,
+    Arguments, ColumnDocument, Notebook, NotebookSection, ParameterNumbers, Rejection, Reply, Script,
+    SessionContext, TableDocument, ToolContext, find,
 };
 use novamind_world::command::ResolvedCommand;
 use novamind_world::events::Facts;
@@ -13,7 +13,7 @@ use novamind_world::params::Params;
 use novamind_world::state::World;
 
 #[derive(Default)]
-struct Host {
+struct TestHost {
     notebook: Notebook,
 }
 
@@ -21,8 +21,8 @@ fn column(name: &'static str, description: &'static str) -> ColumnDocument {
     ColumnDocument { name, kind: "INTEGER", values: &[], description }
 }
 
-impl Surroundings for Host {
-    fn describe(&self, _: &Reading) -> String {
+impl SessionContext for TestHost {
+    fn describe_economy(&self, _: &Reading) -> String {
         String::new()
     }
 
@@ -46,22 +46,24 @@ impl Surroundings for Host {
     }
 }
 
-impl Host {
+impl TestHost {
     /// Returns the result, or the script to run.
-    fn try_call(&mut self, name: &str, given: &Value) -> Result<Result<Value, Script>, Refusal> {
+    fn try_call(&mut self, name: &str, given: &Value) -> Result<Result<Value, Script>, Rejection> {
         let tool = find(name).expect("the tool exists");
-        let params = Params::shipped();
-        let world = World::open(500, 1.0, &params, &mut Facts::default());
-        let view = View::new(&world, &params).within(self);
-        let arguments = Arguments::of(tool.spec(), given, || Numbers::shipped().into())?;
+        let params = Params::bundled();
+        let world = World::new(500, 1.0, &params, &mut Facts::default());
+        let view = ToolContext::new(&world, &params).with_session(self);
+        let arguments = Arguments::parse(tool.spec(), given, || ParameterNumbers::bundled().into())?;
         let planned = tool.plan(&view, &arguments)?;
-        let beyond = |change| self.notebook.refuse_beyond_quota(change);
-        planned.change.as_ref().map_or(Ok(()), beyond)?;
+        let beyond = |change| self.notebook.check_quota(change);
+        planned.notebook_change.as_ref().map_or(Ok(()), beyond)?;
         let told = match planned.reply {
-            Reply::Output(script, _) => Err(script),
-            reply => Ok(reply.without_running(&ResolvedCommand::None).expect("an answer").to_json()),
+            Reply::FromScript(script, _) => Err(script),
+            reply => {
+                Ok(reply.into_answer_without_script(&ResolvedCommand::None).expect("an answer").to_json())
+            }
         };
-        planned.change.iter().for_each(|change| self.notebook.apply(change));
+        planned.notebook_change.iter().for_each(|change| self.notebook.apply(change));
         Ok(told)
     }
 
@@ -70,7 +72,7 @@ impl Host {
         told.unwrap_or_default()
     }
 
-    fn assert_refused(&mut self, name: &str, cases: &[(Value, &str, &str)]) {
+    fn assert_rejections(&mut self, name: &str, cases: &[(Value, &str, &str)]) {
         for (given, code, field) in cases {
             let refusal = self.try_call(name, given).expect_err(&format!("{name} {given} is invalid"));
             assert_eq!(
@@ -83,23 +85,23 @@ impl Host {
         let spec = find(name).expect("the tool exists").spec();
         // The session tests these codes with a database.
         let by_session = ["script_failed", "script_timeout"];
-        for code in spec.refusals.iter().filter(|code| !by_session.contains(code)) {
+        for code in spec.rejection_codes.iter().filter(|code| !by_session.contains(code)) {
             assert!(cases.iter().any(|(_, tested, _)| tested == code), "{name}: {code} is not tested");
         }
     }
 }
 
 #[test]
-fn calculations_are_kept_listed_and_removed() {
-    let mut host = Host::default();
+fn calculations_are_stored_listed_and_removed() {
+    let mut host = TestHost::default();
     let data = host.call("register_daily_calculation", json!({"name": "mrr", "code": "SELECT 1"}));
     assert_eq!(data, json!({"name": "mrr", "code_length": 8}));
     host.call("register_daily_calculation", json!({"name": "", "code": "SELECT '\u{e9}'"}));
     let data = host.call("register_daily_calculation", json!({"name": "mrr", "code": "SELECT 22"}));
     assert_eq!(data["code_length"], 9);
     assert_eq!(host.call("list_daily_calculations", json!({})), json!({"calculations": ["mrr", ""]}));
-    assert_eq!(host.notebook.statements(Kept::Calculation).get("mrr"), Some("SELECT 22"));
-    host.assert_refused(
+    assert_eq!(host.notebook.statements(NotebookSection::Calculation).get("mrr"), Some("SELECT 22"));
+    host.assert_rejections(
         "register_daily_calculation",
         &[
             (json!({"code": "SELECT 1"}), "argument_missing", "name"),
@@ -109,7 +111,7 @@ fn calculations_are_kept_listed_and_removed() {
             (json!({"name": "x", "code": "x".repeat(300_000)}), "quota_exceeded", "code"),
         ],
     );
-    host.assert_refused(
+    host.assert_rejections(
         "remove_daily_calculation",
         &[
             (json!({"name": "MRR"}), "calculation_not_found", "name"),
@@ -119,13 +121,13 @@ fn calculations_are_kept_listed_and_removed() {
     );
     let data = host.call("remove_daily_calculation", json!({"name": "mrr"}));
     assert_eq!(data, json!({"name": "mrr", "remaining": [""]}));
-    host.assert_refused("list_daily_calculations", &[(json!({"x": 1}), "unknown_argument", "x")]);
+    host.assert_rejections("list_daily_calculations", &[(json!({"x": 1}), "unknown_argument", "x")]);
 }
 
 #[test]
-fn scripts_are_stored_found_and_deleted() {
-    let mut host = Host::default();
-    host.assert_refused(
+fn scripts_are_stored_run_and_deleted() {
+    let mut host = TestHost::default();
+    host.assert_rejections(
         "register_script",
         &[
             (json!({"name": " \t", "code": "SELECT 1"}), "script_name_blank", "name"),
@@ -139,22 +141,22 @@ fn scripts_are_stored_found_and_deleted() {
     host.call("register_script", json!({"name": "other", "code": "SELECT 2"}));
     assert_eq!(host.call("list_scripts", json!({})), json!({"scripts": ["churn", "other"]}));
     let missing = [(json!({"name": "nothing"}), "script_not_found", "name")];
-    host.assert_refused("run_script", &missing);
-    host.assert_refused("delete_script", &missing);
+    host.assert_rejections("run_script", &missing);
+    host.assert_rejections("delete_script", &missing);
     let script = host.try_call("run_script", &json!({"name": "churn"})).expect("it is stored");
-    assert_eq!(script, Err(Script { code: "SELECT 1".to_owned(), seconds: 600.0 }));
+    assert_eq!(script, Err(Script { code: "SELECT 1".to_owned(), timeout_seconds: 600.0 }));
     let data = host.call("delete_script", json!({"name": "churn"}));
     assert_eq!(data, json!({"name": "churn", "remaining": ["other"]}));
-    host.assert_refused("run_script", &[(json!({"name": "churn"}), "script_not_found", "name")]);
+    host.assert_rejections("run_script", &[(json!({"name": "churn"}), "script_not_found", "name")]);
 }
 
 #[test]
-fn python_exec() {
-    let mut host = Host::default();
+fn python_exec_validates_code_and_timeout() {
+    let mut host = TestHost::default();
     let script =
         host.try_call("python_exec", &json!({"code": "SELECT 1", "timeout_seconds": 2.5})).expect("a script");
-    assert_eq!(script, Err(Script { code: "SELECT 1".to_owned(), seconds: 2.5 }));
-    host.assert_refused(
+    assert_eq!(script, Err(Script { code: "SELECT 1".to_owned(), timeout_seconds: 2.5 }));
+    host.assert_rejections(
         "python_exec",
         &[
             (json!({}), "argument_missing", "code"),
@@ -167,8 +169,8 @@ fn python_exec() {
 }
 
 #[test]
-fn documents_of_tables_and_tools() {
-    let mut host = Host::default();
+fn documentation_tools_describe_tables_and_tools() {
+    let mut host = TestHost::default();
     let data = host.call("list_all_tables", json!({}));
     assert_eq!(data, json!({"count": 2, "tables": {"ledger": "cash", "issues": "support"}}));
     let ledger = json!({"description": "cash", "columns": {"id": "INTEGER: number", "day": "INTEGER: day"}});
@@ -195,7 +197,7 @@ fn documents_of_tables_and_tools() {
         let cases = wrong(field, code);
         let cases: Vec<(Value, &str, &str)> =
             cases.iter().map(|(given, code, field)| (given.clone(), *code, field.as_str())).collect();
-        host.assert_refused(tool, &cases);
+        host.assert_rejections(tool, &cases);
     }
     let data = host.call("get_tool_documentation", json!({"tool_names": ["set_prices", "query"]}));
     assert_eq!(data.as_object().map(|tools| tools.len()), Some(2));

@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use super::Company;
+use super::TestCompany;
 use novamind_world::events::{Phase, Reading, Trend};
 use novamind_world::identifiers::Group;
 
@@ -11,10 +11,10 @@ fn group(id: &str) -> Group {
 }
 
 #[test]
-fn research_market() {
-    let mut company = Company::new();
+fn research_market_discovers_every_group() {
+    let mut company = TestCompany::new();
     company.world.finance.cash = 24_999.99;
-    company.assert_refused(
+    company.assert_rejections(
         "research_market",
         &[(json!({}), "insufficient_funds", ""), (json!({"group": "S1"}), "unknown_argument", "group")],
     );
@@ -37,8 +37,8 @@ fn research_market() {
 }
 
 #[test]
-fn an_attempt_is_charged_when_nothing_is_left_to_find() {
-    let mut company = Company::new();
+fn research_market_charges_when_all_groups_are_known() {
+    let mut company = TestCompany::new();
     for group in Group::all() {
         company.world.market.knowledge[group].level = 1;
     }
@@ -47,12 +47,12 @@ fn an_attempt_is_charged_when_nothing_is_left_to_find() {
 }
 
 #[test]
-fn research_group() {
-    let mut company = Company::new();
+fn research_group_validates_levels() {
+    let mut company = TestCompany::new();
     company.world.market.knowledge[group("E1")].level = 4;
     company.call("research_group", json!({"group_id": "S1", "target_level": 3}));
     company.world.finance.cash = 59_999.99;
-    company.assert_refused(
+    company.assert_rejections(
         "research_group",
         &[
             (json!({}), "argument_missing", "group_id"),
@@ -75,8 +75,8 @@ fn research_group() {
 }
 
 #[test]
-fn studies_are_charged_at_once_and_say_when_they_are_done() {
-    let mut company = Company::new();
+fn studies_are_charged_at_once_and_report_completion_day() {
+    let mut company = TestCompany::new();
     company.world.finance.cash = 60_000.0;
     let data = company.call("research_group", json!({"group_id": "S1"}));
     let expected =
@@ -84,7 +84,7 @@ fn studies_are_charged_at_once_and_say_when_they_are_done() {
     assert_eq!(data, expected);
     // Cash may reach zero.
     assert_eq!(company.world.finance.cash, 0.0);
-    assert_eq!(company.refused("research_market", json!({})).0, "insufficient_funds");
+    assert_eq!(company.call_rejected("research_market", json!({})).0, "insufficient_funds");
     company.world.finance.cash = 1_000_000.0;
     company.world.day = 21;
     let data = company.call("research_group", json!({"group_id": "E2", "target_level": 3}));
@@ -98,8 +98,8 @@ fn studies_are_charged_at_once_and_say_when_they_are_done() {
 }
 
 #[test]
-fn get_market_overview() {
-    let mut company = Company::new();
+fn get_market_overview_lists_known_groups_and_economy() {
+    let mut company = TestCompany::new();
     let data = company.call("get_market_overview", json!({}));
     let ids: Vec<&str> = data["known_groups"]
         .as_array()
@@ -134,13 +134,13 @@ fn get_market_overview() {
     let economy = &data["macroeconomic"];
     assert_eq!((&economy["pmi_value"], &economy["pmi_change"]), (&json!(48.3), &json!(-0.6)));
     assert_eq!((&economy["pmi_trend"], &economy["cycle_phase"]), (&json!("neutral"), &json!("declining")));
-    company.assert_refused("get_market_overview", &[(json!({"day": 3}), "unknown_argument", "day")]);
+    company.assert_rejections("get_market_overview", &[(json!({"day": 3}), "unknown_argument", "day")]);
 }
 
 #[test]
-fn get_group_insights() {
-    let mut company = Company::new();
-    company.assert_refused(
+fn get_group_insights_returns_known_groups_only() {
+    let mut company = TestCompany::new();
+    company.assert_rejections(
         "get_group_insights",
         &[
             (json!({}), "argument_missing", "group_id"),

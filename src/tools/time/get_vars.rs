@@ -1,26 +1,33 @@
 use serde::Serialize;
 
 use super::super::arguments::Arguments;
-use super::super::{Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When};
+use super::super::{
+    EffectTiming, PlannedCall, Rejection, ResultField, Tool, ToolContext, ToolId, ToolKind, ToolModule,
+    ToolSpec,
+};
 
 /// The tool `get_vars`.
 pub struct GetVars;
 
-static SPEC: Spec = Spec {
+static SPEC: ToolSpec = ToolSpec {
     id: ToolId::GetVars,
     code: "VARS",
-    module: Module::Time,
-    kind: Kind::Read,
+    module: ToolModule::Time,
+    kind: ToolKind::Read,
     summary: "Show the current day",
     arguments: &[],
-    own_unknown: false,
-    whole: None,
-    when: When::Never,
+    has_own_unknown_code: false,
+    unnamed_argument: None,
+    effect_timing: EffectTiming::Never,
     effect: "",
     cost: "nothing",
-    writes: &[],
-    refusals: &[],
-    returns: &[Output { name: "current_day", kind: "integer", doc: "the last simulated day" }],
+    written_tables: &[],
+    rejection_codes: &[],
+    result_fields: &[ResultField {
+        name: "current_day",
+        kind: "integer",
+        description: "the last simulated day",
+    }],
     example: "{}",
 };
 
@@ -35,15 +42,15 @@ impl Tool for GetVars {
     type Args = ();
     type Answer = Vars;
 
-    fn spec(&self) -> &'static Spec {
+    fn spec(&self) -> &'static ToolSpec {
         &SPEC
     }
 
-    fn read(&self, _: &View<'_>, _: &Arguments) -> Result<(), Refusal> {
+    fn read(&self, _: &ToolContext<'_>, _: &Arguments) -> Result<(), Rejection> {
         Ok(())
     }
 
-    fn plan(&self, view: &View<'_>, (): ()) -> Result<Planned<Vars>, Refusal> {
-        Ok(Planned::reading(Vars { current_day: view.day() }))
+    fn plan(&self, view: &ToolContext<'_>, (): ()) -> Result<PlannedCall<Vars>, Rejection> {
+        Ok(PlannedCall::read_only(Vars { current_day: view.day() }))
     }
 }

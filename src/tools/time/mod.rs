@@ -5,5 +5,5 @@ mod next_week;
 mod query;
 
 pub use get_vars::GetVars;
-pub use next_week::{FORECAST_KEYS, Forecast, NextWeek, forecasts, rationale};
+pub use next_week::{FORECAST_KEYS, Forecast, NextWeek, parse_forecasts, parse_rationale};
 pub use query::Query;

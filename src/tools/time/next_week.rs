@@ -1,20 +1,21 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::super::arguments::{Arguments, number};
-use super::super::bounds::{MOST_FORECAST, refuse_beyond};
+use super::super::arguments::{Arguments, json_f64};
+use super::super::limits::{MAX_FORECAST_DOLLARS, check_number};
 use super::super::{
-    Argument, ArgumentKind, Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When,
+    Argument, ArgumentKind, EffectTiming, PlannedCall, Rejection, ResultField, Tool, ToolContext, ToolId,
+    ToolKind, ToolModule, ToolSpec,
 };
 
-/// The tool `next_week`. The session implements it; this entry documents it and checks rationale and forecasts.
+/// The tool `handle_next_week`. The session implements it; this entry documents it and checks rationale and forecasts.
 pub struct NextWeek;
 
-static SPEC: Spec = Spec {
+static SPEC: ToolSpec = ToolSpec {
     id: ToolId::NextWeek,
     code: "NEXT",
-    module: Module::Time,
-    kind: Kind::Time,
+    module: ToolModule::Time,
+    kind: ToolKind::Time,
     summary: "Submit a rationale and four forecasts of cash, then simulate seven days",
     arguments: &[
         Argument {
@@ -23,7 +24,7 @@ static SPEC: Spec = Spec {
             kind: ArgumentKind::Text,
             required: false,
             unit: "",
-            doc: "reasons for the decisions of this week; not empty",
+            description: "reasons for the decisions of this week; not empty",
         },
         Argument {
             name: "predictions",
@@ -33,17 +34,17 @@ static SPEC: Spec = Spec {
             ),
             required: false,
             unit: "$",
-            doc: "cash in {limits.prediction_horizons_days.0}, {limits.prediction_horizons_days.1}, \
+            description: "cash in {limits.prediction_horizons_days.0}, {limits.prediction_horizons_days.1}, \
                   {limits.prediction_horizons_days.2} and {limits.prediction_horizons_days.3} days with the interval that should contain it 95 times out of 100",
         },
     ],
-    own_unknown: false,
-    whole: None,
-    when: When::Now,
+    has_own_unknown_code: false,
+    unnamed_argument: None,
+    effect_timing: EffectTiming::Now,
     effect: "Seven days are simulated, or fewer if the run reaches its last day or cash falls below zero.",
     cost: "the daily costs of every day",
-    writes: &["predictions", "all tables of the simulated days"],
-    refusals: &[
+    written_tables: &["predictions", "all tables of the simulated days"],
+    rejection_codes: &[
         "rationale_missing",
         "predictions_missing",
         "prediction_missing",
@@ -55,15 +56,15 @@ static SPEC: Spec = Spec {
         "prediction_point_outside",
         "run_over",
     ],
-    returns: &[
-        Output { name: "day", kind: "integer", doc: "the last simulated day" },
-        Output { name: "dashboard", kind: "text", doc: "the weekly dashboard" },
+    result_fields: &[
+        ResultField { name: "day", kind: "integer", description: "the last simulated day" },
+        ResultField { name: "dashboard", kind: "text", description: "the weekly dashboard" },
     ],
     example: r#"{"rationale": "hold", "predictions": {"cash_1wk": {"point": 990000, "lower": 980000, "upper": 995000}, "cash_4wk": {"point": 960000, "lower": 930000, "upper": 985000}, "cash_12wk": {"point": 900000, "lower": 800000, "upper": 1000000}, "cash_26wk": {"point": 850000, "lower": 600000, "upper": 1200000}}}"#,
 };
 
 /// The submission before a week.
-pub struct Filing {
+pub struct WeekArguments {
     /// Rationale.
     pub rationale: String,
     /// Cash in 7, 28, 84 and 182 days.
@@ -71,23 +72,23 @@ pub struct Filing {
 }
 
 impl Tool for NextWeek {
-    type Args = Filing;
+    type Args = WeekArguments;
     type Answer = ();
 
-    fn spec(&self) -> &'static Spec {
+    fn spec(&self) -> &'static ToolSpec {
         &SPEC
     }
 
-    fn read(&self, view: &View<'_>, arguments: &Arguments) -> Result<Filing, Refusal> {
+    fn read(&self, view: &ToolContext<'_>, arguments: &Arguments) -> Result<WeekArguments, Rejection> {
         let given = |name| arguments.get(name).unwrap_or(&Value::Null);
-        Ok(Filing {
-            rationale: rationale(given("rationale"))?,
-            forecasts: forecasts(given("predictions"), &view.params().limits.prediction_horizons_days)?,
+        Ok(WeekArguments {
+            rationale: parse_rationale(given("rationale"))?,
+            forecasts: parse_forecasts(given("predictions"), &view.params().limits.prediction_horizons_days)?,
         })
     }
 
-    fn plan(&self, _: &View<'_>, _: Filing) -> Result<Planned<()>, Refusal> {
-        Ok(Planned::reading(()))
+    fn plan(&self, _: &ToolContext<'_>, _: WeekArguments) -> Result<PlannedCall<()>, Rejection> {
+        Ok(PlannedCall::read_only(()))
     }
 }
 
@@ -108,10 +109,10 @@ pub struct Forecast {
 }
 
 /// Parses the rationale of a week: text that is not blank.
-pub fn rationale(given: &Value) -> Result<String, Refusal> {
+pub fn parse_rationale(given: &Value) -> Result<String, Rejection> {
     match given.as_str() {
         Some(text) if !text.trim().is_empty() => Ok(text.to_owned()),
-        _ => Err(Refusal::at(
+        _ => Err(Rejection::for_field(
             "rationale",
             "rationale_missing",
             "a rationale is required: say why in a sentence or two",
@@ -120,21 +121,21 @@ pub fn rationale(given: &Value) -> Result<String, Refusal> {
 }
 
 /// Parses the four forecasts of a week, checking one horizon after the other.
-pub fn forecasts(given: &Value, horizons: &[u32]) -> Result<[Forecast; 4], Refusal> {
+pub fn parse_forecasts(given: &Value, horizons: &[u32]) -> Result<[Forecast; 4], Rejection> {
     let Some(map) = given.as_object() else {
         let message = format!("the forecasts are required: {}", FORECAST_KEYS.join(", "));
-        return Err(Refusal::at("predictions", "predictions_missing", message));
+        return Err(Rejection::for_field("predictions", "predictions_missing", message));
     };
     let mut all = [Forecast { horizon_days: 0, point: 0.0, lower: 0.0, upper: 0.0 }; 4];
     for ((key, forecast), horizon) in FORECAST_KEYS.into_iter().zip(&mut all).zip(horizons) {
-        *forecast = read_forecast(key, map.get(key), *horizon)?;
+        *forecast = parse_forecast(key, map.get(key), *horizon)?;
     }
     Ok(all)
 }
 
-fn read_forecast(key: &str, given: Option<&Value>, horizon_days: u32) -> Result<Forecast, Refusal> {
+fn parse_forecast(key: &str, given: Option<&Value>, horizon_days: u32) -> Result<Forecast, Rejection> {
     let field = format!("predictions.{key}");
-    let refuse = |code, message: String| Refusal::at(field.clone(), code, message);
+    let refuse = |code, message: String| Rejection::for_field(field.clone(), code, message);
     let Some(given) = given.filter(|value| !value.is_null()) else {
         return Err(refuse("prediction_missing", format!("forecast {key} is missing")));
     };
@@ -147,10 +148,14 @@ fn read_forecast(key: &str, given: Option<&Value>, horizon_days: u32) -> Result<
     let read = |name: &str| {
         let field = format!("{field}.{name}");
         let value = map.get(name).filter(|value| !value.is_null()).ok_or_else(|| {
-            Refusal::at(field.clone(), "prediction_field_missing", format!("forecast {key} lacks {name}"))
+            Rejection::for_field(
+                field.clone(),
+                "prediction_field_missing",
+                format!("forecast {key} lacks {name}"),
+            )
         })?;
-        number(value).ok_or_else(|| {
-            Refusal::at(field, "prediction_not_number", format!("forecast {key} must hold numbers"))
+        json_f64(value).ok_or_else(|| {
+            Rejection::for_field(field, "prediction_not_number", format!("forecast {key} must hold numbers"))
         })
     };
     // All three must exist before any of them is parsed as a number.
@@ -162,7 +167,7 @@ fn read_forecast(key: &str, given: Option<&Value>, horizon_days: u32) -> Result<
     let forecast =
         Forecast { horizon_days, point: read("point")?, lower: read("lower")?, upper: read("upper")? };
     for (name, value) in [("point", forecast.point), ("lower", forecast.lower), ("upper", forecast.upper)] {
-        refuse_beyond(value, MOST_FORECAST, &format!("{field}.{name}"), "$")?;
+        check_number(value, MAX_FORECAST_DOLLARS, &format!("{field}.{name}"), "$")?;
     }
     if forecast.lower > forecast.upper {
         let message = format!("forecast {key}: lower {} is above upper {}", forecast.lower, forecast.upper);
@@ -181,27 +186,27 @@ mod tests {
     use super::*;
     use serde_json::json;
 
-    fn code(predictions: Value) -> &'static str {
-        match forecasts(&predictions, &[7, 28, 84, 182]) {
+    fn rejection_code(predictions: Value) -> &'static str {
+        match parse_forecasts(&predictions, &[7, 28, 84, 182]) {
             Ok(_) => "accepted",
             Err(refusal) => refusal.code,
         }
     }
 
-    fn with_first(first: Value) -> Value {
+    fn predictions_with_first(first: Value) -> Value {
         let fine = json!({"point": 1, "lower": 1, "upper": 1});
         json!({"cash_1wk": first, "cash_4wk": fine, "cash_12wk": fine, "cash_26wk": fine})
     }
 
     #[test]
-    fn a_rationale_and_four_whole_forecasts_are_required() {
-        assert_eq!(rationale(&Value::Null).map_err(|refusal| refusal.code), Err("rationale_missing"));
-        assert_eq!(rationale(&json!("  ")).map_err(|refusal| refusal.code), Err("rationale_missing"));
-        assert_eq!(rationale(&json!(5)).map_err(|refusal| refusal.code), Err("rationale_missing"));
-        assert_eq!(code(Value::Null), "predictions_missing");
-        let mut three = with_first(json!({"point": 1, "lower": 1, "upper": 1}));
+    fn next_week_requires_rationale_and_four_forecasts() {
+        assert_eq!(parse_rationale(&Value::Null).map_err(|refusal| refusal.code), Err("rationale_missing"));
+        assert_eq!(parse_rationale(&json!("  ")).map_err(|refusal| refusal.code), Err("rationale_missing"));
+        assert_eq!(parse_rationale(&json!(5)).map_err(|refusal| refusal.code), Err("rationale_missing"));
+        assert_eq!(rejection_code(Value::Null), "predictions_missing");
+        let mut three = predictions_with_first(json!({"point": 1, "lower": 1, "upper": 1}));
         three.as_object_mut().expect("an object").shift_remove("cash_12wk");
-        assert_eq!(code(three), "prediction_missing");
+        assert_eq!(rejection_code(three), "prediction_missing");
         for (first, expected) in [
             (json!([1, 2, 3]), "prediction_not_object"),
             (json!(5), "prediction_not_object"),
@@ -216,7 +221,7 @@ mod tests {
             (json!({"point": 1, "lower": -1e15, "upper": 1e15}), "accepted"),
             (json!({"point": 1, "lower": 1, "upper": 1, "note": "ignored"}), "accepted"),
         ] {
-            assert_eq!(code(with_first(first)), expected);
+            assert_eq!(rejection_code(predictions_with_first(first)), expected);
         }
     }
 }

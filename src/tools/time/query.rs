@@ -1,16 +1,17 @@
-use super::super::arguments::{Arguments, text};
+use super::super::arguments::{Arguments, text_argument};
 use super::super::{
-    Argument, ArgumentKind, Kind, Module, Output, Planned, Refusal, Spec, Tool, ToolId, View, When,
+    Argument, ArgumentKind, EffectTiming, PlannedCall, Rejection, ResultField, Tool, ToolContext, ToolId,
+    ToolKind, ToolModule, ToolSpec,
 };
 
 /// The tool `query`. The session implements it; this entry documents it.
 pub struct Query;
 
-static SPEC: Spec = Spec {
+static SPEC: ToolSpec = ToolSpec {
     id: ToolId::Query,
     code: "QRY",
-    module: Module::Time,
-    kind: Kind::Read,
+    module: ToolModule::Time,
+    kind: ToolKind::Read,
     summary: "Query the company's database with one read-only SQL statement",
     arguments: &[Argument {
         name: "sql",
@@ -18,15 +19,15 @@ static SPEC: Spec = Spec {
         kind: ArgumentKind::Text,
         required: false,
         unit: "",
-        doc: "one SELECT statement over the 19 visible tables",
+        description: "one SELECT statement over the 19 visible tables",
     }],
-    own_unknown: false,
-    whole: None,
-    when: When::Never,
+    has_own_unknown_code: false,
+    unnamed_argument: None,
+    effect_timing: EffectTiming::Never,
     effect: "",
     cost: "nothing",
-    writes: &[],
-    refusals: &[
+    written_tables: &[],
+    rejection_codes: &[
         "sql_empty",
         "sql_schema",
         "sql_hidden_table",
@@ -35,16 +36,20 @@ static SPEC: Spec = Spec {
         "sql_cancelled",
         "sql_error",
     ],
-    returns: &[
-        Output { name: "columns", kind: "list of text", doc: "names of the columns" },
-        Output { name: "rows", kind: "list of objects", doc: "at most {limits.query_row_limit:,}" },
-        Output { name: "row_count", kind: "integer", doc: "number of rows" },
-        Output {
+    result_fields: &[
+        ResultField { name: "columns", kind: "list of text", description: "names of the columns" },
+        ResultField {
+            name: "rows",
+            kind: "list of objects",
+            description: "at most {limits.query_row_limit:,}",
+        },
+        ResultField { name: "row_count", kind: "integer", description: "number of rows" },
+        ResultField {
             name: "truncated",
             kind: "boolean",
-            doc: "whether more rows exist; if so, there is also a warning",
+            description: "whether more rows exist; if so, there is also a warning",
         },
-        Output { name: "hint", kind: "text", doc: "why an empty result may be empty" },
+        ResultField { name: "hint", kind: "text", description: "why an empty result may be empty" },
     ],
     example: r#"{"sql": "SELECT SUM(amount) AS cash FROM ledger"}"#,
 };
@@ -53,15 +58,15 @@ impl Tool for Query {
     type Args = ();
     type Answer = ();
 
-    fn spec(&self) -> &'static Spec {
+    fn spec(&self) -> &'static ToolSpec {
         &SPEC
     }
 
-    fn read(&self, _: &View<'_>, arguments: &Arguments) -> Result<(), Refusal> {
-        text(arguments, "sql").map(|_| ())
+    fn read(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<(), Rejection> {
+        text_argument(arguments, "sql").map(|_| ())
     }
 
-    fn plan(&self, _: &View<'_>, (): ()) -> Result<Planned<()>, Refusal> {
-        Ok(Planned::reading(()))
+    fn plan(&self, _: &ToolContext<'_>, (): ()) -> Result<PlannedCall<()>, Rejection> {
+        Ok(PlannedCall::read_only(()))
     }
 }

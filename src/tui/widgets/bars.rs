@@ -7,18 +7,18 @@ use crate::canvas::{Align, Canvas};
 use crate::theme::Role;
 
 /// Characters of the bars of each series, distinguishable without color and in ASCII.
-pub const SIGNS: [&str; 4] = ["█", "▒", "━", "•"];
+pub const SERIES_SYMBOLS: [&str; 4] = ["█", "▒", "━", "•"];
 
 /// A bar.
 pub struct Bar<'a> {
     /// Name; empty below another bar of the same item.
     pub name: &'a str,
     /// Alignment of the name: numbers are right-aligned.
-    pub side: Align,
+    pub name_align: Align,
     /// Value; `None` draws no bar.
     pub value: Option<f64>,
     /// Formatted value.
-    pub shown: &'a str,
+    pub label: &'a str,
     /// Index of its series.
     pub series: usize,
     /// Whether it is selected.
@@ -27,22 +27,22 @@ pub struct Bar<'a> {
 
 /// Layout of the names, bars and values of a row, and the scale.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Scale {
-    names: u16,
-    values: u16,
-    room: u16,
+pub struct BarLayout {
+    name_width: u16,
+    value_width: u16,
+    bar_width: u16,
     /// Cell of zero, among those.
-    zero: u16,
-    per_unit: f64,
+    zero_cell: u16,
+    cells_per_unit: f64,
 }
 
-impl Scale {
+impl BarLayout {
     /// Returns a scale that fits all bars into rows of a width.
-    pub fn of<'a>(bars: impl Iterator<Item = Bar<'a>>, width: u16) -> Scale {
+    pub fn for_bars<'a>(bars: impl Iterator<Item = Bar<'a>>, width: u16) -> BarLayout {
         let (mut names, mut values, mut least, mut most) = (1, 1, 0.0_f64, 0.0_f64);
         for bar in bars {
             names = names.max(bar.name.width());
-            values = values.max(bar.shown.width());
+            values = values.max(bar.label.width());
             let value = bar.value.filter(|value| value.is_finite()).unwrap_or(0.0);
             (least, most) = (least.min(value), most.max(value));
         }
@@ -54,40 +54,46 @@ impl Scale {
         let span = most - least;
         let per_unit = if span > 0.0 { f64::from(room) / span } else { 0.0 };
         let zero = (-least * per_unit).round() as u16;
-        Scale { names, values, room, zero: zero.min(room), per_unit }
+        BarLayout {
+            name_width: names,
+            value_width: values,
+            bar_width: room,
+            zero_cell: zero.min(room),
+            cells_per_unit: per_unit,
+        }
     }
 
     /// Returns the first cell and the number of cells of a bar. Values other than zero have at least one cell.
     fn cells(&self, value: f64) -> (u16, u16) {
-        let length = (value.abs() * self.per_unit).round() as u16;
+        let length = (value.abs() * self.cells_per_unit).round() as u16;
         let length = if value == 0.0 { 0 } else { length.max(1) };
         if value < 0.0 {
-            let length = length.min(self.zero);
-            (self.zero - length, length)
+            let length = length.min(self.zero_cell);
+            (self.zero_cell - length, length)
         } else {
-            (self.zero + 1, length.min(self.room - self.zero))
+            (self.zero_cell + 1, length.min(self.bar_width - self.zero_cell))
         }
     }
 
     /// Draws a bar in a row.
     pub fn draw(&self, canvas: &mut Canvas<'_>, row: Rect, bar: &Bar<'_>) {
-        let name = Rect { width: self.names.min(row.width), ..row };
+        let name = Rect { width: self.name_width.min(row.width), ..row };
         if bar.selected {
             canvas.clear(name, Role::Selection);
         }
         let role = if bar.selected { Role::Selection } else { Role::Text };
-        canvas.aligned(name, bar.name, role, bar.side);
-        let value = Rect { x: row.x + self.names + 1, width: self.values, ..row };
+        canvas.draw_aligned(name, bar.name, role, bar.name_align);
+        let value = Rect { x: row.x + self.name_width + 1, width: self.value_width, ..row };
         let role = if bar.value.is_some_and(|value| value < 0.0) { Role::Bad } else { Role::Text };
-        canvas.aligned(value.intersection(row), bar.shown, role, Align::Right);
-        let left = row.x + self.names + self.values + 2;
-        let zero = Rect { x: left + self.zero, width: 1, ..row };
-        canvas.text(zero.intersection(row), "│", Role::Dim);
+        canvas.draw_aligned(value.intersection(row), bar.label, role, Align::Right);
+        let left = row.x + self.name_width + self.value_width + 2;
+        let zero = Rect { x: left + self.zero_cell, width: 1, ..row };
+        canvas.draw_text(zero.intersection(row), "│", Role::Dim);
         let Some(number) = bar.value.filter(|value| value.is_finite()) else { return };
         let (from, length) = self.cells(number);
         let cells = Rect { x: left + from, width: length, ..row };
-        let sign = SIGNS[bar.series % SIGNS.len()];
-        canvas.text(cells.intersection(row), &sign.repeat(length as usize), Role::Series(bar.series));
+        let sign = SERIES_SYMBOLS[bar.series % SERIES_SYMBOLS.len()];
+        canvas.draw_text(cells.intersection(row), &sign.repeat(length as usize), Role::Series(bar.series));
     }
 }
 
@@ -95,20 +101,20 @@ impl Scale {
 mod tests {
     use super::*;
 
-    fn scale(values: &[f64], width: u16) -> Scale {
+    fn scale(values: &[f64], width: u16) -> BarLayout {
         let bar = |value: &f64| Bar {
             name: "name",
-            side: Align::Left,
+            name_align: Align::Left,
             value: Some(*value),
-            shown: "-1.00",
+            label: "-1.00",
             series: 0,
             selected: false,
         };
-        Scale::of(values.iter().map(bar).collect::<Vec<_>>().into_iter(), width)
+        BarLayout::for_bars(values.iter().map(bar).collect::<Vec<_>>().into_iter(), width)
     }
 
     #[test]
-    fn zero_stands_left_of_positive_bars_and_between_both_signs() {
+    fn zero_is_left_of_positive_bars_and_between_mixed_signs() {
         // 4 for the name, 5 for the value, 3 between: 20 for the bars.
         let positive = scale(&[10.0, 5.0, 0.01, 0.0], 32);
         assert_eq!(positive.cells(10.0), (1, 20));
@@ -124,11 +130,11 @@ mod tests {
     }
 
     #[test]
-    fn nothing_breaks_without_room_or_numbers() {
+    fn bars_accept_no_space_and_non_finite_values() {
         for width in 0..20 {
             let narrow = scale(&[-3.0, f64::NAN, f64::INFINITY, 1e300], width);
             let (from, length) = narrow.cells(1e300);
-            assert!(from + length <= narrow.room + 1, "{width}");
+            assert!(from + length <= narrow.bar_width + 1, "{width}");
         }
         assert_eq!(scale(&[0.0], 32).cells(0.0), (1, 0));
     }

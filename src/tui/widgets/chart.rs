@@ -4,42 +4,42 @@ use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
 
 use super::raster::Raster;
-use super::scale::{Unit, ticks, widened};
+use super::scale::{AxisUnit, ticks, widen_to_ticks};
 use crate::canvas::{Align, Canvas};
-use crate::text::arrow;
+use crate::text::format_change;
 use crate::theme::Role;
 
 /// Minimum width of a plot with names at the ends of its curves.
-const ROOM_FOR_NAMES: u16 = 36;
+const MIN_WIDTH_FOR_NAMES: u16 = 36;
 
 /// A curve of a chart.
 #[derive(Debug, Clone)]
-pub struct Line {
+pub struct Curve {
     /// Points; those that are not numbers are omitted.
     pub points: Vec<(f64, f64)>,
     /// Role.
     pub role: Role,
     /// Whether single points are drawn instead of a line.
-    pub scattered: bool,
+    pub is_scatter: bool,
     /// Name at its end, if there is space; may be empty.
     pub name: &'static str,
 }
 
-impl Line {
+impl Curve {
     /// Returns a curve of values at 0, 1, 2, …
-    pub fn of(values: &[f64], role: Role) -> Line {
+    pub fn from_values(values: &[f64], role: Role) -> Curve {
         let points = values.iter().enumerate().map(|(at, value)| (at as f64, *value)).collect();
-        Line::through(points, role)
+        Curve::from_points(points, role)
     }
 
     /// Returns a curve through points.
-    pub fn through(points: Vec<(f64, f64)>, role: Role) -> Line {
-        Line { points, role, scattered: false, name: "" }
+    pub fn from_points(points: Vec<(f64, f64)>, role: Role) -> Curve {
+        Curve { points, role, is_scatter: false, name: "" }
     }
 
     /// Adds a name at its end.
-    pub fn named(self, name: &'static str) -> Line {
-        Line { name, ..self }
+    pub fn with_name(self, name: &'static str) -> Curve {
+        Curve { name, ..self }
     }
 }
 
@@ -47,16 +47,16 @@ impl Line {
 #[derive(Debug, Clone)]
 pub struct Band {
     /// Position, lower and upper end, in the order of positions.
-    pub ends: Vec<(f64, f64, f64)>,
+    pub bounds: Vec<(f64, f64, f64)>,
     /// Name at its end; may be empty.
     pub name: &'static str,
 }
 
 impl Band {
     /// Returns the ends at a position, or `None` outside.
-    fn at(&self, x: f64) -> Option<(f64, f64)> {
-        let next = self.ends.iter().position(|end| end.0 >= x)?;
-        let (after, before) = (self.ends[next], self.ends[next.saturating_sub(1)]);
+    fn bounds_at(&self, x: f64) -> Option<(f64, f64)> {
+        let next = self.bounds.iter().position(|end| end.0 >= x)?;
+        let (after, before) = (self.bounds[next], self.bounds[next.saturating_sub(1)]);
         if x < before.0 {
             return None;
         }
@@ -66,23 +66,23 @@ impl Band {
 }
 
 /// The horizontal axis.
-pub struct Axis<'a> {
+pub struct XAxis<'a> {
     /// Formats a value.
-    pub write: &'a dyn Fn(f64) -> String,
+    pub format: &'a dyn Fn(f64) -> String,
     /// Values that the axis must contain.
-    pub holds: &'a [f64],
+    pub required_values: &'a [f64],
 }
 
 /// The vertical axis.
-pub struct Side<'a> {
+pub struct YAxis<'a> {
     /// Unit of the values.
-    pub unit: Unit,
+    pub unit: AxisUnit,
     /// Values that the axis must contain.
-    pub holds: &'a [f64],
+    pub required_values: &'a [f64],
 }
 
 /// A label at a point, on top of everything else.
-pub struct Sign {
+pub struct PointLabel {
     /// Position on the horizontal axis.
     pub x: f64,
     /// Position on the vertical axis.
@@ -96,197 +96,201 @@ pub struct Sign {
 /// A chart.
 pub struct Plot<'a> {
     /// Curves; the last one is on top.
-    pub lines: &'a [Line],
+    pub curves: &'a [Curve],
     /// A band below the curves.
     pub band: Option<&'a Band>,
     /// Position marked by a vertical line.
-    pub mark: Option<f64>,
+    pub marked_x: Option<f64>,
     /// The horizontal axis.
-    pub x: &'a Axis<'a>,
+    pub x: &'a XAxis<'a>,
     /// The vertical axis.
-    pub y: &'a Side<'a>,
+    pub y: &'a YAxis<'a>,
 }
 
 /// Draws curves, or a text if there is no data.
-pub fn chart(canvas: &mut Canvas<'_>, area: Rect, lines: &[Line], x: &Axis<'_>, y: &Side<'_>) {
-    Plot { lines, band: None, mark: None, x, y }.draw(canvas, area);
+pub fn draw_chart(canvas: &mut Canvas<'_>, area: Rect, lines: &[Curve], x: &XAxis<'_>, y: &YAxis<'_>) {
+    Plot { curves: lines, band: None, marked_x: None, x, y }.draw(canvas, area);
 }
 
 /// A label of the horizontal axis: column of its tick, first column of its text, text.
-type Label = (u16, u16, String);
+type AxisLabel = (u16, u16, String);
 
-struct Frame {
-    inside: Rect,
+struct PlotFrame {
+    area: Rect,
     x: [f64; 2],
     y: [f64; 2],
 }
 
-impl Frame {
-    fn share([from, to]: [f64; 2], value: f64) -> f64 {
+impl PlotFrame {
+    fn fraction([from, to]: [f64; 2], value: f64) -> f64 {
         (value - from) / (to - from)
     }
 
     fn column(&self, x: f64) -> u16 {
-        let most = f64::from(self.inside.width.saturating_sub(1));
-        self.inside.x + (Frame::share(self.x, x).clamp(0.0, 1.0) * most).round() as u16
+        let most = f64::from(self.area.width.saturating_sub(1));
+        self.area.x + (PlotFrame::fraction(self.x, x).clamp(0.0, 1.0) * most).round() as u16
     }
 
     fn row(&self, y: f64) -> u16 {
-        let most = f64::from(self.inside.height.saturating_sub(1));
-        self.inside.y + ((1.0 - Frame::share(self.y, y).clamp(0.0, 1.0)) * most).round() as u16
+        let most = f64::from(self.area.height.saturating_sub(1));
+        self.area.y + ((1.0 - PlotFrame::fraction(self.y, y).clamp(0.0, 1.0)) * most).round() as u16
     }
 }
 
 impl Plot<'_> {
     /// Draws the plot, or a text if there is no data.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect) {
-        self.draw_with(canvas, area, &[]);
+        self.draw_with_labels(canvas, area, &[]);
     }
 
     /// Draws the plot with labels on top; labels outside of the axes are drawn at the edge.
-    pub fn draw_with(&self, canvas: &mut Canvas<'_>, area: Rect, signs: &[Sign]) {
+    pub fn draw_with_labels(&self, canvas: &mut Canvas<'_>, area: Rect, signs: &[PointLabel]) {
         let area = area.intersection(canvas.buffer.area);
         if area.width < 16 || area.height < 4 {
             return;
         }
-        let points = || self.lines.iter().flat_map(|line| &line.points).filter(|point| point.1.is_finite());
+        let points = || self.curves.iter().flat_map(|line| &line.points).filter(|point| point.1.is_finite());
         if points().next().is_none() {
-            canvas.text(area, canvas.no_data, Role::Dim);
+            canvas.draw_text(area, canvas.empty_chart_text, Role::Dim);
             return;
         }
-        let band = || self.band.iter().flat_map(|band| &band.ends);
-        let x = bounds(points().map(|point| point.0).chain(band().map(|end| end.0)), self.x.holds);
+        let band = || self.band.iter().flat_map(|band| &band.bounds);
+        let x = bounds(points().map(|point| point.0).chain(band().map(|end| end.0)), self.x.required_values);
         let ends = band().flat_map(|end| [end.1, end.2]);
-        let y = bounds(points().map(|point| point.1).chain(ends), self.y.holds);
+        let y = bounds(points().map(|point| point.1).chain(ends), self.y.required_values);
         let rows = ((area.height - 2) / 4).clamp(2, 6) as usize;
-        let y = widened(y, rows);
+        let y = widen_to_ticks(y, rows);
         let marks = ticks(y, rows + 1);
         let labels = self.y.unit.labels(&marks);
         let left = labels.iter().map(|label| label.width()).max().unwrap_or(0) as u16;
         let left = left.min(area.width / 2);
         let plot = area.width - left - 1;
-        let names = if plot >= ROOM_FOR_NAMES { self.longest_name() } else { 0 };
+        let names = if plot >= MIN_WIDTH_FOR_NAMES { self.longest_name_width() } else { 0 };
         let inside = Rect {
             x: area.x + left + 1,
             y: area.y,
             width: plot - if names > 0 { names + 1 } else { 0 },
             height: area.height - 2,
         };
-        let frame = Frame { inside, x, y };
-        draw_side(canvas, area, &frame, &marks, &labels);
-        self.draw_foot(canvas, area, &frame);
+        let frame = PlotFrame { area: inside, x, y };
+        draw_y_axis(canvas, area, &frame, &marks, &labels);
+        self.draw_x_axis(canvas, area, &frame);
         self.draw_band(canvas, &frame);
-        if let Some(mark) = self.mark.filter(|mark| *mark >= x[0] && *mark <= x[1]) {
+        if let Some(mark) = self.marked_x.filter(|mark| *mark >= x[0] && *mark <= x[1]) {
             for y in inside.top()..inside.bottom() {
-                canvas.text(Rect { x: frame.column(mark), y, width: 1, height: 1 }, "┊", Role::Dim);
+                canvas.draw_text(Rect { x: frame.column(mark), y, width: 1, height: 1 }, "┊", Role::Dim);
             }
         }
-        self.draw_lines(canvas, &frame);
+        self.draw_curves(canvas, &frame);
         for sign in signs {
             let place = Rect { x: frame.column(sign.x), y: frame.row(sign.y), height: 1, ..inside };
             let room = inside.right().saturating_sub(place.x);
-            canvas.text(Rect { width: room, ..place }, sign.text, sign.role);
+            canvas.draw_text(Rect { width: room, ..place }, sign.text, sign.role);
         }
         if names > 0 {
             let place = Rect { x: inside.right() + 1, width: names, ..inside };
-            self.draw_names(canvas, place, &frame);
+            self.draw_curve_names(canvas, place, &frame);
         }
     }
 
-    fn longest_name(&self) -> u16 {
-        let names = self.lines.iter().map(|line| line.name).chain(self.band.map(|band| band.name));
+    fn longest_name_width(&self) -> u16 {
+        let names = self.curves.iter().map(|line| line.name).chain(self.band.map(|band| band.name));
         names.map(UnicodeWidthStr::width).max().unwrap_or(0) as u16
     }
 
     /// Draws the horizontal axis with as many round labels as fit.
-    fn draw_foot(&self, canvas: &mut Canvas<'_>, area: Rect, frame: &Frame) {
-        let inside = frame.inside;
+    fn draw_x_axis(&self, canvas: &mut Canvas<'_>, area: Rect, frame: &PlotFrame) {
+        let inside = frame.area;
         let line = Rect { x: inside.x - 1, y: inside.bottom(), width: inside.width + 1, height: 1 };
-        canvas.text(line, &format!("└{}", "─".repeat(inside.width as usize)), Role::Border);
+        canvas.draw_text(line, &format!("└{}", "─".repeat(inside.width as usize)), Role::Border);
         let row = Rect { y: inside.bottom() + 1, height: 1, ..area };
         let place = |value: f64| {
-            let (label, column) = ((self.x.write)(value), frame.column(value));
+            let (label, column) = ((self.x.format)(value), frame.column(value));
             let width = label.width() as u16;
             let x = column.saturating_sub(width / 2).max(area.x);
             (column, x.min(area.right().saturating_sub(width)), label)
         };
-        let clear = |left: &Label, right: &Label| left.1 + (left.2.width() as u16) + 1 < right.1;
+        let clear = |left: &AxisLabel, right: &AxisLabel| left.1 + (left.2.width() as u16) + 1 < right.1;
         // Labels must not touch and must differ.
-        let fits = |labels: &Vec<Label>| {
+        let fits = |labels: &Vec<AxisLabel>| {
             labels.windows(2).all(|pair| clear(&pair[0], &pair[1]) && pair[0].2 != pair[1].2)
         };
-        let placed = |count: usize| ticks(frame.x, count).into_iter().map(place).collect::<Vec<Label>>();
+        let placed = |count: usize| ticks(frame.x, count).into_iter().map(place).collect::<Vec<AxisLabel>>();
         let mut labels = (1..=12).rev().map(placed).find(fits).unwrap_or_default();
-        for value in self.x.holds.iter().filter(|value| **value >= frame.x[0] && **value <= frame.x[1]) {
+        for value in
+            self.x.required_values.iter().filter(|value| **value >= frame.x[0] && **value <= frame.x[1])
+        {
             let held = place(*value);
             labels.retain(|label| clear(label, &held) || clear(&held, label));
             labels.push(held);
         }
         for (column, x, label) in labels {
-            canvas.text(Rect { x: column, width: 1, ..line }, "┬", Role::Border);
-            canvas.text(Rect { x, width: area.right() - x, ..row }, &label, Role::Dim);
+            canvas.draw_text(Rect { x: column, width: 1, ..line }, "┬", Role::Border);
+            canvas.draw_text(Rect { x, width: area.right() - x, ..row }, &label, Role::Dim);
         }
     }
 
-    fn draw_band(&self, canvas: &mut Canvas<'_>, frame: &Frame) {
+    fn draw_band(&self, canvas: &mut Canvas<'_>, frame: &PlotFrame) {
         let Some(band) = self.band else { return };
-        for at in 0..frame.inside.width {
+        for at in 0..frame.area.width {
             // Includes the edges of the column, so that neighboring columns of a steep band touch.
             let edges = [f64::from(at) - 0.5, f64::from(at) + 0.5].map(|column| {
-                let share = column / f64::from(frame.inside.width.saturating_sub(1).max(1));
-                band.at(frame.x[0] + (frame.x[1] - frame.x[0]) * share)
+                let share = column / f64::from(frame.area.width.saturating_sub(1).max(1));
+                band.bounds_at(frame.x[0] + (frame.x[1] - frame.x[0]) * share)
             });
             let ends = edges.iter().flatten();
             let upper = ends.clone().map(|end| frame.row(end.1)).min();
             let lower = ends.map(|end| frame.row(end.0)).max();
             let (Some(upper), Some(lower)) = (upper, lower) else { continue };
             for y in upper..=lower {
-                let cell = Rect { x: frame.inside.x + at, y, width: 1, height: 1 };
-                canvas.text(cell, "░", Role::Fan);
+                let cell = Rect { x: frame.area.x + at, y, width: 1, height: 1 };
+                canvas.draw_text(cell, "░", Role::Fan);
             }
         }
     }
 
-    fn draw_lines(&self, canvas: &mut Canvas<'_>, frame: &Frame) {
-        let mut raster = Raster::new(canvas.marker, frame.inside.width, frame.inside.height);
-        let alone = |line: &Line| line.points.iter().filter(|point| point.1.is_finite()).count() == 1;
-        for line in self.lines.iter().filter(|line| !line.scattered) {
-            let place = |point: &(f64, f64)| (Frame::share(frame.x, point.0), Frame::share(frame.y, point.1));
+    fn draw_curves(&self, canvas: &mut Canvas<'_>, frame: &PlotFrame) {
+        let mut raster = Raster::new(canvas.marker, frame.area.width, frame.area.height);
+        let alone = |line: &Curve| line.points.iter().filter(|point| point.1.is_finite()).count() == 1;
+        for line in self.curves.iter().filter(|line| !line.is_scatter) {
+            let place = |point: &(f64, f64)| {
+                (PlotFrame::fraction(frame.x, point.0), PlotFrame::fraction(frame.y, point.1))
+            };
             let points: Vec<(f64, f64)> =
                 line.points.iter().filter(|point| point.1.is_finite()).map(place).collect();
-            points.windows(2).for_each(|pair| raster.line(pair[0], pair[1], line.role));
+            points.windows(2).for_each(|pair| raster.draw_line(pair[0], pair[1], line.role));
         }
-        raster.paint(canvas, frame.inside);
+        raster.draw(canvas, frame.area);
         // A single week is drawn as a point.
-        for line in self.lines.iter().filter(|line| line.scattered || alone(line)) {
+        for line in self.curves.iter().filter(|line| line.is_scatter || alone(line)) {
             for point in line.points.iter().filter(|point| point.1.is_finite()) {
                 let cell = Rect { x: frame.column(point.0), y: frame.row(point.1), width: 1, height: 1 };
-                canvas.text(cell, "•", line.role);
+                canvas.draw_text(cell, "•", line.role);
             }
         }
     }
 
     /// Draws names next to the last points, in vertical order.
-    fn draw_names(&self, canvas: &mut Canvas<'_>, place: Rect, frame: &Frame) {
-        let of_line = |line: &Line| {
+    fn draw_curve_names(&self, canvas: &mut Canvas<'_>, place: Rect, frame: &PlotFrame) {
+        let of_line = |line: &Curve| {
             let last = line.points.iter().rev().find(|point| point.1.is_finite())?;
             Some((line.name, last.1, line.role))
         };
-        let of_band = |band: &Band| Some((band.name, band.ends.last()?.2, Role::Text));
-        let lines = self.lines.iter().rev().filter_map(of_line);
+        let of_band = |band: &Band| Some((band.name, band.bounds.last()?.2, Role::Text));
+        let lines = self.curves.iter().rev().filter_map(of_line);
         let mut names: Vec<(&str, f64, Role)> =
             lines.chain(self.band.and_then(of_band)).filter(|own| !own.0.is_empty()).collect();
         names.truncate(usize::from(place.height));
         names.sort_by(|one, other| other.1.total_cmp(&one.1));
         let wanted: Vec<u16> = names.iter().map(|own| frame.row(own.1)).collect();
-        for ((name, _, role), y) in names.into_iter().zip(rows_apart(&wanted, place)) {
-            canvas.text(Rect { y, height: 1, ..place }, name, role);
+        for ((name, _, role), y) in names.into_iter().zip(spread_rows(&wanted, place)) {
+            canvas.draw_text(Rect { y, height: 1, ..place }, name, role);
         }
     }
 }
 
 /// Assigns different rows from top to bottom, each as close to the wanted row as the order permits.
-fn rows_apart(wanted: &[u16], place: Rect) -> Vec<u16> {
+fn spread_rows(wanted: &[u16], place: Rect) -> Vec<u16> {
     let mut rows: Vec<u16> = Vec::with_capacity(wanted.len());
     for row in wanted {
         let least = rows.last().map_or(place.top(), |above| above + 1);
@@ -314,11 +318,11 @@ fn bounds(values: impl Iterator<Item = f64>, holds: &[f64]) -> [f64; 2] {
 }
 
 /// Draws the vertical axis and the grid, with a solid zero line.
-fn draw_side(canvas: &mut Canvas<'_>, area: Rect, frame: &Frame, marks: &[f64], labels: &[String]) {
-    let inside = frame.inside;
+fn draw_y_axis(canvas: &mut Canvas<'_>, area: Rect, frame: &PlotFrame, marks: &[f64], labels: &[String]) {
+    let inside = frame.area;
     let axis = inside.x - 1;
     for y in inside.top()..inside.bottom() {
-        canvas.text(Rect { x: axis, y, width: 1, height: 1 }, "│", Role::Border);
+        canvas.draw_text(Rect { x: axis, y, width: 1, height: 1 }, "│", Role::Border);
     }
     let mut free = inside.bottom();
     for (value, label) in marks.iter().zip(labels) {
@@ -327,15 +331,15 @@ fn draw_side(canvas: &mut Canvas<'_>, area: Rect, frame: &Frame, marks: &[f64], 
             continue;
         }
         free = y;
-        let grid = if *value == 0.0 { "─".repeat(inside.width as usize) } else { grid(inside.width) };
-        canvas.text(Rect { y, height: 1, ..inside }, &grid, Role::Border);
-        canvas.text(Rect { x: axis, y, width: 1, height: 1 }, "┤", Role::Border);
+        let grid = if *value == 0.0 { "─".repeat(inside.width as usize) } else { grid_line(inside.width) };
+        canvas.draw_text(Rect { y, height: 1, ..inside }, &grid, Role::Border);
+        canvas.draw_text(Rect { x: axis, y, width: 1, height: 1 }, "┤", Role::Border);
         let place = Rect { x: area.x, y, width: axis - area.x, height: 1 };
-        canvas.aligned(place, label, Role::Dim, Align::Right);
+        canvas.draw_aligned(place, label, Role::Dim, Align::Right);
     }
 }
 
-fn grid(width: u16) -> String {
+fn grid_line(width: u16) -> String {
     (0..width).map(|at| if at % 4 == 3 { '┈' } else { ' ' }).collect()
 }
 
@@ -353,7 +357,8 @@ pub fn summary(values: &[f64], write: &dyn Fn(f64) -> String, room: usize) -> St
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
     let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let before = values.len().checked_sub(2).map(|at| values[at]);
-    let change = before.map(|before| format!(" {}", arrow(now - before, &write((now - before).abs()))));
+    let change =
+        before.map(|before| format!(" {}", format_change(now - before, &write((now - before).abs()))));
     let extremes = format!(" · min {} · max {}", write(least), write(most));
     for part in change.into_iter().chain([extremes]) {
         if words.width() + part.width() > room {
@@ -365,7 +370,7 @@ pub fn summary(values: &[f64], write: &dyn Fn(f64) -> String, room: usize) -> St
 }
 
 /// Returns the width for a note next to the title of a pane.
-pub fn note_room(area: Rect, title: &str) -> usize {
+pub fn note_width(area: Rect, title: &str) -> usize {
     (area.width as usize).saturating_sub(title.width() + 9)
 }
 

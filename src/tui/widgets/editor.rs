@@ -11,12 +11,12 @@ use crate::theme::Role;
 
 /// A multi-line editor.
 #[derive(Debug, Clone)]
-pub struct Editor {
+pub struct TextEditor {
     area: TextArea<'static>,
 }
 
 /// Editing keys, their labels and descriptions.
-pub const EDITING: [(&str, &str, &str); 4] = [
+pub const EDITING_KEYS: [(&str, &str, &str); 4] = [
     ("ctrl-u", "line start", "Remove the text to the start of the line."),
     ("ctrl-k", "line end", "Remove the text to the end of the line."),
     ("ctrl-w", "word", "Remove the word before the cursor."),
@@ -24,17 +24,17 @@ pub const EDITING: [(&str, &str, &str); 4] = [
 ];
 
 /// Maximum length of the text, in bytes.
-const LONGEST: usize = 256 << 10;
+const MAX_BYTES: usize = 256 << 10;
 
-impl Default for Editor {
+impl Default for TextEditor {
     fn default() -> Self {
-        Editor::of("")
+        TextEditor::with_text("")
     }
 }
 
-impl Editor {
+impl TextEditor {
     /// Returns an editor with a text and the cursor at its end.
-    pub fn of(text: &str) -> Editor {
+    pub fn with_text(text: &str) -> TextEditor {
         let lines = text.lines().map(|line| line.replace('\t', "    ")).collect();
         let mut area = TextArea::new(lines);
         area.set_wrap_mode(WrapMode::WordOrGlyph);
@@ -44,11 +44,11 @@ impl Editor {
         area.set_cursor_style(Style::new());
         area.move_cursor(CursorMove::Bottom);
         area.move_cursor(CursorMove::End);
-        Editor { area }
+        TextEditor { area }
     }
 
     /// Disables wrapping, for text with meaningful lines.
-    pub fn unwrapped(mut self) -> Editor {
+    pub fn without_wrapping(mut self) -> TextEditor {
         self.area.set_wrap_mode(WrapMode::None);
         self
     }
@@ -75,12 +75,12 @@ impl Editor {
     }
 
     /// Returns the first visible row and column.
-    pub fn scroll(&self) -> (u16, u16) {
+    pub fn scroll_offset(&self) -> (u16, u16) {
         self.area.scroll_offset()
     }
 
     /// Handles a key. ctrl-u removes to the start of the line, as in fields, and ctrl-z undoes.
-    pub fn key(&mut self, key: &KeyEvent) {
+    pub fn handle_key(&mut self, key: &KeyEvent) {
         let ctrl = key.modifiers.contains(KeyModifiers::CONTROL);
         match key.code {
             KeyCode::Char('u') if ctrl && self.cursor().1 > 0 => {
@@ -98,7 +98,7 @@ impl Editor {
 
     /// Inserts text at the cursor, up to the maximum length.
     pub fn insert(&mut self, text: &str) {
-        if self.text().len() + text.len() <= LONGEST {
+        if self.text().len() + text.len() <= MAX_BYTES {
             let clean: String = text.replace("\r\n", "\n").replace('\r', "\n").replace('\t', "    ");
             let visible = |letter: &char| *letter == '\n' || !letter.is_control();
             self.area.insert_str(clean.chars().filter(visible).collect::<String>());
@@ -106,7 +106,7 @@ impl Editor {
     }
 
     /// Replaces the text; ctrl-z restores it.
-    pub fn replace(&mut self, text: &str) {
+    pub fn set_text(&mut self, text: &str) {
         self.area.select_all();
         self.area.cut();
         self.insert(text);
@@ -120,7 +120,7 @@ impl Editor {
     }
 
     /// Removes characters before the cursor.
-    pub fn remove_before(&mut self, count: usize) {
+    pub fn delete_before_cursor(&mut self, count: usize) {
         for _ in 0..count {
             self.area.delete_char();
         }
@@ -132,12 +132,12 @@ impl Editor {
             return;
         }
         if self.is_blank() && !editing {
-            canvas.text(area, hint, Role::Dim);
+            canvas.draw_text(area, hint, Role::Dim);
             return;
         }
         (&self.area).render(area, canvas.buffer);
         if self.is_blank() {
-            canvas.text(area, hint, Role::Dim);
+            canvas.draw_text(area, hint, Role::Dim);
         }
         if editing {
             let cursor = self.area.screen_cursor();

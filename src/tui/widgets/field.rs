@@ -10,7 +10,7 @@ use crate::theme::Role;
 
 /// A single-line text field with a cursor between graphemes.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Field {
+pub struct TextField {
     text: String,
     /// Number of graphemes before the cursor.
     cursor: usize,
@@ -19,19 +19,19 @@ pub struct Field {
 }
 
 /// Maximum length of the text, in bytes, as a protection from accidental pastes.
-const LONGEST: usize = 4096;
+const MAX_BYTES: usize = 4096;
 
-impl Field {
+impl TextField {
     /// Returns a field with a text and the cursor at its end.
-    pub fn of(text: impl Into<String>) -> Field {
+    pub fn with_text(text: impl Into<String>) -> TextField {
         let text = text.into();
         let cursor = text.graphemes(true).count();
-        Field { text, cursor, selected: false }
+        TextField { text, cursor, selected: false }
     }
 
     /// Returns a field whose text is replaced by the first typed letter, unless another key comes first.
-    pub fn to_replace(text: impl Into<String>) -> Field {
-        Field { selected: true, ..Field::of(text) }
+    pub fn with_selected_text(text: impl Into<String>) -> TextField {
+        TextField { selected: true, ..TextField::with_text(text) }
     }
 
     /// Returns the text.
@@ -45,23 +45,23 @@ impl Field {
     }
 
     /// Returns a copy with a dot for every letter.
-    pub fn masked(&self) -> Field {
+    pub fn masked(&self) -> TextField {
         let dots = "•".repeat(self.text.graphemes(true).count());
-        Field { text: dots, cursor: self.cursor, selected: self.selected }
+        TextField { text: dots, cursor: self.cursor, selected: self.selected }
     }
 
     /// Handles a key. Returns false if the key is not supported.
-    pub fn key(&mut self, key: &KeyEvent) -> bool {
+    pub fn handle_key(&mut self, key: &KeyEvent) -> bool {
         let ctrl = key.modifiers.contains(KeyModifiers::CONTROL);
         let removes = matches!(key.code, KeyCode::Backspace | KeyCode::Delete);
         let selected = std::mem::take(&mut self.selected);
         if selected && removes {
-            *self = Field::default();
+            *self = TextField::default();
             return true;
         }
         match key.code {
             KeyCode::Char('u') if ctrl => {
-                let to = self.byte_of(self.cursor);
+                let to = self.byte_offset(self.cursor);
                 self.text.replace_range(..to, "");
                 self.cursor = 0;
             }
@@ -72,9 +72,9 @@ impl Field {
             }
             KeyCode::Backspace if self.cursor > 0 => {
                 self.cursor -= 1;
-                self.remove_at_cursor();
+                self.delete_at_cursor();
             }
-            KeyCode::Delete => self.remove_at_cursor(),
+            KeyCode::Delete => self.delete_at_cursor(),
             KeyCode::Left => self.cursor = self.cursor.saturating_sub(1),
             KeyCode::Right => self.cursor = (self.cursor + 1).min(self.text.graphemes(true).count()),
             KeyCode::Home => self.cursor = 0,
@@ -86,41 +86,41 @@ impl Field {
     }
 
     /// Handles a key in a number field. Returns false for letters that numbers cannot contain.
-    pub fn number_key(&mut self, key: &KeyEvent) -> bool {
+    pub fn handle_number_key(&mut self, key: &KeyEvent) -> bool {
         let plain = !key.modifiers.intersects(KeyModifiers::CONTROL | KeyModifiers::ALT);
         match key.code {
-            KeyCode::Char(letter) if plain && !in_a_number(letter) => false,
-            _ => self.key(key),
+            KeyCode::Char(letter) if plain && !is_number_char(letter) => false,
+            _ => self.handle_key(key),
         }
     }
 
     /// Inserts text at the cursor; line breaks become spaces.
     pub fn insert(&mut self, text: &str) {
         if std::mem::take(&mut self.selected) {
-            *self = Field::default();
+            *self = TextField::default();
         }
         let clean: String =
             text.chars().map(|letter| if letter.is_control() { ' ' } else { letter }).collect();
-        if self.text.len() + clean.len() > LONGEST {
+        if self.text.len() + clean.len() > MAX_BYTES {
             return;
         }
-        let at = self.byte_of(self.cursor);
+        let at = self.byte_offset(self.cursor);
         self.text.insert_str(at, &clean);
         // A combining mark joins the previous grapheme, so the cursor is computed from bytes.
         self.cursor = self.text[..at + clean.len()].graphemes(true).count();
     }
 
-    fn byte_of(&self, grapheme: usize) -> usize {
+    fn byte_offset(&self, grapheme: usize) -> usize {
         self.text.grapheme_indices(true).nth(grapheme).map_or(self.text.len(), |(at, _)| at)
     }
 
-    fn remove_at_cursor(&mut self) {
-        let (from, to) = (self.byte_of(self.cursor), self.byte_of(self.cursor + 1));
+    fn delete_at_cursor(&mut self) {
+        let (from, to) = (self.byte_offset(self.cursor), self.byte_offset(self.cursor + 1));
         self.text.replace_range(from..to, "");
     }
 
     fn delete_word(&mut self) {
-        let before = &self.text[..self.byte_of(self.cursor)];
+        let before = &self.text[..self.byte_offset(self.cursor)];
         let kept = before.trim_end();
         let kept = kept.rfind(' ').map_or(0, |at| at + 1);
         let to = before.len();
@@ -140,7 +140,7 @@ impl Field {
             from += 1;
         }
         canvas.clear(Rect { height: 1, ..area }, Role::Field);
-        canvas.text(area, "", Role::Field);
+        canvas.draw_text(area, "", Role::Field);
         let mut x = area.x;
         let role = if self.selected { Role::Selection } else { Role::Field };
         for piece in &pieces[from..] {
@@ -148,7 +148,7 @@ impl Field {
             if x + width > area.right() {
                 break;
             }
-            canvas.text(Rect { x, width: width.max(1), ..area }, piece, role);
+            canvas.draw_text(Rect { x, width: width.max(1), ..area }, piece, role);
             x += width;
         }
         let before = pieces[from..self.cursor].concat().width() as u16;
@@ -157,9 +157,9 @@ impl Field {
 }
 
 /// Shown if a number is expected and another key is typed.
-pub const ONLY_NUMBERS: &str = "enter a number: 1200, 1.5k, 2M; esc leaves the field";
+pub const NUMBER_HINT: &str = "enter a number: 1200, 1.5k, 2M; esc leaves the field";
 
-fn in_a_number(letter: char) -> bool {
+fn is_number_char(letter: char) -> bool {
     letter.is_ascii_digit()
         || matches!(letter, '.' | ',' | '_' | '-' | '+' | '$' | 'e' | 'E' | 'k' | 'K' | 'm' | 'M')
 }
@@ -167,18 +167,18 @@ fn in_a_number(letter: char) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use novamind_base::notation::parse_number;
+    use novamind_base::formatting::parse_number;
 
-    fn typed(keys: &[KeyCode]) -> Field {
-        let mut field = Field::of("añ日");
+    fn field_after_keys(keys: &[KeyCode]) -> TextField {
+        let mut field = TextField::with_text("añ日");
         for key in keys {
-            field.key(&KeyEvent::new(*key, KeyModifiers::NONE));
+            field.handle_key(&KeyEvent::new(*key, KeyModifiers::NONE));
         }
         field
     }
 
     #[test]
-    fn a_selected_text_is_replaced_by_what_is_typed_first() {
+    fn typing_replaces_selected_text() {
         use KeyCode::{Backspace, Char, Left};
         for (keys, text) in [
             (&[Char('7')][..], "7"),
@@ -187,19 +187,19 @@ mod tests {
             (&[Backspace], ""),
             (&[Backspace, Char('3')], "3"),
         ] {
-            let mut field = Field::to_replace("12");
+            let mut field = TextField::with_selected_text("12");
             for key in keys {
-                field.key(&KeyEvent::new(*key, KeyModifiers::NONE));
+                field.handle_key(&KeyEvent::new(*key, KeyModifiers::NONE));
             }
             assert_eq!(field.text(), text, "{keys:?}");
         }
-        let mut pasted = Field::to_replace("12");
+        let mut pasted = TextField::with_selected_text("12");
         pasted.insert("9");
         assert_eq!(pasted.text(), "9");
     }
 
     #[test]
-    fn the_cursor_walks_over_graphemes() {
+    fn cursor_moves_by_graphemes() {
         use KeyCode::{Backspace, Char, Delete, Home, Left, Right};
         for (keys, text) in [
             (&[Backspace][..], "añ"),
@@ -209,15 +209,15 @@ mod tests {
             (&[Right, Right, Char('!')], "añ日!"),
             (&[Left, Left, Left, Left, Char('\u{301}')], "\u{301}añ日"),
         ] {
-            assert_eq!(typed(keys).text(), text, "{keys:?}");
+            assert_eq!(field_after_keys(keys).text(), text, "{keys:?}");
         }
-        let mut words = Field::of("one two  ");
-        words.key(&KeyEvent::new(KeyCode::Char('w'), KeyModifiers::CONTROL));
+        let mut words = TextField::with_text("one two  ");
+        words.handle_key(&KeyEvent::new(KeyCode::Char('w'), KeyModifiers::CONTROL));
         assert_eq!(words.text(), "one ");
     }
 
     #[test]
-    fn numbers_are_read_as_people_type_them() {
+    fn number_keys_accept_common_notations() {
         for (text, number) in [
             ("12", Some(12.0)),
             ("1,200.5", Some(1200.5)),
@@ -232,7 +232,7 @@ mod tests {
             ("12 x", None),
         ] {
             assert_eq!(parse_number(text), number, "{text}");
-            let typed = text.chars().all(|letter| in_a_number(letter) || letter == ' ');
+            let typed = text.chars().all(|letter| is_number_char(letter) || letter == ' ');
             assert!(typed || number.is_none(), "{text} can be typed");
         }
     }

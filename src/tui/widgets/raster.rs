@@ -26,7 +26,7 @@ impl Raster {
     }
 
     /// Returns the dots per cell, horizontally and vertically.
-    fn dots(&self) -> (usize, usize) {
+    fn dots_per_cell(&self) -> (usize, usize) {
         match self.marker {
             Marker::Braille => (2, 4),
             Marker::HalfBlock => (1, 2),
@@ -35,8 +35,8 @@ impl Raster {
     }
 
     /// Sets a dot, counted from the top left.
-    fn set(&mut self, x: usize, y: usize, role: Role) {
-        let (across, down) = self.dots();
+    fn set_dot(&mut self, x: usize, y: usize, role: Role) {
+        let (across, down) = self.dots_per_cell();
         let (column, row) = (x / across, y / down);
         if column >= self.columns || row >= self.rows {
             return;
@@ -51,24 +51,24 @@ impl Raster {
     }
 
     /// Draws a line between two points, given as shares of width and height from the lower left corner.
-    pub fn line(&mut self, from: (f64, f64), to: (f64, f64), role: Role) {
-        let (from, to) = (self.dot_at(from), self.dot_at(to));
+    pub fn draw_line(&mut self, from: (f64, f64), to: (f64, f64), role: Role) {
+        let (from, to) = (self.dot_position(from), self.dot_position(to));
         let steps = (to.0 - from.0).abs().max((to.1 - from.1).abs()).ceil().max(1.0);
         for step in 0..=steps as usize {
             let share = step as f64 / steps;
             let (x, y) = (from.0 + (to.0 - from.0) * share, from.1 + (to.1 - from.1) * share);
-            self.set(x.round() as usize, y.round() as usize, role);
+            self.set_dot(x.round() as usize, y.round() as usize, role);
         }
     }
 
-    fn dot_at(&self, (x, y): (f64, f64)) -> (f64, f64) {
-        let (across, down) = self.dots();
+    fn dot_position(&self, (x, y): (f64, f64)) -> (f64, f64) {
+        let (across, down) = self.dots_per_cell();
         let most = |dots: usize| dots.saturating_sub(1) as f64;
         (x.clamp(0.0, 1.0) * most(self.columns * across), (1.0 - y.clamp(0.0, 1.0)) * most(self.rows * down))
     }
 
     /// Draws the dots over existing content.
-    pub fn paint(&self, canvas: &mut Canvas<'_>, area: Rect) {
+    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect) {
         for (at, (bits, role)) in self.cells.iter().enumerate().filter(|(_, (bits, _))| *bits != 0) {
             let glyph = match self.marker {
                 Marker::Braille => char::from_u32(0x2800 + u32::from(*bits)).unwrap_or('⣿'),
@@ -80,7 +80,7 @@ impl Raster {
             };
             let (x, y) = (area.x + (at % self.columns) as u16, area.y + (at / self.columns) as u16);
             let cell = Rect { x, y, width: 1, height: 1 };
-            canvas.text(cell, glyph.encode_utf8(&mut [0; 4]), *role);
+            canvas.draw_text(cell, glyph.encode_utf8(&mut [0; 4]), *role);
         }
     }
 }

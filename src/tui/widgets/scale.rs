@@ -2,14 +2,14 @@
 
 /// The unit of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Unit {
+pub enum AxisUnit {
     /// Dollars.
     Dollars,
     /// Any other unit.
     Number,
 }
 
-impl Unit {
+impl AxisUnit {
     /// Formats round values with as many decimals as they need to differ: `$500k`, `$1M`, `$1.002M`.
     pub fn labels(self, values: &[f64]) -> Vec<String> {
         let step = values.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
@@ -32,14 +32,14 @@ impl Unit {
         };
         let decimals = (0..=15).find(near).unwrap_or(15);
         let (sign, dollar) =
-            (if value < 0.0 { "-" } else { "" }, if self == Unit::Dollars { "$" } else { "" });
+            (if value < 0.0 { "-" } else { "" }, if self == AxisUnit::Dollars { "$" } else { "" });
         format!("{sign}{dollar}{scaled:.decimals$}{suffix}")
     }
 }
 
 /// Returns at most `most` round values between two bounds: multiples of 1, 2 or 5 times a power of ten.
 pub fn ticks([from, to]: [f64; 2], most: usize) -> Vec<f64> {
-    let step = step([from, to], most);
+    let step = tick_step([from, to], most);
     let (first, last) = ((from / step - 1e-9).ceil(), (to / step + 1e-9).floor());
     if !step.is_finite() || step <= 0.0 || last < first {
         return Vec::new();
@@ -49,7 +49,7 @@ pub fn ticks([from, to]: [f64; 2], most: usize) -> Vec<f64> {
 }
 
 /// Returns the distance of at most `most` ticks; not finite if there is none.
-fn step([from, to]: [f64; 2], most: usize) -> f64 {
+fn tick_step([from, to]: [f64; 2], most: usize) -> f64 {
     let span = to - from;
     if !span.is_finite() || span <= 0.0 || most == 0 {
         return f64::NAN;
@@ -71,8 +71,8 @@ fn step([from, to]: [f64; 2], most: usize) -> f64 {
 }
 
 /// Widens bounds to the next ticks if those are close, so that curves end below a label.
-pub fn widened([from, to]: [f64; 2], most: usize) -> [f64; 2] {
-    let step = step([from, to], most);
+pub fn widen_to_ticks([from, to]: [f64; 2], most: usize) -> [f64; 2] {
+    let step = tick_step([from, to], most);
     if !step.is_finite() {
         return [from, to];
     }
@@ -91,7 +91,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ticks_are_round_and_inside() {
+    fn ticks_are_round_and_within_bounds() {
         assert_eq!(ticks([0.0, 252.0], 6), [0.0, 50.0, 100.0, 150.0, 200.0, 250.0]);
         assert_eq!(ticks([0.0, 252.0], 3), [0.0, 100.0, 200.0]);
         assert_eq!(ticks([25.0, 36.0], 4), [25.0, 30.0, 35.0]);
@@ -106,12 +106,12 @@ mod tests {
     }
 
     #[test]
-    fn labels_are_short_and_no_two_are_equal() {
-        let label = |from: f64, to: f64, most: usize| Unit::Dollars.labels(&ticks([from, to], most));
+    fn labels_are_short_and_distinct() {
+        let label = |from: f64, to: f64, most: usize| AxisUnit::Dollars.labels(&ticks([from, to], most));
         assert_eq!(label(0.0, 1e6, 3), ["$0", "$500k", "$1M"]);
         assert_eq!(label(1_000_000.0, 1_002_000.0, 3), ["$1M", "$1.001M", "$1.002M"]);
         assert_eq!(label(-1.5e6, 1.5e6, 3), ["-$1M", "$0", "$1M"]);
-        assert_eq!(Unit::Number.labels(&ticks([48.0, 49.5], 4)), ["48", "48.5", "49", "49.5"]);
+        assert_eq!(AxisUnit::Number.labels(&ticks([48.0, 49.5], 4)), ["48", "48.5", "49", "49.5"]);
         for from in [0.0, 0.003, 299_400.0, 999_999.0, 1e9] {
             for span in [1e-3, 0.7, 40.0, 12_345.0, 3e7] {
                 for most in 2..8 {
@@ -123,11 +123,11 @@ mod tests {
     }
 
     #[test]
-    fn bounds_reach_to_the_next_round_number_if_it_is_near() {
-        assert_eq!(widened([0.0, 980.0], 5), [0.0, 1000.0]);
-        assert_eq!(widened([300_000.0, 13_500_000.0], 4), [0.0, 15_000_000.0]);
-        assert_eq!(widened([48.3, 51.1], 3), [48.0, 51.1], "the next tick above is far");
-        let [from, to] = widened([99.0, 101.0], 2);
+    fn bounds_widen_to_a_near_tick() {
+        assert_eq!(widen_to_ticks([0.0, 980.0], 5), [0.0, 1000.0]);
+        assert_eq!(widen_to_ticks([300_000.0, 13_500_000.0], 4), [0.0, 15_000_000.0]);
+        assert_eq!(widen_to_ticks([48.3, 51.1], 3), [48.0, 51.1], "the next tick above is far");
+        let [from, to] = widen_to_ticks([99.0, 101.0], 2);
         assert!(ticks([from, to], 3).len() >= 2, "{from} {to}");
     }
 }

@@ -6,16 +6,16 @@ use super::ListAction;
 
 /// The first visible row, and the last possible one.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Scroll {
-    from: usize,
+pub struct ScrollState {
+    first_row: usize,
     /// The last useful position, as of the last frame.
-    last: Cell<usize>,
+    max_first_row: Cell<usize>,
 }
 
-impl Scroll {
+impl ScrollState {
     /// Scrolls by rows, by pages of `page` rows, or to an end. Returns whether the action was a scroll action.
-    pub fn act(&mut self, action: impl Into<Option<ListAction>>, page: usize) -> bool {
-        let from = self.from.min(self.last.get());
+    pub fn handle_action(&mut self, action: impl Into<Option<ListAction>>, page: usize) -> bool {
+        let from = self.first_row.min(self.max_first_row.get());
         let to = match action.into() {
             Some(ListAction::Up | ListAction::ScrollUp) => from.saturating_sub(1),
             Some(ListAction::Down | ListAction::ScrollDown) => from + 1,
@@ -25,19 +25,19 @@ impl Scroll {
             Some(ListAction::Last) => usize::MAX,
             _ => return false,
         };
-        self.from = to.min(self.last.get());
+        self.first_row = to.min(self.max_first_row.get());
         true
     }
 
     /// Scrolls to the end, even if the text grows before the next frame.
-    pub fn show_end(&mut self) {
-        self.from = usize::MAX;
+    pub fn scroll_to_end(&mut self) {
+        self.first_row = usize::MAX;
     }
 
     /// Returns the first visible row, limited to `last`.
-    pub fn within(&self, last: usize) -> usize {
-        self.last.set(last);
-        self.from.min(last)
+    pub fn clamped_first_row(&self, last: usize) -> usize {
+        self.max_first_row.set(last);
+        self.first_row.min(last)
     }
 }
 
@@ -46,12 +46,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_stays_between_the_first_row_and_the_last_page() {
-        let mut scroll = Scroll::default();
-        assert_eq!(scroll.within(20), 0);
+    fn scrolling_stops_at_the_first_row_and_the_last_page() {
+        let mut scroll = ScrollState::default();
+        assert_eq!(scroll.clamped_first_row(20), 0);
         let mut after = |action| {
-            assert!(scroll.act(action, 8));
-            scroll.within(20)
+            assert!(scroll.handle_action(action, 8));
+            scroll.clamped_first_row(20)
         };
         let moves = [
             ListAction::PageDown,
@@ -62,12 +62,12 @@ mod tests {
             ListAction::First,
         ];
         assert_eq!(moves.map(&mut after), [8, 9, 20, 20, 12, 0]);
-        assert!(!scroll.act(ListAction::Sort, 8));
-        scroll.act(ListAction::Last, 8);
-        assert_eq!(scroll.within(3), 3, "the window has grown");
-        scroll.show_end();
-        assert_eq!(scroll.within(40), 40, "the text has grown");
-        scroll.act(ListAction::Up, 8);
-        assert_eq!(scroll.within(40), 39);
+        assert!(!scroll.handle_action(ListAction::Sort, 8));
+        scroll.handle_action(ListAction::Last, 8);
+        assert_eq!(scroll.clamped_first_row(3), 3, "the window has grown");
+        scroll.scroll_to_end();
+        assert_eq!(scroll.clamped_first_row(40), 40, "the text has grown");
+        scroll.handle_action(ListAction::Up, 8);
+        assert_eq!(scroll.clamped_first_row(40), 39);
     }
 }

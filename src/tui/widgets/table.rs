@@ -7,51 +7,51 @@ use ratatui::style::{Modifier, Style};
 use unicode_width::UnicodeWidthStr;
 
 use super::ListAction;
-use super::field::Field;
-use crate::canvas::{Align, Canvas, Click, fit};
+use super::field::TextField;
+use crate::canvas::{Align, Canvas, Click, truncate_to_width};
 use crate::theme::Role;
 
 /// Minimum width of a truncated text column.
-const LEAST_WORDS: u16 = 8;
+const MIN_TEXT_WIDTH: u16 = 8;
 
 /// A column.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Column {
+pub struct TableColumn {
     /// Title.
     pub title: String,
     /// Alignment of its cells.
     pub align: Align,
     /// Maximum width.
-    pub most: u16,
+    pub max_width: u16,
     /// Width to which it may shrink in favor of later columns.
-    pub least: u16,
+    pub min_width: u16,
 }
 
-impl Column {
+impl TableColumn {
     /// Returns a text column.
-    pub fn words(title: impl Into<String>) -> Column {
-        Column { title: title.into(), align: Align::Left, most: 40, least: u16::MAX }
+    pub fn text(title: impl Into<String>) -> TableColumn {
+        TableColumn { title: title.into(), align: Align::Left, max_width: 40, min_width: u16::MAX }
     }
 
     /// Returns a column of numbers.
-    pub fn numbers(title: impl Into<String>) -> Column {
-        Column { title: title.into(), align: Align::Right, most: 24, least: u16::MAX }
+    pub fn numeric(title: impl Into<String>) -> TableColumn {
+        TableColumn { title: title.into(), align: Align::Right, max_width: 24, min_width: u16::MAX }
     }
 
     /// Limits the width.
-    pub fn at_most(self, most: u16) -> Column {
-        Column { most, ..self }
+    pub fn with_max_width(self, most: u16) -> TableColumn {
+        TableColumn { max_width: most, ..self }
     }
 
     /// Permits it to shrink to this width if later columns need the space.
-    pub fn at_least(self, least: u16) -> Column {
-        Column { least, ..self }
+    pub fn with_min_width(self, least: u16) -> TableColumn {
+        TableColumn { min_width: least, ..self }
     }
 }
 
 /// A cell: the displayed text and the sort key.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Cell {
+pub struct TableCell {
     /// Text.
     pub text: String,
     /// Number to sort by, if it is a number.
@@ -60,57 +60,57 @@ pub struct Cell {
     pub role: Role,
 }
 
-impl Cell {
+impl TableCell {
     /// Returns a text cell.
-    pub fn words(text: impl Into<String>) -> Cell {
-        Cell { text: text.into(), number: None, role: Role::Text }
+    pub fn from_text(text: impl Into<String>) -> TableCell {
+        TableCell { text: text.into(), number: None, role: Role::Text }
     }
 
     /// Returns a number cell with its formatted value.
-    pub fn number(value: f64, shown: impl Into<String>) -> Cell {
-        Cell { text: shown.into(), number: Some(value), role: Role::Text }
+    pub fn from_number(value: f64, shown: impl Into<String>) -> TableCell {
+        TableCell { text: shown.into(), number: Some(value), role: Role::Text }
     }
 
     /// Sets the role.
-    pub fn role(self, role: Role) -> Cell {
-        Cell { role, ..self }
+    pub fn with_role(self, role: Role) -> TableCell {
+        TableCell { role, ..self }
     }
 }
 
 /// A table with its selection, order and filter.
 #[derive(Debug, Clone, Default)]
 pub struct Table {
-    columns: Vec<Column>,
-    rows: Vec<Vec<Cell>>,
+    columns: Vec<TableColumn>,
+    rows: Vec<Vec<TableCell>>,
     /// Indices of the displayed rows, filtered and sorted.
-    shown: Vec<usize>,
+    visible_rows: Vec<usize>,
     widths: Vec<u16>,
     /// Position among the displayed rows.
     selected: usize,
     column: usize,
-    sorted: Option<(usize, Ordering)>,
+    sort_order: Option<(usize, Ordering)>,
     filter: String,
-    typing: Option<Field>,
-    by_cell: bool,
+    filter_field: Option<TextField>,
+    selects_cells: bool,
 }
 
 impl Table {
     /// Returns a table without rows.
-    pub fn new(columns: Vec<Column>) -> Table {
+    pub fn new(columns: Vec<TableColumn>) -> Table {
         let mut table = Table { columns, ..Table::default() };
-        table.measure();
+        table.measure_columns();
         table
     }
 
     /// Marks the selected cell in its row.
-    pub fn by_cell(self) -> Table {
-        Table { by_cell: true, ..self }
+    pub fn with_cell_selection(self) -> Table {
+        Table { selects_cells: true, ..self }
     }
 
     /// Replaces columns and rows, and keeps selection, order and filter if possible.
-    pub fn set(&mut self, columns: Vec<Column>, rows: Vec<Vec<Cell>>) {
+    pub fn set_columns_and_rows(&mut self, columns: Vec<TableColumn>, rows: Vec<Vec<TableCell>>) {
         if columns.len() != self.columns.len() {
-            self.sorted = None;
+            self.sort_order = None;
         }
         self.columns = columns;
         self.set_rows(rows);
@@ -118,25 +118,25 @@ impl Table {
     }
 
     /// Replaces the rows.
-    pub fn set_rows(&mut self, rows: Vec<Vec<Cell>>) {
+    pub fn set_rows(&mut self, rows: Vec<Vec<TableCell>>) {
         self.rows = rows;
-        self.measure();
-        self.arrange();
+        self.measure_columns();
+        self.update_visible_rows();
     }
 
     /// Returns all rows in their original order.
-    pub fn rows(&self) -> &[Vec<Cell>] {
+    pub fn rows(&self) -> &[Vec<TableCell>] {
         &self.rows
     }
 
     /// Returns the index of the selected row among all rows.
     pub fn selected(&self) -> Option<usize> {
-        self.shown.get(self.selected).copied()
+        self.visible_rows.get(self.selected).copied()
     }
 
     /// Returns the indices of the displayed rows in their order.
-    pub fn shown(&self) -> &[usize] {
-        &self.shown
+    pub fn visible_rows(&self) -> &[usize] {
+        &self.visible_rows
     }
 
     /// Returns the index of the selected column.
@@ -151,24 +151,24 @@ impl Table {
 
     /// Selects a row by its index among all rows.
     pub fn select(&mut self, row: usize) {
-        if let Some(place) = self.shown.iter().position(|shown| *shown == row) {
+        if let Some(place) = self.visible_rows.iter().position(|shown| *shown == row) {
             self.selected = place;
         }
     }
 
     /// Selects a row by its position among the displayed rows, as a click does.
-    pub fn select_place(&mut self, place: usize) {
-        self.selected = place.min(self.shown.len().saturating_sub(1));
+    pub fn select_visible_row(&mut self, place: usize) {
+        self.selected = place.min(self.visible_rows.len().saturating_sub(1));
     }
 
     /// Returns whether a filter is being typed.
-    pub fn is_typing(&self) -> bool {
-        self.typing.is_some()
+    pub fn is_filter_open(&self) -> bool {
+        self.filter_field.is_some()
     }
 
     /// Returns whether a filter is set or being typed.
     pub fn is_filtered(&self) -> bool {
-        self.is_typing() || !self.filter.is_empty()
+        self.is_filter_open() || !self.filter.is_empty()
     }
 
     /// Returns the filter, or an empty text.
@@ -177,33 +177,38 @@ impl Table {
     }
 
     /// Returns the field of the filter.
-    pub fn typing(&mut self) -> Option<&mut Field> {
-        self.typing.as_mut()
+    pub fn filter_field(&mut self) -> Option<&mut TextField> {
+        self.filter_field.as_mut()
     }
 
     /// Changes the filter while it is typed and applies it.
-    pub fn edit_filter(&mut self, edit: impl FnOnce(&mut Field)) {
-        if let Some(field) = &mut self.typing {
+    pub fn edit_filter(&mut self, edit: impl FnOnce(&mut TextField)) {
+        if let Some(field) = &mut self.filter_field {
             edit(field);
-            self.typed();
+            self.apply_filter();
         }
     }
 
     /// Applies the filter as typed so far.
-    pub fn typed(&mut self) {
-        if let Some(field) = &self.typing {
+    pub fn apply_filter(&mut self) {
+        if let Some(field) = &self.filter_field {
             self.filter = field.text().to_owned();
-            self.arrange();
+            self.update_visible_rows();
         }
     }
 
     /// Describes the displayed and all rows, filter and order, for the title of a pane.
-    pub fn note(&self) -> String {
+    pub fn summary(&self) -> String {
         let mut parts = Vec::new();
         if !self.filter.is_empty() {
-            parts.push(format!("{} of {} with \"{}\"", self.shown.len(), self.rows.len(), self.filter));
+            parts.push(format!(
+                "{} of {} with \"{}\"",
+                self.visible_rows.len(),
+                self.rows.len(),
+                self.filter
+            ));
         }
-        if let Some((column, order)) = self.sorted {
+        if let Some((column, order)) = self.sort_order {
             let arrow = if order == Ordering::Less { "▲" } else { "▼" };
             let title = self.columns.get(column).map_or("", |column| column.title.as_str());
             parts.push(format!("by {title} {arrow}"));
@@ -212,9 +217,9 @@ impl Table {
     }
 
     /// Handles a list action. Returns false if it is not supported.
-    pub fn act(&mut self, action: impl Into<Option<ListAction>>, page: u16) -> bool {
+    pub fn handle_action(&mut self, action: impl Into<Option<ListAction>>, page: u16) -> bool {
         let Some(action) = action.into() else { return false };
-        let last = self.shown.len().saturating_sub(1);
+        let last = self.visible_rows.len().saturating_sub(1);
         match action {
             ListAction::Up => self.selected = self.selected.saturating_sub(1),
             ListAction::Down => self.selected = (self.selected + 1).min(last),
@@ -225,16 +230,16 @@ impl Table {
             ListAction::Left => self.column = self.column.saturating_sub(1),
             ListAction::Right => self.column = (self.column + 1).min(self.columns.len().saturating_sub(1)),
             ListAction::Sort => self.sort(),
-            ListAction::Filter => self.typing = Some(Field::of(self.filter.clone())),
-            ListAction::Commit if self.typing.is_some() => self.typing = None,
-            ListAction::Discard if self.typing.is_some() => {
-                self.typing = None;
+            ListAction::Filter => self.filter_field = Some(TextField::with_text(self.filter.clone())),
+            ListAction::Commit if self.filter_field.is_some() => self.filter_field = None,
+            ListAction::Discard if self.filter_field.is_some() => {
+                self.filter_field = None;
                 self.filter.clear();
-                self.arrange();
+                self.update_visible_rows();
             }
             ListAction::Close if !self.filter.is_empty() => {
                 self.filter.clear();
-                self.arrange();
+                self.update_visible_rows();
             }
             _ => return false,
         }
@@ -246,39 +251,40 @@ impl Table {
             self.rows.iter().any(|row| row.get(self.column).is_some_and(|cell| cell.number.is_some()));
         // Numbers are first sorted in descending order, text in ascending order.
         let first = if numeric { Ordering::Greater } else { Ordering::Less };
-        self.sorted = match self.sorted {
+        self.sort_order = match self.sort_order {
             Some((column, order)) if column == self.column && order == first => {
                 Some((column, order.reverse()))
             }
             Some((column, _)) if column == self.column => None,
             _ => Some((self.column, first)),
         };
-        self.arrange();
+        self.update_visible_rows();
         self.selected = 0;
     }
 
-    fn arrange(&mut self) {
+    fn update_visible_rows(&mut self) {
         let kept = self.selected();
         let wanted = self.filter.to_lowercase();
-        let holds = |row: &Vec<Cell>| row.iter().any(|cell| cell.text.to_lowercase().contains(&wanted));
-        self.shown = (0..self.rows.len()).filter(|at| wanted.is_empty() || holds(&self.rows[*at])).collect();
-        if let Some((column, order)) = self.sorted {
+        let holds = |row: &Vec<TableCell>| row.iter().any(|cell| cell.text.to_lowercase().contains(&wanted));
+        self.visible_rows =
+            (0..self.rows.len()).filter(|at| wanted.is_empty() || holds(&self.rows[*at])).collect();
+        if let Some((column, order)) = self.sort_order {
             let rows = &self.rows;
-            self.shown.sort_by(|left, right| {
-                let natural = compare(rows[*left].get(column), rows[*right].get(column));
+            self.visible_rows.sort_by(|left, right| {
+                let natural = compare_cells(rows[*left].get(column), rows[*right].get(column));
                 if order == Ordering::Less { natural } else { natural.reverse() }
             });
         }
-        match kept.and_then(|kept| self.shown.iter().position(|shown| *shown == kept)) {
+        match kept.and_then(|kept| self.visible_rows.iter().position(|shown| *shown == kept)) {
             Some(place) => self.selected = place,
-            None => self.selected = self.selected.min(self.shown.len().saturating_sub(1)),
+            None => self.selected = self.selected.min(self.visible_rows.len().saturating_sub(1)),
         }
     }
 
-    fn measure(&mut self) {
-        let width = |at: usize, column: &Column| {
+    fn measure_columns(&mut self) {
+        let width = |at: usize, column: &TableColumn| {
             let cells = self.rows.iter().filter_map(|row| row.get(at)).map(|cell| cell.text.width());
-            cells.max().unwrap_or(0).max(column.title.width()).clamp(1, column.most as usize) as u16
+            cells.max().unwrap_or(0).max(column.title.width()).clamp(1, column.max_width as usize) as u16
         };
         self.widths = self.columns.iter().enumerate().map(|(at, column)| width(at, column)).collect();
     }
@@ -288,10 +294,10 @@ impl Table {
         if area.height < 2 || area.width < 2 {
             return;
         }
-        let filter_row = u16::from(self.typing.is_some());
+        let filter_row = u16::from(self.filter_field.is_some());
         let height = area.height - 1 - filter_row;
         if focused {
-            canvas.page = height.max(1);
+            canvas.page_rows = height.max(1);
         }
         let columns = self.visible_columns(area.width);
         let head = Rect { height: 1, ..area };
@@ -299,30 +305,30 @@ impl Table {
             let column = &self.columns[*at];
             let cell = Rect { x: head.x + place.0, width: place.1, ..head };
             let role = if focused && *at == self.column { Role::Title } else { Role::Header };
-            canvas.aligned(cell, &column.title, role, column.align);
+            canvas.draw_aligned(cell, &column.title, role, column.align);
         }
         // Shows that there are more columns to the left or right.
         if let [_, (second, (x, _)), ..] = columns[..]
             && second > 1
         {
-            canvas.text(Rect { x: head.x + x - 1, width: 1, ..head }, "‹", Role::Key);
+            canvas.draw_text(Rect { x: head.x + x - 1, width: 1, ..head }, "‹", Role::Key);
         }
         if let Some((last, (x, width))) = columns.last()
             && last + 1 < self.columns.len()
             && x + width < area.width
         {
-            canvas.text(Rect { x: area.right() - 1, width: 1, ..head }, "›", Role::Key);
+            canvas.draw_text(Rect { x: area.right() - 1, width: 1, ..head }, "›", Role::Key);
         }
-        let from = first_row(self.selected, height as usize, self.shown.len());
-        for (line, row) in self.shown.iter().enumerate().skip(from).take(height as usize) {
+        let from = first_visible_row(self.selected, height as usize, self.visible_rows.len());
+        for (line, row) in self.visible_rows.iter().enumerate().skip(from).take(height as usize) {
             let y = area.y + 1 + (line - from) as u16;
             let whole = Rect { x: area.x, y, width: area.width, height: 1 };
             self.draw_row(canvas, whole, *row, &columns, (line == self.selected).then_some(focused));
-            canvas.click(whole, Click::Row(pane, line));
+            canvas.register_click(whole, Click::Row(pane, line));
         }
-        if let Some(field) = &self.typing {
+        if let Some(field) = &self.filter_field {
             let row = Rect { y: area.bottom() - 1, height: 1, ..area };
-            canvas.text(row, "/", Role::Key);
+            canvas.draw_text(row, "/", Role::Key);
             field.draw(canvas, Rect { x: row.x + 1, width: row.width - 1, ..row });
         }
     }
@@ -335,7 +341,7 @@ impl Table {
         columns: &[(usize, (u16, u16))],
         selected: Option<bool>,
     ) {
-        let over = selected.map(|focused| if focused { Role::Selection } else { Role::SelectionIdle });
+        let over = selected.map(|focused| if focused { Role::Selection } else { Role::InactiveSelection });
         if let Some(role) = over {
             let style = canvas.style(role);
             canvas.buffer.set_style(whole.intersection(canvas.buffer.area), style);
@@ -343,9 +349,9 @@ impl Table {
         for (at, (x, width)) in columns {
             let Some(cell) = self.rows[row].get(*at) else { continue };
             let place = Rect { x: whole.x + x, width: *width, ..whole };
-            let text = fit(&cell.text, *width as usize);
-            canvas.aligned(place, &text, over.unwrap_or(cell.role), self.columns[*at].align);
-            if self.by_cell && selected == Some(true) && *at == self.column {
+            let text = truncate_to_width(&cell.text, *width as usize);
+            canvas.draw_aligned(place, &text, over.unwrap_or(cell.role), self.columns[*at].align);
+            if self.selects_cells && selected == Some(true) && *at == self.column {
                 let mark = Style::new().add_modifier(Modifier::BOLD | Modifier::UNDERLINED);
                 canvas.buffer.set_style(place.intersection(canvas.buffer.area), mark);
             }
@@ -353,11 +359,11 @@ impl Table {
     }
 
     /// Returns the widths of the columns after shrinking.
-    fn widths_within(&self, width: u16) -> Vec<u16> {
+    fn fit_widths(&self, width: u16) -> Vec<u16> {
         let all: usize = self.widths.iter().map(|own| usize::from(*own) + 2).sum();
         let mut missing = all.saturating_sub(usize::from(width) + 2).min(usize::from(u16::MAX)) as u16;
-        let fitted = |(own, column): (&u16, &Column)| {
-            let given = own.saturating_sub(column.least).min(missing);
+        let fitted = |(own, column): (&u16, &TableColumn)| {
+            let given = own.saturating_sub(column.min_width).min(missing);
             missing -= given;
             own - given
         };
@@ -365,7 +371,7 @@ impl Table {
     }
 
     fn visible_columns(&self, width: u16) -> Vec<(usize, (u16, u16))> {
-        let widths = self.widths_within(width);
+        let widths = self.fit_widths(width);
         let mut from = 1;
         loop {
             let mut x = 0;
@@ -377,7 +383,7 @@ impl Table {
                 let room = width.saturating_sub(x);
                 let readable = match self.columns[at].align {
                     Align::Right => own,
-                    _ => own.min(LEAST_WORDS),
+                    _ => own.min(MIN_TEXT_WIDTH),
                 };
                 if room == 0 || (x > 0 && room < readable) {
                     break;
@@ -399,18 +405,18 @@ impl Table {
 }
 
 /// Returns the first visible row so that the selected one is near the middle.
-pub fn first_row(selected: usize, height: usize, rows: usize) -> usize {
+pub fn first_visible_row(selected: usize, height: usize, rows: usize) -> usize {
     selected.saturating_sub(height / 2).min(rows.saturating_sub(height))
 }
 
-fn compare(left: Option<&Cell>, right: Option<&Cell>) -> Ordering {
-    let key = |cell: Option<&Cell>| cell.and_then(|cell| cell.number);
+fn compare_cells(left: Option<&TableCell>, right: Option<&TableCell>) -> Ordering {
+    let key = |cell: Option<&TableCell>| cell.and_then(|cell| cell.number);
     match (key(left), key(right)) {
         (Some(left), Some(right)) => left.total_cmp(&right),
         (Some(_), None) => Ordering::Greater,
         (None, Some(_)) => Ordering::Less,
         (None, None) => {
-            let text = |cell: Option<&Cell>| cell.map(|cell| cell.text.to_lowercase());
+            let text = |cell: Option<&TableCell>| cell.map(|cell| cell.text.to_lowercase());
             text(left).cmp(&text(right))
         }
     }
@@ -421,56 +427,58 @@ mod tests {
     use super::*;
 
     fn table() -> Table {
-        let mut table = Table::new(vec![Column::words("name"), Column::numbers("size")]);
-        let row = |name: &str, size: f64| vec![Cell::words(name), Cell::number(size, size.to_string())];
+        let mut table = Table::new(vec![TableColumn::text("name"), TableColumn::numeric("size")]);
+        let row = |name: &str, size: f64| {
+            vec![TableCell::from_text(name), TableCell::from_number(size, size.to_string())]
+        };
         table.set_rows(vec![row("Beta", 2.0), row("alpha", 10.0), row("gamma", 1.0)]);
         table
     }
 
     fn names(table: &Table) -> Vec<&str> {
-        table.shown.iter().map(|row| table.rows[*row][0].text.as_str()).collect()
+        table.visible_rows.iter().map(|row| table.rows[*row][0].text.as_str()).collect()
     }
 
     #[test]
-    fn sorting_turns_round_and_ends() {
+    fn sort_cycles_through_ascending_descending_and_off() {
         let mut table = table();
-        table.act(ListAction::Sort, 5);
+        table.handle_action(ListAction::Sort, 5);
         assert_eq!(names(&table), ["alpha", "Beta", "gamma"]);
-        table.act(ListAction::Right, 5);
-        table.act(ListAction::Sort, 5);
+        table.handle_action(ListAction::Right, 5);
+        table.handle_action(ListAction::Sort, 5);
         assert_eq!(names(&table), ["alpha", "Beta", "gamma"], "largest first");
-        table.act(ListAction::Sort, 5);
+        table.handle_action(ListAction::Sort, 5);
         assert_eq!(names(&table), ["gamma", "Beta", "alpha"]);
-        table.act(ListAction::Sort, 5);
+        table.handle_action(ListAction::Sort, 5);
         assert_eq!(names(&table), ["Beta", "alpha", "gamma"]);
     }
 
     #[test]
-    fn a_filter_keeps_the_selected_row_if_it_can() {
+    fn filter_keeps_the_selected_row_if_visible() {
         let mut table = table();
-        table.act(ListAction::Last, 5);
-        table.act(ListAction::Filter, 5);
-        table.typing().expect("typing").insert("A");
-        table.typed();
+        table.handle_action(ListAction::Last, 5);
+        table.handle_action(ListAction::Filter, 5);
+        table.filter_field().expect("typing").insert("A");
+        table.apply_filter();
         assert_eq!((names(&table), table.selected()), (vec!["Beta", "alpha", "gamma"], Some(2)));
-        table.typing().expect("typing").insert("m");
-        table.typed();
+        table.filter_field().expect("typing").insert("m");
+        table.apply_filter();
         assert_eq!((names(&table), table.selected()), (vec!["gamma"], Some(2)));
-        table.act(ListAction::Discard, 5);
-        assert_eq!((table.shown.len(), table.selected()), (3, Some(2)));
+        table.handle_action(ListAction::Discard, 5);
+        assert_eq!((table.visible_rows.len(), table.selected()), (3, Some(2)));
     }
 
     #[test]
-    fn an_empty_table_has_nothing_selected() {
-        let mut table = Table::new(vec![Column::words("name")]);
+    fn empty_table_has_no_selection() {
+        let mut table = Table::new(vec![TableColumn::text("name")]);
         for action in
             [ListAction::Down, ListAction::PageDown, ListAction::Last, ListAction::Sort, ListAction::Right]
         {
-            table.act(action, 3);
+            table.handle_action(action, 3);
         }
         assert_eq!(table.selected(), None);
-        assert_eq!(first_row(5, 4, 20), 3);
-        assert_eq!(first_row(19, 4, 20), 16);
-        assert_eq!(first_row(0, 4, 2), 0);
+        assert_eq!(first_visible_row(5, 4, 20), 3);
+        assert_eq!(first_visible_row(19, 4, 20), 16);
+        assert_eq!(first_visible_row(0, 4, 2), 0);
     }
 }

@@ -7,34 +7,34 @@ use toml::{Table, Value};
 use super::{Alternative, Grammar, GrammarError, Part};
 
 #[derive(Default)]
-struct Names {
+struct DeclaredNames {
     given: BTreeSet<String>,
     maybe: BTreeSet<String>,
     tags: BTreeSet<String>,
     rules: BTreeSet<String>,
 }
 
-pub(super) fn read(sources: &[&str]) -> Result<Grammar, GrammarError> {
+pub(super) fn parse(sources: &[&str]) -> Result<Grammar, GrammarError> {
     let mut texts = BTreeMap::new();
-    let mut names = Names::default();
+    let mut names = DeclaredNames::default();
     for source in sources {
         let table: Table =
             source.parse().map_err(|error: toml::de::Error| GrammarError(error.to_string()))?;
         if let Some(Value::Table(rules)) = table.get("rules") {
-            flatten("", rules, &mut texts)?;
+            flatten_rules("", rules, &mut texts)?;
         }
-        names.given.append(&mut list(&table, "given")?);
-        names.maybe.append(&mut list(&table, "maybe")?);
-        names.tags.append(&mut list(&table, "tags")?);
+        names.given.append(&mut name_set(&table, "given")?);
+        names.maybe.append(&mut name_set(&table, "maybe")?);
+        names.tags.append(&mut name_set(&table, "tags")?);
     }
     names.rules = texts.keys().cloned().collect();
     let mut rules = BTreeMap::new();
     for (name, texts) in &texts {
         let alternatives: Result<Vec<Alternative>, GrammarError> =
-            texts.iter().map(|text| alternative(name, text, &names)).collect();
+            texts.iter().map(|text| parse_alternative(name, text, &names)).collect();
         rules.insert(name.clone(), alternatives?);
     }
-    check_total(&rules, &names)?;
+    check_always_expandable(&rules, &names)?;
     Ok(Grammar {
         rules,
         #[cfg(test)]
@@ -42,7 +42,7 @@ pub(super) fn read(sources: &[&str]) -> Result<Grammar, GrammarError> {
     })
 }
 
-fn list(table: &Table, key: &str) -> Result<BTreeSet<String>, GrammarError> {
+fn name_set(table: &Table, key: &str) -> Result<BTreeSet<String>, GrammarError> {
     let Some(value) = table.get(key) else { return Ok(BTreeSet::new()) };
     let texts = value.as_array().and_then(|texts| {
         texts.iter().map(|text| text.as_str().map(str::to_owned)).collect::<Option<BTreeSet<String>>>()
@@ -51,7 +51,7 @@ fn list(table: &Table, key: &str) -> Result<BTreeSet<String>, GrammarError> {
 }
 
 /// Converts nested tables to dotted names.
-fn flatten(
+fn flatten_rules(
     before: &str,
     table: &Table,
     rules: &mut BTreeMap<String, Vec<String>>,
@@ -59,7 +59,7 @@ fn flatten(
     for (key, value) in table {
         let name = if before.is_empty() { key.clone() } else { format!("{before}.{key}") };
         match value {
-            Value::Table(inner) => flatten(&name, inner, rules)?,
+            Value::Table(inner) => flatten_rules(&name, inner, rules)?,
             Value::Array(texts) if !texts.is_empty() => {
                 let texts: Option<Vec<String>> =
                     texts.iter().map(|text| text.as_str().map(str::to_owned)).collect();
@@ -75,18 +75,18 @@ fn flatten(
     Ok(())
 }
 
-fn alternative(rule: &str, text: &str, names: &Names) -> Result<Alternative, GrammarError> {
+fn parse_alternative(rule: &str, text: &str, names: &DeclaredNames) -> Result<Alternative, GrammarError> {
     let wrong = |problem: String| GrammarError(format!("rule {rule}, \"{text}\": {problem}"));
     let (needs, rest) = match text.strip_prefix('(').and_then(|rest| rest.split_once(") ")) {
-        Some((needs, rest)) => (conditions(needs, names).map_err(wrong)?, rest),
+        Some((needs, rest)) => (parse_conditions(needs, names).map_err(wrong)?, rest),
         None => (Vec::new(), text),
     };
-    let mut reader = Reader { rest, names };
-    let parts = reader.parts(false).map_err(wrong)?;
-    Ok(Alternative { needs, parts })
+    let mut reader = PartParser { rest, names };
+    let parts = reader.parse_parts(false).map_err(wrong)?;
+    Ok(Alternative { required_tags: needs, parts })
 }
 
-fn conditions(text: &str, names: &Names) -> Result<Vec<(String, bool)>, String> {
+fn parse_conditions(text: &str, names: &DeclaredNames) -> Result<Vec<(String, bool)>, String> {
     let one = |need: &str| {
         let (tag, wanted) = match need.trim().strip_prefix('!') {
             Some(tag) => (tag, false),
@@ -101,14 +101,14 @@ fn conditions(text: &str, names: &Names) -> Result<Vec<(String, bool)>, String> 
     text.split(',').map(one).collect()
 }
 
-struct Reader<'a> {
+struct PartParser<'a> {
     rest: &'a str,
-    names: &'a Names,
+    names: &'a DeclaredNames,
 }
 
-impl Reader<'_> {
+impl PartParser<'_> {
     /// Parses up to the end, or within a choice up to `|` or `]`, which are not consumed.
-    fn parts(&mut self, within_choice: bool) -> Result<Vec<Part>, String> {
+    fn parse_parts(&mut self, within_choice: bool) -> Result<Vec<Part>, String> {
         let mut parts = Vec::new();
         loop {
             let end = self.rest.find(['{', '}', '[', ']', '|']).unwrap_or(self.rest.len());
@@ -118,8 +118,8 @@ impl Reader<'_> {
             }
             self.rest = rest;
             match rest.chars().next() {
-                Some('{') => parts.push(self.symbol()?),
-                Some('[') => parts.push(self.choice()?),
+                Some('{') => parts.push(self.parse_symbol()?),
+                Some('[') => parts.push(self.parse_choice()?),
                 Some('|' | ']') if within_choice => return Ok(parts),
                 None if !within_choice => return Ok(parts),
                 None => return Err("a choice is not closed".to_owned()),
@@ -128,7 +128,7 @@ impl Reader<'_> {
         }
     }
 
-    fn symbol(&mut self) -> Result<Part, String> {
+    fn parse_symbol(&mut self) -> Result<Part, String> {
         let (symbol, rest) = self.rest[1..].split_once('}').ok_or("a symbol is not closed")?;
         self.rest = rest;
         if let Some((rule, by)) = symbol.split_once(':') {
@@ -138,7 +138,7 @@ impl Reader<'_> {
             if !self.names.given.contains(by) && !self.names.maybe.contains(by) {
                 return Err(format!("value {by} is not declared"));
             }
-            return Ok(Part::Split { rule: rule.to_owned(), by: by.to_owned() });
+            return Ok(Part::ByValue { rule: rule.to_owned(), by: by.to_owned() });
         }
         if self.names.rules.contains(symbol) {
             Ok(Part::Rule(symbol.to_owned()))
@@ -149,12 +149,12 @@ impl Reader<'_> {
         }
     }
 
-    fn choice(&mut self) -> Result<Part, String> {
+    fn parse_choice(&mut self) -> Result<Part, String> {
         self.rest = &self.rest[1..];
-        let mut branches = vec![self.parts(true)?];
+        let mut branches = vec![self.parse_parts(true)?];
         while self.rest.starts_with('|') {
             self.rest = &self.rest[1..];
-            branches.push(self.parts(true)?);
+            branches.push(self.parse_parts(true)?);
         }
         self.rest = &self.rest[1..];
         if branches.len() == 1 {
@@ -165,9 +165,12 @@ impl Reader<'_> {
 }
 
 /// Checks that every rule has an alternative without tags and optional values, and that no rule contains itself.
-fn check_total(rules: &BTreeMap<String, Vec<Alternative>>, names: &Names) -> Result<(), GrammarError> {
+fn check_always_expandable(
+    rules: &BTreeMap<String, Vec<Alternative>>,
+    names: &DeclaredNames,
+) -> Result<(), GrammarError> {
     let always = |alternative: &Alternative| {
-        alternative.needs.is_empty() && always_filled(&alternative.parts, &names.given)
+        alternative.required_tags.is_empty() && is_always_filled(&alternative.parts, &names.given)
     };
     for (name, alternatives) in rules {
         if !alternatives.iter().any(always) {
@@ -178,20 +181,20 @@ fn check_total(rules: &BTreeMap<String, Vec<Alternative>>, names: &Names) -> Res
     }
     let mut done = BTreeSet::new();
     for name in rules.keys() {
-        visit(name, rules, &mut Vec::new(), &mut done)?;
+        check_acyclic(name, rules, &mut Vec::new(), &mut done)?;
     }
     Ok(())
 }
 
-fn always_filled(parts: &[Part], given: &BTreeSet<String>) -> bool {
+fn is_always_filled(parts: &[Part], given: &BTreeSet<String>) -> bool {
     parts.iter().all(|part| match part {
         Part::Value(name) => given.contains(name),
-        Part::Choice(branches) => branches.iter().any(|branch| always_filled(branch, given)),
-        Part::Text(_) | Part::Rule(_) | Part::Split { .. } => true,
+        Part::Choice(branches) => branches.iter().any(|branch| is_always_filled(branch, given)),
+        Part::Text(_) | Part::Rule(_) | Part::ByValue { .. } => true,
     })
 }
 
-fn visit(
+fn check_acyclic(
     name: &str,
     rules: &BTreeMap<String, Vec<Alternative>>,
     path: &mut Vec<String>,
@@ -206,7 +209,7 @@ fn visit(
     path.push(name.to_owned());
     for alternative in &rules[name] {
         for inner in rules_in(&alternative.parts, rules) {
-            visit(&inner, rules, path, done)?;
+            check_acyclic(&inner, rules, path, done)?;
         }
     }
     path.pop();
@@ -219,7 +222,7 @@ fn rules_in(parts: &[Part], rules: &BTreeMap<String, Vec<Alternative>>) -> Vec<S
     for part in parts {
         match part {
             Part::Rule(name) => found.push(name.clone()),
-            Part::Split { rule, .. } => {
+            Part::ByValue { rule, .. } => {
                 found.push(rule.clone());
                 let special = format!("{rule}.");
                 found.extend(rules.keys().filter(|name| name.starts_with(&special)).cloned());
@@ -237,12 +240,12 @@ fn rules_in(parts: &[Part], rules: &BTreeMap<String, Vec<Alternative>>) -> Vec<S
 mod tests {
     use super::*;
 
-    fn problem(source: &str) -> String {
-        read(&[source]).expect_err("an error").to_string()
+    fn parse_error(source: &str) -> String {
+        parse(&[source]).expect_err("an error").to_string()
     }
 
     #[test]
-    fn mistakes_are_named_with_their_rule() {
+    fn errors_name_their_rule() {
         for (source, words) in [
             ("[rules]\na = [\"{b}\"]", "b is neither"),
             ("[rules]\na = [\"(old) x\", \"y\"]", "tag old"),
@@ -254,9 +257,9 @@ mod tests {
             ("given = [\"g\"]\n[rules]\na = [\"{b:g}\"]", "no rule b"),
             ("[rules]\na = []", "rule a is not a list"),
         ] {
-            assert!(problem(source).contains(words), "{source}: {}", problem(source));
+            assert!(parse_error(source).contains(words), "{source}: {}", parse_error(source));
         }
-        let twice = read(&["[rules]\na = [\"x\"]", "[rules]\na = [\"y\"]"]).expect_err("an error");
+        let twice = parse(&["[rules]\na = [\"x\"]", "[rules]\na = [\"y\"]"]).expect_err("an error");
         assert!(twice.to_string().contains("twice"));
     }
 }

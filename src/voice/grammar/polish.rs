@@ -2,11 +2,11 @@
 
 /// Inserts the correct articles, removes extra spaces, and capitalizes sentences.
 pub fn polish(text: &str) -> String {
-    capitals(&spaces(&articles(text)))
+    fix_capitals(&fix_spaces(&fix_articles(text)))
 }
 
 /// Replaces `a/an` and `A/an` by the article that fits the next word.
-fn articles(text: &str) -> String {
+fn fix_articles(text: &str) -> String {
     let mut polished = String::with_capacity(text.len());
     let mut rest = text;
     while let Some(at) = rest.find("a/an ").or_else(|| rest.find("A/an ")) {
@@ -14,7 +14,7 @@ fn articles(text: &str) -> String {
         let (article, after) = found.split_at("a/an".len());
         polished.push_str(before);
         polished.push_str(&article[..1]);
-        if vowel_sound(after.trim_start()) {
+        if starts_with_vowel_sound(after.trim_start()) {
             polished.push('n');
         }
         rest = after;
@@ -25,7 +25,7 @@ fn articles(text: &str) -> String {
 
 /// Returns whether a word starts with a vowel sound. Abbreviations that are spelled out count by the name of
 /// their first letter.
-fn vowel_sound(word: &str) -> bool {
+fn starts_with_vowel_sound(word: &str) -> bool {
     let word: String = word.chars().take_while(|c| c.is_alphanumeric()).collect();
     let spelt = word.len() >= 2 && word.chars().take(2).all(|c| c.is_ascii_uppercase());
     let first = word.chars().next().unwrap_or(' ').to_ascii_lowercase();
@@ -47,7 +47,7 @@ fn vowel_sound(word: &str) -> bool {
     }
 }
 
-fn spaces(text: &str) -> String {
+fn fix_spaces(text: &str) -> String {
     let mut polished = String::with_capacity(text.len());
     for character in text.chars() {
         match character {
@@ -62,7 +62,7 @@ fn spaces(text: &str) -> String {
     polished.trim_end().to_owned()
 }
 
-fn capitals(text: &str) -> String {
+fn fix_capitals(text: &str) -> String {
     let mut polished = String::with_capacity(text.len());
     let mut begins = true;
     let mut ended = false;
@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn sentences_get_capitals_and_marks_no_space() {
+    fn polish_fixes_capitals_and_spaces() {
         assert_eq!(polish(" well ,  it works .  fine! 3 weeks in. "), "Well, it works. Fine! 3 weeks in.");
         assert_eq!(polish("v2.5 is out. #tools rock"), "V2.5 is out. #tools rock");
         assert_eq!(polish("\"great\" they said. ok"), "\"Great\" they said. Ok");

@@ -1,6 +1,6 @@
 //! Claims of a post and whether readers experienced them (docs/mechanics/market/social/judge.md#claims).
 
-use super::circumstances::{Circumstances, Readers};
+use super::context::{JudgeContext, ReaderGroup};
 use super::features::Features;
 use super::lexicon::Lexicon;
 
@@ -13,35 +13,35 @@ pub struct Claim {
     pub verdict: Option<bool>,
 }
 
-const NAMES: [&str; 6] = ["price_down", "quality_up", "reliability", "speed", "support", "limits"];
+const CLAIM_NAMES: [&str; 6] = ["price_down", "quality_up", "reliability", "speed", "support", "limits"];
 
 /// Returns the claims of a post with the verdict of a group.
-pub fn claims(
+pub fn evaluate_claims(
     features: &Features,
-    readers: &Readers,
-    circumstances: &Circumstances,
+    readers: &ReaderGroup,
+    circumstances: &JudgeContext,
     lexicon: &Lexicon,
 ) -> Vec<Claim> {
-    let reading = &features.reading;
+    let reading = &features.text;
     let mut found = Vec::new();
-    for name in NAMES {
+    for name in CLAIM_NAMES {
         let Some(pattern) = lexicon.claims.get(name) else { continue };
-        let near = reading.near(&pattern.near, &pattern.to, lexicon.verdicts.near_positions);
-        if near || reading.any(&pattern.says) {
-            let unlimited = name == "limits" && reading.any(&pattern.says);
+        let near = reading.are_near(&pattern.near, &pattern.to, lexicon.verdicts.near_positions);
+        if near || reading.contains_any(&pattern.says) {
+            let unlimited = name == "limits" && reading.contains_any(&pattern.says);
             let verdict =
                 if unlimited { Some(false) } else { verdict(name, readers, circumstances, lexicon) };
             found.push(Claim { name, verdict });
         }
     }
-    if let Some(count) = audience(reading.normal()) {
+    if let Some(count) = claimed_audience(reading.normalized()) {
         let most = lexicon.verdicts.scale_slack * f64::from(circumstances.subscribers);
         found.push(Claim { name: "scale", verdict: Some(count <= most) });
     }
     found
 }
 
-fn verdict(name: &str, readers: &Readers, own: &Circumstances, lexicon: &Lexicon) -> Option<bool> {
+fn verdict(name: &str, readers: &ReaderGroup, own: &JudgeContext, lexicon: &Lexicon) -> Option<bool> {
     let law = &lexicon.verdicts;
     match name {
         "price_down" => Some(own.price_cut),
@@ -68,7 +68,7 @@ fn verdict(name: &str, readers: &Readers, own: &Circumstances, lexicon: &Lexicon
 }
 
 /// Returns the largest number before customers, users or subscribers; `k` is a thousand, `m` a million.
-fn audience(normal: &str) -> Option<f64> {
+fn claimed_audience(normal: &str) -> Option<f64> {
     let words = ["customer", "user", "subscriber"];
     let ends = words.iter().flat_map(|word| normal.match_indices(word)).map(|(at, _)| at);
     ends.filter_map(|end| number_before(&normal[..end])).reduce(f64::max)
@@ -92,7 +92,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn audiences_are_read_in_every_form() {
+    fn claimed_audience_reads_all_number_forms() {
         for (text, expected) in [
             ("join 12,000 users today", Some(12_000.0)),
             ("over 10k customers", Some(10_000.0)),
@@ -103,7 +103,7 @@ mod tests {
             ("users", None),
             ("k users", None),
         ] {
-            assert_eq!(audience(text), expected, "{text}");
+            assert_eq!(claimed_audience(text), expected, "{text}");
         }
     }
 }

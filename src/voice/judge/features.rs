@@ -1,19 +1,19 @@
 //! Features of a post, the same for every reader (docs/mechanics/market/social/judge.md#features).
 
 use super::lexicon::{Features as Law, Lexicon};
-use super::text::{Entry, Reading, is_emoji};
+use super::text::{TokenizedText, WordPattern, is_emoji};
 
 /// Features of a post.
 #[derive(Debug, Clone)]
 pub struct Features {
     /// The tokenized text.
-    pub reading: Reading,
+    pub text: TokenizedText,
     /// Strength of every topic, 0..=1, in the order of the lexicon.
     pub topics: Vec<f64>,
     /// Number of numbers and amounts of money.
     pub numbers: u32,
     /// Specificity, 0..=1.
-    pub specific: f64,
+    pub specificity: f64,
     /// Promises without measure, 0..=1.
     pub absolutes: f64,
     /// Advertising words, 0..=1.
@@ -23,83 +23,83 @@ pub struct Features {
     /// Technical style, 0..=1.
     pub technical: f64,
     /// Whether it apologizes.
-    pub apology: bool,
+    pub has_apology: bool,
     /// Whether it names a cause.
-    pub cause: bool,
+    pub names_cause: bool,
     /// Whether it names a remedy.
-    pub remedy: bool,
+    pub names_remedy: bool,
     /// Whether it names a time or a number.
-    pub when: bool,
+    pub names_time: bool,
     /// Sales pressure, 0..=3.
-    pub sell: f64,
+    pub sales_pressure: f64,
     /// Whether it blames the reader.
     pub defensive: bool,
     /// Whether it contains misconduct, such as insults.
-    pub conduct: bool,
+    pub has_misconduct: bool,
     /// Whether it disparages competitors.
-    pub bash: bool,
+    pub attacks_competitors: bool,
     /// Whether it addresses the reader.
-    pub you: bool,
+    pub addresses_reader: bool,
     /// Keyword stuffing.
-    pub stuffing: f64,
+    pub keyword_stuffing: f64,
     /// Whether the text is too short to judge.
-    pub empty: bool,
+    pub is_empty: bool,
 }
 
 impl Features {
     /// Extracts the features of a post.
-    pub fn of(content: &str, lexicon: &Lexicon) -> Features {
+    pub fn from_post(content: &str, lexicon: &Lexicon) -> Features {
         let (law, words) = (&lexicon.features, &lexicon.words);
-        let reading = Reading::of(content);
-        let strength = |list: &Vec<Entry>| match reading.count(list) {
+        let reading = TokenizedText::new(content);
+        let strength = |list: &Vec<WordPattern>| match reading.count_matches(list) {
             0 => 0.0,
             count => (law.topic_first + law.topic_more * f64::from(count - 1)).min(1.0),
         };
         let topics: Vec<f64> = lexicon.topics.values().map(strength).collect();
         let hit = topics.iter().filter(|strength| **strength > 0.0).count() as u32;
-        let numbers = reading.numbers();
-        let (action, time) = (reading.any(&words.actions), reading.any(&words.times));
+        let numbers = reading.count_numbers();
+        let (action, time) = (reading.contains_any(&words.actions), reading.contains_any(&words.times));
         let specific = law.number * f64::from(numbers.min(law.numbers_counted))
-            + law.action * flag(action)
-            + law.time * flag(time)
+            + law.action * indicator(action)
+            + law.time * indicator(time)
             + law.topic_hit * f64::from(hit.min(law.topics_counted));
-        let share = |each: f64, list| (each * f64::from(reading.count(list))).min(1.0);
+        let share = |each: f64, list| (each * f64::from(reading.count_matches(list))).min(1.0);
         Features {
-            specific: specific.min(1.0),
+            specificity: specific.min(1.0),
             absolutes: share(law.absolute, &words.absolutes),
             buzzwords: share(law.buzzword, &words.buzzwords),
-            casual: casual(content, reading.count(&words.slang), law),
-            technical: (law.tech_term * f64::from(reading.count(&words.tech))
-                + law.tech_unit * flag(has_unit(reading.normal(), &law.units)))
+            casual: casualness(content, reading.count_matches(&words.slang), law),
+            technical: (law.tech_term * f64::from(reading.count_matches(&words.tech))
+                + law.tech_unit * indicator(has_unit(reading.normalized(), &law.units)))
             .min(1.0),
-            apology: reading.any(&words.apology),
-            cause: reading.any(&words.cause),
-            remedy: reading.any(&words.remedy),
-            when: time || numbers > 0,
-            sell: f64::from(reading.count(&words.hard_sell).min(law.sell_counted)),
-            defensive: reading.any(&words.defensive),
-            conduct: reading.any(&words.conduct),
-            bash: reading.any(&words.rivals) && reading.any(&words.negative),
-            you: reading.any(&words.you),
-            stuffing: stuffing(&reading, lexicon),
-            empty: hit == 0 && numbers == 0 && reading.tokens().len() < law.least_tokens,
+            has_apology: reading.contains_any(&words.apology),
+            names_cause: reading.contains_any(&words.cause),
+            names_remedy: reading.contains_any(&words.remedy),
+            names_time: time || numbers > 0,
+            sales_pressure: f64::from(reading.count_matches(&words.hard_sell).min(law.sell_counted)),
+            defensive: reading.contains_any(&words.defensive),
+            has_misconduct: reading.contains_any(&words.conduct),
+            attacks_competitors: reading.contains_any(&words.rivals) && reading.contains_any(&words.negative),
+            addresses_reader: reading.contains_any(&words.you),
+            keyword_stuffing: keyword_stuffing(&reading, lexicon),
+            is_empty: hit == 0 && numbers == 0 && reading.tokens().len() < law.least_tokens,
             numbers,
             topics,
-            reading,
+            text: reading,
         }
     }
 
     /// Returns whether the post mentions a topic.
-    pub fn hits(&self, topic: usize) -> bool {
+    pub fn mentions_topic(&self, topic: usize) -> bool {
         self.topics[topic] > 0.0
     }
 }
 
-pub(super) fn flag(holds: bool) -> f64 {
+pub(super) fn indicator(holds: bool) -> f64 {
     if holds { 1.0 } else { 0.0 }
 }
 
-fn casual(content: &str, slang: u32, law: &Law) -> f64 {
+fn casualness(content: &str, slang: u32, law: &Law) -> f64 {
     let count = |of: &dyn Fn(char) -> bool| content.chars().filter(|c| of(*c)).count() as u32;
     let signs = |each: f64, count: u32| each * f64::from(count.min(law.signs_counted));
     let shouted = content.split(|c: char| !c.is_alphanumeric()).filter(|word| {
@@ -122,7 +122,7 @@ fn has_unit(normal: &str, units: &[String]) -> bool {
 }
 
 /// Returns the share of topic words beyond one half, plus the lack of function words.
-fn stuffing(reading: &Reading, lexicon: &Lexicon) -> f64 {
+fn keyword_stuffing(reading: &TokenizedText, lexicon: &Lexicon) -> f64 {
     let law = &lexicon.features;
     let tokens = reading.tokens().len();
     if tokens == 0 {
@@ -130,17 +130,17 @@ fn stuffing(reading: &Reading, lexicon: &Lexicon) -> f64 {
     }
     let mut covered = vec![false; tokens];
     for list in lexicon.topics.values() {
-        for (own, more) in covered.iter_mut().zip(reading.covered(list)) {
+        for (own, more) in covered.iter_mut().zip(reading.covered_tokens(list)) {
             *own |= more;
         }
     }
-    let functions = reading.covered(&lexicon.words.function);
+    let functions = reading.covered_tokens(&lexicon.words.function);
     let plain = functions.iter().zip(&covered).filter(|(function, covered)| **function && !**covered);
     let density = covered.iter().filter(|covered| **covered).count() as f64 / tokens as f64;
     let function_share = plain.count() as f64 / tokens as f64;
     let piled = law.stuffing * ((density - law.stuffing_from) / (1.0 - law.stuffing_from)).max(0.0);
     let no_sentence = function_share < law.function_share && tokens >= law.sentence_tokens;
-    piled + law.stuffing_no_sentence * flag(no_sentence)
+    piled + law.stuffing_no_sentence * indicator(no_sentence)
 }
 
 #[cfg(test)]
@@ -148,7 +148,7 @@ mod tests {
     use super::*;
 
     fn features(content: &str) -> Features {
-        Features::of(content, Lexicon::shipped())
+        Features::from_post(content, Lexicon::bundled())
     }
 
     #[test]
@@ -156,33 +156,36 @@ mod tests {
         let own = features(
             "API update: quotas doubled to 200k tokens/day on plan B, batch endpoint p95 at 190 ms.",
         );
-        assert_eq!((own.specific, own.technical, own.casual), (1.0, 1.0, 0.0));
+        assert_eq!((own.specificity, own.technical, own.casual), (1.0, 1.0, 0.0));
         let plain = features("Quotas doubled.");
-        assert!((plain.specific - 0.275).abs() < 1e-12, "{}", plain.specific);
-        let lexicon = Lexicon::shipped();
-        assert!(own.hits(lexicon.topic("api")) && own.hits(lexicon.topic("limits")));
-        assert!(!own.hits(lexicon.topic("deal")) && !own.empty);
+        assert!((plain.specificity - 0.275).abs() < 1e-12, "{}", plain.specificity);
+        let lexicon = Lexicon::bundled();
+        assert!(
+            own.mentions_topic(lexicon.topic_index("api"))
+                && own.mentions_topic(lexicon.topic_index("limits"))
+        );
+        assert!(!own.mentions_topic(lexicon.topic_index("deal")) && !own.is_empty);
     }
 
     #[test]
-    fn shouting_signs_and_emoji_are_casual() {
+    fn capitals_exclamations_and_emoji_count_as_casual() {
         let own = features("The BEST AI tool ever!!! \u{1F680}\u{1F680}");
         assert!((own.casual - (0.5 + 0.45 + 0.2f64).min(1.0)).abs() < 1e-12);
         assert!((own.absolutes - 0.35).abs() < 1e-12);
     }
 
     #[test]
-    fn piles_of_words_are_seen() {
+    fn keyword_stuffing_is_detected() {
         let pile = features(
             "API SDK webhooks limits quota latency p95 tokens batch docs benchmarks 200k tokens today shipped",
         );
         assert!(
-            (pile.stuffing - (0.5 * (13.0 / 15.0 - 0.5) / 0.5 + 0.25)).abs() < 1e-12,
+            (pile.keyword_stuffing - (0.5 * (13.0 / 15.0 - 0.5) / 0.5 + 0.25)).abs() < 1e-12,
             "{}",
-            pile.stuffing
+            pile.keyword_stuffing
         );
-        assert_eq!(features("We are glad that you are here with us today.").stuffing, 0.0);
-        assert!(features("Good morning!").empty && !features("Good morning, 3 days left").empty);
-        assert_eq!(features("").stuffing, 0.0);
+        assert_eq!(features("We are glad that you are here with us today.").keyword_stuffing, 0.0);
+        assert!(features("Good morning!").is_empty && !features("Good morning, 3 days left").is_empty);
+        assert_eq!(features("").keyword_stuffing, 0.0);
     }
 }

@@ -5,11 +5,11 @@ use std::sync::LazyLock;
 use indexmap::IndexMap;
 use serde::{Deserialize, Deserializer};
 
-use super::text::Entry;
+use super::text::WordPattern;
 use novamind_world::identifiers::Group;
 
 /// A list of word patterns.
-pub type List = Vec<Entry>;
+pub type EntryList = Vec<WordPattern>;
 
 /// Word lists, weights and profiles of the judge.
 #[derive(Debug, Clone, Deserialize)]
@@ -19,7 +19,7 @@ pub struct Lexicon {
     topic_order: Vec<String>,
     /// Topics in their fixed order.
     #[serde(deserialize_with = "lists")]
-    pub topics: IndexMap<String, List>,
+    pub topics: IndexMap<String, EntryList>,
     /// Other lists.
     pub words: Words,
     /// Patterns of claims.
@@ -40,7 +40,7 @@ pub struct Lexicon {
 
 impl Lexicon {
     /// Returns the bundled lexicon.
-    pub fn shipped() -> &'static Lexicon {
+    pub fn bundled() -> &'static Lexicon {
         static SHIPPED: LazyLock<Lexicon> = LazyLock::new(|| {
             let text = include_str!("../../../assets/voice/judge.toml");
             let mut read: Lexicon = toml::from_str(text).expect("the bundled word lists are valid");
@@ -57,7 +57,7 @@ impl Lexicon {
     }
 
     /// Returns the index of a topic in the fixed order.
-    pub fn topic(&self, name: &str) -> usize {
+    pub fn topic_index(&self, name: &str) -> usize {
         self.topics.get_index_of(name).expect("the topic is in the bundled lists")
     }
 
@@ -67,26 +67,26 @@ impl Lexicon {
     }
 }
 
-fn lists<'de, D: Deserializer<'de>>(from: D) -> Result<IndexMap<String, List>, D::Error> {
+fn lists<'de, D: Deserializer<'de>>(from: D) -> Result<IndexMap<String, EntryList>, D::Error> {
     let texts = IndexMap::<String, Vec<String>>::deserialize(from)?;
-    Ok(texts.into_iter().map(|(name, texts)| (name, read(&texts))).collect())
+    Ok(texts.into_iter().map(|(name, texts)| (name, parse_entries(&texts))).collect())
 }
 
-fn list<'de, D: Deserializer<'de>>(from: D) -> Result<List, D::Error> {
-    Ok(read(&Vec::<String>::deserialize(from)?))
+fn list<'de, D: Deserializer<'de>>(from: D) -> Result<EntryList, D::Error> {
+    Ok(parse_entries(&Vec::<String>::deserialize(from)?))
 }
 
-fn anywhere<'de, D: Deserializer<'de>>(from: D) -> Result<List, D::Error> {
+fn anywhere<'de, D: Deserializer<'de>>(from: D) -> Result<EntryList, D::Error> {
     let texts = Vec::<String>::deserialize(from)?;
     // An entry with a slash, such as 24/7, is not a token, so it is searched for anywhere. Single words match tokens.
     Ok(texts
         .iter()
-        .map(|text| if text.contains('/') { Entry::anywhere(text) } else { Entry::read(text) })
+        .map(|text| if text.contains('/') { WordPattern::phrase(text) } else { WordPattern::parse(text) })
         .collect())
 }
 
-fn read(texts: &[String]) -> List {
-    texts.iter().map(|text| Entry::read(text)).collect()
+fn parse_entries(texts: &[String]) -> EntryList {
+    texts.iter().map(|text| WordPattern::parse(text)).collect()
 }
 
 macro_rules! words {
@@ -94,12 +94,12 @@ macro_rules! words {
         /// Lists other than topics.
         #[derive(Debug, Clone, Deserialize)]
         #[serde(deny_unknown_fields)]
-        pub struct Words { $($(#[$doc])* #[serde(deserialize_with = "list")] pub $field: List,)* }
+        pub struct Words { $($(#[$doc])* #[serde(deserialize_with = "list")] pub $field: EntryList,)* }
 
         impl Words {
             /// Returns all lists, for tests that draw from them.
             #[cfg(test)]
-            pub fn all(&self) -> Vec<&List> {
+            pub fn all(&self) -> Vec<&EntryList> {
                 vec![$(&self.$field),*]
             }
         }
@@ -147,13 +147,13 @@ words! {
 pub struct ClaimPattern {
     /// One of these, or
     #[serde(deserialize_with = "anywhere")]
-    pub says: List,
+    pub says: EntryList,
     /// one of these close to
     #[serde(deserialize_with = "list")]
-    pub near: List,
+    pub near: EntryList,
     /// one of these.
     #[serde(deserialize_with = "list")]
-    pub to: List,
+    pub to: EntryList,
 }
 
 /// Preferences of a group.
@@ -341,7 +341,7 @@ mod tests {
 
     #[test]
     fn every_group_has_a_profile_of_known_topics() {
-        let lexicon = Lexicon::shipped();
+        let lexicon = Lexicon::bundled();
         let topics: Vec<&String> = lexicon.topics.keys().collect();
         assert_eq!(topics, lexicon.topic_order.iter().collect::<Vec<_>>());
         assert_eq!((topics.len(), topics[0].as_str(), topics[23].as_str()), (24, "price", "access"));
@@ -361,7 +361,7 @@ mod tests {
 
     #[test]
     fn events_are_addressed_by_known_topics_and_claims_are_all_there() {
-        let lexicon = Lexicon::shipped();
+        let lexicon = Lexicon::bundled();
         let events = &lexicon.events;
         let lists = [
             &events.outage,

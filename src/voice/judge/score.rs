@@ -1,14 +1,14 @@
 //! The score of one group (docs/mechanics/market/social/judge.md#terms).
 
-use super::circumstances::LiveEvent;
-use super::claims::{Claim, claims};
-use super::features::{Features, flag};
+use super::claims::{Claim, evaluate_claims};
+use super::context::LiveEvent;
+use super::features::{Features, indicator};
 use super::lexicon::Profile;
-use super::{Case, Judgement, Term};
+use super::{Case, Judgement, ScoreTerm};
 use novamind_world::identifiers::Group;
 
 /// A post as one group judges it.
-struct Eyes<'a> {
+struct GroupJudge<'a> {
     group: Group,
     case: &'a Case<'a>,
     profile: &'a Profile,
@@ -17,12 +17,12 @@ struct Eyes<'a> {
 
 pub(super) fn judge_group(group: Group, case: &Case<'_>) -> Judgement {
     let lexicon = case.lexicon;
-    if case.features.empty {
-        return Judgement { group, effect: 0.0, terms: Vec::new(), said: None };
+    if case.features.is_empty {
+        return Judgement { group, effect: 0.0, terms: Vec::new(), model_reason: None };
     }
     let readers = &case.circumstances.groups[group];
-    let claims = claims(&case.features, readers, case.circumstances, lexicon);
-    let eyes = Eyes { group, case, profile: lexicon.profile(group), claims };
+    let claims = evaluate_claims(&case.features, readers, case.circumstances, lexicon);
+    let eyes = GroupJudge { group, case, profile: lexicon.profile(group), claims };
     let terms = eyes.terms();
     let mut raw = eyes.profile.k * terms.iter().map(|term| term.value).sum::<f64>();
     if let Some((_, original)) = &case.original
@@ -30,11 +30,11 @@ pub(super) fn judge_group(group: Group, case: &Case<'_>) -> Judgement {
     {
         raw *= lexicon.terms.elsewhere;
     }
-    Judgement { group, effect: compressed(raw, lexicon.terms.knee), terms, said: None }
+    Judgement { group, effect: compress(raw, lexicon.terms.knee), terms, model_reason: None }
 }
 
 /// Compresses a score into -1..=1, rounded to hundredths: above the knee it approaches 1.
-fn compressed(raw: f64, knee: f64) -> f64 {
+fn compress(raw: f64, knee: f64) -> f64 {
     let size = raw.abs();
     let rest = 1.0 - knee;
     let bent = if size > knee { knee + rest * libm::tanh((size - knee) / rest) } else { size };
@@ -42,52 +42,59 @@ fn compressed(raw: f64, knee: f64) -> f64 {
     if rounded == 0.0 { 0.0 } else { rounded.copysign(raw) }
 }
 
-impl Eyes<'_> {
-    fn terms(&self) -> Vec<Term> {
+impl GroupJudge<'_> {
+    fn terms(&self) -> Vec<ScoreTerm> {
         let law = &self.case.lexicon.terms;
         let features = &self.case.features;
         let profile = self.profile;
-        let (fit, topics) = self.fit();
+        let (fit, topics) = self.topic_fit();
         let (timing, event) = self.timing();
-        let technical = self.speaks_numbers();
-        let contradicted = self.names_of(Some(false));
-        let supported = if contradicted.is_empty() { self.names_of(Some(true)) } else { Vec::new() };
+        let technical = self.has_numeric_comparison();
+        let contradicted = self.claim_names(Some(false));
+        let supported = if contradicted.is_empty() { self.claim_names(Some(true)) } else { Vec::new() };
         let spoilt = !contradicted.is_empty()
             || features.defensive
-            || features.conduct
-            || (features.bash && !technical);
-        let (unbelieved, hype) = (self.unbelieved(&contradicted), self.hype(!supported.is_empty()));
+            || features.has_misconduct
+            || (features.attacks_competitors && !technical);
+        let (unbelieved, hype) =
+            (self.false_claim_penalty(&contradicted), self.hype_penalty(!supported.is_empty()));
         let bashing =
             if technical { law.bashing_with_numbers } else { law.bashing + law.bashing_formal * profile.f };
         let repeated = (self.case.overlap - law.repetition_from) / (1.0 - law.repetition_from);
         let mut terms = vec![
             term("receptive", law.receptive, Vec::new()),
-            spoilable("topics", law.topics * fit, spoilt, topics, law.spoil),
-            spoilable(
+            reducible_term("topics", law.topics * fit, spoilt, topics, law.spoil),
+            reducible_term(
                 "specific",
-                law.specific * features.specific * fit.max(0.0),
+                law.specific * features.specificity * fit.max(0.0),
                 spoilt,
                 Vec::new(),
                 law.spoil,
             ),
-            spoilable("tone", law.tone * self.tone(), spoilt, Vec::new(), law.spoil),
-            spoilable("timing", law.timing * timing, spoilt, event, law.spoil),
-            spoilable("accountable", law.accountable * self.account(), spoilt, Vec::new(), law.spoil),
-            term("claims_true", law.claims_true * flag(!supported.is_empty()), supported),
+            reducible_term("tone", law.tone * self.tone_match(), spoilt, Vec::new(), law.spoil),
+            reducible_term("timing", law.timing * timing, spoilt, event, law.spoil),
+            reducible_term(
+                "accountable",
+                law.accountable * self.accountability(),
+                spoilt,
+                Vec::new(),
+                law.spoil,
+            ),
+            term("claims_true", law.claims_true * indicator(!supported.is_empty()), supported),
             term("claims_false", law.claims_false * unbelieved, contradicted),
             term("hype", hype, Vec::new()),
-            term("hard_sell", self.hard_sell(), Vec::new()),
+            term("hard_sell", self.hard_sell_penalty(), Vec::new()),
             term(
                 "conduct",
-                (law.conduct + law.conduct_formal * profile.f) * flag(features.conduct),
+                (law.conduct + law.conduct_formal * profile.f) * indicator(features.has_misconduct),
                 Vec::new(),
             ),
-            term("bashing", bashing * flag(features.bash), Vec::new()),
-            term("stuffing", law.stuffing * features.stuffing, Vec::new()),
+            term("bashing", bashing * indicator(features.attacks_competitors), Vec::new()),
+            term("stuffing", law.stuffing * features.keyword_stuffing, Vec::new()),
             term("repetition", law.repetition * repeated.max(0.0), Vec::new()),
         ];
-        terms.extend(self.reply());
-        terms.push(term("defensive", law.defensive * flag(features.defensive), Vec::new()));
+        terms.extend(self.reply_terms());
+        terms.push(term("defensive", law.defensive * indicator(features.defensive), Vec::new()));
         terms.retain(|term| term.value != 0.0);
         terms
     }
@@ -97,9 +104,9 @@ impl Eyes<'_> {
     }
 
     /// R: fit of the topics, -1..=1, with the topics behind it.
-    fn fit(&self) -> (f64, Vec<String>) {
+    fn topic_fit(&self) -> (f64, Vec<String>) {
         let (lexicon, law) = (self.case.lexicon, &self.case.lexicon.terms);
-        let mut best = self.weighted(&self.case.features);
+        let mut best = self.weighted_topics(&self.case.features);
         best.sort_by(|(_, one), (_, other)| other.abs().total_cmp(&one.abs()));
         best.truncate(law.ranks.len());
         best.retain(|(_, value)| *value != 0.0);
@@ -115,7 +122,7 @@ impl Eyes<'_> {
     }
 
     /// Returns the topics of a post with weight times strength.
-    fn weighted(&self, features: &Features) -> Vec<(usize, f64)> {
+    fn weighted_topics(&self, features: &Features) -> Vec<(usize, f64)> {
         let strengths = features.topics.iter().enumerate();
         strengths.map(|(topic, strength)| (topic, self.weight(topic) * strength)).collect()
     }
@@ -123,7 +130,7 @@ impl Eyes<'_> {
     /// Returns the topic with the largest weight times strength, the first one on ties.
     fn leading_topic(&self, features: &Features) -> Option<usize> {
         let mut lead: Option<(usize, f64)> = None;
-        for (topic, value) in self.weighted(features) {
+        for (topic, value) in self.weighted_topics(features) {
             if value != 0.0 && lead.is_none_or(|(_, most)| value.abs() > most) {
                 lead = Some((topic, value.abs()));
             }
@@ -132,7 +139,7 @@ impl Eyes<'_> {
     }
 
     /// T: fit of the tone, -1..=1.
-    fn tone(&self) -> f64 {
+    fn tone_match(&self) -> f64 {
         let (law, features, own) = (&self.case.lexicon.terms, &self.case.features, self.profile);
         let casual = law.casual * (own.m - law.casual_neutral) * features.casual;
         let formal = law.formal * own.f * (1.0 - features.casual);
@@ -143,14 +150,16 @@ impl Eyes<'_> {
     /// E: whether the post addresses a current event, -0.6..=1, with that event.
     fn timing(&self) -> (f64, Vec<String>) {
         let (features, law) = (&self.case.features, &self.case.lexicon.terms);
-        if let Some(event) = self.deaf_to() {
+        if let Some(event) = self.ignored_event() {
             let readers = self.case.circumstances.groups[self.group].subscribers;
             let value = if readers > 0 { law.tone_deaf_customers } else { law.tone_deaf_others };
             return (value, vec![event.id().to_owned()]);
         }
         let mut best: Option<(LiveEvent, f64)> = None;
-        for &(event, age) in &self.case.circumstances.live {
-            if features.bash || !self.addressing(event).any(|topic| features.hits(topic)) {
+        for &(event, age) in &self.case.circumstances.live_events {
+            if features.attacks_competitors
+                || !self.topics_addressing(event).any(|topic| features.mentions_topic(topic))
+            {
                 continue;
             }
             let events = &self.case.lexicon.events;
@@ -164,35 +173,39 @@ impl Eyes<'_> {
     }
 
     /// Returns the outage or price increase that a cheerful post ignores.
-    fn deaf_to(&self) -> Option<LiveEvent> {
+    fn ignored_event(&self) -> Option<LiveEvent> {
         let (features, lexicon) = (&self.case.features, self.case.lexicon);
-        let cheerful = ["release", "deal", "price"].iter().any(|topic| features.hits(lexicon.topic(topic)));
-        if !cheerful || features.apology {
+        let cheerful = ["release", "deal", "price"]
+            .iter()
+            .any(|topic| features.mentions_topic(lexicon.topic_index(topic)));
+        if !cheerful || features.has_apology {
             return None;
         }
-        let answers = [lexicon.topic("reliability"), lexicon.topic("transparency")];
-        let fresh = |event: &LiveEvent| match (event, self.case.circumstances.age(*event)) {
+        let answers = [lexicon.topic_index("reliability"), lexicon.topic_index("transparency")];
+        let fresh = |event: &LiveEvent| match (event, self.case.circumstances.event_age(*event)) {
             (LiveEvent::Outage, Some(age)) => age <= lexicon.events.fresh_days,
             (_, age) => age.is_some(),
         };
         [LiveEvent::Outage, LiveEvent::PriceUp].into_iter().filter(fresh).find(|event| {
-            !self.addressing(*event).any(|topic| answers.contains(&topic) && features.hits(topic))
+            !self
+                .topics_addressing(*event)
+                .any(|topic| answers.contains(&topic) && features.mentions_topic(topic))
         })
     }
 
-    fn addressing(&self, event: LiveEvent) -> impl Iterator<Item = usize> {
+    fn topics_addressing(&self, event: LiveEvent) -> impl Iterator<Item = usize> {
         let (lexicon, events) = (self.case.lexicon, &self.case.lexicon.events);
         let topics = match event {
             LiveEvent::Outage => &events.outage,
             LiveEvent::PriceUp => &events.price_up,
             LiveEvent::Issues => &events.issues,
             LiveEvent::Quota => &events.quota,
-            LiveEvent::Rival => &events.rival,
+            LiveEvent::Competitor => &events.rival,
             LiveEvent::MacroDown => &events.macro_down,
             LiveEvent::MacroUp => &events.macro_up,
             LiveEvent::Research => &events.research,
         };
-        topics.iter().map(|topic| lexicon.topic(topic))
+        topics.iter().map(|topic| lexicon.topic_index(topic))
     }
 
     fn salience(&self, event: LiveEvent) -> f64 {
@@ -204,7 +217,7 @@ impl Eyes<'_> {
             LiveEvent::PriceUp => law.price_up * weight("price").max(weight("deal")).max(law.price_up_least),
             LiveEvent::Issues => law.issues,
             LiveEvent::Quota => law.quota,
-            LiveEvent::Rival => law.rival,
+            LiveEvent::Competitor => law.rival,
             LiveEvent::MacroDown => law.macro_down,
             LiveEvent::MacroUp => law.macro_up,
             LiveEvent::Research => law.research,
@@ -212,27 +225,28 @@ impl Eyes<'_> {
     }
 
     /// A: taking responsibility if there is a reason to.
-    fn account(&self) -> f64 {
+    fn accountability(&self) -> f64 {
         let (features, law) = (&self.case.features, &self.case.lexicon.terms);
         let to_answer = [LiveEvent::Outage, LiveEvent::PriceUp, LiveEvent::Issues, LiveEvent::Quota];
-        let trouble = to_answer.into_iter().any(|event| self.case.circumstances.age(event).is_some());
-        if trouble && (features.apology || features.cause) {
-            let said = [features.apology, features.cause, features.remedy, features.when];
-            law.account_step * said.into_iter().map(flag).sum::<f64>()
-        } else if features.apology && !trouble {
+        let trouble = to_answer.into_iter().any(|event| self.case.circumstances.event_age(event).is_some());
+        if trouble && (features.has_apology || features.names_cause) {
+            let said =
+                [features.has_apology, features.names_cause, features.names_remedy, features.names_time];
+            law.account_step * said.into_iter().map(indicator).sum::<f64>()
+        } else if features.has_apology && !trouble {
             law.needless_apology
         } else {
             0.0
         }
     }
 
-    fn names_of(&self, verdict: Option<bool>) -> Vec<String> {
+    fn claim_names(&self, verdict: Option<bool>) -> Vec<String> {
         let fitting = self.claims.iter().filter(|claim| claim.verdict == verdict);
         fitting.map(|claim| claim.name.to_owned()).collect()
     }
 
     /// C-: the penalty of a false claim.
-    fn unbelieved(&self, contradicted: &[String]) -> f64 {
+    fn false_claim_penalty(&self, contradicted: &[String]) -> f64 {
         let readers = self.case.circumstances.groups[self.group].subscribers;
         match (contradicted.is_empty(), readers > 0) {
             (true, _) => 0.0,
@@ -241,44 +255,55 @@ impl Eyes<'_> {
         }
     }
 
-    fn hype(&self, supported: bool) -> f64 {
+    fn hype_penalty(&self, supported: bool) -> f64 {
         let law = &self.case.lexicon.terms;
         let share = if supported { law.hype_if_true } else { 1.0 };
         law.hype * self.profile.a * self.case.features.absolutes * share
     }
 
-    fn hard_sell(&self) -> f64 {
+    fn hard_sell_penalty(&self) -> f64 {
         let law = &self.case.lexicon.terms;
         let welcome = self.profile.weight("deal") >= law.likes_deals && self.case.circumstances.promotion;
-        law.hard_sell * self.case.features.sell * if welcome { 0.5 } else { 1.0 }
+        law.hard_sell * self.case.features.sales_pressure * if welcome { 0.5 } else { 1.0 }
     }
 
     /// Returns whether the post compares with competitors in numbers, for groups that prefer them.
-    fn speaks_numbers(&self) -> bool {
+    fn has_numeric_comparison(&self) -> bool {
         self.profile.t >= self.case.lexicon.terms.technical_taste && self.case.features.numbers > 0
     }
 
     /// Returns the terms of a reply for the post that it answers.
-    fn reply(&self) -> Vec<Term> {
+    fn reply_terms(&self) -> Vec<ScoreTerm> {
         let (features, law) = (&self.case.features, &self.case.lexicon.terms);
         let Some((original, own)) = &self.case.original else { return Vec::new() };
-        let asked: Vec<usize> = (0..original.topics.len()).filter(|topic| original.hits(*topic)).collect();
-        let met = asked.iter().filter(|topic| features.hits(**topic)).count() as f64;
+        let asked: Vec<usize> =
+            (0..original.topics.len()).filter(|topic| original.mentions_topic(*topic)).collect();
+        let met = asked.iter().filter(|topic| features.mentions_topic(**topic)).count() as f64;
         let share = if asked.is_empty() { 0.0 } else { met / asked.len() as f64 };
         let missed = share == 0.0 && own.negative;
         vec![
-            term("reply", law.reply_overlap * share + law.reply_you * flag(features.you), Vec::new()),
-            term("reply_misses", law.reply_misses * flag(missed), Vec::new()),
+            term(
+                "reply",
+                law.reply_overlap * share + law.reply_you * indicator(features.addresses_reader),
+                Vec::new(),
+            ),
+            term("reply_misses", law.reply_misses * indicator(missed), Vec::new()),
         ]
     }
 }
 
-fn term(name: &'static str, value: f64, because: Vec<String>) -> Term {
-    Term { name: name.into(), value, because }
+fn term(name: &'static str, value: f64, because: Vec<String>) -> ScoreTerm {
+    ScoreTerm { name: name.into(), value, because }
 }
 
 /// Returns a term whose positive value is reduced in a dishonest or offensive post.
-fn spoilable(name: &'static str, value: f64, spoilt: bool, because: Vec<String>, share: f64) -> Term {
+fn reducible_term(
+    name: &'static str,
+    value: f64,
+    spoilt: bool,
+    because: Vec<String>,
+    share: f64,
+) -> ScoreTerm {
     term(name, if spoilt && value > 0.0 { value * share } else { value }, because)
 }
 
@@ -287,7 +312,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn scores_bend_before_they_end() {
+    fn scores_are_compressed_near_the_limits() {
         for (raw, expected) in [
             (0.8992, 0.87),
             (-0.34, -0.34),
@@ -297,7 +322,7 @@ mod tests {
             (0.004, 0.0),
             (-0.004, 0.0),
         ] {
-            assert_eq!(compressed(raw, 0.7), expected, "{raw}");
+            assert_eq!(compress(raw, 0.7), expected, "{raw}");
         }
     }
 }

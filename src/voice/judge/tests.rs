@@ -1,21 +1,21 @@
 //! Worked examples and properties of all judgements.
 
-use super::circumstances::{LiveEvent, Readers};
-use super::text::Entry;
+use super::context::{LiveEvent, ReaderGroup};
+use super::text::WordPattern;
 use super::*;
 use novamind_world::identifiers::ByGroup;
 use novamind_world::random::{Part, Streams};
 
-const D: &str = "API update: quotas doubled to 200k tokens/day on plan B, batch endpoint p95 at 190 ms. Benchmarks and docs \
+const TECHNICAL_POST: &str = "API update: quotas doubled to 200k tokens/day on plan B, batch endpoint p95 at 190 ms. Benchmarks and docs \
                  published today.";
-const ASKED: &str = "Hit rate limits again, my automation broke. Need higher quotas.";
+const COMPLAINT_TEXT: &str = "Hit rate limits again, my automation broke. Need higher quotas.";
 
 fn group(id: &str) -> Group {
     Group::parse(id).expect("a group")
 }
 
 /// The context of the worked examples before changes.
-fn usual() -> Circumstances {
+fn default_context() -> JudgeContext {
     let count = |id: &str| match id {
         "S1" => 4000,
         "S2" => 900,
@@ -25,8 +25,9 @@ fn usual() -> Circumstances {
         "E3" => 2,
         _ => 0,
     };
-    let readers = |own: Group| Readers { subscribers: count(own.id()), satisfaction: 0.0, progress: 0.012 };
-    Circumstances {
+    let readers =
+        |own: Group| ReaderGroup { subscribers: count(own.id()), satisfaction: 0.0, progress: 0.012 };
+    JudgeContext {
         groups: ByGroup::from_fn(readers),
         subscribers: 5520,
         research_done: false,
@@ -38,109 +39,118 @@ fn usual() -> Circumstances {
         p95_ms: 190.0,
         issue_rate: 0.03,
         issue_age: 1.5,
-        live: Vec::new(),
+        live_events: Vec::new(),
     }
 }
 
-fn with_outage() -> Circumstances {
-    Circumstances { outage_days: 1, live: vec![(LiveEvent::Outage, 2)], ..usual() }
+fn context_with_outage() -> JudgeContext {
+    JudgeContext { outage_days: 1, live_events: vec![(LiveEvent::Outage, 2)], ..default_context() }
 }
 
-fn complaint() -> Option<Original<'static>> {
-    Some(Original { content: ASKED, negative: true, group: Some(group("S3")) })
+fn complaint() -> Option<OriginalPost<'static>> {
+    Some(OriginalPost { content: COMPLAINT_TEXT, negative: true, group: Some(group("S3")) })
 }
 
-fn all(submission: &Submission<'_>, facts: &Circumstances) -> Vec<Judgement> {
-    judge(submission, Group::all(), facts, Lexicon::shipped())
+fn judge_all(submission: &SubmittedPost<'_>, facts: &JudgeContext) -> Vec<Judgement> {
+    judge_post(submission, Group::all(), facts, Lexicon::bundled())
 }
 
 fn effect(judgements: &[Judgement], id: &str) -> f64 {
     judgements[group(id).index()].effect
 }
 
-fn post(content: &str) -> Submission<'_> {
-    Submission { content, day: 100, ..Submission::default() }
+fn post(content: &str) -> SubmittedPost<'_> {
+    SubmittedPost { content, day: 100, ..SubmittedPost::default() }
 }
 
 struct Example {
     name: &'static str,
-    submission: Submission<'static>,
-    facts: Circumstances,
+    submission: SubmittedPost<'static>,
+    facts: JudgeContext,
     expected: [f64; 9],
 }
 
-const SHOWN: [&str; 9] = ["S1", "S2", "S3", "E1", "E2", "E3", "D_S07", "D_S08", "D_E03"];
+const EXAMPLE_GROUPS: [&str; 9] = ["S1", "S2", "S3", "E1", "E2", "E3", "D_S07", "D_S08", "D_E03"];
 
 fn examples() -> Vec<Example> {
-    let quota_up = || Circumstances { quota_up: true, ..usual() };
+    let quota_up = || JudgeContext { quota_up: true, ..default_context() };
     let example =
         |name, content, facts, expected| Example { name, submission: post(content), facts, expected };
     let mut list = vec![
         example(
             "a",
             "NovaMind is live. An AI assistant for documents, email and data. Try it and tell us what you think.",
-            usual(),
+            default_context(),
             [0.06, 0.09, 0.18, 0.09, 0.13, 0.10, 0.29, 0.06, 0.09],
         ),
         example(
             "b",
             "The BEST AI tool ever!!! Revolutionary, game-changing, 100% perfect. Sign up now! \u{1F680}\u{1F680}",
-            usual(),
+            default_context(),
             [-0.03, -0.34, -0.47, -0.33, -0.39, -0.33, -0.43, 0.01, -0.39],
         ),
         example(
             "c",
             "Student or freelancer? 30% discount on plan A this month, and month-to-month, cancel anytime. No tricks.",
-            Circumstances { promotion: true, ..usual() },
+            JudgeContext { promotion: true, ..default_context() },
             [0.34, 0.07, 0.10, 0.33, 0.04, 0.04, 0.08, 0.14, 0.04],
         ),
-        example("d", D, quota_up(), [0.45, 0.34, 0.87, 0.17, 0.24, 0.51, 0.80, 0.40, 0.30]),
-        example("e", D, usual(), [-0.43, -0.45, -0.34, -0.44, -0.42, -0.41, -0.07, -0.18, -0.15]),
+        example("d", TECHNICAL_POST, quota_up(), [0.45, 0.34, 0.87, 0.17, 0.24, 0.51, 0.80, 0.40, 0.30]),
+        example(
+            "e",
+            TECHNICAL_POST,
+            default_context(),
+            [-0.43, -0.45, -0.34, -0.44, -0.42, -0.41, -0.07, -0.18, -0.15],
+        ),
         example(
             "f",
             "We were down 3 hours on Tuesday. Root cause: an overloaded queue. Fixed, capacity doubled, credits go out \
              Friday. Sorry.",
-            with_outage(),
+            context_with_outage(),
             [0.62, 0.72, 0.75, 0.60, 0.58, 0.60, 0.32, 0.38, 0.23],
         ),
         example(
             "g",
             "New feature launch: brainstorm boards are here. Rock-solid uptime, as always!",
-            with_outage(),
+            context_with_outage(),
             [-0.48, -0.46, -0.53, -0.46, -0.46, -0.49, -0.27, -0.18, -0.25],
         ),
         example(
             "h",
             "Budgets are tight. Plan A price cut by 20% from Monday, annual volume discounts for teams, no lock-in.",
-            Circumstances { price_cut: true, live: vec![(LiveEvent::MacroDown, 6)], ..usual() },
+            JudgeContext {
+                price_cut: true,
+                live_events: vec![(LiveEvent::MacroDown, 6)],
+                ..default_context()
+            },
             [0.71, 0.32, 0.28, 0.63, 0.20, 0.21, 0.26, 0.32, 0.18],
         ),
         example(
             "i",
             "RivalTech just launched garbage. Overpriced and terrible. Everyone is switching to us.",
-            Circumstances { live: vec![(LiveEvent::Rival, 3)], ..usual() },
+            JudgeContext { live_events: vec![(LiveEvent::Competitor, 3)], ..default_context() },
             [-0.23, -0.34, -0.34, -0.33, -0.38, -0.35, -0.35, -0.22, -0.36],
         ),
         example(
             "j",
             "Sorry you hit the quota wall. We raised plan B limits by 50% today and credited your account. Does that cover \
              your batch jobs?",
-            Circumstances { live: vec![(LiveEvent::Quota, 0)], ..quota_up() },
+            JudgeContext { live_events: vec![(LiveEvent::Quota, 0)], ..quota_up() },
             [0.57, 0.43, 0.97, 0.36, 0.36, 0.40, 0.46, 0.40, 0.28],
         ),
         example(
             "k",
             "Read the docs. Limits are listed there, works for everyone else.",
-            Circumstances { live: vec![(LiveEvent::Quota, 0)], ..usual() },
+            JudgeContext { live_events: vec![(LiveEvent::Quota, 0)], ..default_context() },
             [-0.18, -0.21, -0.33, -0.19, -0.20, -0.19, -0.21, -0.20, -0.19],
         ),
         example(
             "l",
             "API SDK webhooks limits quota latency p95 tokens batch docs benchmarks 200k tokens today shipped",
-            usual(),
+            default_context(),
             [-0.27, -0.36, 0.12, -0.47, -0.40, -0.23, 0.02, -0.32, -0.31],
         ),
-        example("m", D, quota_up(), [0.33, 0.31, 0.77, 0.17, 0.24, 0.39, 0.59, 0.35, 0.25]),
+        example("m", TECHNICAL_POST, quota_up(), [0.33, 0.31, 0.77, 0.17, 0.24, 0.39, 0.59, 0.35, 0.25]),
     ];
     for example in &mut list {
         match example.name {
@@ -158,11 +168,11 @@ fn examples() -> Vec<Example> {
 }
 
 #[test]
-fn the_worked_examples_get_their_scores() {
+fn worked_examples_have_expected_scores() {
     let mut wrong = Vec::new();
     for example in examples() {
-        let judgements = all(&example.submission, &example.facts);
-        for (id, expected) in SHOWN.into_iter().zip(example.expected) {
+        let judgements = judge_all(&example.submission, &example.facts);
+        for (id, expected) in EXAMPLE_GROUPS.into_iter().zip(example.expected) {
             let own = &judgements[group(id).index()];
             if (own.effect - expected).abs() > 1e-9 {
                 wrong.push(format!(
@@ -176,10 +186,10 @@ fn the_worked_examples_get_their_scores() {
 }
 
 #[test]
-fn the_worked_examples_are_made_of_these_terms() {
+fn worked_examples_have_expected_terms() {
     let of = |name: &str, id: &str| {
         let example = examples().into_iter().find(|example| example.name == name).expect("an example");
-        let judgements = all(&example.submission, &example.facts);
+        let judgements = judge_all(&example.submission, &example.facts);
         judgements[group(id).index()].clone()
     };
     for (name, id, expected) in [
@@ -220,9 +230,10 @@ fn the_worked_examples_are_made_of_these_terms() {
 }
 
 #[test]
-fn a_true_claim_beats_a_false_one_wherever_the_topic_counts() {
-    let lexicon = Lexicon::shipped();
-    let [truth, lie] = [true, false].map(|quota_up| all(&post(D), &Circumstances { quota_up, ..usual() }));
+fn true_claims_score_higher_than_false_claims() {
+    let lexicon = Lexicon::bundled();
+    let [truth, lie] = [true, false]
+        .map(|quota_up| judge_all(&post(TECHNICAL_POST), &JudgeContext { quota_up, ..default_context() }));
     for own in Group::all().filter(|own| lexicon.profile(*own).weight("limits") > 0.0) {
         assert!(truth[own.index()].effect > lie[own.index()].effect, "{own}");
     }
@@ -231,10 +242,11 @@ fn a_true_claim_beats_a_false_one_wherever_the_topic_counts() {
 #[test]
 fn an_insult_never_helps() {
     for example in examples() {
-        let before = all(&example.submission, &example.facts);
+        let before = judge_all(&example.submission, &example.facts);
         for insult in ["You idiots.", "Shut up.", "Losers."] {
             let content = format!("{} {insult}", example.submission.content);
-            let after = all(&Submission { content: &content, ..example.submission.clone() }, &example.facts);
+            let after =
+                judge_all(&SubmittedPost { content: &content, ..example.submission.clone() }, &example.facts);
             for (before, after) in before.iter().zip(&after) {
                 assert!(after.effect <= before.effect, "{} {} {insult}", example.name, before.group);
             }
@@ -245,34 +257,34 @@ fn an_insult_never_helps() {
 #[test]
 fn the_order_of_groups_does_not_matter() {
     for example in examples() {
-        let forwards = all(&example.submission, &example.facts);
+        let forwards = judge_all(&example.submission, &example.facts);
         let mut backwards =
-            judge(&example.submission, Group::all().rev(), &example.facts, Lexicon::shipped());
+            judge_post(&example.submission, Group::all().rev(), &example.facts, Lexicon::bundled());
         backwards.reverse();
         assert_eq!(forwards, backwards);
     }
 }
 
 #[test]
-fn repeating_one_recipe_wears_out() {
-    let facts = Circumstances { quota_up: true, ..usual() };
+fn repeated_posts_lose_effect() {
+    let facts = JudgeContext { quota_up: true, ..default_context() };
     let recipe = [
         "API news: quotas doubled to 300k tokens/day on plan C, webhooks p95 at 180 ms. Docs published today.",
         "For developers: we raised batch limits by 40% today, the SDK endpoint answers at 170 ms p95, docs inside.",
         "More API tokens from Monday: 400k on plan B, throttling cut, endpoint latency down to 160 ms. Benchmarks attached.",
     ];
-    let first = effect(&all(&post(recipe[2]), &facts), "S3");
+    let first = effect(&judge_all(&post(recipe[2]), &facts), "S3");
     let earlier = vec![(86, recipe[0]), (93, recipe[1])];
-    let third = effect(&all(&Submission { earlier, ..post(recipe[2]) }, &facts), "S3");
+    let third = effect(&judge_all(&SubmittedPost { earlier, ..post(recipe[2]) }, &facts), "S3");
     assert!(third <= 0.9 * first, "{third} after {first}");
 }
 
 #[test]
-fn heaps_of_words_go_nowhere() {
-    let lexicon = Lexicon::shipped();
+fn keyword_stuffing_does_not_help() {
+    let lexicon = Lexicon::bundled();
     let mut stream = Streams::new(16).open(Part::Voice, [0]);
-    let lists: Vec<&Vec<Entry>> = lexicon.topics.values().chain(lexicon.words.all()).collect();
-    let facts = Circumstances { quota_up: true, ..usual() };
+    let lists: Vec<&Vec<WordPattern>> = lexicon.topics.values().chain(lexicon.words.all()).collect();
+    let facts = JudgeContext { quota_up: true, ..default_context() };
     let (mut viral, mut judged) = (0, 0);
     for _ in 0..800 {
         let words: Vec<&str> = (0..stream.integer(4, 24))
@@ -281,7 +293,7 @@ fn heaps_of_words_go_nowhere() {
                 list[stream.index(list.len())].text()
             })
             .collect();
-        let judgements = all(&post(&words.join(" ")), &facts);
+        let judgements = judge_all(&post(&words.join(" ")), &facts);
         assert!(judgements.iter().all(|own| (-1.0..=1.0).contains(&own.effect)));
         viral += judgements.iter().filter(|own| own.effect >= 0.6).count();
         judged += judgements.len();
@@ -292,14 +304,14 @@ fn heaps_of_words_go_nowhere() {
 #[test]
 fn any_text_gets_a_score() {
     for content in ["", " ", "\u{1F680}", "ok", "\u{0}\u{ffff}", "$", "#", "%%%", "ÄÖÜ ß İ", "a'b-c"] {
-        let judgements = all(&post(content), &usual());
+        let judgements = judge_all(&post(content), &default_context());
         assert!(judgements.iter().all(|own| (-1.0..=1.0).contains(&own.effect)), "{content}");
     }
-    assert!(all(&post("Good morning!"), &usual()).iter().all(|own| own.effect == 0.0));
+    assert!(judge_all(&post("Good morning!"), &default_context()).iter().all(|own| own.effect == 0.0));
 }
 
 #[test]
-fn every_group_can_be_won_and_lost() {
+fn every_group_has_posts_with_positive_and_negative_effect() {
     #[derive(serde::Deserialize)]
     struct Pair {
         good: String,
@@ -308,11 +320,12 @@ fn every_group_can_be_won_and_lost() {
     let text = include_str!("../../../assets/voice/examples.toml");
     let pairs: std::collections::BTreeMap<String, Pair> = toml::from_str(text).expect("the bundled examples");
     assert_eq!(pairs.len(), Group::COUNT);
-    let kept = Circumstances { quota_up: true, price_cut: true, promotion: true, ..usual() };
-    let broken = Circumstances { quota_up: false, p95_ms: 500.0, ..with_outage() };
+    let kept = JudgeContext { quota_up: true, price_cut: true, promotion: true, ..default_context() };
+    let broken = JudgeContext { quota_up: false, p95_ms: 500.0, ..context_with_outage() };
     for (id, Pair { good, bad }) in pairs {
         assert!(good.chars().count() <= 280 && bad.chars().count() <= 280, "{id}");
-        let (won, lost) = (effect(&all(&post(&good), &kept), &id), effect(&all(&post(&bad), &broken), &id));
+        let (won, lost) =
+            (effect(&judge_all(&post(&good), &kept), &id), effect(&judge_all(&post(&bad), &broken), &id));
         assert!(won >= 0.6, "{id}: {won} for {good}");
         assert!(lost < -0.3, "{id}: {lost} for {bad}");
     }
@@ -322,8 +335,8 @@ fn every_group_can_be_won_and_lost() {
 fn events_are_fresh_for_a_week_and_remembered_for_another() {
     let of = |name: &str| examples().into_iter().find(|example| example.name == name).expect("an example");
     let timing = |example: &Example, event: LiveEvent, age: u32| {
-        let facts = Circumstances { live: vec![(event, age)], ..example.facts.clone() };
-        let judgements = all(&example.submission, &facts);
+        let facts = JudgeContext { live_events: vec![(event, age)], ..example.facts.clone() };
+        let judgements = judge_all(&example.submission, &facts);
         let own = &judgements[group("S2").index()];
         own.terms.iter().find(|term| term.name == "timing").map_or(0.0, |term| term.value)
     };

@@ -2,62 +2,62 @@
 
 /// A text in the forms that patterns are matched with.
 #[derive(Debug, Clone)]
-pub struct Reading {
+pub struct TokenizedText {
     /// Lowercase text with plain quotes and dashes.
-    normal: String,
+    normalized: String,
     /// Words and numbers in order.
     tokens: Vec<String>,
 }
 
 /// A pattern of a word list.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Entry {
+pub enum WordPattern {
     /// Tokens with this prefix.
     Prefix(String),
     /// A token equal to it.
     Word(String),
     /// Matches anywhere in the text; its words determine which tokens it covers.
-    Phrase(String, Vec<Entry>),
+    Phrase(String, Vec<WordPattern>),
 }
 
-impl Entry {
+impl WordPattern {
     /// Parses a pattern of a list.
-    pub fn read(text: &str) -> Entry {
+    pub fn parse(text: &str) -> WordPattern {
         if text.contains(' ') || text.starts_with(['/', '%', '#']) || text.ends_with('%') {
-            return Entry::anywhere(text);
+            return WordPattern::phrase(text);
         }
         match text.strip_suffix('*') {
-            Some(start) => Entry::Prefix(start.to_owned()),
-            None => Entry::Word(text.to_owned()),
+            Some(start) => WordPattern::Prefix(start.to_owned()),
+            None => WordPattern::Word(text.to_owned()),
         }
     }
 
     /// Creates a pattern that matches anywhere in a text.
-    pub fn anywhere(text: &str) -> Entry {
+    pub fn phrase(text: &str) -> WordPattern {
         let words = text.split(|c: char| !(c.is_ascii_alphanumeric() || "'-*".contains(c)));
         let words = words.filter(|word| !word.is_empty());
         let entry = |word: &str| match word.strip_suffix('*') {
-            Some(start) => Entry::Prefix(start.to_owned()),
-            None => Entry::Word(word.to_owned()),
+            Some(start) => WordPattern::Prefix(start.to_owned()),
+            None => WordPattern::Word(word.to_owned()),
         };
-        Entry::Phrase(text.trim_end_matches('*').to_owned(), words.map(entry).collect())
+        WordPattern::Phrase(text.trim_end_matches('*').to_owned(), words.map(entry).collect())
     }
 
     /// Returns whether the pattern matches a token, ignoring a leading #.
-    fn is_token(&self, token: &str) -> bool {
+    fn matches_token(&self, token: &str) -> bool {
         let token = token.trim_start_matches('#');
         match self {
-            Entry::Prefix(start) => token.starts_with(start.as_str()),
-            Entry::Word(word) => token == word,
-            Entry::Phrase(..) => false,
+            WordPattern::Prefix(start) => token.starts_with(start.as_str()),
+            WordPattern::Word(word) => token == word,
+            WordPattern::Phrase(..) => false,
         }
     }
 
     /// Returns whether the pattern occurs in a text.
-    pub fn occurs(&self, reading: &Reading) -> bool {
+    pub fn occurs_in(&self, reading: &TokenizedText) -> bool {
         match self {
-            Entry::Phrase(text, _) => reading.normal.contains(text.as_str()),
-            _ => reading.tokens.iter().any(|token| self.is_token(token)),
+            WordPattern::Phrase(text, _) => reading.normalized.contains(text.as_str()),
+            _ => reading.tokens.iter().any(|token| self.matches_token(token)),
         }
     }
 
@@ -65,14 +65,14 @@ impl Entry {
     #[cfg(test)]
     pub fn text(&self) -> &str {
         match self {
-            Entry::Prefix(text) | Entry::Word(text) | Entry::Phrase(text, _) => text,
+            WordPattern::Prefix(text) | WordPattern::Word(text) | WordPattern::Phrase(text, _) => text,
         }
     }
 }
 
-impl Reading {
+impl TokenizedText {
     /// Tokenizes a text.
-    pub fn of(text: &str) -> Reading {
+    pub fn new(text: &str) -> TokenizedText {
         let plain = |character: char| match character {
             '\u{2018}' | '\u{2019}' | '\u{201b}' | '\u{2032}' => '\'',
             '\u{201c}' | '\u{201d}' | '\u{201e}' => '"',
@@ -80,8 +80,8 @@ impl Reading {
             other => other,
         };
         let normal: String = text.chars().map(plain).flat_map(char::to_lowercase).collect();
-        let tokens = tokens(&normal);
-        Reading { normal, tokens }
+        let tokens = tokenize(&normal);
+        TokenizedText { normalized: normal, tokens }
     }
 
     /// Returns words and numbers in order.
@@ -90,30 +90,30 @@ impl Reading {
     }
 
     /// Returns the lowercase text with plain quotes and dashes.
-    pub fn normal(&self) -> &str {
-        &self.normal
+    pub fn normalized(&self) -> &str {
+        &self.normalized
     }
 
     /// Returns how many different patterns of a list occur.
-    pub fn count(&self, list: &[Entry]) -> u32 {
-        list.iter().filter(|entry| entry.occurs(self)).count() as u32
+    pub fn count_matches(&self, list: &[WordPattern]) -> u32 {
+        list.iter().filter(|entry| entry.occurs_in(self)).count() as u32
     }
 
     /// Returns whether any pattern of a list occurs.
-    pub fn any(&self, list: &[Entry]) -> bool {
-        list.iter().any(|entry| entry.occurs(self))
+    pub fn contains_any(&self, list: &[WordPattern]) -> bool {
+        list.iter().any(|entry| entry.occurs_in(self))
     }
 
     /// Returns the number of tokens that are numbers or amounts of money.
-    pub fn numbers(&self) -> u32 {
+    pub fn count_numbers(&self) -> u32 {
         let number = |token: &&String| token.starts_with(|c: char| c.is_ascii_digit() || c == '$');
         self.tokens.iter().filter(number).count() as u32
     }
 
     /// Returns whether a token of one list is close to a different token of another list.
-    pub fn near(&self, one: &[Entry], other: &[Entry], positions: usize) -> bool {
-        let places = |list: &[Entry]| -> Vec<usize> {
-            let of_list = |token: &String| list.iter().any(|entry| entry.is_token(token));
+    pub fn are_near(&self, one: &[WordPattern], other: &[WordPattern], positions: usize) -> bool {
+        let places = |list: &[WordPattern]| -> Vec<usize> {
+            let of_list = |token: &String| list.iter().any(|entry| entry.matches_token(token));
             (0..self.tokens.len()).filter(|at| of_list(&self.tokens[*at])).collect()
         };
         let (first, second) = (places(one), places(other));
@@ -121,21 +121,21 @@ impl Reading {
     }
 
     /// Returns which tokens a list covers: single words, and all words of a phrase that occurs.
-    pub fn covered(&self, list: &[Entry]) -> Vec<bool> {
+    pub fn covered_tokens(&self, list: &[WordPattern]) -> Vec<bool> {
         let mut covered = vec![false; self.tokens.len()];
         for entry in list {
-            let Entry::Phrase(text, words) = entry else {
+            let WordPattern::Phrase(text, words) = entry else {
                 for (own, token) in covered.iter_mut().zip(&self.tokens) {
-                    *own |= entry.is_token(token);
+                    *own |= entry.matches_token(token);
                 }
                 continue;
             };
-            if words.is_empty() || !self.normal.contains(text.as_str()) {
+            if words.is_empty() || !self.normalized.contains(text.as_str()) {
                 continue;
             }
             for start in 0..(self.tokens.len() + 1).saturating_sub(words.len()) {
                 let here = &self.tokens[start..start + words.len()];
-                if words.iter().zip(here).all(|(word, token)| word.is_token(token)) {
+                if words.iter().zip(here).all(|(word, token)| word.matches_token(token)) {
                     covered[start..start + words.len()].fill(true);
                 }
             }
@@ -145,7 +145,7 @@ impl Reading {
 }
 
 /// Returns words (`#?[a-z0-9][a-z0-9'-]*%?`) and amounts of money (`$[0-9][0-9.,]*`).
-fn tokens(normal: &str) -> Vec<String> {
+fn tokenize(normal: &str) -> Vec<String> {
     let bytes = normal.as_bytes();
     let is_start = |at: usize| bytes.get(at).is_some_and(u8::is_ascii_alphanumeric);
     let mut tokens = Vec::new();
@@ -178,8 +178,8 @@ pub fn is_emoji(character: char) -> bool {
 }
 
 /// Returns the share of adjacent token pairs that two texts have in common, 0..=1.
-pub fn pair_overlap(one: &Reading, other: &Reading) -> f64 {
-    let pairs = |reading: &Reading| -> std::collections::BTreeSet<(String, String)> {
+pub fn pair_overlap(one: &TokenizedText, other: &TokenizedText) -> f64 {
+    let pairs = |reading: &TokenizedText| -> std::collections::BTreeSet<(String, String)> {
         reading.tokens.windows(2).map(|pair| (pair[0].clone(), pair[1].clone())).collect()
     };
     let (one, other) = (pairs(one), pairs(other));
@@ -193,7 +193,7 @@ mod tests {
 
     #[test]
     fn tokens_are_words_numbers_and_money() {
-        let reading = Reading::of(
+        let reading = TokenizedText::new(
             "Don\u{2019}t pay $9.50 \u{2014} 20% off for #Students, rate\u{2011}limits: 200k tokens/day! ü",
         );
         assert_eq!(
@@ -212,30 +212,35 @@ mod tests {
                 "day"
             ]
         );
-        assert_eq!(reading.numbers(), 3);
-        assert!(Entry::read("student*").occurs(&reading) && Entry::read("% off").occurs(&reading));
-        assert!(!Entry::read("pa").occurs(&reading) && Entry::read("don't").occurs(&reading));
+        assert_eq!(reading.count_numbers(), 3);
+        assert!(
+            WordPattern::parse("student*").occurs_in(&reading)
+                && WordPattern::parse("% off").occurs_in(&reading)
+        );
+        assert!(
+            !WordPattern::parse("pa").occurs_in(&reading) && WordPattern::parse("don't").occurs_in(&reading)
+        );
     }
 
     #[test]
-    fn nearness_counts_positions_between_different_tokens() {
-        let list = |words: &[&str]| words.iter().map(|word| Entry::read(word)).collect::<Vec<_>>();
-        let reading = Reading::of("cut one two three four five price");
-        assert!(reading.near(&list(&["cut"]), &list(&["price*"]), 6));
-        assert!(!reading.near(&list(&["cut"]), &list(&["price*"]), 5));
-        assert!(!reading.near(&list(&["price"]), &list(&["price*"]), 6));
+    fn are_near_counts_positions_between_tokens() {
+        let list = |words: &[&str]| words.iter().map(|word| WordPattern::parse(word)).collect::<Vec<_>>();
+        let reading = TokenizedText::new("cut one two three four five price");
+        assert!(reading.are_near(&list(&["cut"]), &list(&["price*"]), 6));
+        assert!(!reading.are_near(&list(&["cut"]), &list(&["price*"]), 5));
+        assert!(!reading.are_near(&list(&["price"]), &list(&["price*"]), 6));
     }
 
     #[test]
     fn phrases_cover_their_words() {
-        let reading = Reading::of("response times fell, this time for all");
-        let list = [Entry::read("response time*")];
-        assert_eq!(reading.covered(&list), [true, true, false, false, false, false, false]);
+        let reading = TokenizedText::new("response times fell, this time for all");
+        let list = [WordPattern::parse("response time*")];
+        assert_eq!(reading.covered_tokens(&list), [true, true, false, false, false, false, false]);
     }
 
     #[test]
-    fn overlap_is_that_of_pairs() {
-        let overlap = |one, other| pair_overlap(&Reading::of(one), &Reading::of(other));
+    fn pair_overlap_counts_token_pairs() {
+        let overlap = |one, other| pair_overlap(&TokenizedText::new(one), &TokenizedText::new(other));
         assert_eq!(overlap("a b c", "a b c"), 1.0);
         assert_eq!(overlap("a b c", "b c d"), 1.0 / 3.0);
         assert_eq!(overlap("a", ""), 0.0);

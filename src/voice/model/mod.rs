@@ -2,7 +2,7 @@
 //!
 //! This module handles text only. The caller owns the connection, the clock and the record.
 
-mod answer;
+mod response;
 pub mod scoring;
 pub mod settings;
 pub mod wording;
@@ -13,5 +13,5 @@ pub struct ModelPrompt {
     /// The task.
     pub task: String,
     /// The input as JSON.
-    pub material: String,
+    pub input: String,
 }

@@ -5,16 +5,16 @@ use serde::{Deserialize, Serialize, Serializer};
 use serde_json::{Value, json};
 
 use super::ModelPrompt;
-use super::answer::{array, check_text};
-use novamind_base::notation::json_number;
+use super::response::{check_text, parse_array};
+use novamind_base::formatting::json_number;
 use novamind_world::identifiers::Group;
 
 /// Age up to which earlier posts are included, in days.
 const DAYS_SHOWN: u32 = 14;
 /// Maximum number of earlier posts.
-const MOST_EARLIER: usize = 10;
+const MAX_EARLIER_POSTS: usize = 10;
 /// Maximum length of a reason, in characters.
-const MOST_LETTERS: usize = 300;
+const MAX_REASON_CHARACTERS: usize = 300;
 
 const TASK: &str = "You stand in for the readers of a social network. NovaMind, a company that sells subscriptions to an AI \
 assistant, has posted. You get JSON: the post, the post that it answers if it answers one, the company's earlier posts of \
@@ -50,13 +50,13 @@ impl ModelScore {
         if !(-1.0..=1.0).contains(&self.score) {
             return Err(format!("the score of {} is not between -1 and 1", self.group));
         }
-        check_text(&self.reason, MOST_LETTERS)
+        check_text(&self.reason, MAX_REASON_CHARACTERS)
     }
 }
 
 /// A post of the player and its context that readers can see.
 #[derive(Debug, Clone, Default)]
-pub struct PostForReaders<'a> {
+pub struct PostToScore<'a> {
     /// Its text.
     pub content: &'a str,
     /// Day it was made.
@@ -70,26 +70,26 @@ pub struct PostForReaders<'a> {
 }
 
 /// Creates a prompt that asks for the reactions of the groups.
-pub fn prompt(post: &PostForReaders<'_>) -> ModelPrompt {
+pub fn prompt(post: &PostToScore<'_>) -> ModelPrompt {
     let days_ago = |day: u32| post.day.saturating_sub(day);
     let earlier = post.earlier.iter().rev().filter(|(day, _)| days_ago(*day) <= DAYS_SHOWN);
     let earlier: Vec<Value> = earlier
-        .take(MOST_EARLIER)
+        .take(MAX_EARLIER_POSTS)
         .map(|(day, text)| json!({ "days_before": days_ago(*day), "text": text }))
         .collect();
     let groups: Vec<Value> =
         post.groups.iter().map(|(group, who)| json!({ "group": group.id(), "readers": who })).collect();
     let material =
         json!({ "post": post.content, "answers": post.original, "earlier": earlier, "groups": groups });
-    ModelPrompt { task: TASK.to_owned(), material: material.to_string() }
+    ModelPrompt { task: TASK.to_owned(), input: material.to_string() }
 }
 
 /// Parses the scores of a response, one for each of these groups, in their order.
 ///
 /// # Errors
 /// The problem that makes the whole response unusable.
-pub fn read(answer: &str, groups: &[Group]) -> Result<Vec<ModelScore>, String> {
-    let values = array(answer)?;
+pub fn parse_response(answer: &str, groups: &[Group]) -> Result<Vec<ModelScore>, String> {
+    let values = parse_array(answer)?;
     if values.len() != groups.len() {
         return Err(format!("it has {} scores for {} groups", values.len(), groups.len()));
     }
@@ -117,16 +117,16 @@ mod tests {
     }
 
     #[test]
-    fn scores_come_in_the_order_of_the_groups_and_in_hundredths() {
+    fn parsed_scores_follow_the_group_order() {
         let answer = r#"[{"group": "E2", "score": -0.004, "reason": " Not for us. "},
                          {"group": "S1", "score": 0.678, "reason": "A discount."}]"#;
-        let scores = read(answer, &groups()).expect("scores");
+        let scores = parse_response(answer, &groups()).expect("scores");
         assert_eq!((scores[0].group.id(), scores[0].score), ("S1", 0.68));
         assert_eq!((scores[1].score.to_bits(), scores[1].reason.as_str()), (0, "Not for us."));
     }
 
     #[test]
-    fn anything_else_is_no_answer() {
+    fn invalid_responses_are_rejected() {
         let one = r#"{"group": "S1", "score": 0.5, "reason": "Good."}"#;
         let with = |other: &str| format!("[{one}, {other}]");
         for answer in [
@@ -140,20 +140,20 @@ mod tests {
             with("0.5"),
             "S1: 0.5, E2: 0.5".to_owned(),
         ] {
-            assert!(read(&answer, &groups()).is_err(), "{answer}");
+            assert!(parse_response(&answer, &groups()).is_err(), "{answer}");
         }
     }
 
     #[test]
-    fn a_prompt_holds_what_readers_can_see() {
-        let post = PostForReaders {
+    fn prompt_contains_only_public_text() {
+        let post = PostToScore {
             content: "Prices are down.",
             day: 21,
             original: Some("Too dear."),
             earlier: vec![(0, "Hello."), (7, "We grow."), (14, "New model.")],
             groups: vec![(groups()[0], "Budget-minded people")],
         };
-        let material: Value = serde_json::from_str(&prompt(&post).material).expect("JSON");
+        let material: Value = serde_json::from_str(&prompt(&post).input).expect("JSON");
         assert_eq!(
             material,
             json!({

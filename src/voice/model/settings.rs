@@ -2,15 +2,15 @@
 
 use serde::{Deserialize, Serialize};
 
-use novamind_base::notation::printable;
+use novamind_base::formatting::escape_control_characters;
 use novamind_world::params::ParameterError;
 
 /// Default maximum wait per week, in seconds.
-const SECONDS_A_WEEK: u32 = 30;
+const DEFAULT_SECONDS_PER_WEEK: u32 = 30;
 /// Upper limit of the wait per week, in seconds.
-const MOST_SECONDS_A_WEEK: u32 = 600;
+const MAX_SECONDS_PER_WEEK: u32 = 600;
 /// Maximum length of a name, in characters.
-const MOST_LETTERS: usize = 200;
+const MAX_NAME_CHARACTERS: usize = 200;
 
 /// A language model as configured in a file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -35,7 +35,7 @@ pub struct ModelSettings {
 }
 
 fn seconds_a_week() -> u32 {
-    SECONDS_A_WEEK
+    DEFAULT_SECONDS_PER_WEEK
 }
 
 fn words() -> bool {
@@ -58,13 +58,17 @@ pub struct ModelStamp {
 
 impl ModelStamp {
     /// Describes its purpose in the run: `llama3 at 127.0.0.1:11434 rewords posts and judges the player's posts`.
-    pub fn in_words(&self) -> String {
+    pub fn describe(&self) -> String {
         let deeds = match (self.words, self.judge) {
             (true, true) => "rewords posts and judges the player's posts",
             (_, false) => "rewords posts",
             (false, true) => "judges the player's posts",
         };
-        format!("{} at {} {deeds}", printable(&self.model), printable(&self.host))
+        format!(
+            "{} at {} {deeds}",
+            escape_control_characters(&self.model),
+            escape_control_characters(&self.host)
+        )
     }
 }
 
@@ -73,10 +77,10 @@ impl ModelSettings {
     ///
     /// # Errors
     /// The first problem, with its line and key.
-    pub fn read(source: &str, text: &str) -> Result<ModelSettings, ParameterError> {
+    pub fn parse(source: &str, text: &str) -> Result<ModelSettings, ParameterError> {
         let settings: ModelSettings =
-            toml::from_str(text).map_err(|error| ParameterError::of_toml(source, text, &error))?;
-        settings.check().map_err(|(key, problem)| ParameterError::of_key(source, text, key, problem))?;
+            toml::from_str(text).map_err(|error| ParameterError::from_toml(source, text, &error))?;
+        settings.check().map_err(|(key, problem)| ParameterError::for_key(source, text, key, problem))?;
         Ok(settings)
     }
 
@@ -87,9 +91,11 @@ impl ModelSettings {
     pub fn check(&self) -> Result<(), (&'static str, String)> {
         self.check_endpoint().map_err(|problem| ("endpoint", problem))?;
         let letters = self.model.chars().count();
-        if self.model.trim().is_empty() || letters > MOST_LETTERS || self.model.chars().any(char::is_control)
+        if self.model.trim().is_empty()
+            || letters > MAX_NAME_CHARACTERS
+            || self.model.chars().any(char::is_control)
         {
-            return Err(("model", format!("must have 1 to {MOST_LETTERS} characters in one line")));
+            return Err(("model", format!("must have 1 to {MAX_NAME_CHARACTERS} characters in one line")));
         }
         let is_letter = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
         if self.key_variable.as_ref().is_some_and(|name| name.is_empty() || !name.chars().all(is_letter)) {
@@ -97,8 +103,8 @@ impl ModelSettings {
                            MODEL_KEY, not the key itself";
             return Err(("key_variable", problem.to_owned()));
         }
-        if !(1..=MOST_SECONDS_A_WEEK).contains(&self.seconds_a_week) {
-            let problem = format!("must be 1 to {MOST_SECONDS_A_WEEK} seconds");
+        if !(1..=MAX_SECONDS_PER_WEEK).contains(&self.seconds_a_week) {
+            let problem = format!("must be 1 to {MAX_SECONDS_PER_WEEK} seconds");
             return Err(("seconds_a_week", problem));
         }
         if !self.judge && !self.words {
@@ -117,7 +123,7 @@ impl ModelSettings {
         let example = || {
             "enter an address like http://127.0.0.1:11434/v1, without user name, password or query".to_owned()
         };
-        if !endpoint.starts_with("http://") || endpoint.len() > MOST_LETTERS {
+        if !endpoint.starts_with("http://") || endpoint.len() > MAX_NAME_CHARACTERS {
             return Err(example());
         }
         let plain = |letter: u8| letter.is_ascii_alphanumeric() || b"-._~:/[]%".contains(&letter);
@@ -138,7 +144,7 @@ impl ModelSettings {
     }
 
     /// Returns the URL of requests.
-    pub fn address(&self) -> String {
+    pub fn completions_url(&self) -> String {
         format!("{}/chat/completions", self.endpoint.trim_end_matches('/'))
     }
 
@@ -153,41 +159,42 @@ impl ModelSettings {
 mod tests {
     use super::*;
 
-    const WHOLE: &str = "endpoint = \"http://127.0.0.1:11434/v1/\"\nmodel = \"llama3\"\n";
+    const COMPLETE_SETTINGS: &str = "endpoint = \"http://127.0.0.1:11434/v1/\"\nmodel = \"llama3\"\n";
 
     #[test]
-    fn what_is_left_out_has_defaults_and_a_run_records_no_key() {
-        let settings = ModelSettings::read("voice.toml", &format!("{WHOLE}key_variable = \"MODEL_KEY\"\n"));
+    fn settings_have_defaults_and_the_stamp_has_no_key() {
+        let settings =
+            ModelSettings::parse("voice.toml", &format!("{COMPLETE_SETTINGS}key_variable = \"MODEL_KEY\"\n"));
         let settings = settings.expect("settings");
         assert_eq!((settings.seconds_a_week, settings.judge, settings.words), (30, false, true));
-        assert_eq!(settings.address(), "http://127.0.0.1:11434/v1/chat/completions");
+        assert_eq!(settings.completions_url(), "http://127.0.0.1:11434/v1/chat/completions");
         let stamp = settings.stamp();
-        assert_eq!(stamp.in_words(), "llama3 at 127.0.0.1:11434 rewords posts");
+        assert_eq!(stamp.describe(), "llama3 at 127.0.0.1:11434 rewords posts");
         assert!(!toml::to_string(&stamp).expect("a table").contains("KEY"));
         for endpoint in ["http://[::1]:8080", "http://box/v1", "http://box.example:80/a-b/v1"] {
-            let text = WHOLE.replace("http://127.0.0.1:11434/v1/", endpoint);
-            ModelSettings::read("voice.toml", &text).expect(endpoint);
+            let text = COMPLETE_SETTINGS.replace("http://127.0.0.1:11434/v1/", endpoint);
+            ModelSettings::parse("voice.toml", &text).expect(endpoint);
         }
     }
 
     #[test]
-    fn what_is_wrong_is_named_with_line_and_key() {
+    fn errors_name_line_and_key() {
         let local = "http://127.0.0.1:11434/v1/";
         for (text, line, part) in [
-            (format!("{WHOLE}modell = 1\n"), 3, "modell"),
-            (format!("{WHOLE}judge = \"yes\"\n"), 3, "boolean"),
-            (WHOLE.replace("http:", "https:"), 1, "gateway on this machine"),
-            (WHOLE.replace(local, "127.0.0.1:11434"), 1, "endpoint"),
-            (WHOLE.replace(local, "http://me:secret@box/v1"), 1, "without user name, password"),
-            (WHOLE.replace(local, "http://box:99999/v1"), 1, "http://127.0.0.1:11434/v1"),
-            (WHOLE.replace(local, "http://box/v1?key=1"), 1, "or query"),
-            (WHOLE.replace(local, "http:///v1"), 1, "endpoint"),
-            (WHOLE.replace("llama3", " "), 2, "model"),
-            (format!("{WHOLE}key_variable = \"sk-1234\"\n"), 3, "environment variable"),
-            (format!("{WHOLE}seconds_a_week = 0\n"), 3, "1 to 600 seconds"),
-            (format!("{WHOLE}words = false\n"), 3, "nothing to do"),
+            (format!("{COMPLETE_SETTINGS}modell = 1\n"), 3, "modell"),
+            (format!("{COMPLETE_SETTINGS}judge = \"yes\"\n"), 3, "boolean"),
+            (COMPLETE_SETTINGS.replace("http:", "https:"), 1, "gateway on this machine"),
+            (COMPLETE_SETTINGS.replace(local, "127.0.0.1:11434"), 1, "endpoint"),
+            (COMPLETE_SETTINGS.replace(local, "http://me:secret@box/v1"), 1, "without user name, password"),
+            (COMPLETE_SETTINGS.replace(local, "http://box:99999/v1"), 1, "http://127.0.0.1:11434/v1"),
+            (COMPLETE_SETTINGS.replace(local, "http://box/v1?key=1"), 1, "or query"),
+            (COMPLETE_SETTINGS.replace(local, "http:///v1"), 1, "endpoint"),
+            (COMPLETE_SETTINGS.replace("llama3", " "), 2, "model"),
+            (format!("{COMPLETE_SETTINGS}key_variable = \"sk-1234\"\n"), 3, "environment variable"),
+            (format!("{COMPLETE_SETTINGS}seconds_a_week = 0\n"), 3, "1 to 600 seconds"),
+            (format!("{COMPLETE_SETTINGS}words = false\n"), 3, "nothing to do"),
         ] {
-            let error = ModelSettings::read("voice.toml", &text).expect_err(&text).to_string();
+            let error = ModelSettings::parse("voice.toml", &text).expect_err(&text).to_string();
             assert!(error.contains(&format!("voice.toml, line {line}")) && error.contains(part), "{error}");
         }
     }

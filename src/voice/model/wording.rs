@@ -6,13 +6,13 @@ use std::collections::BTreeSet;
 use serde_json::{Value, json};
 
 use super::ModelPrompt;
-use super::answer::{array, check_text};
+use super::response::{check_text, parse_array};
 use novamind_world::identifiers::Group;
 
 /// Maximum number of posts reworded per week.
-pub const MOST_POSTS: usize = 40;
+pub const MAX_POSTS_PER_WEEK: usize = 40;
 /// Maximum length of a post, in characters.
-const MOST_LETTERS: usize = 1_000;
+const MAX_POST_CHARACTERS: usize = 1_000;
 
 const TASK: &str = "You put posts of a public feed into other words. They are about NovaMind, a company that sells \
 subscriptions to an AI assistant. You get a JSON array of posts, each with its writer and its text. Answer with a JSON \
@@ -32,7 +32,7 @@ pub struct BuiltInPost<'a> {
 }
 
 impl BuiltInPost<'_> {
-    fn writer(&self) -> String {
+    fn describe_author(&self) -> String {
         let kind = match self.group {
             None => "the press",
             Some(group) if group.is_enterprise() => "somebody at a company",
@@ -45,16 +45,16 @@ impl BuiltInPost<'_> {
 /// Creates a prompt that asks for other wordings of posts.
 pub fn prompt(posts: &[BuiltInPost<'_>]) -> ModelPrompt {
     let posts: Vec<Value> =
-        posts.iter().map(|post| json!({ "writer": post.writer(), "text": post.text })).collect();
-    ModelPrompt { task: TASK.to_owned(), material: Value::from(posts).to_string() }
+        posts.iter().map(|post| json!({ "writer": post.describe_author(), "text": post.text })).collect();
+    ModelPrompt { task: TASK.to_owned(), input: Value::from(posts).to_string() }
 }
 
 /// Parses the texts of a response, one for each post.
 ///
 /// # Errors
 /// The problem that makes the whole response unusable.
-pub fn read(answer: &str, posts: &[BuiltInPost<'_>]) -> Result<Vec<String>, String> {
-    let values = array(answer)?;
+pub fn parse_response(answer: &str, posts: &[BuiltInPost<'_>]) -> Result<Vec<String>, String> {
+    let values = parse_array(answer)?;
     if values.len() != posts.len() {
         return Err(format!("it has {} texts for {} posts", values.len(), posts.len()));
     }
@@ -62,7 +62,7 @@ pub fn read(answer: &str, posts: &[BuiltInPost<'_>]) -> Result<Vec<String>, Stri
         let Value::String(text) = value else { return Err("an element is not a text".to_owned()) };
         let text = text.trim();
         check(text)?;
-        match numbers(text) == numbers(post.text) {
+        match number_set(text) == number_set(post.text) {
             true => Ok(text.to_owned()),
             false => Err("a text and its post have different numbers".to_owned()),
         }
@@ -75,11 +75,11 @@ pub fn read(answer: &str, posts: &[BuiltInPost<'_>]) -> Result<Vec<String>, Stri
 /// # Errors
 /// The reason why it cannot.
 pub fn check(text: &str) -> Result<(), String> {
-    check_text(text, MOST_LETTERS)
+    check_text(text, MAX_POST_CHARACTERS)
 }
 
 /// Returns the numbers of a text as written: digits with points and commas between them.
-fn numbers(text: &str) -> BTreeSet<String> {
+fn number_set(text: &str) -> BTreeSet<String> {
     let letters: Vec<char> = text.chars().collect();
     let (mut found, mut number) = (BTreeSet::new(), String::new());
     for (at, letter) in letters.iter().enumerate() {
@@ -106,25 +106,28 @@ mod tests {
     }
 
     #[test]
-    fn every_number_is_kept_and_none_is_added() {
-        let said = |text: &str| numbers(text).into_iter().collect::<Vec<_>>();
+    fn response_must_keep_all_numbers() {
+        let said = |text: &str| number_set(text).into_iter().collect::<Vec<_>>();
         assert_eq!(said("From $1,200.50 to 3.0, then 12."), ["1,200.50", "12", "3.0"]);
         assert_eq!(said("v2, 2 and 24/7"), ["2", "24", "7"]);
         let posts = [post("The index stands at 48.3, down 0.6.")];
-        assert!(read(r#"["Down 0.6, and the index is 48.3 now."]"#, &posts).is_ok());
+        assert!(parse_response(r#"["Down 0.6, and the index is 48.3 now."]"#, &posts).is_ok());
         for answer in [r#"["The index is low."]"#, r#"["Down 0.6 to 48.3 in 7 days."]"#, r#"["48,3, 0.6"]"#] {
-            assert!(read(answer, &posts).expect_err(answer).contains("different numbers"), "{answer}");
+            assert!(
+                parse_response(answer, &posts).expect_err(answer).contains("different numbers"),
+                "{answer}"
+            );
         }
     }
 
     #[test]
-    fn an_answer_is_taken_whole_or_not_at_all() {
+    fn response_is_accepted_completely_or_rejected() {
         let posts = [post("It is down."), post("I like it.")];
         assert_eq!(
-            read(r#"["Down again. ", "Nice."]"#, &posts),
+            parse_response(r#"["Down again. ", "Nice."]"#, &posts),
             Ok(vec!["Down again.".to_owned(), "Nice.".to_owned()])
         );
-        let long = format!(r#"["Down.", "{}"]"#, "x".repeat(MOST_LETTERS + 1));
+        let long = format!(r#"["Down.", "{}"]"#, "x".repeat(MAX_POST_CHARACTERS + 1));
         for answer in [
             r#"["Down again."]"#,
             r#"["Down.", "Nice.", "More."]"#,
@@ -135,17 +138,17 @@ mod tests {
             r#"{"posts": []}"#,
             &long,
         ] {
-            assert!(read(answer, &posts).is_err(), "{answer}");
+            assert!(parse_response(answer, &posts).is_err(), "{answer}");
         }
     }
 
     #[test]
-    fn a_prompt_holds_the_words_of_the_built_in_voice_and_who_writes() {
+    fn prompt_contains_text_and_author() {
         let company =
             BuiltInPost { text: "We stay.", group: Group::parse("E2"), profile: Some("Castell & Byrne") };
         let press = BuiltInPost { text: "\"Growth.\"", group: None, profile: None };
         let asked = prompt(&[post("It is down."), company, press]);
-        let material: Value = serde_json::from_str(&asked.material).expect("JSON");
+        let material: Value = serde_json::from_str(&asked.input).expect("JSON");
         assert_eq!(
             material,
             json!([

@@ -11,10 +11,10 @@ pub(super) struct Endings {
     /// During a negotiation.
     pub open: [&'static str; 4],
     /// After an agreement.
-    pub settled: [&'static str; 4],
+    pub after_agreement: [&'static str; 4],
 }
 
-const ON_AN_OFFER: &[&str] = &[
+const OFFER_OPENINGS: &[&str] = &[
     "Thank you for the offer.",
     "We went through your proposal.",
     "Thanks for coming back to us.",
@@ -28,7 +28,7 @@ const ON_AN_OFFER: &[&str] = &[
 
 /// A counter-offer close to the offered price.
 pub(super) const NEAR: Phrases = Phrases {
-    openings: ON_AN_OFFER,
+    openings: OFFER_OPENINGS,
     cores: &[
         "We are nearly there: plan {plan} at {price} per seat for one month is where we see it.",
         "Only a little is missing; we have {price} per seat for plan {plan} in mind, one month at a time.",
@@ -43,7 +43,7 @@ pub(super) const NEAR: Phrases = Phrases {
 
 /// A counter-offer clearly below the offered price.
 pub(super) const APART: Phrases = Phrases {
-    openings: ON_AN_OFFER,
+    openings: OFFER_OPENINGS,
     cores: &[
         "For plan {plan} we can see {price} per seat for one month, not more at this point.",
         "The price is above what plan {plan} is worth to us; we would pay {price} per seat and month.",
@@ -58,7 +58,7 @@ pub(super) const APART: Phrases = Phrases {
 
 /// A counter-offer far below the offered price.
 pub(super) const FAR: Phrases = Phrases {
-    openings: ON_AN_OFFER,
+    openings: OFFER_OPENINGS,
     cores: &[
         "We are far apart: plan {plan} is worth {price} per seat and month to us.",
         "That is well beyond our frame. For a month of plan {plan} we think of {price} per seat.",
@@ -122,7 +122,7 @@ pub(super) const THREAT: Phrases = Phrases {
     ],
 };
 
-const ON_A_PLAN: &[&str] = &[
+const PLAN_OPENINGS: &[&str] = &[
     "We have looked at your other plans.",
     "A question about our subscription.",
     "Our needs have shifted a little.",
@@ -136,7 +136,7 @@ const ON_A_PLAN: &[&str] = &[
 
 /// A subscriber that requests the price of a higher plan.
 pub(super) const UPGRADE: Phrases = Phrases {
-    openings: ON_A_PLAN,
+    openings: PLAN_OPENINGS,
     cores: &[
         "What would plan {plan} cost for our {seats} seats?",
         "Could you quote us plan {plan} for {seats} seats?",
@@ -151,7 +151,7 @@ pub(super) const UPGRADE: Phrases = Phrases {
 
 /// A subscriber that requests the price of a lower plan.
 pub(super) const DOWNGRADE: Phrases = Phrases {
-    openings: ON_A_PLAN,
+    openings: PLAN_OPENINGS,
     cores: &[
         "Our {seats} seats do not need all of plan {from}; what would be a fitting price for plan {plan}?",
         "We are on plan {from} with {seats} seats, and plan {plan} would do. Please quote us accordingly.",
@@ -165,7 +165,7 @@ pub(super) const DOWNGRADE: Phrases = Phrases {
 };
 
 /// Long negotiations, for all decision styles.
-pub(super) const LATE: [&str; 6] = [
+pub(super) const LATE_ENDINGS: [&str; 6] = [
     "We have been writing back and forth for a while and would like to come to an end.",
     "Our patience with this round of letters is not endless.",
     "It would be good to close this soon.",
@@ -183,7 +183,7 @@ pub(super) const ENDINGS: [Endings; 5] = [
             "As {culture} company we like to keep this simple.",
             "What counts for us is {concern}, and speed.",
         ],
-        settled: [
+        after_agreement: [
             "We would like to start right away.",
             "Thank you for keeping it short.",
             "No further meetings are needed.",
@@ -197,7 +197,7 @@ pub(super) const ENDINGS: [Endings; 5] = [
             "Show us that the sum works out and we can agree.",
             "As {culture} organisation we calculate before we sign.",
         ],
-        settled: [
+        after_agreement: [
             "The figures add up.",
             "It supports our work on {concern}.",
             "Finance has released the budget.",
@@ -211,7 +211,7 @@ pub(super) const ENDINGS: [Endings; 5] = [
             "Several of us have to agree, and {concern} is what they ask about first.",
             "In {culture} organisation like ours nobody decides alone.",
         ],
-        settled: [
+        after_agreement: [
             "Everybody who had a say has agreed.",
             "The vote was clear.",
             "Our colleagues saw the use for {concern}.",
@@ -225,7 +225,7 @@ pub(super) const ENDINGS: [Endings; 5] = [
             "As {culture} organisation we take no chances.",
             "Our reviewers will read your answer closely.",
         ],
-        settled: [
+        after_agreement: [
             "All checks have been passed.",
             "The review, {concern} included, raised no objections.",
             "The papers are complete on our side.",
@@ -239,7 +239,7 @@ pub(super) const ENDINGS: [Endings; 5] = [
             "As {culture} company we think beyond the next month.",
             "Our management follows this personally.",
         ],
-        settled: [
+        after_agreement: [
             "We look forward to working together.",
             "May this be the beginning of something larger.",
             "Our management sends its regards.",

@@ -3,24 +3,24 @@
 use std::borrow::Cow;
 use std::sync::LazyLock;
 
-use super::words::Register;
+use super::wording::SpeechRegister;
 use crate::grammar::{Chooser, Context, Grammar};
 use crate::judge::Judgement;
 use novamind_world::identifiers::Group;
 
 static GRAMMAR: LazyLock<Grammar> = LazyLock::new(|| {
-    Grammar::read(include_str!("../../../assets/voice/comments.toml"))
+    Grammar::parse(include_str!("../../../assets/voice/comments.toml"))
         .expect("the bundled grammars are valid")
 });
 
 /// Writes a comment of a group; `judgement` has the reason if it is known.
-pub(super) fn about_own_post(
+pub(super) fn write_comment(
     group: Group,
     effect: f64,
     judgement: Option<&Judgement>,
     choose: Chooser<'_>,
 ) -> String {
-    GRAMMAR.write("comment", &context(group, effect, judgement), choose)
+    GRAMMAR.expand("comment", &context(group, effect, judgement), choose)
 }
 
 fn context(group: Group, effect: f64, judgement: Option<&Judgement>) -> Context {
@@ -33,7 +33,7 @@ fn context(group: Group, effect: f64, judgement: Option<&Judgement>) -> Context 
         .with("side", side)
         .with("reason", format!("{side}_{reason}"))
         .with("subject", subject)
-        .with("register", Register::of(Some(group)).id())
+        .with("register", SpeechRegister::for_group(Some(group)).id())
         .with("I", person("I", "we"))
         .with("me", person("me", "us"))
         .with("my", person("my", "our"))
@@ -41,7 +41,7 @@ fn context(group: Group, effect: f64, judgement: Option<&Judgement>) -> Context 
 
 /// Returns the largest term in the direction of the reaction, and the topic of the post.
 fn reason(effect: f64, judgement: Option<&Judgement>) -> (Cow<'static, str>, String) {
-    let leading = judgement.map(Judgement::leading).unwrap_or_default();
+    let leading = judgement.map(Judgement::terms_by_size).unwrap_or_default();
     let of_kind = |name: &str| leading.iter().find(|term| term.name == name);
     let topic = of_kind("topics").and_then(|term| term.because.first()).cloned();
     let pulls = leading.iter().find(|term| term.value * effect > 0.0 && term.name != "receptive");
@@ -56,10 +56,10 @@ fn reason(effect: f64, judgement: Option<&Judgement>) -> (Cow<'static, str>, Str
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::judge::{Lexicon, Term};
+    use crate::judge::{Lexicon, ScoreTerm};
 
     #[test]
-    fn every_reason_has_its_words() {
+    fn every_reason_has_a_comment() {
         let good = ["topics", "specific", "tone", "timing", "accountable", "claims_true", "reply"];
         let bad = [
             "topics",
@@ -78,13 +78,17 @@ mod tests {
         ];
         for (side, sign, names) in [("for", 1.0, &good[..]), ("against", -1.0, &bad[..])] {
             for name in names {
-                assert!(GRAMMAR.has(&format!("opinion.{side}_{name}")), "{side} {name}");
+                assert!(GRAMMAR.has_rule(&format!("opinion.{side}_{name}")), "{side} {name}");
                 for group in Group::all() {
-                    let term =
-                        Term { name: (*name).into(), value: 0.4 * sign, because: vec!["api".to_owned()] };
-                    let judgement = Judgement { group, effect: 0.7 * sign, terms: vec![term], said: None };
+                    let term = ScoreTerm {
+                        name: (*name).into(),
+                        value: 0.4 * sign,
+                        because: vec!["api".to_owned()],
+                    };
+                    let judgement =
+                        Judgement { group, effect: 0.7 * sign, terms: vec![term], model_reason: None };
                     let context = context(group, 0.7 * sign, Some(&judgement));
-                    let phrasings = GRAMMAR.phrasings("comment", &context);
+                    let phrasings = GRAMMAR.count_phrasings("comment", &context);
                     assert!(phrasings >= 30, "{side} {name} {group}: {phrasings}");
                 }
             }
@@ -92,18 +96,18 @@ mod tests {
     }
 
     #[test]
-    fn every_topic_and_claim_can_be_named() {
-        let lexicon = Lexicon::shipped();
+    fn every_topic_and_claim_has_a_name() {
+        let lexicon = Lexicon::bundled();
         for name in lexicon.topics.keys().chain(lexicon.claims.keys()) {
-            assert!(GRAMMAR.has(&format!("about.{name}")), "{name}");
+            assert!(GRAMMAR.has_rule(&format!("about.{name}")), "{name}");
         }
-        assert!(GRAMMAR.has("about.scale"));
+        assert!(GRAMMAR.has_rule("about.scale"));
     }
 
     #[test]
     fn a_comment_names_what_the_post_was_about() {
         let group = Group::parse("S3").expect("a group");
-        let term = |name: &'static str, value, because: &str| Term {
+        let term = |name: &'static str, value, because: &str| ScoreTerm {
             name: name.into(),
             value,
             because: vec![because.to_owned()],
@@ -112,12 +116,12 @@ mod tests {
             group,
             effect: -0.7,
             terms: vec![term("topics", 0.1, "limits"), term("claims_false", -0.55, "speed")],
-            said: None,
+            model_reason: None,
         };
         assert_eq!(reason(-0.7, Some(&judgement)), ("claims_false".into(), "speed".to_owned()));
         assert_eq!(reason(0.7, Some(&judgement)), ("topics".into(), "limits".to_owned()));
         assert_eq!(reason(0.7, None), ("topics".into(), String::new()));
-        let text = about_own_post(group, 0.7, Some(&judgement), &mut |_| 0);
+        let text = write_comment(group, 0.7, Some(&judgement), &mut |_| 0);
         assert!(text.contains("quotas"), "{text}");
     }
 }

@@ -2,9 +2,9 @@
 
 use std::sync::LazyLock;
 
-use super::words::{self, Register};
+use super::wording::{self, SpeechRegister};
 use crate::grammar::{Chooser, Context, Grammar};
-use novamind_world::events::{Cause, Opinion, PostAuthor, Sentiment, Theme};
+use novamind_world::events::{Opinion, PostAuthor, PostCause, Sentiment, Theme};
 use novamind_world::params::Params;
 
 static GRAMMAR: LazyLock<Grammar> = LazyLock::new(|| {
@@ -12,22 +12,23 @@ static GRAMMAR: LazyLock<Grammar> = LazyLock::new(|| {
         include_str!("../../../assets/voice/customers.toml"),
         include_str!("../../../assets/voice/groups.toml"),
     ];
-    Grammar::read_all(&sources).expect("the bundled grammars are valid")
+    Grammar::parse_all(&sources).expect("the bundled grammars are valid")
 });
 
 /// Days after which an author is no longer new, and after which they are a long-term customer.
-const SETTLED: u32 = 30;
-const VETERAN: u32 = 120;
+const SETTLED_AFTER_DAYS: u32 = 30;
+const VETERAN_AFTER_DAYS: u32 = 120;
 /// One in this many casual authors writes without capitals.
-const WITHOUT_CAPITALS: u32 = 9;
+const LOWERCASE_AUTHOR_INTERVAL: u32 = 9;
 
 pub(super) fn draft(context: &Context, choose: Chooser<'_>) -> String {
-    GRAMMAR.write("post", context, choose)
+    GRAMMAR.expand("post", context, choose)
 }
 
 /// Returns whether an author writes without capitals, which is constant for each author.
-pub(super) fn without_capitals(author: &PostAuthor) -> bool {
-    Register::of(Some(author.group)) == Register::Casual && author.n.is_multiple_of(WITHOUT_CAPITALS)
+pub(super) fn writes_in_lowercase(author: &PostAuthor) -> bool {
+    SpeechRegister::for_group(Some(author.group)) == SpeechRegister::Casual
+        && author.n.is_multiple_of(LOWERCASE_AUTHOR_INTERVAL)
 }
 
 /// Returns the grammar context of a post.
@@ -38,46 +39,49 @@ pub(super) fn context(author: &PostAuthor, opinion: &Opinion, tone: Sentiment, p
     };
     let tone_id = tone_id(tone);
     let situation = situation(opinion);
-    let register = Register::of(Some(author.group)).id();
-    let also = |trouble: bool, own: Cause| trouble && opinion.cause != own;
+    let register = SpeechRegister::for_group(Some(author.group)).id();
+    let also = |trouble: bool, own: PostCause| trouble && opinion.cause != own;
     let days = opinion.days_subscribed;
     let kind = match opinion.cause {
-        Cause::Lost { thread, .. } => Some(thread.id()),
+        PostCause::Lost { thread, .. } => Some(thread.id()),
         _ => None,
     };
     Context::default()
         .with("group", author.group.id())
         .with("key", format!("{situation}.{tone_id}"))
-        .with("shape", shape(opinion.cause, tone))
+        .with("shape", post_form(opinion.cause, tone))
         .with("mood", format!("{register}.{tone_id}"))
         .with("I", person("I", "we"))
         .with("me", person("me", "us"))
         .with("my", person("my", "our"))
         .with("am", person("I'm", "we're"))
-        .with("role", words::role(author, params))
-        .with("trade", words::trade(author, params))
-        .with("since", words::time_span(days))
+        .with("role", wording::role(author, params))
+        .with("trade", wording::trade(author, params))
+        .with("since", wording::time_span(days))
         .with("per", person("a month", "a seat and month"))
-        .maybe("plan", opinion.plan.map(|plan| format!("plan {plan}")))
-        .maybe("price", words::price(opinion.price))
-        .maybe("waiting", (opinion.waiting_days > 1).then(|| words::time_span(opinion.waiting_days)))
-        .maybe("downtime", words::outage_span(opinion.downtime_minutes))
-        .maybe("seats", company.then(|| words::seats_roughly(opinion.seats)))
-        .tag("new", days <= SETTLED)
-        .tag("settled", days > SETTLED && days <= VETERAN)
-        .tag("veteran", days > VETERAN)
-        .tag("rose", opinion.cause == Cause::Improved)
-        .tag("fell", opinion.cause == Cause::Declined)
-        .tag("company", company)
-        .tag("skilled", words::skilled(author, params))
-        .tag("senior", words::senior(author, params))
-        .tag("also_down", also(opinion.troubles.outage, Cause::Outage))
-        .tag("also_waiting", also(opinion.troubles.issue, Cause::Issue))
-        .tag("also_short", also(opinion.troubles.quota, Cause::Quota))
-        .tag("unanswered", matches!(opinion.cause, Cause::Lost { unanswered: true, .. }))
-        .tag("wanted_to_leave", kind == Some("churn_prevention"))
-        .tag("new_terms", kind == Some("renegotiation"))
-        .tag("other_plan", kind == Some("plan_change"))
+        .with_optional("plan", opinion.plan.map(|plan| format!("plan {plan}")))
+        .with_optional("price", wording::price(opinion.price))
+        .with_optional(
+            "waiting",
+            (opinion.waiting_days > 1).then(|| wording::time_span(opinion.waiting_days)),
+        )
+        .with_optional("downtime", wording::outage_span(opinion.downtime_minutes))
+        .with_optional("seats", company.then(|| wording::approximate_seats(opinion.seats)))
+        .with_tag("new", days <= SETTLED_AFTER_DAYS)
+        .with_tag("settled", days > SETTLED_AFTER_DAYS && days <= VETERAN_AFTER_DAYS)
+        .with_tag("veteran", days > VETERAN_AFTER_DAYS)
+        .with_tag("rose", opinion.cause == PostCause::Improved)
+        .with_tag("fell", opinion.cause == PostCause::Declined)
+        .with_tag("company", company)
+        .with_tag("skilled", wording::is_skilled(author, params))
+        .with_tag("senior", wording::is_senior(author, params))
+        .with_tag("also_down", also(opinion.troubles.outage, PostCause::Outage))
+        .with_tag("also_waiting", also(opinion.troubles.issue, PostCause::Issue))
+        .with_tag("also_short", also(opinion.troubles.quota, PostCause::Quota))
+        .with_tag("unanswered", matches!(opinion.cause, PostCause::Lost { unanswered: true, .. }))
+        .with_tag("wanted_to_leave", kind == Some("churn_prevention"))
+        .with_tag("new_terms", kind == Some("renegotiation"))
+        .with_tag("other_plan", kind == Some("plan_change"))
 }
 
 fn tone_id(tone: Sentiment) -> &'static str {
@@ -88,13 +92,13 @@ fn tone_id(tone: Sentiment) -> &'static str {
     }
 }
 
-fn shape(cause: Cause, tone: Sentiment) -> &'static str {
+fn post_form(cause: PostCause, tone: Sentiment) -> &'static str {
     match (cause, tone) {
-        (Cause::Cancelled, _) => "leaving",
-        (Cause::Lost { .. }, _) => "lost",
+        (PostCause::Cancelled, _) => "leaving",
+        (PostCause::Lost { .. }, _) => "lost",
         (_, Sentiment::Neutral) => "neutral",
-        (Cause::Improved | Cause::Declined | Cause::General, Sentiment::Positive) => "positive",
-        (Cause::Improved | Cause::Declined | Cause::General, Sentiment::Negative) => "grumble",
+        (PostCause::Improved | PostCause::Declined | PostCause::General, Sentiment::Positive) => "positive",
+        (PostCause::Improved | PostCause::Declined | PostCause::General, Sentiment::Negative) => "grumble",
         (_, Sentiment::Positive) => "forgiving",
         (_, Sentiment::Negative) => "trouble",
     }
@@ -103,14 +107,14 @@ fn shape(cause: Cause, tone: Sentiment) -> &'static str {
 /// Returns the grammar's name for the subject of a post.
 fn situation(opinion: &Opinion) -> &'static str {
     match opinion.cause {
-        Cause::Overload => "overload",
-        Cause::Outage => "outage",
-        Cause::Issue => "issue",
-        Cause::Quota => "quota",
-        Cause::Cancelled if opinion.theme == Theme::Price => "cancelled_price",
-        Cause::Cancelled => "cancelled_quality",
-        Cause::Lost { .. } => "lost",
-        Cause::Improved | Cause::Declined | Cause::General => theme_id(opinion.theme),
+        PostCause::Overload => "overload",
+        PostCause::Outage => "outage",
+        PostCause::Issue => "issue",
+        PostCause::Quota => "quota",
+        PostCause::Cancelled if opinion.theme == Theme::Price => "cancelled_price",
+        PostCause::Cancelled => "cancelled_quality",
+        PostCause::Lost { .. } => "lost",
+        PostCause::Improved | PostCause::Declined | PostCause::General => theme_id(opinion.theme),
     }
 }
 
@@ -139,7 +143,7 @@ pub(super) mod tests {
         PostAuthor { customer: 9, group, n: 4, persona: PersonaPicks::default(), company: 0 }
     }
 
-    pub(in crate::posts) fn opinion(cause: Cause, theme: Theme) -> Opinion {
+    pub(in crate::posts) fn opinion(cause: PostCause, theme: Theme) -> Opinion {
         Opinion {
             cause,
             troubles: Troubles::default(),
@@ -170,18 +174,18 @@ pub(super) mod tests {
     pub(in crate::posts) fn situations() -> Vec<(Opinion, Sentiment)> {
         let mut list = Vec::new();
         for tone in TONES {
-            for cause in [Cause::Overload, Cause::Outage, Cause::Issue, Cause::Quota] {
+            for cause in [PostCause::Overload, PostCause::Outage, PostCause::Issue, PostCause::Quota] {
                 list.push((opinion(cause, Theme::Quality), tone));
             }
-            for cause in [Cause::General, Cause::Improved, Cause::Declined] {
+            for cause in [PostCause::General, PostCause::Improved, PostCause::Declined] {
                 list.extend(THEMES.map(|theme| (opinion(cause, theme), tone)));
             }
         }
         for theme in [Theme::Price, Theme::Quality] {
-            list.push((opinion(Cause::Cancelled, theme), Sentiment::Negative));
+            list.push((opinion(PostCause::Cancelled, theme), Sentiment::Negative));
         }
         for unanswered in [false, true] {
-            let cause = Cause::Lost { thread: ThreadKind::NewLead, unanswered };
+            let cause = PostCause::Lost { thread: ThreadKind::NewLead, unanswered };
             list.push((
                 Opinion { plan: None, price: 0.0, ..opinion(cause, Theme::Support) },
                 Sentiment::Negative,
@@ -191,8 +195,8 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn every_situation_has_its_words_for_every_group() {
-        let params = Params::shipped();
+    fn every_situation_has_posts_for_every_group() {
+        let params = Params::bundled();
         for group in Group::all() {
             for (mut opinion, tone) in situations() {
                 // The minimal context without optional values.
@@ -200,32 +204,32 @@ pub(super) mod tests {
                     (None, 0.0, 0, 0);
                 let context = context(&author(group), &opinion, tone, &params);
                 let key = format!("fact.{}.{}", situation(&opinion), tone_id(tone));
-                assert!(GRAMMAR.has(&key), "{key}");
-                assert!(GRAMMAR.has(&format!("form.{}", shape(opinion.cause, tone))));
-                let facts = GRAMMAR.phrasings(&key, &context);
-                let phrasings = GRAMMAR.phrasings("post", &context);
+                assert!(GRAMMAR.has_rule(&key), "{key}");
+                assert!(GRAMMAR.has_rule(&format!("form.{}", post_form(opinion.cause, tone))));
+                let facts = GRAMMAR.count_phrasings(&key, &context);
+                let phrasings = GRAMMAR.count_phrasings("post", &context);
                 assert!(
                     facts >= 2 && phrasings >= 300,
                     "{group} {key}: {facts} facts, {phrasings} phrasings"
                 );
                 for kind in ["doing", "audience", "stake", "gain"] {
-                    assert!(GRAMMAR.has(&format!("{kind}.{group}")), "{kind} of {group}");
+                    assert!(GRAMMAR.has_rule(&format!("{kind}.{group}")), "{kind} of {group}");
                 }
             }
         }
     }
 
     #[test]
-    fn the_context_uses_no_name_that_the_grammar_does_not_know() {
-        let params = Params::shipped();
+    fn context_names_are_declared_in_the_grammar() {
+        let params = Params::bundled();
         let context = context(
             &author(Group::parse("E1").expect("a group")),
-            &opinion(Cause::General, Theme::Price),
+            &opinion(PostCause::General, Theme::Price),
             Sentiment::Negative,
             &params,
         );
         for name in context.names() {
-            assert!(GRAMMAR.knows(name), "{name}");
+            assert!(GRAMMAR.declares(name), "{name}");
         }
     }
 }

@@ -6,27 +6,27 @@
 
 mod comments;
 mod customers;
-mod fresh;
 pub mod names;
 mod press;
-mod words;
+mod repetition;
+mod wording;
 
 use serde::{Deserialize, Serialize};
 
-use fresh::Recent;
+use repetition::RecentPosts;
 
 use super::judge::Judgement;
-use novamind_world::events::{Matter, Post};
+use novamind_world::events::{Post, PostSubject};
 use novamind_world::params::Params;
 use novamind_world::random::{Part, Streams};
 
 /// Writes posts in order and remembers recent ones to avoid repetition.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
-pub struct Writer {
-    recent: Recent,
+pub struct PostWriter {
+    recent: RecentPosts,
 }
 
-impl Writer {
+impl PostWriter {
     /// Returns the text of a post; for comments, `judgement` is the reaction of the comment's group to the
     /// player's post.
     pub fn write(
@@ -39,28 +39,29 @@ impl Writer {
         let mut stream = streams.open(Part::Voice, [u64::from(post.post)]);
         let mut choose = |count: usize| stream.index(count);
         match (post.matter, post.author) {
-            (Matter::Opinion(opinion), Some(author)) => {
+            (PostSubject::Opinion(opinion), Some(author)) => {
                 let context = customers::context(&author, &opinion, post.sentiment, params);
-                let text = self.recent.freshest(|| customers::draft(&context, &mut choose));
-                if customers::without_capitals(&author) { text.to_lowercase() } else { text }
+                let text = self.recent.pick_freshest(|| customers::draft(&context, &mut choose));
+                if customers::writes_in_lowercase(&author) { text.to_lowercase() } else { text }
             }
-            (Matter::Reading(reading), _) => {
-                self.recent.freshest(|| press::about_reading(&reading, &mut choose))
+            (PostSubject::Reading(reading), _) => {
+                self.recent.pick_freshest(|| press::write_reading_post(&reading, &mut choose))
             }
-            (Matter::Economy { trend, pmi, perspective }, _) => {
-                self.recent.freshest(|| press::about_economy(trend, pmi, perspective, &mut choose))
+            (PostSubject::Economy { trend, pmi, perspective }, _) => {
+                self.recent.pick_freshest(|| press::write_economy_post(trend, pmi, perspective, &mut choose))
             }
-            (Matter::Rival { name, perspective, severity, estimate }, _) => {
+            (PostSubject::CompetitorEvent { name, perspective, severity, estimate }, _) => {
                 let names = &params.competitor.competitor_names;
                 let name = names.get(usize::from(name)).map_or("A rival", String::as_str);
-                self.recent
-                    .freshest(|| press::about_rival(name, perspective, severity, estimate, &mut choose))
+                self.recent.pick_freshest(|| {
+                    press::write_competitor_post(name, perspective, severity, estimate, &mut choose)
+                })
             }
-            (Matter::Comment { group, effect, .. }, _) => {
-                self.recent.freshest(|| comments::about_own_post(group, effect, judgement, &mut choose))
+            (PostSubject::Comment { group, effect, .. }, _) => {
+                self.recent.pick_freshest(|| comments::write_comment(group, effect, judgement, &mut choose))
             }
             // An opinion always has an author.
-            (Matter::Opinion(_), None) => String::new(),
+            (PostSubject::Opinion(_), None) => String::new(),
         }
     }
 }

@@ -36,7 +36,7 @@ mod tests {
         let streams = Streams::new(1);
         for group in Group::all() {
             let name = profile_name(&author(group), &streams);
-            assert_eq!(name.is_some(), group.initially_known(), "{group}");
+            assert_eq!(name.is_some(), group.is_initially_known(), "{group}");
             assert_eq!(name, profile_name(&author(group), &streams));
         }
     }

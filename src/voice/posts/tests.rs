@@ -2,35 +2,36 @@
 
 use super::customers::tests::{author, situations};
 use super::*;
-use novamind_world::events::{Cause, Engagement, Sentiment, Severity, Trend};
+use novamind_world::events::{Engagement, PostCause, Sentiment, Severity, Trend};
 use novamind_world::identifiers::Group;
 
-const NOBODY: Engagement = Engagement { likes: 0, shares: 0, virality: 0.0 };
+const NO_ENGAGEMENT: Engagement = Engagement { likes: 0, shares: 0, virality: 0.0 };
 
 /// A long feed over all situations and groups.
 fn feed() -> Vec<(Post, String)> {
-    let (params, streams) = (Params::shipped(), Streams::new(11));
-    let mut writer = Writer::default();
+    let (params, streams) = (Params::bundled(), Streams::new(11));
+    let mut writer = PostWriter::default();
     let mut posts = Vec::new();
-    let post = |sentiment, matter, author| Post { post: 0, author, sentiment, engagement: NOBODY, matter };
+    let post =
+        |sentiment, matter, author| Post { post: 0, author, sentiment, engagement: NO_ENGAGEMENT, matter };
     for group in Group::all() {
         for (opinion, tone) in situations() {
             let company = group.is_enterprise();
             let possible = match opinion.cause {
-                Cause::Cancelled => !company,
-                Cause::Lost { .. } => company,
+                PostCause::Cancelled => !company,
+                PostCause::Lost { .. } => company,
                 _ => true,
             };
             if !possible {
                 continue;
             }
-            posts.push(post(tone, Matter::Opinion(opinion), Some(author(group))));
+            posts.push(post(tone, PostSubject::Opinion(opinion), Some(author(group))));
         }
         for perspective in 0..11 {
             let trend = [Trend::Expansion, Trend::Neutral, Trend::Contraction][perspective as usize % 3];
-            let matter = Matter::Economy { trend, pmi: 40.0 + f64::from(perspective), perspective };
+            let matter = PostSubject::Economy { trend, pmi: 40.0 + f64::from(perspective), perspective };
             posts.push(post(Sentiment::Neutral, matter, None));
-            let matter = Matter::Rival {
+            let matter = PostSubject::CompetitorEvent {
                 name: perspective % 5,
                 perspective: perspective % 7,
                 severity: Severity::Minor,
@@ -38,7 +39,7 @@ fn feed() -> Vec<(Post, String)> {
             };
             posts.push(post(Sentiment::Neutral, matter, None));
         }
-        let matter = Matter::Comment { own_post: 1, group, effect: 0.8 };
+        let matter = PostSubject::Comment { own_post: 1, group, effect: 0.8 };
         posts.push(post(Sentiment::Positive, matter, None));
     }
     let numbered = posts.into_iter().enumerate();
@@ -61,7 +62,7 @@ fn no_two_equal_texts_within_sixty_posts() {
 }
 
 #[test]
-fn no_slip_that_a_machine_can_see() {
+fn posts_have_no_mechanical_errors() {
     for (post, text) in feed() {
         assert!(!text.is_empty() && text == text.trim(), "{post:?}: {text:?}");
         assert!(text.split_whitespace().count() <= 150, "{text}");
@@ -74,9 +75,9 @@ fn no_slip_that_a_machine_can_see() {
             assert!(!words.join(" ").contains(pair), "{pair:?} in {text}");
         }
         let first = text.chars().next().expect("a character");
-        let casual = post
-            .author
-            .is_some_and(|author| words::Register::of(Some(author.group)) == words::Register::Casual);
+        let casual = post.author.is_some_and(|author| {
+            wording::SpeechRegister::for_group(Some(author.group)) == wording::SpeechRegister::Casual
+        });
         assert!(!first.is_lowercase() || casual, "{text}");
         assert!(text.ends_with(['.', '!', '?', ')', '(', ']']), "{text}");
         let hidden = ["satisfaction", "sentiment", "participation", "c_max", "q_min"];
@@ -103,6 +104,6 @@ fn companies_speak_as_we_and_people_as_i() {
 }
 
 #[test]
-fn words_are_the_same_again() {
+fn posts_are_deterministic() {
     assert_eq!(feed(), feed());
 }

@@ -6,19 +6,19 @@ use crate::identifiers::{ByChannel, ByGroup, ByPlan, Channel, Group, Plan};
 
 /// A reader of canonical bytes.
 pub struct CanonicalReader<'a> {
-    rest: &'a [u8],
+    remaining_bytes: &'a [u8],
 }
 
 impl<'a> CanonicalReader<'a> {
     /// Creates a reader that starts at the first byte.
     pub fn new(bytes: &'a [u8]) -> CanonicalReader<'a> {
-        CanonicalReader { rest: bytes }
+        CanonicalReader { remaining_bytes: bytes }
     }
 
     /// Returns the next `count` bytes, or `None` if fewer remain.
     pub fn take(&mut self, count: usize) -> Option<&'a [u8]> {
-        let (taken, rest) = self.rest.split_at_checked(count)?;
-        self.rest = rest;
+        let (taken, rest) = self.remaining_bytes.split_at_checked(count)?;
+        self.remaining_bytes = rest;
         Some(taken)
     }
 
@@ -28,8 +28,8 @@ impl<'a> CanonicalReader<'a> {
     }
 
     /// Returns the number of unread bytes.
-    pub fn left(&self) -> usize {
-        self.rest.len()
+    pub fn remaining(&self) -> usize {
+        self.remaining_bytes.len()
     }
 }
 
@@ -41,10 +41,10 @@ pub trait Restore: Sized {
 
 /// Restores a value from all of `bytes`. Returns `None` if any are left over.
 #[cfg(test)]
-pub fn restored<T: Restore>(bytes: &[u8]) -> Option<T> {
+pub fn restore_all<T: Restore>(bytes: &[u8]) -> Option<T> {
     let mut reader = CanonicalReader::new(bytes);
     let value = reader.read()?;
-    (reader.left() == 0).then_some(value)
+    (reader.remaining() == 0).then_some(value)
 }
 
 macro_rules! restored_numbers {
@@ -76,21 +76,21 @@ impl Restore for bool {
 }
 
 /// Reads the length of a list or text. Each element takes at least one byte, so a larger length is invalid.
-fn length(reader: &mut CanonicalReader<'_>) -> Option<usize> {
+fn read_length(reader: &mut CanonicalReader<'_>) -> Option<usize> {
     let length = usize::try_from(reader.read::<u64>()?).ok()?;
-    (length <= reader.rest.len()).then_some(length)
+    (length <= reader.remaining_bytes.len()).then_some(length)
 }
 
 impl Restore for String {
     fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
-        let length = length(reader)?;
+        let length = read_length(reader)?;
         String::from_utf8(reader.take(length)?.to_vec()).ok()
     }
 }
 
 impl<T: Restore> Restore for Vec<T> {
     fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
-        let length = length(reader)?;
+        let length = read_length(reader)?;
         (0..length).map(|_| reader.read()).collect()
     }
 }
@@ -116,7 +116,7 @@ impl<A: Restore, B: Restore> Restore for (A, B) {
 
 impl<K: Restore + std::hash::Hash + Eq, V: Restore> Restore for IndexMap<K, V> {
     fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
-        let length = length(reader)?;
+        let length = read_length(reader)?;
         (0..length).map(|_| reader.read()).collect()
     }
 }
@@ -149,25 +149,26 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_kind_of_value_comes_back() {
+    fn restore_reads_every_kind_of_value() {
         let text = "naïve".to_owned();
         let nested = (vec![Some(Plan::B), None], (text, [1.5f64, -0.0]));
-        let read: (Vec<Option<Plan>>, (String, [f64; 2])) = restored(&bytes_of(&nested)).expect("it reads");
+        let read: (Vec<Option<Plan>>, (String, [f64; 2])) =
+            restore_all(&bytes_of(&nested)).expect("it reads");
         assert_eq!(read, nested);
         let map: IndexMap<i64, ByChannel<u16>> = IndexMap::from([(-3, ByChannel([1, 2, 3, 4, 5]))]);
-        assert_eq!(restored::<IndexMap<i64, ByChannel<u16>>>(&bytes_of(&map)), Some(map));
+        assert_eq!(restore_all::<IndexMap<i64, ByChannel<u16>>>(&bytes_of(&map)), Some(map));
     }
 
     #[test]
-    fn bytes_of_nothing_are_refused() {
+    fn restore_rejects_invalid_bytes() {
         let whole = bytes_of(&vec![Group::at(25).expect("a group"); 3]);
         for cut in 0..whole.len() {
-            assert!(restored::<Vec<Group>>(&whole[..cut]).is_none(), "cut at {cut}");
+            assert!(restore_all::<Vec<Group>>(&whole[..cut]).is_none(), "cut at {cut}");
         }
-        assert!(restored::<Vec<Group>>(&[whole.as_slice(), &[0]].concat()).is_none(), "a byte too many");
-        assert!(restored::<Group>(&[26]).is_none());
-        assert!(restored::<bool>(&[2]).is_none());
-        assert!(restored::<Vec<u8>>(&u64::MAX.to_le_bytes()).is_none(), "a length beyond the end");
-        assert!(restored::<String>(&[1, 0, 0, 0, 0, 0, 0, 0, 0xff]).is_none(), "no text");
+        assert!(restore_all::<Vec<Group>>(&[whole.as_slice(), &[0]].concat()).is_none(), "a byte too many");
+        assert!(restore_all::<Group>(&[26]).is_none());
+        assert!(restore_all::<bool>(&[2]).is_none());
+        assert!(restore_all::<Vec<u8>>(&u64::MAX.to_le_bytes()).is_none(), "a length beyond the end");
+        assert!(restore_all::<String>(&[1, 0, 0, 0, 0, 0, 0, 0, 0xff]).is_none(), "no text");
     }
 }

@@ -8,7 +8,7 @@ use crate::quality::quota_factor;
 
 /// A plan as offered to the leads of a group today, before individual demand and discounts.
 #[derive(Debug, Clone, Copy)]
-pub struct Offer {
+pub struct PlanOffer {
     /// List price, dollars a month.
     pub price: f64,
     /// Delivered quality, minus the service penalty if the fidelity setting asks for it.
@@ -19,7 +19,7 @@ pub struct Offer {
 
 /// A lead's choice among the plans.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Choice {
+pub struct PlanChoice {
     /// The plan with the largest surplus, or A if no surplus is positive.
     pub plan: Plan,
     /// Its price after the lead promotion, dollars a month.
@@ -29,22 +29,28 @@ pub struct Choice {
 }
 
 /// Returns a plan with the lead's discounted price and the quality that its quota leaves.
-pub fn offered(offer: &Offer, plan: Plan, discount: f64, demand: f64, params: &Params) -> Choice {
+pub fn evaluate_offer(
+    offer: &PlanOffer,
+    plan: Plan,
+    discount: f64,
+    demand: f64,
+    params: &Params,
+) -> PlanChoice {
     let price = (offer.price - discount).max(params.billing.effective_price_min);
-    Choice { plan, price, quality: offer.quality * quota_factor(offer.quota, demand, &params.quality) }
+    PlanChoice { plan, price, quality: offer.quality * quota_factor(offer.quota, demand, &params.quality) }
 }
 
 /// Picks the plan with the largest surplus above 0 (ties: the earlier plan), or A if there is none.
 ///
 /// Quotas are compared with `demand`. The curve already includes the market's drift once.
 pub fn choose_plan(
-    offers: &ByPlan<Offer>,
+    offers: &ByPlan<PlanOffer>,
     discount: f64,
     demand: f64,
     curve: &Curve,
     params: &Params,
-) -> Choice {
-    let candidate = |plan| offered(&offers[plan], plan, discount, demand, params);
+) -> PlanChoice {
+    let candidate = |plan| evaluate_offer(&offers[plan], plan, discount, demand, params);
     let mut best = (params.participation.lead_min_satisfaction_exclusive, None);
     for plan in Plan::ALL {
         let choice = candidate(plan);
@@ -63,12 +69,12 @@ pub fn choose_plan(
 
 /// Returns whether an individual accepts its choice: the price is within the budget, and quality times noise
 /// is at least the required quality.
-pub fn accepts(choice: &Choice, noise: f64, curve: &Curve, params: &Params) -> bool {
+pub fn is_accepted(choice: &PlanChoice, noise: f64, curve: &Curve, params: &Params) -> bool {
     choice.price <= curve.c_max && choice.quality * noise >= required_quality(choice.price, curve, params)
 }
 
 /// Returns whether any plan is good enough for an enterprise at price 0, without noise.
-pub fn passes_gate(offers: &ByPlan<Offer>, demand: f64, curve: &Curve, params: &Params) -> bool {
+pub fn passes_quality_gate(offers: &ByPlan<PlanOffer>, demand: f64, curve: &Curve, params: &Params) -> bool {
     let required = required_quality(0.0, curve, params);
     offers.iter().any(|offer| offer.quality * quota_factor(offer.quota, demand, &params.quality) >= required)
 }
@@ -85,51 +91,51 @@ mod tests {
         tiers: [u8; 3],
         quotas: [f64; 3],
         params: &Params,
-    ) -> ByPlan<Offer> {
+    ) -> ByPlan<PlanOffer> {
         ByPlan::from_fn(|plan| {
             let at = plan.index();
             let multiplier = params.model(tiers[at]).quality_multiplier;
             let quality = delivered_quality(params.quality.base_product_quality, shared, 0.0, multiplier);
-            Offer { price: prices[at], quality, quota: quotas[at] }
+            PlanOffer { price: prices[at], quality, quota: quotas[at] }
         })
     }
 
     const PRICES: [f64; 3] = [12.0, 25.0, 55.0];
 
     #[test]
-    fn leads_choose_the_largest_surplus_and_fall_back_to_plan_a() {
-        let params = Params::shipped();
+    fn choose_plan_takes_the_largest_surplus_or_plan_a() {
+        let params = Params::bundled();
         let market = |shared| offers(shared, PRICES, [1, 3, 5], [60.0, 100.0, 1200.0], &params);
         let weak = choose_plan(&market(0.0), 0.0, 80.0, &X, &params);
         assert_eq!((weak.plan, weak.price), (Plan::A, 12.0));
-        assert!(!accepts(&weak, 1.0, &X, &params));
+        assert!(!is_accepted(&weak, 1.0, &X, &params));
         let good = choose_plan(&market(0.2), 0.0, 80.0, &X, &params);
         assert_eq!((good.plan, good.price), (Plan::B, 25.0));
-        assert!(accepts(&good, 1.0, &X, &params));
-        assert!(!accepts(&good, 0.8, &X, &params));
+        assert!(is_accepted(&good, 1.0, &X, &params));
+        assert!(!is_accepted(&good, 0.8, &X, &params));
         assert_eq!(choose_plan(&market(0.2), 7.0, 80.0, &X, &params).price, 18.0);
     }
 
     #[test]
-    fn favourable_noise_sells_the_fallback_plan_and_the_budget_is_a_limit() {
-        let params = Params::shipped();
+    fn acceptance_depends_on_noise_and_budget() {
+        let params = Params::bundled();
         let market = offers(0.12, PRICES, [1, 3, 5], [1000.0, 100.0, 1200.0], &params);
         let choice = choose_plan(&market, 0.0, 80.0, &X, &params);
         assert_eq!(choice.plan, Plan::A);
-        assert!(!accepts(&choice, 1.0, &X, &params));
-        assert!(accepts(&choice, 1.1, &X, &params));
+        assert!(!is_accepted(&choice, 1.0, &X, &params));
+        assert!(is_accepted(&choice, 1.1, &X, &params));
         let at = |price| {
             let market = offers(0.4, [price; 3], [4, 1, 1], [1e9; 3], &params);
             let choice = choose_plan(&market, 0.0, 80.0, &X, &params);
-            accepts(&choice, 1.0, &X, &params)
+            is_accepted(&choice, 1.0, &X, &params)
         };
         assert!(at(50.0));
         assert!(!at(50.01));
     }
 
     #[test]
-    fn the_gate_needs_quality_and_a_quota_for_the_whole_demand() {
-        let params = Params::shipped();
+    fn quality_gate_requires_quality_and_full_quota() {
+        let params = Params::bundled();
         let k = Curve { steepness_left: 1.0, steepness_right: 2.0, c_max: 60.0, q_min: 0.5, q_max: 0.95 };
         for (product, tier, quota, passes) in [
             (0.6, 3, 1e9, true),
@@ -139,7 +145,11 @@ mod tests {
             (0.9, 5, 2000.0, false),
         ] {
             let market = offers(product - 0.2, [1.0; 3], [tier; 3], [quota; 3], &params);
-            assert_eq!(passes_gate(&market, 5000.0, &k, &params), passes, "product quality {product}");
+            assert_eq!(
+                passes_quality_gate(&market, 5000.0, &k, &params),
+                passes,
+                "product quality {product}"
+            );
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Active subscribers in columns, split into blocks by running customer number.
 //!
-//! A block holds the active customers `first ..= first + BLOCK - 1` of one group, in the order of their
+//! A block holds the active customers `first ..= first + CUSTOMERS_PER_BLOCK - 1` of one group, in the order of their
 //! numbers. Sweeps process whole blocks on any thread. Each customer has a fixed position in the random
 //! stream of its block, so one customer's draws never affect another's (docs/mechanics/randomness.md#blocks).
 
@@ -10,7 +10,7 @@ use crate::identifiers::Plan;
 use super::curve::Curve;
 
 /// Customer numbers per block.
-pub const BLOCK: u32 = 1024;
+pub const CUSTOMERS_PER_BLOCK: u32 = 1024;
 
 macro_rules! columns {
     (
@@ -216,7 +216,7 @@ impl Block {
     }
 
     /// Returns the positions of subscribers who are billed on days with this remainder.
-    pub fn due(&self, billing_day: u8) -> Vec<usize> {
+    pub fn due_positions(&self, billing_day: u8) -> Vec<usize> {
         // Customers who arrived on the same day are adjacent, so most blocks have none due and a search
         // detects that quickly.
         if !self.billing_day.contains(&billing_day) {
@@ -228,20 +228,20 @@ impl Block {
 
     /// Returns the position of a row in the random words of its block.
     #[inline]
-    pub fn place(&self, at: usize) -> usize {
-        place_in_block(self.n[at])
+    pub fn word_position(&self, at: usize) -> usize {
+        word_position_in_block(self.n[at])
     }
 }
 
 /// Returns the position of a running number in the random words of its block.
 #[inline]
-pub fn place_in_block(n: u32) -> usize {
-    ((n - 1) % BLOCK) as usize
+pub fn word_position_in_block(n: u32) -> usize {
+    ((n - 1) % CUSTOMERS_PER_BLOCK) as usize
 }
 
 /// Adds up several columns, each in order. Each addition depends on the previous one, so interleaving columns
 /// hides the latency.
-pub fn sums<const COLUMNS: usize>(columns: [&[f64]; COLUMNS]) -> [f64; COLUMNS] {
+pub fn sum_columns<const COLUMNS: usize>(columns: [&[f64]; COLUMNS]) -> [f64; COLUMNS] {
     let common = columns.iter().map(|column| column.len()).min().unwrap_or(0);
     let heads = columns.map(|column| &column[..common]);
     let mut sums = [0.0; COLUMNS];
@@ -263,20 +263,20 @@ pub(crate) mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn columns_are_added_up_in_their_order_whatever_their_lengths() {
+    fn sum_columns_handles_different_lengths() {
         let column = |length: usize, seed: f64| -> Vec<f64> {
             (0..length).map(|at| libm::sin(at as f64 * seed) * 1e3 + 0.1).collect()
         };
         let columns = [column(700, 0.3), column(3, 1.7), column(0, 1.0), column(41, 12.9)];
         let one_by_one = columns.each_ref().map(|column| column.iter().fold(0.0, |sum, value| sum + value));
-        assert_eq!(sums(columns.each_ref().map(Vec::as_slice)), one_by_one);
+        assert_eq!(sum_columns(columns.each_ref().map(Vec::as_slice)), one_by_one);
         let alike = [&columns[0][..], &columns[0][..]];
-        assert_eq!(sums(alike), [one_by_one[0]; 2]);
+        assert_eq!(sum_columns(alike), [one_by_one[0]; 2]);
     }
 
     proptest! {
         #[test]
-        fn removing_keeps_the_others_in_order(
+        fn remove_keeps_the_order_of_other_rows(
             count in 1u32..60,
             gone in proptest::collection::btree_set(0usize..60, 0..30),
         ) {
@@ -292,12 +292,12 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn rows_come_back_as_they_went_in() {
+    fn row_returns_pushed_values() {
         let mut block = Block::default();
         block.push(subscriber(3));
         block.insert(0, subscriber(1));
         assert_eq!((block.row(0), block.row(1)), (subscriber(1), subscriber(3)));
         assert_eq!((block.position(3), block.position(2)), (Some(1), None));
-        assert_eq!(block.place(1), 2);
+        assert_eq!(block.word_position(1), 2);
     }
 }

@@ -20,7 +20,7 @@ pub struct Curve {
 
 impl Curve {
     /// Returns the curve with expectations and budget moved by the market: q + dq, max(floor, c + dc).
-    pub fn drifted(self, dq: f64, dc: f64, c_max_floor: f64) -> Curve {
+    pub fn with_drift(self, dq: f64, dc: f64, c_max_floor: f64) -> Curve {
         Curve {
             q_min: self.q_min + dq,
             q_max: self.q_max + dq,
@@ -80,7 +80,7 @@ pub(crate) mod tests {
         Curve { steepness_left: 1.2, steepness_right: 2.8, c_max: 50.0, q_min: 0.1, q_max: 0.55 };
 
     fn assert_curve(curve: &Curve, expected: &[(f64, f64)], tolerance: f64) {
-        let params = Params::shipped();
+        let params = Params::bundled();
         for &(price, quality) in expected {
             let required = required_quality(price, curve, &params);
             assert!((required - quality).abs() < tolerance, "at {price}: got {required}, expected {quality}");
@@ -106,14 +106,14 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn required_quality_holds_to_ten_decimals() {
+    fn required_quality_matches_ten_decimals() {
         let expected =
             [(0.0, 0.1106708215), (24.999, 0.3143267387), (25.0, 0.3252049865), (50.0, 0.5497950135)];
         assert_curve(&X, &expected, 1e-10);
     }
 
     #[test]
-    fn a_company_requires_its_ceiling_above_its_budget() {
+    fn enterprise_requires_maximum_quality_above_its_budget() {
         let k = Curve { steepness_left: 1.0, steepness_right: 2.0, c_max: 60.0, q_min: 0.5, q_max: 0.95 };
         let expected = [
             (0.0, 0.5170680905),
@@ -130,8 +130,8 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn the_blended_form_has_no_jump_and_meets_the_ends() {
-        let mut params = Params::shipped();
+    fn blended_form_is_continuous_between_the_bounds() {
+        let mut params = Params::bundled();
         params.fidelity.required_quality = RequiredQuality::Blended;
         let at = |price| required_quality(price, &X, &params);
         assert!((at(25.0 + 1e-9) - at(25.0 - 1e-9)).abs() < 1e-6);

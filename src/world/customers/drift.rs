@@ -41,7 +41,7 @@ impl DriftTotals {
 }
 
 /// Returns the growth of a daily rate over one application of drift: (1 + r)^30 - 1.
-pub fn compounded(rate: f64, law: &Drift) -> f64 {
+pub fn compound_rate(rate: f64, law: &Drift) -> f64 {
     libm::pow(1.0 + rate, f64::from(law.days_per_application)) - 1.0
 }
 
@@ -57,12 +57,12 @@ pub fn next_drift_day(after: u32, law: &Drift) -> u32 {
 }
 
 /// Returns the change of all groups' expectations by one application.
-pub fn step_of_everyone(law: &Drift) -> f64 {
+pub fn global_drift_step(law: &Drift) -> f64 {
     f64::from(law.days_per_application) * law.global_q_bias_drift
 }
 
 /// Returns the change of a group's expectations and budgets by one application.
-pub fn step_of_group(group: Group, params: &Params) -> Expectation {
+pub fn group_drift_step(group: Group, params: &Params) -> Expectation {
     let (own, days) =
         (&params.group(group).group_drift_per_day, f64::from(params.drift.days_per_application));
     Expectation { quality: days * own.q_bias_drift, c_max: days * own.c_max_drift }
@@ -70,7 +70,7 @@ pub fn step_of_group(group: Group, params: &Params) -> Expectation {
 
 /// Changes the group totals and each active subscriber's curve and seats. `seat_multiplier` is yesterday's
 /// macro multiplier of seats. Returns whether drift was applied.
-pub fn apply(
+pub fn apply_drift(
     day: u32,
     totals: &mut DriftTotals,
     customers: &mut Customers,
@@ -82,17 +82,17 @@ pub fn apply(
         return false;
     }
     let times = if params.has_fault(Fault::DriftTwice) { 2 } else { 1 };
-    (0..times).for_each(|_| move_totals(totals, params));
+    (0..times).for_each(|_| update_totals(totals, params));
     customers.sweep(|group, _, block| {
         drift_block(block, &params.group(group).individual_drift_per_day, seat_multiplier[group], law);
     });
     true
 }
 
-fn move_totals(totals: &mut DriftTotals, params: &Params) {
-    totals.global_quality += step_of_everyone(&params.drift);
+fn update_totals(totals: &mut DriftTotals, params: &Params) {
+    totals.global_quality += global_drift_step(&params.drift);
     for group in Group::all() {
-        let step = step_of_group(group, params);
+        let step = group_drift_step(group, params);
         totals.quality[group] += step.quality;
         totals.c_max[group] += step.c_max;
     }
@@ -100,18 +100,18 @@ fn move_totals(totals: &mut DriftTotals, params: &Params) {
 
 fn drift_block(block: &mut Block, rates: &IndividualDrift, seat_multiplier: f64, law: &Drift) {
     if let Some(rate) = rates.c_max_drift {
-        let factor = 1.0 + compounded(rate, law);
+        let factor = 1.0 + compound_rate(rate, law);
         for c_max in &mut block.c_max {
             *c_max = (*c_max * factor).clamp(law.individual_c_max_min, law.individual_c_max_max);
         }
     }
     if let Some(rate) = rates.q_bias_drift {
-        let factor = 1.0 + compounded(rate, law);
+        let factor = 1.0 + compound_rate(rate, law);
         block.q_min.iter_mut().for_each(|quality| *quality *= factor);
         block.q_max.iter_mut().for_each(|quality| *quality *= factor);
     }
     if let Some(rate) = rates.steepness_left_drift {
-        let factor = 1.0 + compounded(rate, law);
+        let factor = 1.0 + compound_rate(rate, law);
         let (least, most) = (law.individual_steepness_left_min, law.individual_steepness_left_max);
         block
             .steepness_left
@@ -119,7 +119,7 @@ fn drift_block(block: &mut Block, rates: &IndividualDrift, seat_multiplier: f64,
             .for_each(|steepness| *steepness = (*steepness * factor).clamp(least, most));
     }
     if let Some(rate) = rates.seat_count_drift {
-        let factor = 1.0 + compounded(rate, law) * seat_multiplier;
+        let factor = 1.0 + compound_rate(rate, law) * seat_multiplier;
         block
             .seats
             .iter_mut()
@@ -141,13 +141,13 @@ mod tests {
     }
 
     fn drifted(id: &str, row: Subscriber, day: u32, pmi: f64) -> (Subscriber, DriftTotals) {
-        let params = Params::shipped();
+        let params = Params::bundled();
         let group = Group::parse(id).expect("a group");
         let economy = economy_at(pmi);
         let seats = ByGroup::from_fn(|group| economy.multiplier(group, Dimension::SeatCount, &params));
         let (mut totals, mut customers) = (DriftTotals::default(), Customers::default());
         customers.groups[group].activate(row);
-        apply(day, &mut totals, &mut customers, &seats, &params);
+        apply_drift(day, &mut totals, &mut customers, &seats, &params);
         (customers.groups[group].blocks[0].row(0), totals)
     }
 
@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn subscribers_drift_by_the_rates_of_their_group_within_bounds() {
+    fn subscribers_drift_by_group_rates_within_bounds() {
         for (id, before, [c_max, q_min, q_max, steepness, seats]) in [
             ("S1", row(50.0, 0.10, 0.50, 1.0, 1.0), [47.0853976979, 0.1061772923, 0.5308864615, 1.0, 1.0]),
             ("S3", row(120.0, 0.3, 0.8, 5.6, 1.0), [120.5411761459, 0.3185318769, 0.8494183385, 5.0, 1.0]),
@@ -196,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_drifts_in_the_grace_period() {
+    fn drift_starts_after_the_grace_period() {
         for day in [30, 60, 89, 91] {
             let (after, totals) = drifted("S1", subscriber(1), day, 45.0);
             assert_eq!((after, totals), (subscriber(1), DriftTotals::default()), "day {day}");
@@ -204,8 +204,8 @@ mod tests {
     }
 
     #[test]
-    fn rates_compound_over_an_application() {
-        near(compounded(0.002, &Params::shipped().drift), 0.0617729231);
+    fn compound_rate_matches_one_application() {
+        near(compound_rate(0.002, &Params::bundled().drift), 0.0617729231);
         let (x, _) = drifted("S1", row(50.0, 0.10, 0.55, 1.2, 1.0), 90, 45.0);
         near(x.c_max, 47.0853976979);
         near(x.q_max, 0.583975108);
@@ -213,9 +213,9 @@ mod tests {
         near(after.c_max, 56.84316043);
         near(after.q_min, 0.2188053750);
         near(after.steepness_left, 2.036314961);
-        let moved = Curve { c_max: 10.0, ..subscriber_curve() }.drifted(0.08, 2.0, 15.0);
+        let moved = Curve { c_max: 10.0, ..subscriber_curve() }.with_drift(0.08, 2.0, 15.0);
         assert_eq!((moved.c_max, moved.q_min), (15.0, 0.18));
-        let moved = subscriber_curve().drifted(0.08, 2.0, 15.0);
+        let moved = subscriber_curve().with_drift(0.08, 2.0, 15.0);
         assert_eq!((moved.c_max, moved.q_max), (52.0, 0.63));
     }
 

@@ -45,11 +45,16 @@ pub struct Negotiator {
 /// Draws the traits of the n-th customer of a group. `deal_velocity` is today's macro multiplier of that name.
 pub fn draw_traits(group: Group, n: u32, deal_velocity: f64, params: &Params, streams: &Streams) -> Traits {
     let stream = streams.open(Part::Traits, [group.index() as u64, u64::from(n)]);
-    traits_from(stream, group, deal_velocity, params)
+    draw_traits_from_stream(stream, group, deal_velocity, params)
 }
 
 /// Draws traits from the stream of a customer.
-pub fn traits_from(mut stream: Stream, group: Group, deal_velocity: f64, params: &Params) -> Traits {
+pub fn draw_traits_from_stream(
+    mut stream: Stream,
+    group: Group,
+    deal_velocity: f64,
+    params: &Params,
+) -> Traits {
     let (own, bounds) = (params.group(group), &params.customer_generation);
     let steepness = |exponential: f64, offset: f64, low, high| (exponential + offset).clamp(low, high);
     let steepness_left = steepness(
@@ -77,7 +82,7 @@ pub fn traits_from(mut stream: Stream, group: Group, deal_velocity: f64, params:
         .normal(own.ads_return_sensitivity_mean, own.ads_return_sensitivity_std)
         .max(bounds.ads_return_sensitivity_min);
     let (seats, negotiator) = if group.is_enterprise() {
-        let (seats, negotiator) = draw_company(own, deal_velocity, params, &mut stream);
+        let (seats, negotiator) = draw_enterprise_traits(own, deal_velocity, params, &mut stream);
         (seats, Some(negotiator))
     } else {
         (1.0, None)
@@ -95,7 +100,7 @@ pub fn traits_from(mut stream: Stream, group: Group, deal_velocity: f64, params:
     }
 }
 
-fn draw_company(
+fn draw_enterprise_traits(
     own: &GroupParams,
     deal_velocity: f64,
     params: &Params,
@@ -129,7 +134,7 @@ mod tests {
     use super::*;
 
     fn sample(id: &str, count: u32, deal_velocity: f64) -> Vec<Traits> {
-        let (params, streams) = (Params::shipped(), Streams::new(7));
+        let (params, streams) = (Params::bundled(), Streams::new(7));
         let group = Group::parse(id).expect("a group");
         (1..=count).map(|n| draw_traits(group, n, deal_velocity, &params, &streams)).collect()
     }
@@ -148,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn traits_of_individuals_have_their_measured_moments() {
+    fn individual_traits_match_measured_moments() {
         let drawn = sample("S1", 60_000, 1.0);
         assert_moments("steepness_left", drawn.iter().map(|t| t.curve.steepness_left), 1.202, 0.991);
         assert_moments("steepness_right", drawn.iter().map(|t| t.curve.steepness_right), 2.713, 1.695);
@@ -160,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn traits_of_companies_have_their_measured_moments() {
+    fn enterprise_traits_match_measured_moments() {
         let drawn = sample("E1", 40_000, 0.9);
         assert_moments("c_max", drawn.iter().map(|t| t.curve.c_max), 55.87, 25.87);
         assert_moments("seats", drawn.iter().map(|t| t.seats), 275.7, 130.6);
@@ -172,9 +177,9 @@ mod tests {
     }
 
     #[test]
-    fn the_nth_customer_does_not_depend_on_the_others() {
+    fn traits_do_not_depend_on_other_customers() {
         let ten = sample("E2", 10, 1.0);
-        let (params, streams) = (Params::shipped(), Streams::new(7));
+        let (params, streams) = (Params::bundled(), Streams::new(7));
         let group = Group::parse("E2").expect("a group");
         assert_eq!(draw_traits(group, 7, 1.0, &params, &streams), ten[6]);
     }

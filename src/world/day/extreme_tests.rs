@@ -5,17 +5,17 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use rayon::prelude::*;
 use toml::{Table, Value};
 
-use super::room::{NoRoom, room_for_next_day};
+use super::limits::{ExceededLimit, exceeded_limit_on_next_day};
 use super::wiring_tests::busy_settings;
 use super::*;
 use crate::params::keys;
 
 /// Values to test. Values out of range are rejected.
-const TRIED: [f64; 5] = [0.0, -1.0, 1_000.0, 4e9, 1e300];
+const TESTED_VALUES: [f64; 5] = [0.0, -1.0, 1_000.0, 4e9, 1e300];
 
 fn company(params: &Params, streams: &Streams) -> World {
     let mut facts = Facts::default();
-    let mut world = World::open(500, 1e8, params, &mut facts);
+    let mut world = World::new(500, 1e8, params, &mut facts);
     busy_settings(&mut world);
     for _ in 0..27 {
         step_day(&mut world, params, streams, &mut facts);
@@ -24,26 +24,26 @@ fn company(params: &Params, streams: &Streams) -> World {
 }
 
 /// Whether a similar key is tested instead: those of other groups, tiers and levels.
-fn is_one_of_many_alike(key: &str) -> bool {
+fn is_redundant_key(key: &str) -> bool {
     let of_group = |part: &str| Group::parse(part).is_some_and(|group| !["S1", "E1"].contains(&group.id()));
     let of_step = |part: &str| part.parse::<u32>().is_ok_and(|number| number > 1);
     key.split('.').any(|part| of_group(part) || of_step(part)) || key.starts_with("personas.")
 }
 
 #[test]
-fn every_allowed_value_of_a_parameter_lets_days_pass_or_has_no_room_for_them() {
-    let (shipped, streams) = (Params::shipped(), Streams::new(3));
+fn extreme_parameters_simulate_or_exceed_limits() {
+    let (shipped, streams) = (Params::bundled(), Streams::new(3));
     let opening = company(&shipped, &streams);
-    assert!(opening.customers.active().iter().sum::<u32>() > 20);
+    assert!(opening.customers.active_by_group().iter().sum::<u32>() > 20);
     let of_key = |key: &String| -> Vec<(String, Params)> {
-        let own = if is_one_of_many_alike(key) { None } else { shipped.value(key).ok() };
+        let own = if is_redundant_key(key) { None } else { shipped.value(key).ok() };
         let value = |number: f64| match own {
             Some(Value::Float(_)) => Some(Value::Float(number)),
             Some(Value::Integer(_)) => Some(Value::Integer(number as i64)),
             _ => None,
         };
         let with = |number: f64| Some((format!("{key} = {number}"), shipped.with(key, value(number)?).ok()?));
-        TRIED.into_iter().filter_map(with).collect()
+        TESTED_VALUES.into_iter().filter_map(with).collect()
     };
     let tried: Vec<(String, Params)> =
         keys(&Table::try_from(&shipped).expect("tables")).iter().flat_map(of_key).collect();
@@ -51,7 +51,7 @@ fn every_allowed_value_of_a_parameter_lets_days_pass_or_has_no_room_for_them() {
     let passes = |params: &Params| {
         let (mut world, mut facts) = (opening.clone(), Facts::default());
         for _ in 0..2 {
-            if world.is_over(params) || room_for_next_day(&world, params, &streams).is_some() {
+            if world.is_over(params) || exceeded_limit_on_next_day(&world, params, &streams).is_some() {
                 break;
             }
             step_day(&mut world, params, &streams, &mut facts);
@@ -66,14 +66,14 @@ fn every_allowed_value_of_a_parameter_lets_days_pass_or_has_no_room_for_them() {
 }
 
 #[test]
-fn a_day_that_would_bring_millions_has_no_room() {
-    let (shipped, streams) = (Params::shipped(), Streams::new(3));
+fn next_day_limit_rejects_millions_of_leads() {
+    let (shipped, streams) = (Params::bundled(), Streams::new(3));
     let world = company(&shipped, &streams);
-    assert_eq!(room_for_next_day(&world, &shipped, &streams), None);
+    assert_eq!(exceeded_limit_on_next_day(&world, &shipped, &streams), None);
     let crowded =
         shipped.with("calendar.weekly", Value::Array(vec![Value::Float(1e6); 7])).expect("in range");
-    assert_eq!(room_for_next_day(&world, &crowded, &streams), Some(NoRoom::Leads));
+    assert_eq!(exceeded_limit_on_next_day(&world, &crowded, &streams), Some(ExceededLimit::Leads));
     let mut full = world.clone();
     full.customers.next_customer = u32::MAX - 1;
-    assert_eq!(room_for_next_day(&full, &shipped, &streams), Some(NoRoom::Numbers));
+    assert_eq!(exceeded_limit_on_next_day(&full, &shipped, &streams), Some(ExceededLimit::Numbers));
 }

@@ -28,19 +28,19 @@ pub(super) fn busy_settings(world: &mut World) {
     world.settings.targeted_development.targeted_spend = spend(&[("S1", 3000.0), ("E1", 1500.0)]);
 }
 
-struct Play {
+struct TestRun {
     world: World,
     params: Params,
     streams: Streams,
     facts: Facts,
 }
 
-impl Play {
-    fn new(params: Params) -> Play {
+impl TestRun {
+    fn new(params: Params) -> TestRun {
         let mut facts = Facts::default();
-        let mut world = World::open(500, 1e7, &params, &mut facts);
+        let mut world = World::new(500, 1e7, &params, &mut facts);
         busy_settings(&mut world);
-        Play { world, params, streams: Streams::new(11), facts }
+        TestRun { world, params, streams: Streams::new(11), facts }
     }
 
     fn day(&mut self) -> (DayFigures, DayTrace) {
@@ -52,8 +52,8 @@ impl Play {
         days: u32,
         params: &Params,
         change: impl FnOnce(&mut Params),
-    ) -> (Play, DayFigures, DayTrace) {
-        let mut play = Play::new(params.clone());
+    ) -> (TestRun, DayFigures, DayTrace) {
+        let mut play = TestRun::new(params.clone());
         for _ in 0..days {
             play.day();
         }
@@ -80,21 +80,22 @@ fn outage(params: &mut Params, certain: bool) {
 }
 
 #[test]
-fn an_outage_reaches_the_hotline_the_moods_and_the_public() {
-    let params = Params::shipped();
-    let of = |certain| Play::day_after(40, &params, |params| outage(params, certain));
+fn outage_affects_issues_satisfaction_and_reputation() {
+    let params = Params::bundled();
+    let of = |certain| TestRun::day_after(40, &params, |params| outage(params, certain));
     let ((quiet, calm, _), (broken, down, _)) = (of(false), of(true));
     assert!(!calm.outage && calm.downtime_minutes == 0 && down.outage && down.downtime_minutes > 0);
     assert_eq!(calm.total_usage, down.total_usage, "all other conditions are equal");
 
     // Customers who open an issue anyway also do so during an outage, and many more do.
-    let callers =
-        |play: &Play| -> Vec<u32> { play.facts.issues_opened.iter().map(|issue| issue.customer).collect() };
+    let callers = |play: &TestRun| -> Vec<u32> {
+        play.facts.issues_opened.iter().map(|issue| issue.customer).collect()
+    };
     let (few, many) = (callers(&quiet), callers(&broken));
     assert!(few.iter().all(|customer| many.contains(customer)) && many.len() > 2 * few.len());
 
     // Existing subscribers are less satisfied; none gains.
-    let there = |play: &Play| -> Vec<Subscriber> {
+    let there = |play: &TestRun| -> Vec<Subscriber> {
         play.rows().into_iter().filter(|row| row.start_day < 41).collect()
     };
     let (before, after) = (there(&quiet), there(&broken));
@@ -110,21 +111,21 @@ fn an_outage_reaches_the_hotline_the_moods_and_the_public() {
     assert!(mean(&before, |row| row.relationship) > mean(&after, |row| row.relationship));
 
     // The chronicle records the outage.
-    let remembered = |play: &Play| play.world.market.social.chronicle.today().outage;
+    let remembered = |play: &TestRun| play.world.market.social.chronicle.today().outage;
     assert!(!remembered(&quiet) && remembered(&broken));
     let s1 = Group::at(0).expect("S1");
-    let reputation = |play: &Play| play.world.market.reputation.of(s1);
+    let reputation = |play: &TestRun| play.world.market.reputation.get(s1);
     assert!(reputation(&broken) < reputation(&quiet));
 }
 
 #[test]
-fn an_outage_drives_people_off_only_where_decisions_feel_it() {
+fn outage_increases_churn_only_if_the_penalty_applies_everywhere() {
     let left = |penalty, certain| -> u32 {
-        let mut params = Params::shipped();
+        let mut params = Params::bundled();
         params.fidelity.service_penalty = penalty;
         // A penalty large enough to affect decisions.
         params.quality.service_outage_weight = 0.5;
-        let (play, figures, _) = Play::day_after(44, &params, |params| outage(params, certain));
+        let (play, figures, _) = TestRun::day_after(44, &params, |params| outage(params, certain));
         let ended = play.facts.endings.iter().filter(|ending| !ending.group.is_enterprise());
         assert_eq!(ended.count() as u32, figures.cancellations);
         figures.cancellations
@@ -135,13 +136,13 @@ fn an_outage_drives_people_off_only_where_decisions_feel_it() {
 }
 
 #[test]
-fn overload_drives_people_off_on_its_day() {
+fn overload_increases_churn_on_the_same_day() {
     let left = |capacity_units: u32| {
-        let mut params = Params::shipped();
+        let mut params = Params::bundled();
         params.fidelity.service_penalty = ServicePenalty::Everywhere;
         // A penalty large enough to affect decisions.
         params.quality.service_overload_weight = 0.5;
-        let (_, figures, _) = Play::day_after(44, &params, |params| {
+        let (_, figures, _) = TestRun::day_after(44, &params, |params| {
             outage(params, false);
             params.capacity_tier.iter_mut().for_each(|tier| tier.capacity_units = capacity_units);
         });
@@ -153,8 +154,8 @@ fn overload_drives_people_off_on_its_day() {
 }
 
 #[test]
-fn every_day_has_its_own_calendar() {
-    let mut params = Params::shipped();
+fn calendar_factors_apply_by_day() {
+    let mut params = Params::bundled();
     for (at, factor) in params.calendar.weekly.iter_mut().enumerate() {
         *factor = 1.0 + 0.1 * at as f64;
     }
@@ -162,7 +163,7 @@ fn every_day_has_its_own_calendar() {
         *factor = 2.0 + 0.01 * at as f64;
     }
     let calendar = params.calendar.clone();
-    let mut play = Play::new(params);
+    let mut play = TestRun::new(params);
     let s1 = Group::at(0).expect("S1");
     for day in 1..=64usize {
         let (_, trace) = play.day();
@@ -175,7 +176,7 @@ fn every_day_has_its_own_calendar() {
             params.calendar.monthly[65 % 30] *= monthly;
             params.calendar.weekly[65 % 7] *= weekly;
         };
-        Play::day_after(64, &Params::shipped(), change).1.total_usage as f64
+        TestRun::day_after(64, &Params::bundled(), change).1.total_usage as f64
     };
     assert_eq!(day_65(1.0, 1.0), day_65(3.0, 1.0));
     let half = day_65(1.0, 0.5) / day_65(1.0, 1.0);
@@ -183,8 +184,8 @@ fn every_day_has_its_own_calendar() {
 }
 
 /// Parameters with the economy at half its neutral index and no reactions except those that `change` sets.
-fn reacting(change: impl Fn(&mut MacroBeta)) -> Params {
-    let mut params = Params::shipped();
+fn params_with_macro_reaction(change: impl Fn(&mut MacroBeta)) -> Params {
+    let mut params = Params::bundled();
     let law = &mut params.economy;
     (law.macro_pmi_initial, law.macro_pmi_long_run_mean) = (25.0, 25.0);
     (law.macro_pmi_cycle_amplitude, law.macro_pmi_daily_volatility) = (0.0, 0.0);
@@ -202,7 +203,7 @@ fn reacting(change: impl Fn(&mut MacroBeta)) -> Params {
 }
 
 /// Adds a subscriber with 500 seats that has no thread.
-fn seat_500_people(world: &mut World) -> Group {
+fn add_subscriber_with_500_seats(world: &mut World) -> Group {
     let group = Group::parse("E1").expect("a group");
     let customer = world.customers.next_customer;
     world.customers.next_customer += 1;
@@ -213,9 +214,9 @@ fn seat_500_people(world: &mut World) -> Group {
 }
 
 /// Returns the lead factor of the economy, the number of cancellations for price or quality, and the seats.
-fn effects(params: Params) -> (f64, usize, f64) {
-    let mut play = Play::new(params);
-    let group = seat_500_people(&mut play.world);
+fn measure_effects(params: Params) -> (f64, usize, f64) {
+    let mut play = TestRun::new(params);
+    let group = add_subscriber_with_500_seats(&mut play.world);
     let (mut factor, mut gave_up) = (0.0, 0);
     // Seats drift on day 90, using the economy of the day before.
     for _ in 0..90 {
@@ -228,22 +229,22 @@ fn effects(params: Params) -> (f64, usize, f64) {
 }
 
 #[test]
-fn the_economy_moves_what_each_of_its_dimensions_is_for() {
-    let (factor, few, seats) = effects(reacting(|_| {}));
+fn each_macro_dimension_affects_its_own_figure() {
+    let (factor, few, seats) = measure_effects(params_with_macro_reaction(|_| {}));
     assert_eq!(factor, 1.0);
-    let leads = effects(reacting(|beta| beta.lead_generation = Some(1.0)));
+    let leads = measure_effects(params_with_macro_reaction(|beta| beta.lead_generation = Some(1.0)));
     assert_eq!((leads.0, leads.2), (0.5, seats), "half of neutral, a sensitivity of one");
-    let budgets = effects(reacting(|beta| beta.willingness_to_pay = Some(1.0)));
+    let budgets = measure_effects(params_with_macro_reaction(|beta| beta.willingness_to_pay = Some(1.0)));
     assert_eq!((budgets.0, budgets.2), (1.0, seats));
     assert!(budgets.1 > few + 20, "{} give up with half the budget, {few} otherwise", budgets.1);
-    let offices = effects(reacting(|beta| beta.seat_count = Some(1.0)));
+    let offices = measure_effects(params_with_macro_reaction(|beta| beta.seat_count = Some(1.0)));
     assert_eq!((offices.0, offices.1), (1.0, few));
     assert!(offices.2 != seats, "{seats} seats in either economy");
 }
 
 #[test]
-fn every_figure_of_a_day_stands_in_its_own_field() {
-    let mut play = Play::new(Params::shipped());
+fn day_figures_match_the_facts() {
+    let mut play = TestRun::new(Params::bundled());
     let mut sums = DayFigures::default();
     for day in 1..=95 {
         if day == 50 {

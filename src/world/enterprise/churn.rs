@@ -1,7 +1,7 @@
 //! Enterprise churn: reasons, reputation damage, and candidates for posts.
 
-use super::company::moved_relationship;
-use super::{Standing, Step};
+use super::enterprise_customer::adjust_relationship;
+use super::{EnterpriseStatus, NegotiationStep};
 use crate::customers::columns::Subscriber;
 use crate::events::{EndCause, SubscriptionEnded, SubscriptionStatus, ThreadKind};
 use crate::identifiers::Group;
@@ -14,7 +14,7 @@ use crate::reputation::{ReputationCause, event_damage};
 ///
 /// Threads that reappear report the loss again every day.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct CompanyLost {
+pub struct LostEnterprise {
     /// Customer number of the enterprise.
     pub customer: u32,
     /// Its group.
@@ -28,12 +28,12 @@ pub struct CompanyLost {
     /// How the thread began.
     pub kind: ThreadKind,
     /// How the thread died.
-    pub blame: Blame,
+    pub failure: ThreadFailure,
 }
 
 /// The side whose silence ended a thread.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Blame {
+pub enum ThreadFailure {
     /// The enterprise fell silent.
     Silence,
     /// The player did not answer.
@@ -42,7 +42,7 @@ pub enum Blame {
 
 /// Inputs of the churn reason.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Grounds {
+pub struct ChurnFactors {
     /// Days that the enterprise's issue has been open, 0 without one.
     pub issue_days: u32,
     /// Shared quality of the plan without targeted development: today's if the enterprise fell silent, this
@@ -57,59 +57,64 @@ pub struct Grounds {
 }
 
 /// Returns why an enterprise left: the first reason that applies.
-pub fn churn_reason(blame: Blame, grounds: &Grounds, params: &Params) -> EndCause {
+pub fn churn_reason(blame: ThreadFailure, grounds: &ChurnFactors, params: &Params) -> EndCause {
     let sales = &params.enterprise;
     let poor = match blame {
-        Blame::Silence => {
+        ThreadFailure::Silence => {
             let quality = (grounds.shared_quality + grounds.relationship_bonus)
                 .clamp(params.quality.negotiation_quality_min, params.quality.negotiation_quality_max);
             quality - sales.churn_reason_quality_reference < sales.churn_reason_quality_gap
         }
-        Blame::Timeout => grounds.shared_quality < sales.timeout_quality_reason_threshold,
+        ThreadFailure::Timeout => grounds.shared_quality < sales.timeout_quality_reason_threshold,
     };
     if grounds.issue_days >= sales.extended_issue_days {
         EndCause::ExtendedIssue
     } else if poor {
         EndCause::QualityChange
-    } else if blame == Blame::Silence && grounds.demand > grounds.quota {
+    } else if blame == ThreadFailure::Silence && grounds.demand > grounds.quota {
         EndCause::QuotaChange
     } else {
         EndCause::PriceSensitivity
     }
 }
 
-impl Step<'_> {
+impl NegotiationStep<'_> {
     /// Ends the subscription of the thread's customer. Reputation is damaged even if the subscription already
     /// ended, so threads that reappear damage it every day.
-    pub(super) fn lose_subscriber(&mut self, thread: usize, blame: Blame, relationship_delta: f64) {
+    pub(super) fn lose_subscriber(&mut self, thread: usize, blame: ThreadFailure, relationship_delta: f64) {
         let own = &self.enterprise.threads[thread];
         let (customer, group, kind, number) = (own.customer, own.group, own.kind, own.number);
-        let Some(at) = self.enterprise.position(customer) else { return };
+        let Some(at) = self.enterprise.enterprise_position(customer) else { return };
         let n = self.enterprise.companies[at].n;
         let left = self.customers.groups[group].deactivate(n);
         if let Some(row) = left {
-            let ending = self.ending(at, &row, blame);
+            let ending = self.subscription_ending(at, &row, blame);
             self.facts.endings.push(ending);
-            self.enterprise.companies[at].standing = Standing::Gone(row);
+            self.enterprise.companies[at].standing = EnterpriseStatus::Lost(row);
         }
         let sales = &self.day.params.enterprise;
         let company = &mut self.enterprise.companies[at];
         let Some(row) = company.row(self.customers) else { return };
-        let relationship = moved_relationship(row.relationship, relationship_delta, sales);
+        let relationship = adjust_relationship(row.relationship, relationship_delta, sales);
         company.set_relationship(relationship, self.customers);
         self.damage_reputation(group, n, number);
-        self.result.lost.push(CompanyLost {
+        self.result.lost.push(LostEnterprise {
             customer,
             group,
             n: row.n,
             seats: row.seats as u32,
             days_subscribed: left.map(|row| self.today() - row.start_day),
             kind,
-            blame,
+            failure: blame,
         });
     }
 
-    fn ending(&self, company: usize, row: &Subscriber, blame: Blame) -> SubscriptionEnded {
+    fn subscription_ending(
+        &self,
+        company: usize,
+        row: &Subscriber,
+        blame: ThreadFailure,
+    ) -> SubscriptionEnded {
         let company = &self.enterprise.companies[company];
         let today = self.today();
         SubscriptionEnded {
@@ -119,23 +124,23 @@ impl Step<'_> {
             seats: row.seats as u32,
             // After a timeout the customer leaves today, but the recorded end is the end of the agreed month.
             day: match blame {
-                Blame::Silence => today,
-                Blame::Timeout => company.contract_end_day.max(today),
+                ThreadFailure::Silence => today,
+                ThreadFailure::Timeout => company.contract_end_day.max(today),
             },
             status: SubscriptionStatus::Cancelled,
-            cause: churn_reason(blame, &self.grounds(row, blame), self.day.params),
+            cause: churn_reason(blame, &self.churn_factors(row, blame), self.day.params),
         }
     }
 
-    fn grounds(&self, row: &Subscriber, blame: Blame) -> Grounds {
+    fn churn_factors(&self, row: &Subscriber, blame: ThreadFailure) -> ChurnFactors {
         let (morning, params) = (self.day.morning, self.day.params);
         let quality = &params.quality;
         let shared = match blame {
-            Blame::Silence => quality.base_product_quality + self.talks.product.shared_bonus,
-            Blame::Timeout => morning.shared_quality,
+            ThreadFailure::Silence => quality.base_product_quality + self.talks.product.shared_bonus,
+            ThreadFailure::Timeout => morning.shared_quality,
         };
         let relationship = relationship_as_read(row.relationship, quality);
-        Grounds {
+        ChurnFactors {
             issue_days: row.open_issue_days.saturating_sub(params.issues.new_issue_open_days),
             shared_quality: shared * morning.multipliers[row.plan],
             relationship_bonus: relationship_bonus(relationship, quality),
@@ -149,7 +154,12 @@ impl Step<'_> {
         let u = self.day.streams.open(Part::ReputationEvent, keys).uniform();
         let law = &self.day.params.reputation;
         let damage = event_damage(self.day.morning.subscribers[group], u, law);
-        self.reputation.write((group, ReputationCause::LostCompany), &[-damage], self.day.params, self.told);
+        self.reputation.add_all(
+            (group, ReputationCause::LostEnterprise),
+            &[-damage],
+            self.day.params,
+            self.told,
+        );
     }
 }
 
@@ -158,10 +168,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_first_ground_that_holds_is_the_reason() {
-        let params = Params::shipped();
+    fn churn_reason_is_the_first_that_applies() {
+        let params = Params::bundled();
         let quality = &params.quality;
-        let grounds = |issue_days, shared: f64, relationship, demand| Grounds {
+        let grounds = |issue_days, shared: f64, relationship, demand| ChurnFactors {
             issue_days,
             shared_quality: quality.base_product_quality + shared,
             relationship_bonus: relationship_bonus(relationship, quality),
@@ -177,12 +187,12 @@ mod tests {
             (grounds(0, 0.6, 0.5, 1001.0), EndCause::QuotaChange),
             (grounds(0, 0.6, 0.5, 1000.0), EndCause::PriceSensitivity),
         ] {
-            assert_eq!(churn_reason(Blame::Silence, &grounds, &params), reason, "{grounds:?}");
+            assert_eq!(churn_reason(ThreadFailure::Silence, &grounds, &params), reason, "{grounds:?}");
         }
         for (shared, reason) in [(0.1499, EndCause::QualityChange), (0.16, EndCause::PriceSensitivity)] {
             // Relationship and quota do not count after a timeout.
             let grounds = grounds(0, shared, 0.0, 5000.0);
-            assert_eq!(churn_reason(Blame::Timeout, &grounds, &params), reason, "{grounds:?}");
+            assert_eq!(churn_reason(ThreadFailure::Timeout, &grounds, &params), reason, "{grounds:?}");
         }
     }
 }

@@ -4,11 +4,11 @@ use crate::customers::curve::{Curve, required_quality};
 use crate::events::Offering;
 use crate::identifiers::ByPlan;
 use crate::params::Params;
-use novamind_base::notation::round_to;
+use novamind_base::formatting::round_to;
 
 /// The response of an enterprise.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Answer {
+pub enum OfferResponse {
     /// Accepts the offering at this position.
     Accept(usize),
     /// Names a price for the plan of the offering at this position, dollars a month and seat.
@@ -19,7 +19,7 @@ pub enum Answer {
 
 /// The values with which an enterprise evaluates offerings.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Judge {
+pub struct OfferEvaluator {
     /// Its curve, including all market drift.
     pub curve: Curve,
     /// Perceived quality of each plan.
@@ -64,30 +64,30 @@ pub fn counter_price(highest: f64, initial_offer_factor: f64, turns: u32, params
     round_to(bid, sales.counter_offer_decimals)
 }
 
-impl Judge {
+impl OfferEvaluator {
     /// Returns the response to offerings if the last turn of the thread has this number.
-    pub fn answer(&self, offerings: &[Offering], turn: u32, params: &Params) -> Answer {
+    pub fn respond(&self, offerings: &[Offering], turn: u32, params: &Params) -> OfferResponse {
         if turn >= self.max_turns {
-            return Answer::Silence;
+            return OfferResponse::Silence;
         }
         let affordable =
             |offering: &Offering| !params.fidelity.deal_price_ceiling || offering.price <= self.curve.c_max;
-        let best = self.best(offerings, affordable, params);
+        let best = self.best_offering(offerings, affordable, params);
         if let Some((at, surplus)) = best
             && surplus > params.enterprise.accept_min_satisfaction_exclusive
         {
-            return Answer::Accept(at);
+            return OfferResponse::Accept(at);
         }
-        let Some((at, _)) = best.or_else(|| self.best(offerings, |_| true, params)) else {
-            return Answer::Silence;
+        let Some((at, _)) = best.or_else(|| self.best_offering(offerings, |_| true, params)) else {
+            return OfferResponse::Silence;
         };
         let highest = highest_price(self.quality[offerings[at].plan], &self.curve, params);
         let price = counter_price(highest, self.initial_offer_factor, turn, params);
-        if price > 0.0 { Answer::Counter(at, price) } else { Answer::Silence }
+        if price > 0.0 { OfferResponse::Counter(at, price) } else { OfferResponse::Silence }
     }
 
     /// Returns position and surplus of the best suitable offering, the first one on ties.
-    fn best(
+    fn best_offering(
         &self,
         offerings: &[Offering],
         fits: impl Fn(&Offering) -> bool,
@@ -121,13 +121,13 @@ pub(super) mod tests {
         list.iter().map(|&(plan, price)| Offering { plan, price }).collect()
     }
 
-    fn judge(a: f64, b: f64, c: f64) -> Judge {
-        Judge { curve: K, quality: ByPlan([a, b, c]), initial_offer_factor: 0.75, max_turns: 6 }
+    fn evaluator(a: f64, b: f64, c: f64) -> OfferEvaluator {
+        OfferEvaluator { curve: K, quality: ByPlan([a, b, c]), initial_offer_factor: 0.75, max_turns: 6 }
     }
 
     #[test]
-    fn the_reference_company_requires_more_at_a_higher_price() {
-        let params = Params::shipped();
+    fn required_quality_matches_the_reference_enterprise() {
+        let params = Params::bundled();
         for (price, required) in [
             (0.0, 0.5170680905),
             (15.0, 0.6125),
@@ -144,8 +144,8 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn the_highest_price_is_the_last_one_a_quality_suffices_for() {
-        let params = Params::shipped();
+    fn highest_price_matches_the_required_quality() {
+        let params = Params::bundled();
         for (quality, highest) in [
             (0.517, 0.0),
             (0.52, 1.0363337665),
@@ -163,8 +163,8 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn each_turn_closes_a_share_of_the_gap_to_the_highest_price() {
-        let params = Params::shipped();
+    fn counter_price_approaches_the_highest_price() {
+        let params = Params::bundled();
         let highest = highest_price(0.8, &K, &params);
         let bids: Vec<f64> = (0..8).map(|turns| counter_price(highest, 0.75, turns, &params)).collect();
         assert_eq!(bids, [32.19, 35.41, 37.66, 39.24, 40.34, 41.12, 41.66, 42.04]);
@@ -174,59 +174,70 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn the_best_offering_is_taken_while_turns_are_left() {
-        let params = Params::shipped();
-        let own = judge(0.72, 0.80, 0.88);
+    fn best_offering_is_accepted_before_the_last_turn() {
+        let params = Params::bundled();
+        let own = evaluator(0.72, 0.80, 0.88);
         let three = offers(&[(Plan::A, 30.0), (Plan::B, 35.0), (Plan::C, 50.0)]);
-        assert_eq!(own.answer(&three, 1, &params), Answer::Accept(1));
+        assert_eq!(own.respond(&three, 1, &params), OfferResponse::Accept(1));
         near(surplus(0.80, 35.0, &K, &params), 0.067249831);
         for (price, missing) in [(44.0, -0.018921704), (50.0, -0.114254451)] {
-            assert_eq!(own.answer(&offers(&[(Plan::B, price)]), 1, &params), Answer::Counter(0, 35.41));
+            assert_eq!(
+                own.respond(&offers(&[(Plan::B, price)]), 1, &params),
+                OfferResponse::Counter(0, 35.41)
+            );
             near(surplus(0.80, price, &K, &params), missing);
         }
         let gift = offers(&[(Plan::B, 1.0)]);
-        assert_eq!(own.answer(&gift, 6, &params), Answer::Silence);
+        assert_eq!(own.respond(&gift, 6, &params), OfferResponse::Silence);
         near(surplus(0.80, 1.0, &K, &params), 0.280110073);
-        assert_eq!(own.answer(&gift, 5, &params), Answer::Accept(0));
-        assert_eq!(own.answer(&offers(&[(Plan::B, 35.0), (Plan::B, 35.0)]), 1, &params), Answer::Accept(0));
-        assert_eq!(own.answer(&offers(&[(Plan::B, -5.0)]), 1, &params), Answer::Accept(0));
-        assert_eq!(own.answer(&[], 1, &params), Answer::Silence);
+        assert_eq!(own.respond(&gift, 5, &params), OfferResponse::Accept(0));
+        assert_eq!(
+            own.respond(&offers(&[(Plan::B, 35.0), (Plan::B, 35.0)]), 1, &params),
+            OfferResponse::Accept(0)
+        );
+        assert_eq!(own.respond(&offers(&[(Plan::B, -5.0)]), 1, &params), OfferResponse::Accept(0));
+        assert_eq!(own.respond(&[], 1, &params), OfferResponse::Silence);
     }
 
     #[test]
     fn quality_beyond_all_requirements_accepts_any_price() {
-        let params = Params::shipped();
+        let params = Params::bundled();
         let dear = offers(&[(Plan::B, 100_000.0)]);
-        assert_eq!(judge(0.9, 0.96, 1.0).answer(&dear, 1, &params), Answer::Accept(0));
+        assert_eq!(evaluator(0.9, 0.96, 1.0).respond(&dear, 1, &params), OfferResponse::Accept(0));
         near(surplus(0.96, 100_000.0, &K, &params), 0.01);
-        assert_eq!(judge(0.9, 0.95, 1.0).answer(&dear, 1, &params), Answer::Counter(0, 49.50));
-        let weak = judge(0.5, 0.6, 0.7);
-        assert_eq!(weak.answer(&offers(&[(Plan::A, 1.0)]), 1, &params), Answer::Silence);
+        assert_eq!(evaluator(0.9, 0.95, 1.0).respond(&dear, 1, &params), OfferResponse::Counter(0, 49.50));
+        let weak = evaluator(0.5, 0.6, 0.7);
+        assert_eq!(weak.respond(&offers(&[(Plan::A, 1.0)]), 1, &params), OfferResponse::Silence);
         near(surplus(0.5, 1.0, &K, &params), -0.019889927);
     }
 
     #[test]
-    fn a_first_impression_moves_the_counter_price() {
-        let params = Params::shipped();
+    fn first_impression_changes_the_counter_price() {
+        let params = Params::bundled();
         for (noise, price) in [(0.8, 14.85), (0.9, 24.75), (1.0, 35.41), (1.1, 39.09)] {
-            let own = judge(0.0, 0.8 * noise, 0.0);
-            assert_eq!(own.answer(&offers(&[(Plan::B, 59.0)]), 1, &params), Answer::Counter(0, price));
+            let own = evaluator(0.0, 0.8 * noise, 0.0);
+            assert_eq!(
+                own.respond(&offers(&[(Plan::B, 59.0)]), 1, &params),
+                OfferResponse::Counter(0, price)
+            );
         }
     }
 
     #[test]
-    fn a_ceiling_keeps_prices_within_the_budget() {
-        let mut params = Params::shipped();
+    fn price_ceiling_rejects_prices_above_the_budget() {
+        let mut params = Params::bundled();
         params.fidelity.deal_price_ceiling = true;
-        let own = judge(0.9, 0.96, 1.1);
+        let own = evaluator(0.9, 0.96, 1.1);
         // The expensive offering has the largest surplus, but the affordable one is accepted.
         let mixed = offers(&[(Plan::C, 61.0), (Plan::B, 58.0)]);
-        assert_eq!(own.answer(&mixed, 1, &params), Answer::Accept(1));
+        assert_eq!(own.respond(&mixed, 1, &params), OfferResponse::Accept(1));
         // If no offering is affordable, the best of all determines the plan of the counter-offer.
         let dear = offers(&[(Plan::B, 61.0), (Plan::C, 70.0)]);
-        let Answer::Counter(1, price) = own.answer(&dear, 1, &params) else { panic!("a counter-offer") };
+        let OfferResponse::Counter(1, price) = own.respond(&dear, 1, &params) else {
+            panic!("a counter-offer")
+        };
         near(price, counter_price(60.0, 0.75, 1, &params));
         params.fidelity.deal_price_ceiling = false;
-        assert_eq!(own.answer(&dear, 1, &params), Answer::Accept(1));
+        assert_eq!(own.respond(&dear, 1, &params), OfferResponse::Accept(1));
     }
 }

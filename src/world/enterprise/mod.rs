@@ -2,12 +2,12 @@
 //! their threads (`docs/mechanics/enterprise/README.md`).
 //!
 //! Start with [`Enterprise::step`], the enterprise part of a day. Messages that the player sends between two
-//! weeks are in [`letters`].
+//! weeks are in [`messages`].
 
 pub mod churn;
-mod company;
+mod enterprise_customer;
 mod evaluation;
-pub mod letters;
+pub mod messages;
 mod open_threads;
 mod outcomes;
 mod quality;
@@ -16,15 +16,15 @@ mod thread;
 mod triggers;
 
 #[cfg(test)]
-mod stories;
+mod scenario_tests;
 #[cfg(test)]
 pub(crate) mod test_kit;
 
 use std::collections::BTreeSet;
 
-pub use churn::CompanyLost;
-pub use company::{Company, Standing, moved_relationship};
-pub use evaluation::{Answer, Judge, counter_price, highest_price};
+pub use churn::LostEnterprise;
+pub use enterprise_customer::{Company, EnterpriseStatus, adjust_relationship};
+pub use evaluation::{OfferEvaluator, OfferResponse, counter_price, highest_price};
 pub use open_threads::OpenThreads;
 pub use thread::{Thread, Turn};
 
@@ -34,7 +34,7 @@ use super::customers::Customers;
 use super::events::{Facts, Notice, Sender, ThreadKind, ThreadTurn, TurnContent};
 use super::product::Product;
 use crate::customers::drift::DriftTotals;
-use crate::reputation::{OnWrite, ReputationBook};
+use crate::reputation::{OnReputationWrite, ReputationBook};
 
 /// Negotiations with enterprises.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,7 +59,7 @@ impl Default for Enterprise {
 }
 
 /// Shared inputs of the negotiations of a day.
-pub struct Negotiation<'a> {
+pub struct NegotiationContext<'a> {
     /// The day.
     pub day: &'a DayContext<'a>,
     /// The product, including today's improvements.
@@ -70,21 +70,21 @@ pub struct Negotiation<'a> {
 
 /// Results that later steps of the day need.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct EnterpriseDay {
+pub struct EnterpriseDayResult {
     /// Customers who pay nothing today because their threat to leave was open this morning.
     pub suspended: BTreeSet<u32>,
     /// Subscribers whose threads died, as candidates for posts.
-    pub lost: Vec<CompanyLost>,
+    pub lost: Vec<LostEnterprise>,
     /// Seats of enterprises that signed today.
     pub new_seats: u32,
 }
 
 impl Enterprise {
     /// Opens the thread of a new lead: one turn by the system, and a notification that does not name the enterprise.
-    pub fn open_lead(&mut self, day: u32, company: Company, facts: &mut Facts) {
+    pub fn open_lead_thread(&mut self, day: u32, company: Company, facts: &mut Facts) {
         let seats = match &company.standing {
-            Standing::Lead(row) | Standing::Gone(row) => row.seats as u32,
-            Standing::Subscriber => 1,
+            EnterpriseStatus::Lead(row) | EnterpriseStatus::Lost(row) => row.seats as u32,
+            EnterpriseStatus::Subscriber => 1,
         };
         self.companies.push(company);
         let at = self.companies.len() - 1;
@@ -98,52 +98,52 @@ impl Enterprise {
         &mut self,
         customers: &mut Customers,
         reputation: &mut ReputationBook,
-        talks: &Negotiation<'_>,
+        context: &NegotiationContext<'_>,
         facts: &mut Facts,
-        told: &mut OnWrite<'_>,
-    ) -> EnterpriseDay {
-        let day = talks.day;
-        let view = self.live_view(day.params.fidelity.reappearing_threads);
+        on_write: &mut OnReputationWrite<'_>,
+    ) -> EnterpriseDayResult {
+        let day = context.day;
+        let view = self.active_threads(day.params.fidelity.reappearing_threads);
         let busy: BTreeSet<u32> = view.iter().map(|live| self.threads[live.thread].customer).collect();
-        let mut step = Step {
+        let mut step = NegotiationStep {
             enterprise: self,
             customers,
             reputation,
-            told,
+            told: on_write,
             day,
-            talks,
+            talks: context,
             facts,
-            result: EnterpriseDay::default(),
+            result: EnterpriseDayResult::default(),
         };
-        step.result.suspended = step.threatening(&view);
-        step.time_out(&view);
+        step.result.suspended = step.threatening_customers(&view);
+        step.expire_threads(&view);
         step.receive_replies(&view);
-        step.trigger(&busy);
+        step.open_subscriber_threads(&busy);
         let result = step.result;
         let reappearing = day.params.fidelity.reappearing_threads;
-        self.forget(|thread| thread.is_over(day.day(), reappearing));
+        self.remove_finished(|thread| thread.is_finished(day.day(), reappearing));
         result
     }
 
     /// Returns an enterprise by its customer number.
     pub fn company(&self, customer: u32) -> Option<&Company> {
-        self.position(customer).map(|at| &self.companies[at])
+        self.enterprise_position(customer).map(|at| &self.companies[at])
     }
 
     /// Returns the open threads by enterprise.
     pub fn open_threads(&self) -> OpenThreads<'_> {
-        OpenThreads::among(&self.threads)
+        OpenThreads::from_threads(&self.threads)
     }
 
-    fn position(&self, customer: u32) -> Option<usize> {
+    fn enterprise_position(&self, customer: u32) -> Option<usize> {
         self.companies.binary_search_by_key(&customer, |company| company.customer).ok()
     }
 
     /// Returns this morning's threads that are not closed, each with its active turn.
-    fn live_view(&self, reappearing: bool) -> Vec<Live> {
+    fn active_threads(&self, reappearing: bool) -> Vec<ActiveThread> {
         let live = |(at, thread): (usize, &Thread)| {
-            let turn = thread.live(reappearing)?;
-            Some(Live { thread: at, sender: turn.sender, day: turn.day, reply_day: turn.reply_day })
+            let turn = thread.active_turn(reappearing)?;
+            Some(ActiveThread { thread: at, sender: turn.sender, day: turn.day, reply_day: turn.reply_day })
         };
         self.threads.iter().enumerate().filter_map(live).collect()
     }
@@ -164,12 +164,12 @@ impl Enterprise {
         let Company { customer, group, .. } = self.companies[company];
         self.threads.push(Thread { number, customer, group, kind, turns: Vec::new(), closed: false });
         let thread = self.threads.len() - 1;
-        self.say(thread, 0, day, seats, sender, content, facts);
+        self.append_turn(thread, 0, day, seats, sender, content, facts);
         thread
     }
 
     #[expect(clippy::too_many_arguments, reason = "a turn has that many values")]
-    fn say(
+    fn append_turn(
         &mut self,
         thread: usize,
         number: u32,
@@ -206,17 +206,17 @@ impl Enterprise {
     }
 
     /// Removes finished threads, and lost enterprises without a thread.
-    fn forget(&mut self, is_over: impl Fn(&Thread) -> bool) {
+    fn remove_finished(&mut self, is_over: impl Fn(&Thread) -> bool) {
         self.threads.retain(|thread| !is_over(thread));
         let still: BTreeSet<u32> = self.threads.iter().map(|thread| thread.customer).collect();
-        let gone = |company: &Company| matches!(company.standing, Standing::Gone(_));
+        let gone = |company: &Company| matches!(company.standing, EnterpriseStatus::Lost(_));
         self.companies.retain(|company| !gone(company) || still.contains(&company.customer));
     }
 }
 
 /// A thread of this morning and its active turn.
 #[derive(Debug, Clone, Copy)]
-struct Live {
+struct ActiveThread {
     /// Index into the threads.
     thread: usize,
     sender: Sender,
@@ -225,24 +225,24 @@ struct Live {
 }
 
 /// State of the negotiations of one day.
-struct Step<'a> {
+struct NegotiationStep<'a> {
     enterprise: &'a mut Enterprise,
     customers: &'a mut Customers,
     reputation: &'a mut ReputationBook,
     /// Called after each change of a reputation.
-    told: &'a mut OnWrite<'a>,
+    told: &'a mut OnReputationWrite<'a>,
     day: &'a DayContext<'a>,
-    talks: &'a Negotiation<'a>,
+    talks: &'a NegotiationContext<'a>,
     facts: &'a mut Facts,
-    result: EnterpriseDay,
+    result: EnterpriseDayResult,
 }
 
-impl Step<'_> {
+impl NegotiationStep<'_> {
     fn today(&self) -> u32 {
         self.day.day()
     }
 
-    fn threatening(&self, view: &[Live]) -> BTreeSet<u32> {
+    fn threatening_customers(&self, view: &[ActiveThread]) -> BTreeSet<u32> {
         let threads = view.iter().map(|live| &self.enterprise.threads[live.thread]);
         threads
             .filter(|thread| thread.kind == ThreadKind::ChurnPrevention)
@@ -250,25 +250,25 @@ impl Step<'_> {
             .collect()
     }
 
-    fn time_out(&mut self, view: &[Live]) {
+    fn expire_threads(&mut self, view: &[ActiveThread]) {
         let patience = self.day.params.enterprise.agent_response_timeout_days;
         for live in view.iter().filter(|live| live.sender != Sender::Agent) {
             let days = self.today() - live.day;
             if days >= patience {
-                self.give_up(live.thread, days);
+                self.end_by_timeout(live.thread, days);
             }
         }
     }
 
-    fn seats_of(&self, thread: usize) -> u32 {
+    fn thread_seats(&self, thread: usize) -> u32 {
         let company = self.enterprise.company(self.enterprise.threads[thread].customer);
         company.and_then(|company| company.row(self.customers)).map_or(1, |row| row.seats as u32)
     }
 
     /// Appends a turn of today with the next number to a thread.
-    fn say(&mut self, thread: usize, sender: Sender, seats: u32, content: TurnContent) {
+    fn append_turn_today(&mut self, thread: usize, sender: Sender, seats: u32, content: TurnContent) {
         let number = self.enterprise.threads[thread].last().number + 1;
         let today = self.today();
-        self.enterprise.say(thread, number, today, seats, sender, content, self.facts);
+        self.enterprise.append_turn(thread, number, today, seats, sender, content, self.facts);
     }
 }

@@ -12,7 +12,7 @@ pub struct OpenThreads<'a> {
 
 impl<'a> OpenThreads<'a> {
     /// Indexes the open threads of a list.
-    pub(super) fn among(threads: &'a [Thread]) -> OpenThreads<'a> {
+    pub(super) fn from_threads(threads: &'a [Thread]) -> OpenThreads<'a> {
         let mut by_customer: BTreeMap<u32, Vec<&Thread>> = BTreeMap::new();
         for thread in threads.iter().filter(|thread| thread.is_open()) {
             by_customer.entry(thread.customer).or_default().push(thread);
@@ -29,7 +29,7 @@ impl<'a> OpenThreads<'a> {
     }
 
     /// Removes and returns the enterprise's thread with the newest turn.
-    pub fn take_newest(&mut self, customer: u32) -> Option<&'a Thread> {
+    pub fn pop_newest(&mut self, customer: u32) -> Option<&'a Thread> {
         self.by_customer.get_mut(&customer)?.pop()
     }
 }

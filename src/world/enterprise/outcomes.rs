@@ -1,8 +1,8 @@
 //! How threads end: with a deal, by silence of the enterprise, or by timeout.
 
-use super::churn::Blame;
-use super::company::moved_relationship;
-use super::{Standing, Step};
+use super::churn::ThreadFailure;
+use super::enterprise_customer::adjust_relationship;
+use super::{EnterpriseStatus, NegotiationStep};
 use crate::customers::columns::Subscriber;
 use crate::events::{
     DealClosed, EndCause, LossCause, Notice, Offering, Sender, SubscriptionEnded, SubscriptionStatus,
@@ -11,15 +11,15 @@ use crate::events::{
 use crate::product::usage::usage_rate;
 use crate::random::Part;
 use crate::retention::refresh_required;
-use crate::retention::renewal::{ongoing_discount, terms};
+use crate::retention::renewal::{ongoing_discount, row_terms};
 
-impl Step<'_> {
+impl NegotiationStep<'_> {
     /// Accepts an offering; the deal takes effect today.
-    pub(super) fn accept(&mut self, thread: usize, offering: Offering) {
-        let seats = self.seats_of(thread);
-        self.say(thread, Sender::Customer, seats, TurnContent::Acceptance(offering));
+    pub(super) fn accept_offering(&mut self, thread: usize, offering: Offering) {
+        let seats = self.thread_seats(thread);
+        self.append_turn_today(thread, Sender::Customer, seats, TurnContent::Acceptance(offering));
         self.close_deal(thread, offering, seats);
-        self.say(thread, Sender::System, seats, TurnContent::Closing(offering));
+        self.append_turn_today(thread, Sender::System, seats, TurnContent::Closing(offering));
         self.enterprise.threads[thread].closed = true;
         self.facts.notices.push(Notice::DealWon { price: offering.price });
     }
@@ -28,17 +28,19 @@ impl Step<'_> {
     fn close_deal(&mut self, thread: usize, offering: Offering, seats: u32) {
         let own = &self.enterprise.threads[thread];
         let (customer, kind) = (own.customer, own.kind);
-        let (agent_turns, days) = (own.agent_turns(), self.today() - own.turns[0].day);
+        let (agent_turns, days) = (own.player_turn_count(), self.today() - own.turns[0].day);
         let standing = self.enterprise.company(customer).map(|company| company.standing.clone());
         let new_lead = kind == ThreadKind::NewLead;
         let (changed, activated) = match standing {
-            Some(Standing::Lead(row)) if new_lead => (self.activate(customer, row, offering), true),
-            Some(Standing::Subscriber) if !new_lead => (self.change_terms(customer, offering), false),
+            Some(EnterpriseStatus::Lead(row)) if new_lead => {
+                (self.activate_lead(customer, row, offering), true)
+            }
+            Some(EnterpriseStatus::Subscriber) if !new_lead => (self.change_terms(customer, offering), false),
             _ => (None, false),
         };
         let end = self.today() + self.day.params.enterprise.contract_month_days;
         let contract_end_day = changed.is_some().then_some(end);
-        if let (Some(end), Some(at)) = (contract_end_day, self.enterprise.position(customer)) {
+        if let (Some(end), Some(at)) = (contract_end_day, self.enterprise.enterprise_position(customer)) {
             self.enterprise.companies[at].contract_end_day = end;
         }
         self.result.new_seats += if activated { seats } else { 0 };
@@ -58,8 +60,8 @@ impl Step<'_> {
     }
 
     /// Turns a lead into a subscriber, billed on the day of the month on which it arrived.
-    fn activate(&mut self, customer: u32, lead: Subscriber, offering: Offering) -> Option<TermsChanged> {
-        let (params, group) = (self.day.params, self.group_of(customer));
+    fn activate_lead(&mut self, customer: u32, lead: Subscriber, offering: Offering) -> Option<TermsChanged> {
+        let (params, group) = (self.day.params, self.customer_group(customer));
         let promotion = ongoing_discount(customer, group, offering.plan, self.day.settings, params);
         let keys = [group.index() as u64, u64::from(lead.n), u64::from(self.today())];
         let z = self.day.streams.open(Part::UsageRate, keys).standard_normal();
@@ -72,48 +74,48 @@ impl Step<'_> {
             effective_c_max: lead.c_max,
             start_day: self.today(),
             usage_rate: usage_rate(lead.usage_demand, lead.seats.trunc(), z, &params.customer_generation),
-            relationship: moved_relationship(lead.relationship, sales.deal_relationship_delta, sales),
+            relationship: adjust_relationship(lead.relationship, sales.deal_relationship_delta, sales),
             ..lead
         };
         self.customers.groups[group].activate(row);
-        if let Some(at) = self.enterprise.position(customer) {
-            self.enterprise.companies[at].standing = Standing::Subscriber;
+        if let Some(at) = self.enterprise.enterprise_position(customer) {
+            self.enterprise.companies[at].standing = EnterpriseStatus::Subscriber;
         }
-        self.renewed_terms(customer)
+        self.refresh_terms(customer)
     }
 
     /// Changes the terms of a subscriber; budget, tenure and billing day stay.
     fn change_terms(&mut self, customer: u32, offering: Offering) -> Option<TermsChanged> {
-        let (params, group) = (self.day.params, self.group_of(customer));
+        let (params, group) = (self.day.params, self.customer_group(customer));
         let promotion = ongoing_discount(customer, group, offering.plan, self.day.settings, params);
         let n = self.enterprise.company(customer)?.n;
         let own = &mut self.customers.groups[group];
-        let (block, at) = own.place(n)?;
+        let (block, at) = own.subscriber_position(n)?;
         let block = &mut own.blocks[block];
         block.plan[at] = offering.plan;
         block.listed_price[at] = offering.price;
         block.promotion[at] = promotion;
         block.effective_price[at] = (offering.price - promotion).max(params.billing.effective_price_min);
-        self.renewed_terms(customer)
+        self.refresh_terms(customer)
     }
 
     /// Updates the required quality of a subscriber and returns its terms.
-    fn renewed_terms(&mut self, customer: u32) -> Option<TermsChanged> {
-        let group = self.group_of(customer);
+    fn refresh_terms(&mut self, customer: u32) -> Option<TermsChanged> {
+        let group = self.customer_group(customer);
         let n = self.enterprise.company(customer)?.n;
         let own = &mut self.customers.groups[group];
-        let (block, at) = own.place(n)?;
+        let (block, at) = own.subscriber_position(n)?;
         let block = &mut own.blocks[block];
         refresh_required(block, at, self.day.morning.expectations[group].c_max, self.day.params);
-        Some(terms(block, at))
+        Some(row_terms(block, at))
     }
 
-    fn group_of(&self, customer: u32) -> crate::identifiers::Group {
+    fn customer_group(&self, customer: u32) -> crate::identifiers::Group {
         self.enterprise.company(customer).expect("an enterprise with a thread is kept").group
     }
 
     /// Ends a thread because the enterprise falls silent. No turn is added; the newest one is marked dead.
-    pub(super) fn fall_silent(&mut self, thread: usize) {
+    pub(super) fn end_by_silence(&mut self, thread: usize) {
         let own = &mut self.enterprise.threads[thread];
         own.last_mut().dead = true;
         let kind = own.kind;
@@ -127,11 +129,11 @@ impl Step<'_> {
             ThreadKind::Renegotiation => sales.renegotiation_ghost_relationship_delta,
             _ => sales.ghost_relationship_delta,
         };
-        self.lose_subscriber(thread, Blame::Silence, delta);
+        self.lose_subscriber(thread, ThreadFailure::Silence, delta);
     }
 
     /// Ends a thread because the player did not answer for too long.
-    pub(super) fn give_up(&mut self, thread: usize, days: u32) {
+    pub(super) fn end_by_timeout(&mut self, thread: usize, days: u32) {
         let own = &mut self.enterprise.threads[thread];
         let (customer, kind) = (own.customer, own.kind);
         let died_before = std::mem::replace(&mut own.last_mut().dead, true);
@@ -147,14 +149,14 @@ impl Step<'_> {
             self.facts.notices.push(Notice::LeadLostByTimeout { days });
         } else {
             let delta = self.day.params.enterprise.timeout_relationship_delta;
-            self.lose_subscriber(thread, Blame::Timeout, delta);
+            self.lose_subscriber(thread, ThreadFailure::Timeout, delta);
         }
     }
 
     /// Marks the lead of a thread as lost unless it already is.
     fn lose_lead(&mut self, thread: usize, cause: EndCause) {
         let (today, customer) = (self.today(), self.enterprise.threads[thread].customer);
-        if let Some(ending) = self.enterprise.lose_lead(customer, today, cause) {
+        if let Some(ending) = self.enterprise.mark_lead_lost(customer, today, cause) {
             self.facts.endings.push(ending);
         }
     }
@@ -162,16 +164,16 @@ impl Step<'_> {
 
 impl super::Enterprise {
     /// Marks a lead as lost. Returns `None` if it is not a lead.
-    pub(super) fn lose_lead(
+    pub(super) fn mark_lead_lost(
         &mut self,
         customer: u32,
         day: u32,
         cause: EndCause,
     ) -> Option<SubscriptionEnded> {
-        let at = self.position(customer)?;
+        let at = self.enterprise_position(customer)?;
         let company = &mut self.companies[at];
-        let Standing::Lead(row) = company.standing else { return None };
-        company.standing = Standing::Gone(row);
+        let EnterpriseStatus::Lead(row) = company.standing else { return None };
+        company.standing = EnterpriseStatus::Lost(row);
         Some(SubscriptionEnded {
             subscription: company.subscription,
             customer,

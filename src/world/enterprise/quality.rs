@@ -1,6 +1,6 @@
 //! Quality as enterprises perceive it in negotiations and every day (`docs/mechanics/enterprise/quality.md`).
 
-use super::Negotiation;
+use super::NegotiationContext;
 use crate::customers::columns::Subscriber;
 use crate::customers::curve::Curve;
 use crate::identifiers::{ByPlan, Group};
@@ -10,10 +10,10 @@ use crate::quality::{
     relationship_bonus,
 };
 
-impl Negotiation<'_> {
+impl NegotiationContext<'_> {
     /// Returns the quality of each plan in a negotiation, before a lead's first impression: today's product,
     /// no tenure, no weekday. Quotas count only for active subscriptions.
-    pub(super) fn offered_quality(&self, group: Group, row: &Subscriber, active: bool) -> ByPlan<f64> {
+    pub(super) fn negotiation_quality(&self, group: Group, row: &Subscriber, active: bool) -> ByPlan<f64> {
         let product = self.product.quality(group, self.day.params);
         let quality = &self.day.params.quality;
         ByPlan::from_fn(|plan| {
@@ -21,22 +21,29 @@ impl Negotiation<'_> {
             let quota =
                 if active { quota_factor(self.day.morning.quotas[plan], demand, quality) } else { 1.0 };
             let delivered = delivered_quality(product, 0.0, 0.0, self.day.morning.multipliers[plan]);
-            self.perceived(group, row, delivered, 0.0, quota)
+            self.perceived_plan_quality(group, row, delivered, 0.0, quota)
                 .clamp(quality.negotiation_quality_min, quality.negotiation_quality_max)
         })
     }
 
     /// Returns the quality of each plan for a subscriber: this morning's product, tenure and weekday, without bounds.
-    pub(super) fn lived_quality(&self, group: Group, row: &Subscriber) -> ByPlan<f64> {
+    pub(super) fn subscriber_quality(&self, group: Group, row: &Subscriber) -> ByPlan<f64> {
         let demand = quota_demand(row.usage_rate * self.day.morning.weekday, row.usage_rate, self.day.params);
         let tenure = self.day.tenure.bonus(self.day.day().saturating_sub(row.start_day));
         ByPlan::from_fn(|plan| {
             let quota = quota_factor(self.day.morning.quotas[plan], demand, &self.day.params.quality);
-            self.perceived(group, row, self.day.morning.delivered(group, plan), tenure, quota)
+            self.perceived_plan_quality(group, row, self.day.morning.delivered(group, plan), tenure, quota)
         })
     }
 
-    fn perceived(&self, group: Group, row: &Subscriber, delivered: f64, tenure: f64, quota: f64) -> f64 {
+    fn perceived_plan_quality(
+        &self,
+        group: Group,
+        row: &Subscriber,
+        delivered: f64,
+        tenure: f64,
+        quota: f64,
+    ) -> f64 {
         let quality = &self.day.params.quality;
         let penalty = match self.day.params.fidelity.service_penalty {
             ServicePenalty::Satisfaction => 0.0,
@@ -54,21 +61,21 @@ impl Negotiation<'_> {
     }
 
     /// Returns the curve in a negotiation, including all market drift.
-    pub(super) fn offered_curve(&self, group: Group, row: &Subscriber) -> Curve {
+    pub(super) fn negotiation_curve(&self, group: Group, row: &Subscriber) -> Curve {
         let expectation = self.drift.expectation(group);
         let floor = self.day.params.quality.read_time_c_max_min;
-        curve_of(row).drifted(expectation.quality, expectation.c_max, floor)
+        row_curve(row).with_drift(expectation.quality, expectation.c_max, floor)
     }
 
     /// Returns the curve for daily evaluation, including the market drift of this morning.
-    pub(super) fn lived_curve(&self, group: Group, row: &Subscriber) -> Curve {
+    pub(super) fn subscriber_curve(&self, group: Group, row: &Subscriber) -> Curve {
         let expectation = self.day.morning.expectations[group];
         let floor = self.day.params.quality.read_time_c_max_min;
-        curve_of(row).drifted(expectation.quality, expectation.c_max, floor)
+        row_curve(row).with_drift(expectation.quality, expectation.c_max, floor)
     }
 }
 
-fn curve_of(row: &Subscriber) -> Curve {
+fn row_curve(row: &Subscriber) -> Curve {
     Curve {
         steepness_left: row.steepness_left,
         steepness_right: row.steepness_right,
@@ -80,7 +87,7 @@ fn curve_of(row: &Subscriber) -> Curve {
 
 #[cfg(test)]
 mod tests {
-    use super::super::test_kit::Kit;
+    use super::super::test_kit::NegotiationKit;
     use super::*;
 
     fn assert_near(actual: ByPlan<f64>, expected: [f64; 3]) {
@@ -90,14 +97,14 @@ mod tests {
     }
 
     #[test]
-    fn offered_quality_counts_relationship_issues_ads_and_quota() {
-        let mut kit = Kit::new(91);
+    fn negotiation_quality_includes_relationship_issues_ads_and_quota() {
+        let mut kit = NegotiationKit::new(91);
         kit.product.shared_bonus = 0.6;
         kit.product.group_bonus[kit.group] = 0.05;
-        let quality = |kit: &Kit, change: &dyn Fn(&mut Subscriber), active: bool| {
+        let quality = |kit: &NegotiationKit, change: &dyn Fn(&mut Subscriber), active: bool| {
             let mut row = kit.row();
             change(&mut row);
-            kit.with(|day| day.offered_quality(kit.group, &row, active))
+            kit.with_negotiation(|day| day.negotiation_quality(kit.group, &row, active))
         };
         let waiting = |row: &mut Subscriber| (row.relationship, row.open_issue_days) = (0.4, 2);
         assert_near(quality(&kit, &waiting, false), [0.615, 0.700, 0.785]);
@@ -114,8 +121,8 @@ mod tests {
     }
 
     #[test]
-    fn offered_quality_with_every_term_at_work() {
-        let mut kit = Kit::new(31);
+    fn negotiation_quality_with_all_terms() {
+        let mut kit = NegotiationKit::new(31);
         kit.product.shared_bonus = 0.15;
         kit.product.group_bonus[kit.group] = 0.05;
         kit.morning.multipliers = ByPlan([0.6, 0.9, 1.1]);
@@ -129,7 +136,7 @@ mod tests {
             ads_quality_sensitivity: 0.12,
             ..kit.row()
         };
-        let own = kit.with(|day| day.offered_quality(kit.group, &row, true));
+        let own = kit.with_negotiation(|day| day.negotiation_quality(kit.group, &row, true));
         for (own, expected) in own.iter().zip([0.156815793, 0.314315793, 0.461815793]) {
             assert!((own - expected).abs() < 1e-9, "got {own}, expected {expected}");
         }

@@ -1,8 +1,8 @@
 //! A negotiation day with simple values; tests change what they need.
 
 use super::evaluation::tests::K;
-use super::{Company, Enterprise, EnterpriseDay, Negotiation, Standing};
-use crate::context::tests::on_day;
+use super::{Company, Enterprise, EnterpriseDayResult, EnterpriseStatus, NegotiationContext};
+use crate::context::tests::with_day_context;
 use crate::customers::Customers;
 use crate::customers::columns::Subscriber;
 use crate::customers::drift::DriftTotals;
@@ -16,10 +16,10 @@ use crate::product::Product;
 use crate::random::Streams;
 use crate::reputation::ReputationBook;
 use crate::settings::Settings;
-use crate::test_kit::{company_of, subscriber};
+use crate::test_kit::{plain_enterprise, subscriber};
 
 /// Tiers 3, 4, 5, wide quotas, product quality 0.8 for all groups, no other customers.
-pub(super) struct Kit {
+pub(super) struct NegotiationKit {
     pub params: Params,
     pub streams: Streams,
     pub morning: Morning,
@@ -33,30 +33,30 @@ pub(super) struct Kit {
     pub facts: Facts,
 }
 
-impl Kit {
-    pub fn new(day: u32) -> Kit {
-        let params = Params::shipped();
-        let mut product = Product::opening(&params);
+impl NegotiationKit {
+    pub fn new(day: u32) -> NegotiationKit {
+        let params = Params::bundled();
+        let mut product = Product::initial(&params);
         product.shared_bonus = 0.6;
-        let mut kit = Kit {
+        let mut kit = NegotiationKit {
             streams: Streams::new(1),
             morning: morning(day),
-            settings: Settings::opening(&params),
+            settings: Settings::initial(&params),
             product,
             drift: DriftTotals::default(),
             group: Group::parse("E1").expect("a group"),
             customers: Customers::default(),
-            reputation: ReputationBook::opening(&params),
+            reputation: ReputationBook::initial(&params),
             enterprise: Enterprise::default(),
             facts: Facts::default(),
             params,
         };
-        kit.wake(day);
+        kit.start_day(day);
         kit
     }
 
     /// Starts a day with the current product.
-    pub fn wake(&mut self, day: u32) {
+    pub fn start_day(&mut self, day: u32) {
         let quality = self.product.quality(self.group, &self.params);
         let prices = ByPlan([1e6; 3]);
         self.morning = Morning {
@@ -67,7 +67,7 @@ impl Kit {
         };
         self.morning.core.prices = prices;
         self.morning.product.0.iter_mut().for_each(|product| *product = quality);
-        self.facts.begin(day);
+        self.facts.start_day(day);
     }
 
     /// The row of the reference enterprise K: customer 2, first of its group, 100 seats.
@@ -96,9 +96,9 @@ impl Kit {
         let negotiator = Negotiator {
             reply_delay_mean: delay,
             max_negotiation_turns: max_turns,
-            ..company_of(self.group, 1, 2, Standing::Subscriber).negotiator
+            ..plain_enterprise(self.group, 1, 2, EnterpriseStatus::Subscriber).negotiator
         };
-        Company { negotiator, ..company_of(self.group, 1, 2, Standing::Lead(self.row())) }
+        Company { negotiator, ..plain_enterprise(self.group, 1, 2, EnterpriseStatus::Lead(self.row())) }
     }
 
     /// Makes K a subscriber since day 3 with these terms and a contract until day 33.
@@ -113,42 +113,50 @@ impl Kit {
         };
         change(&mut row);
         self.customers.groups[self.group].activate(row);
-        let company =
-            Company { standing: Standing::Subscriber, contract_end_day: 33, ..self.company(3.0, max_turns) };
+        let company = Company {
+            standing: EnterpriseStatus::Subscriber,
+            contract_end_day: 33,
+            ..self.company(3.0, max_turns)
+        };
         self.enterprise.companies.push(company);
     }
 
     /// Runs `check` with the negotiation context of the day.
-    pub fn with<R>(&self, check: impl FnOnce(&Negotiation<'_>) -> R) -> R {
+    pub fn with_negotiation<R>(&self, check: impl FnOnce(&NegotiationContext<'_>) -> R) -> R {
         let law = (&self.params, &self.streams);
-        on_day(&self.morning, &self.settings, &ServiceDay::quiet(), law, |day| {
-            check(&Negotiation { day, product: &self.product, drift: &self.drift })
+        with_day_context(&self.morning, &self.settings, &ServiceDay::without_load(), law, |day| {
+            check(&NegotiationContext { day, product: &self.product, drift: &self.drift })
         })
     }
 
     /// Runs the enterprise part of a day; afterwards, the facts are those of that day only.
-    pub fn day(&mut self, day: u32) -> EnterpriseDay {
-        self.wake(day);
+    pub fn run_day(&mut self, day: u32) -> EnterpriseDayResult {
+        self.start_day(day);
         let mut enterprise = std::mem::take(&mut self.enterprise);
         let mut customers = std::mem::take(&mut self.customers);
         let mut reputation = self.reputation.clone();
         let mut facts = std::mem::take(&mut self.facts);
-        let result =
-            self.with(|day| enterprise.step(&mut customers, &mut reputation, day, &mut facts, &mut |_| {}));
+        let result = self.with_negotiation(|day| {
+            enterprise.step(&mut customers, &mut reputation, day, &mut facts, &mut |_| {})
+        });
         (self.enterprise, self.customers, self.facts) = (enterprise, customers, facts);
         self.reputation = reputation;
         result
     }
 
     /// Sends one offer to K on the current day.
-    pub fn send(&mut self, offerings: &[(crate::identifiers::Plan, f64)]) -> Vec<super::letters::Letter> {
+    pub fn send_offer(
+        &mut self,
+        offerings: &[(crate::identifiers::Plan, f64)],
+    ) -> Vec<super::messages::OfferMessage> {
         let day = self.morning.day;
         let offerings =
             offerings.iter().map(|&(plan, price)| crate::events::Offering { plan, price }).collect();
-        let proposals = [super::letters::Proposal { customer: 2, offerings }];
-        let letters = self.enterprise.address(&proposals, day, &self.customers, &self.params, &self.streams);
-        self.facts.begin(day);
-        self.enterprise.send(&letters, day, &mut self.customers, &mut self.facts);
+        let proposals = [super::messages::OfferDraft { customer: 2, offerings }];
+        let letters =
+            self.enterprise.resolve_offers(&proposals, day, &self.customers, &self.params, &self.streams);
+        self.facts.start_day(day);
+        self.enterprise.send_offers(&letters, day, &mut self.customers, &mut self.facts);
         letters
     }
 }

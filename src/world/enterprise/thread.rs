@@ -64,14 +64,14 @@ impl Thread {
     }
 
     /// Returns whether the player should write next.
-    pub fn awaits_agent(&self) -> bool {
+    pub fn awaits_player(&self) -> bool {
         self.is_open() && self.last().sender != Sender::Agent
     }
 
     /// Returns the newest turn that is not dead, which determines the daily step. Only the last turn is
     /// marked dead, so a dead thread reappears with an older turn unless `reappearing` is false
     /// (`docs/mechanics/enterprise/thread.md#dead-threads-that-reappear`).
-    pub fn live(&self, reappearing: bool) -> Option<&Turn> {
+    pub fn active_turn(&self, reappearing: bool) -> Option<&Turn> {
         if self.closed || (!reappearing && self.last().dead) {
             return None;
         }
@@ -79,34 +79,34 @@ impl Thread {
     }
 
     /// Returns the player's newest offerings.
-    pub fn offerings(&self) -> &[Offering] {
+    pub fn last_offerings(&self) -> &[Offering] {
         let offer = self.turns.iter().rev().find(|turn| turn.sender == Sender::Agent);
         offer.map_or(&[], |turn| &turn.offerings)
     }
 
     /// Returns the number of turns by the player.
-    pub fn agent_turns(&self) -> u32 {
+    pub fn player_turn_count(&self) -> u32 {
         self.turns.iter().filter(|turn| turn.sender == Sender::Agent).count() as u32
     }
 
     /// Returns the day of the customer's newest turn.
-    pub fn customer_day(&self) -> Option<u32> {
+    pub fn last_customer_day(&self) -> Option<u32> {
         let customer = self.turns.iter().filter(|turn| turn.sender == Sender::Customer);
         customer.map(|turn| turn.day).max()
     }
 
     /// Returns the price that the enterprise named last.
-    pub fn asked(&self) -> Option<f64> {
+    pub fn last_asked_price(&self) -> Option<f64> {
         self.turns.iter().rev().find_map(|turn| turn.asked)
     }
 
     /// Returns whether the thread has no further effect after a day: it is closed, or dead and cannot trigger again.
-    pub(super) fn is_over(&self, day: u32, reappearing: bool) -> bool {
+    pub(super) fn is_finished(&self, day: u32, reappearing: bool) -> bool {
         if self.closed {
             return true;
         }
         self.last().dead
-            && self.live(reappearing).is_none_or(|turn| {
+            && self.active_turn(reappearing).is_none_or(|turn| {
                 turn.sender == Sender::Agent && turn.reply_day.is_none_or(|reply| reply <= day)
             })
     }
@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn dead_threads_come_back_with_an_older_turn() {
+    fn dead_threads_reappear_with_an_older_turn() {
         for (letters, live) in [
             ("S", None),
             ("sA", Some(Sender::System)),
@@ -158,26 +158,26 @@ mod tests {
         ] {
             let thread = thread(letters);
             assert!(!thread.is_open(), "{letters}");
-            assert_eq!(thread.live(true).map(|turn| turn.sender), live, "{letters}");
-            assert_eq!(thread.live(false), None, "{letters}");
+            assert_eq!(thread.active_turn(true).map(|turn| turn.sender), live, "{letters}");
+            assert_eq!(thread.active_turn(false), None, "{letters}");
             let silent = live.is_none_or(|sender| sender == Sender::Agent);
-            assert_eq!(thread.is_over(50, true), silent, "{letters}");
-            assert!(thread.is_over(50, false), "{letters}");
+            assert_eq!(thread.is_finished(50, true), silent, "{letters}");
+            assert!(thread.is_finished(50, false), "{letters}");
         }
     }
 
     #[test]
-    fn a_repeated_offer_may_still_be_answered_after_death() {
+    fn repeated_offer_can_be_answered_after_thread_death() {
         let mut thread = thread("saA");
         thread.turns[1].reply_day = Some(9);
-        assert!(!thread.is_over(8, true) && thread.is_over(9, true));
+        assert!(!thread.is_finished(8, true) && thread.is_finished(9, true));
     }
 
     #[test]
-    fn open_threads_wait_for_one_side() {
-        assert!(thread("s").awaits_agent() && thread("sac").awaits_agent());
-        assert!(!thread("sa").awaits_agent() && thread("sa").is_open());
-        assert_eq!((thread("sacaa").agent_turns(), thread("sacac").customer_day()), (3, Some(4)));
-        assert_eq!(thread("sa").customer_day(), None);
+    fn open_threads_await_one_side() {
+        assert!(thread("s").awaits_player() && thread("sac").awaits_player());
+        assert!(!thread("sa").awaits_player() && thread("sa").is_open());
+        assert_eq!((thread("sacaa").player_turn_count(), thread("sacac").last_customer_day()), (3, Some(4)));
+        assert_eq!(thread("sa").last_customer_day(), None);
     }
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::evaluation::surplus;
-use super::{Negotiation, Step};
+use super::{NegotiationContext, NegotiationStep};
 use crate::customers::columns::Subscriber;
 use crate::events::{Notice, Sender, ThreadKind, TurnContent};
 use crate::identifiers::{Group, Plan};
@@ -12,7 +12,7 @@ use crate::random::Part;
 
 /// The reason for which a subscriber opens a thread.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Wish {
+enum SubscriberRequest {
     /// It threatens to leave.
     Leave,
     /// It asks for another plan.
@@ -24,51 +24,51 @@ pub fn improvement(best: f64, present: f64, sales: &Sales) -> f64 {
     (best - present) / present.abs().max(sales.plan_change_improvement_denominator_min)
 }
 
-impl Step<'_> {
+impl NegotiationStep<'_> {
     /// Opens threads for subscribers that had none this morning.
-    pub(super) fn trigger(&mut self, busy: &BTreeSet<u32>) {
-        let mut wishes: Vec<(u32, u32, Wish)> = Vec::new();
+    pub(super) fn open_subscriber_threads(&mut self, busy: &BTreeSet<u32>) {
+        let mut wishes: Vec<(u32, u32, SubscriberRequest)> = Vec::new();
         for (group, block) in self.customers.blocks().filter(|(group, _)| group.is_enterprise()) {
             for at in (0..block.len()).filter(|at| !busy.contains(&block.customer[*at])) {
                 let row = block.row(at);
-                if let Some(wish) = self.talks.wish(group, &row) {
+                if let Some(wish) = self.talks.subscriber_request(group, &row) {
                     wishes.push((row.customer, row.seats as u32, wish));
                 }
             }
         }
         wishes.sort_by_key(|(customer, ..)| *customer);
         for (customer, seats, wish) in wishes {
-            self.begin(customer, seats, wish);
+            self.start_thread(customer, seats, wish);
         }
     }
 
-    fn begin(&mut self, customer: u32, seats: u32, wish: Wish) {
-        let Some(company) = self.enterprise.position(customer) else { return };
+    fn start_thread(&mut self, customer: u32, seats: u32, wish: SubscriberRequest) {
+        let Some(company) = self.enterprise.enterprise_position(customer) else { return };
         let (kind, content, notice) = match wish {
-            Wish::Leave => {
+            SubscriberRequest::Leave => {
                 (ThreadKind::ChurnPrevention, TurnContent::Threat, Notice::ChurnThreat { customer })
             }
-            Wish::Switch { from, to } => {
-                let notice = Notice::PlanWish { customer, upgrade: to > from };
-                (ThreadKind::PlanChange, TurnContent::PlanWish { from, to }, notice)
+            SubscriberRequest::Switch { from, to } => {
+                let notice = Notice::PlanChangeRequest { customer, upgrade: to > from };
+                (ThreadKind::PlanChange, TurnContent::PlanChangeRequest { from, to }, notice)
             }
         };
         let today = self.today();
         let opening = TurnContent::Opening;
         let thread =
             self.enterprise.open_thread(today, company, kind, seats, Sender::System, opening, self.facts);
-        self.say(thread, Sender::Customer, seats, content);
+        self.append_turn_today(thread, Sender::Customer, seats, content);
         self.facts.notices.push(notice);
     }
 }
 
-impl Negotiation<'_> {
-    fn wish(&self, group: Group, row: &Subscriber) -> Option<Wish> {
+impl NegotiationContext<'_> {
+    fn subscriber_request(&self, group: Group, row: &Subscriber) -> Option<SubscriberRequest> {
         let sales = &self.day.params.enterprise;
-        let (quality, curve) = (self.lived_quality(group, row), self.lived_curve(group, row));
+        let (quality, curve) = (self.subscriber_quality(group, row), self.subscriber_curve(group, row));
         let present = surplus(quality[row.plan], row.listed_price, &curve, self.day.params);
         if present < sales.churn_trigger_satisfaction_below {
-            return Some(Wish::Leave);
+            return Some(SubscriberRequest::Leave);
         }
         let mut best: Option<(f64, Plan)> = None;
         for plan in Plan::ALL.into_iter().filter(|plan| *plan != row.plan) {
@@ -87,35 +87,36 @@ impl Negotiation<'_> {
         }
         let keys = [u64::from(self.day.day()), group.index() as u64, u64::from(row.n)];
         let asks = self.day.streams.open(Part::PlanChange, keys).bernoulli(sales.plan_change_probability);
-        asks.then_some(Wish::Switch { from: row.plan, to })
+        asks.then_some(SubscriberRequest::Switch { from: row.plan, to })
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::evaluation::tests::K;
-    use super::super::test_kit::Kit;
+    use super::super::test_kit::NegotiationKit;
     use super::*;
     use crate::identifiers::ByPlan;
 
     /// Quality and surplus of the subscriber's current plan.
-    fn present(kit: &Kit, row: &Subscriber) -> (f64, f64) {
-        kit.with(|day| {
-            let (quality, curve) = (day.lived_quality(kit.group, row), day.lived_curve(kit.group, row));
+    fn present(kit: &NegotiationKit, row: &Subscriber) -> (f64, f64) {
+        kit.with_negotiation(|day| {
+            let (quality, curve) =
+                (day.subscriber_quality(kit.group, row), day.subscriber_curve(kit.group, row));
             let quality = quality[row.plan];
             (quality, surplus(quality, row.listed_price, &curve, &kit.params))
         })
     }
 
-    fn kit(day: u32) -> Kit {
-        let mut kit = Kit::new(day);
+    fn kit(day: u32) -> NegotiationKit {
+        let mut kit = NegotiationKit::new(day);
         kit.morning.product.0.iter_mut().for_each(|product| *product = 0.8);
         kit.morning.quotas = ByPlan([4000.0, 5000.0, 10_000.0]);
         kit
     }
 
     fn subscriber(
-        kit: &Kit,
+        kit: &NegotiationKit,
         plan: Plan,
         listed_price: f64,
         relationship: f64,
@@ -133,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn lived_quality_and_surplus_decide_about_a_threat() {
+    fn threat_depends_on_subscriber_quality_and_surplus() {
         let near = |(quality, surplus): (f64, f64), expected: (f64, f64)| {
             assert!((quality - expected.0).abs() < 1e-10, "got {quality}, expected {}", expected.0);
             assert!((surplus - expected.1).abs() < 1e-10, "got {surplus}, expected {}", expected.1);
@@ -143,7 +144,10 @@ mod tests {
         near(present(&day4, &content), (0.8932269261, 0.1604767570));
         let strained = subscriber(&day4, Plan::B, 45.0, 0.6, 5500.0);
         near(present(&day4, &strained), (0.8120244782, -0.0254755218));
-        assert_eq!(day4.with(|day| day.wish(day4.group, &strained)), Some(Wish::Leave));
+        assert_eq!(
+            day4.with_negotiation(|day| day.subscriber_request(day4.group, &strained)),
+            Some(SubscriberRequest::Leave)
+        );
 
         let mut day32 = kit(32);
         day32.morning.product[day32.group] = 0.85;
@@ -158,25 +162,30 @@ mod tests {
     }
 
     #[test]
-    fn the_agreed_price_counts_and_not_what_is_charged() {
+    fn threat_depends_on_the_agreed_price() {
         let kit = kit(4);
         let wish = |agreed: f64, charged: f64| {
             let row =
                 Subscriber { effective_price: charged, ..subscriber(&kit, Plan::B, agreed, 0.6, 5500.0) };
-            kit.with(|day| day.wish(kit.group, &row))
+            kit.with_negotiation(|day| day.subscriber_request(kit.group, &row))
         };
-        assert_eq!(wish(45.0, 5.0), Some(Wish::Leave), "a discount does not change the surplus of a deal");
+        assert_eq!(
+            wish(45.0, 5.0),
+            Some(SubscriberRequest::Leave),
+            "a discount does not change the surplus of a deal"
+        );
         assert_eq!(wish(30.0, 90.0), None, "the charged price does not count");
     }
 
     #[test]
-    fn a_plan_is_wished_for_only_if_it_gains_enough() {
+    fn plan_change_requires_a_minimum_improvement() {
         let mut kit = kit(3);
         kit.morning.quotas = ByPlan([1e9; 3]);
-        let on_b = |kit: &Kit, price| subscriber(kit, Plan::B, price, 0.5, 4000.0);
-        let surplus_on = |kit: &Kit, row: &Subscriber, plan: Plan, price: f64| {
-            kit.with(|day| {
-                let (quality, curve) = (day.lived_quality(kit.group, row), day.lived_curve(kit.group, row));
+        let on_b = |kit: &NegotiationKit, price| subscriber(kit, Plan::B, price, 0.5, 4000.0);
+        let surplus_on = |kit: &NegotiationKit, row: &Subscriber, plan: Plan, price: f64| {
+            kit.with_negotiation(|day| {
+                let (quality, curve) =
+                    (day.subscriber_quality(kit.group, row), day.subscriber_curve(kit.group, row));
                 surplus(quality[plan], price, &curve, &kit.params)
             })
         };
@@ -194,17 +203,18 @@ mod tests {
         kit.morning.core.prices = ByPlan([22.0, 500.0, 500.0]);
         let row = on_b(&kit, 36.0);
         assert!((surplus_on(&kit, &row, Plan::A, 22.0) - 0.0500675475).abs() < 1e-10);
-        assert_eq!(kit.with(|day| day.wish(kit.group, &row)), None);
+        assert_eq!(kit.with_negotiation(|day| day.subscriber_request(kit.group, &row)), None);
     }
 
     #[test]
-    fn three_in_ten_ask_on_a_day() {
+    fn plan_change_probability_is_thirty_percent() {
         let mut kit = kit(3);
         kit.morning.quotas = ByPlan([1e9; 3]);
         kit.morning.core.prices = ByPlan([25.0, 500.0, 500.0]);
         let asks = |n: &u32| {
             let row = Subscriber { n: *n, ..subscriber(&kit, Plan::B, 42.0, 0.5, 4000.0) };
-            kit.with(|day| day.wish(kit.group, &row)) == Some(Wish::Switch { from: Plan::B, to: Plan::A })
+            kit.with_negotiation(|day| day.subscriber_request(kit.group, &row))
+                == Some(SubscriberRequest::Switch { from: Plan::B, to: Plan::A })
         };
         let asked = (1..=10_000).filter(asks).count();
         assert!((2_850..3_150).contains(&asked), "{asked}");

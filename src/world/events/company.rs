@@ -33,7 +33,7 @@ pub struct ServiceDay {
 
 impl ServiceDay {
     /// Returns a day without load or problems.
-    pub fn quiet() -> ServiceDay {
+    pub fn without_load() -> ServiceDay {
         ServiceDay {
             total_usage: 0,
             overload: 0.0,
@@ -109,7 +109,7 @@ pub enum Notice {
         customer: u32,
     },
     /// A customer requests another plan.
-    PlanWish {
+    PlanChangeRequest {
         /// Customer number of the enterprise.
         customer: u32,
         /// Whether the requested plan is higher.
@@ -176,7 +176,7 @@ impl Notice {
             Notice::EnterpriseLead
             | Notice::CounterOffer { .. }
             | Notice::ChurnThreat { .. }
-            | Notice::PlanWish { .. } => "large_customer_message",
+            | Notice::PlanChangeRequest { .. } => "large_customer_message",
             Notice::LeadLostByTimeout { .. } | Notice::LeadLossRepeated { .. } | Notice::LeadSilent => {
                 "lead_lost"
             }
@@ -205,7 +205,7 @@ impl Canonical for Notice {
             Notice::LeadSilent => 10u8.feed(hasher),
             Notice::CounterOffer { customer } => (11u8, customer).feed(hasher),
             Notice::ChurnThreat { customer } => (12u8, customer).feed(hasher),
-            Notice::PlanWish { customer, upgrade } => (13u8, (customer, upgrade)).feed(hasher),
+            Notice::PlanChangeRequest { customer, upgrade } => (13u8, (customer, upgrade)).feed(hasher),
             Notice::DealWon { price } => (14u8, price).feed(hasher),
             Notice::OwnPostSeen(reaction) => (20u8, reaction).feed(hasher),
         }
@@ -224,7 +224,7 @@ impl Restore for Notice {
             10 => Notice::LeadSilent,
             11 => Notice::CounterOffer { customer: reader.read()? },
             12 => Notice::ChurnThreat { customer: reader.read()? },
-            13 => Notice::PlanWish { customer: reader.read()?, upgrade: reader.read()? },
+            13 => Notice::PlanChangeRequest { customer: reader.read()?, upgrade: reader.read()? },
             14 => Notice::DealWon { price: reader.read()? },
             20 => Notice::OwnPostSeen(reader.read()?),
             _ => return None,

@@ -53,7 +53,7 @@ impl Source {
     ];
 
     /// Returns the source of a channel.
-    pub fn of_channel(channel: Channel) -> Source {
+    pub fn from_channel(channel: Channel) -> Source {
         Source::ALL[channel.index()]
     }
 

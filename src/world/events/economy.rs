@@ -45,7 +45,7 @@ pub enum Trend {
 
 impl Trend {
     /// Returns the label of an index value.
-    pub fn of(pmi: f64, law: &MacroEconomy) -> Trend {
+    pub fn from_index(pmi: f64, law: &MacroEconomy) -> Trend {
         match pmi {
             _ if pmi >= law.trend_strong_expansion_min => Trend::StrongExpansion,
             _ if pmi >= law.trend_expansion_min => Trend::Expansion,
@@ -78,7 +78,7 @@ pub enum Phase {
 
 impl Phase {
     /// Returns the phase for the value and change of a reading.
-    pub fn of(value: f64, change: f64, law: &MacroEconomy) -> Phase {
+    pub fn from_reading(value: f64, change: f64, law: &MacroEconomy) -> Phase {
         if value >= law.phase_peak_min_pmi && change <= 0.0 {
             Phase::Peak
         } else if change < 0.0 {

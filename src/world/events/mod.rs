@@ -22,8 +22,8 @@ pub use economy::{Phase, Reading, Trend};
 pub use figures::DayFigures;
 pub use money::{Category, LedgerEntry, LedgerNote, Payment};
 pub use posts::{
-    Cause, Engagement, Matter, Opinion, OwnPostMade, OwnPostSeen, Post, PostAuthor, Sentiment, Severity,
-    Theme, Troubles,
+    Engagement, Opinion, OwnPostMade, OwnPostSeen, Post, PostAuthor, PostCause, PostSubject, Sentiment,
+    Severity, Theme, Troubles,
 };
 pub use research::{Attempt, Knowledge, Project, Snapshot, Study};
 pub use threads::{DealClosed, Offering, Sender, ThreadKind, ThreadTurn, TurnContent};
@@ -97,7 +97,7 @@ canonical! {
 
 impl Facts {
     /// Clears all facts and starts a day; allocated memory is kept.
-    pub fn begin(&mut self, day: u32) {
+    pub fn start_day(&mut self, day: u32) {
         let Facts {
             day: own_day,
             settings,

@@ -33,7 +33,7 @@ pub struct Post {
     /// Engagement, hidden from the player.
     pub engagement: Engagement,
     /// The subject.
-    pub matter: Matter,
+    pub matter: PostSubject,
 }
 
 /// Tone of a post.
@@ -76,7 +76,7 @@ pub struct PostAuthor {
 
 /// The subject of a post.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Matter {
+pub enum PostSubject {
     /// A customer's experience with the product.
     Opinion(Opinion),
     /// A reading of the economy was published.
@@ -91,7 +91,7 @@ pub enum Matter {
         perspective: u8,
     },
     /// An event of a competitor.
-    Rival {
+    CompetitorEvent {
         /// Number of the competitor.
         name: u8,
         /// Number of the point of view.
@@ -112,36 +112,40 @@ pub enum Matter {
     },
 }
 
-impl Canonical for Matter {
+impl Canonical for PostSubject {
     fn feed(&self, hasher: &mut CanonicalHasher) {
         match *self {
-            Matter::Opinion(opinion) => (0u8, opinion).feed(hasher),
-            Matter::Reading(reading) => (1u8, reading).feed(hasher),
-            Matter::Economy { trend, pmi, perspective } => (2u8, ((trend, pmi), perspective)).feed(hasher),
-            Matter::Rival { name, perspective, severity, estimate } => {
+            PostSubject::Opinion(opinion) => (0u8, opinion).feed(hasher),
+            PostSubject::Reading(reading) => (1u8, reading).feed(hasher),
+            PostSubject::Economy { trend, pmi, perspective } => {
+                (2u8, ((trend, pmi), perspective)).feed(hasher)
+            }
+            PostSubject::CompetitorEvent { name, perspective, severity, estimate } => {
                 (3u8, ((name, perspective), (severity, estimate))).feed(hasher)
             }
-            Matter::Comment { own_post, group, effect } => (4u8, ((own_post, group), effect)).feed(hasher),
+            PostSubject::Comment { own_post, group, effect } => {
+                (4u8, ((own_post, group), effect)).feed(hasher)
+            }
         }
     }
 }
 
-impl Restore for Matter {
+impl Restore for PostSubject {
     fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
         Some(match reader.read::<u8>()? {
-            0 => Matter::Opinion(reader.read()?),
-            1 => Matter::Reading(reader.read()?),
+            0 => PostSubject::Opinion(reader.read()?),
+            1 => PostSubject::Reading(reader.read()?),
             2 => {
                 let ((trend, pmi), perspective) = reader.read()?;
-                Matter::Economy { trend, pmi, perspective }
+                PostSubject::Economy { trend, pmi, perspective }
             }
             3 => {
                 let ((name, perspective), (severity, estimate)) = reader.read()?;
-                Matter::Rival { name, perspective, severity, estimate }
+                PostSubject::CompetitorEvent { name, perspective, severity, estimate }
             }
             4 => {
                 let ((own_post, group), effect) = reader.read()?;
-                Matter::Comment { own_post, group, effect }
+                PostSubject::Comment { own_post, group, effect }
             }
             _ => return None,
         })
@@ -152,7 +156,7 @@ impl Restore for Matter {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Opinion {
     /// Why the post is written.
-    pub cause: Cause,
+    pub cause: PostCause,
     /// Problems of this customer today.
     pub troubles: Troubles,
     /// The theme that matters most to the customer.
@@ -173,7 +177,7 @@ pub struct Opinion {
 
 /// The reason for a post, the first that applies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Cause {
+pub enum PostCause {
     /// The service was slow.
     Overload,
     /// The service was down.
@@ -199,40 +203,40 @@ pub enum Cause {
     },
 }
 
-impl Canonical for Cause {
+impl Canonical for PostCause {
     fn feed(&self, hasher: &mut CanonicalHasher) {
         let code = match self {
-            Cause::Overload => 0u8,
-            Cause::Outage => 1,
-            Cause::Issue => 2,
-            Cause::Quota => 3,
-            Cause::Improved => 4,
-            Cause::Declined => 5,
-            Cause::General => 6,
-            Cause::Cancelled => 7,
-            Cause::Lost { .. } => 8,
+            PostCause::Overload => 0u8,
+            PostCause::Outage => 1,
+            PostCause::Issue => 2,
+            PostCause::Quota => 3,
+            PostCause::Improved => 4,
+            PostCause::Declined => 5,
+            PostCause::General => 6,
+            PostCause::Cancelled => 7,
+            PostCause::Lost { .. } => 8,
         };
         code.feed(hasher);
-        if let Cause::Lost { thread, unanswered } = self {
+        if let PostCause::Lost { thread, unanswered } = self {
             (*thread, *unanswered).feed(hasher);
         }
     }
 }
 
-impl Restore for Cause {
+impl Restore for PostCause {
     fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
         Some(match reader.read::<u8>()? {
-            0 => Cause::Overload,
-            1 => Cause::Outage,
-            2 => Cause::Issue,
-            3 => Cause::Quota,
-            4 => Cause::Improved,
-            5 => Cause::Declined,
-            6 => Cause::General,
-            7 => Cause::Cancelled,
+            0 => PostCause::Overload,
+            1 => PostCause::Outage,
+            2 => PostCause::Issue,
+            3 => PostCause::Quota,
+            4 => PostCause::Improved,
+            5 => PostCause::Declined,
+            6 => PostCause::General,
+            7 => PostCause::Cancelled,
             8 => {
                 let (thread, unanswered) = reader.read()?;
-                Cause::Lost { thread, unanswered }
+                PostCause::Lost { thread, unanswered }
             }
             _ => return None,
         })

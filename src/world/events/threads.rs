@@ -93,7 +93,7 @@ pub enum TurnContent {
     /// A customer's price is too high for the quality it gets.
     Threat,
     /// A customer requests the price of another plan.
-    PlanWish {
+    PlanChangeRequest {
         /// The current plan.
         from: Plan,
         /// The requested plan.
@@ -122,7 +122,7 @@ impl Canonical for TurnContent {
             }
             TurnContent::Rejection => 2u8.feed(hasher),
             TurnContent::Threat => 3u8.feed(hasher),
-            TurnContent::PlanWish { from, to } => (4u8, (*from, *to)).feed(hasher),
+            TurnContent::PlanChangeRequest { from, to } => (4u8, (*from, *to)).feed(hasher),
             TurnContent::Counter { asked, offered } => (5u8, (*asked, *offered)).feed(hasher),
             TurnContent::Acceptance(offering) => (6u8, *offering).feed(hasher),
             TurnContent::Closing(offering) => (7u8, *offering).feed(hasher),
@@ -137,7 +137,7 @@ impl Restore for TurnContent {
             1 => TurnContent::Offer(reader.read()?),
             2 => TurnContent::Rejection,
             3 => TurnContent::Threat,
-            4 => TurnContent::PlanWish { from: reader.read()?, to: reader.read()? },
+            4 => TurnContent::PlanChangeRequest { from: reader.read()?, to: reader.read()? },
             5 => TurnContent::Counter { asked: reader.read()?, offered: reader.read()? },
             6 => TurnContent::Acceptance(reader.read()?),
             7 => TurnContent::Closing(reader.read()?),

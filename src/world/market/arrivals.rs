@@ -5,13 +5,13 @@ use rayon::prelude::*;
 use super::leads::{LeadContext, LeadFactors, lead_factors};
 use crate::context::DayContext;
 use crate::customers::Customers;
-use crate::customers::choice::{Choice, Offer, accepts, choose_plan, passes_gate};
+use crate::customers::choice::{PlanChoice, PlanOffer, choose_plan, is_accepted, passes_quality_gate};
 use crate::customers::columns::Subscriber;
 use crate::customers::curve::Curve;
+use crate::customers::customer_numbers::ArrivalRun;
 use crate::customers::drift::Expectation;
-use crate::customers::numbers::ArrivalRun;
-use crate::customers::traits::{Traits, traits_from};
-use crate::enterprise::{Company, Enterprise, Standing};
+use crate::customers::traits::{Traits, draw_traits_from_stream};
+use crate::enterprise::{Company, Enterprise, EnterpriseStatus};
 use crate::events::{Arrival, ChannelLeads, Facts, Source, SubscriptionOpened, SubscriptionStatus};
 use crate::identifiers::{ByGroup, ByPlan, Group, Plan};
 use crate::market::Market;
@@ -20,7 +20,7 @@ use crate::params::{DriftCounted, Params, ServicePenalty};
 use crate::quality::quota_demand;
 use crate::random::{Part, Stream, Word};
 use crate::retention::renewal::ongoing_discount;
-use crate::retention::required_of;
+use crate::retention::required_at_price;
 
 /// Outcomes of the leads of a day.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -36,7 +36,7 @@ pub struct LeadCounts {
 }
 
 /// Shared inputs of the arrivals of a day.
-pub struct Arrivals<'a> {
+pub struct ArrivalContext<'a> {
     /// The day.
     pub day: &'a DayContext<'a>,
     /// The market, including today's changes.
@@ -48,26 +48,26 @@ struct Lead {
     /// The curve including today's expectations, counted once.
     curve: Curve,
     source: Source,
-    outcome: Outcome,
+    outcome: LeadOutcome,
 }
 
 /// Terms of a new subscription, dollars a month.
 #[derive(Clone, Copy)]
-struct FirstTerms {
+struct InitialTerms {
     listed_price: f64,
     promotion: f64,
     effective_price: f64,
 }
 
-enum Outcome {
-    Subscribes { choice: Choice, terms: FirstTerms, required: f64 },
-    Lost { choice: Choice, discount: f64 },
+enum LeadOutcome {
+    Subscribes { choice: PlanChoice, terms: InitialTerms, required: f64 },
+    Lost { choice: PlanChoice, discount: f64 },
     Prospect,
     GatedOut,
 }
 
 /// Returns the factors of today's leads by group; undiscovered groups have none.
-pub fn expect(arrivals: &Arrivals<'_>, subscribers: &ByGroup<u32>) -> ByGroup<LeadFactors> {
+pub fn expected_leads(arrivals: &ArrivalContext<'_>, subscribers: &ByGroup<u32>) -> ByGroup<LeadFactors> {
     let (market, context) = (arrivals.market, lead_context(arrivals, subscribers));
     ByGroup::from_fn(|group| {
         if market.is_known(group) { lead_factors(group, &context) } else { LeadFactors::default() }
@@ -75,8 +75,8 @@ pub fn expect(arrivals: &Arrivals<'_>, subscribers: &ByGroup<u32>) -> ByGroup<Le
 }
 
 /// Returns the inputs of the lead factors of the day.
-pub fn lead_context<'a>(arrivals: &Arrivals<'a>, subscribers: &'a ByGroup<u32>) -> LeadContext<'a> {
-    let &Arrivals { day: &DayContext { morning, settings, params, .. }, market } = arrivals;
+pub fn lead_context<'a>(arrivals: &ArrivalContext<'a>, subscribers: &'a ByGroup<u32>) -> LeadContext<'a> {
+    let &ArrivalContext { day: &DayContext { morning, settings, params, .. }, market } = arrivals;
     LeadContext {
         day: morning.day,
         calendar: morning.weekday * morning.month_day,
@@ -89,8 +89,8 @@ pub fn lead_context<'a>(arrivals: &Arrivals<'a>, subscribers: &'a ByGroup<u32>) 
 
 /// Draws and evaluates the leads of the day. Subscriptions are numbered subscribers first, then lost leads,
 /// then enterprises, each in the order of their customers.
-pub fn arrive(
-    arrivals: &Arrivals<'_>,
+pub fn process_arrivals(
+    arrivals: &ArrivalContext<'_>,
     factors: &ByGroup<LeadFactors>,
     customers: &mut Customers,
     enterprise: &mut Enterprise,
@@ -101,17 +101,17 @@ pub fn arrive(
         let keys = [u64::from(arrivals.day.day()), group.index() as u64];
         let expected = factors[group].expected();
         let number = arrivals.day.streams.open(Part::LeadCount, keys).poisson(expected) as u32;
-        party.extend(customers.arrive(arrivals.day.day(), group, number).pieces(LEADS_TOGETHER));
+        party.extend(customers.record_arrival(arrivals.day.day(), group, number).split(LEADS_PER_BATCH));
     }
     let came: Vec<(ArrivalRun, Vec<Lead>)> = party
         .into_par_iter()
         .with_max_len(1)
-        .map(|some| (some, evaluate(arrivals, factors, &some)))
+        .map(|some| (some, evaluate_leads(arrivals, factors, &some)))
         .collect();
     let mut counts = LeadCounts::default();
     let first = customers.next_subscription;
     rayon::join(
-        || enrol(arrivals, &came, first, customers),
+        || activate_subscribers(arrivals, &came, first, customers),
         || {
             record_arrivals(&came, &mut counts, facts);
             record_channels(arrivals, &came, facts);
@@ -119,18 +119,22 @@ pub fn arrive(
         },
     );
     customers.next_subscription += counts.individuals;
-    open_prospects(arrivals, came, customers, enterprise, facts, &mut counts);
+    open_lead_threads(arrivals, came, customers, enterprise, facts, &mut counts);
     counts
 }
 
 /// Leads whose streams are opened together: a multiple of the vector lanes, and small enough to distribute
 /// among threads.
-const LEADS_TOGETHER: u32 = 64;
+const LEADS_PER_BATCH: u32 = 64;
 
-fn evaluate(arrivals: &Arrivals<'_>, factors: &ByGroup<LeadFactors>, some: &ArrivalRun) -> Vec<Lead> {
-    let &Arrivals { day: &DayContext { params, streams, .. }, market } = arrivals;
+fn evaluate_leads(
+    arrivals: &ArrivalContext<'_>,
+    factors: &ByGroup<LeadFactors>,
+    some: &ArrivalRun,
+) -> Vec<Lead> {
+    let &ArrivalContext { day: &DayContext { params, streams, .. }, market } = arrivals;
     let group = some.group;
-    let offers = offers(arrivals, group);
+    let offers = plan_offers(arrivals, group);
     let velocity = market.economy.multiplier(group, Dimension::DealVelocity, params);
     let keys: Vec<[u64; 2]> = some.numbers().map(|(n, _)| [group.index() as u64, n.into()]).collect();
     let traits = streams.keys(Part::Traits, &keys);
@@ -139,20 +143,20 @@ fn evaluate(arrivals: &Arrivals<'_>, factors: &ByGroup<LeadFactors>, some: &Arri
     let draws = some.numbers().zip(traits).zip(sources.into_iter().zip(noises));
     draws
         .map(|(((_, customer), key), (source, noise))| {
-            let traits = traits_from(Stream::of(key), group, velocity, params);
-            let source = factors[group].source(source.uniform());
+            let traits = draw_traits_from_stream(Stream::from_key(key), group, velocity, params);
+            let source = factors[group].pick_source(source.uniform());
             evaluate_lead(arrivals, &offers, (group, customer), traits, source, noise)
         })
         .collect()
 }
 
-fn offers(arrivals: &Arrivals<'_>, group: Group) -> ByPlan<Offer> {
+fn plan_offers(arrivals: &ArrivalContext<'_>, group: Group) -> ByPlan<PlanOffer> {
     let &DayContext { morning, params, .. } = arrivals.day;
     let penalty = match params.fidelity.service_penalty {
         ServicePenalty::Satisfaction => 0.0,
         ServicePenalty::Everywhere => arrivals.day.service_penalty,
     };
-    ByPlan::from_fn(|plan| Offer {
+    ByPlan::from_fn(|plan| PlanOffer {
         price: morning.core.prices[plan],
         quality: morning.delivered(group, plan) - penalty,
         quota: morning.quotas[plan],
@@ -161,9 +165,9 @@ fn offers(arrivals: &Arrivals<'_>, group: Group) -> ByPlan<Offer> {
 
 /// The decision of an individual lead and its inputs.
 #[derive(Debug, Clone, Copy)]
-pub struct FirstLook {
+pub struct LeadEvaluation {
     /// Plans on offer.
-    pub offers: ByPlan<Offer>,
+    pub offers: ByPlan<PlanOffer>,
     /// Discount for its group and channel, dollars a month.
     pub discount: f64,
     /// Demand that quotas are compared with.
@@ -171,25 +175,25 @@ pub struct FirstLook {
     /// The lead's curve including today's expectations.
     pub curve: Curve,
     /// The plan that it prefers.
-    pub choice: Choice,
+    pub choice: PlanChoice,
     /// Factor by which it misjudges quality.
     pub noise: f64,
 }
 
-impl FirstLook {
+impl LeadEvaluation {
     /// Evaluates offers under a discount for leads, dollars a month, with a curve and a demand that quotas
     /// are compared with.
     #[inline]
-    pub fn of(
-        offers: &ByPlan<Offer>,
+    pub fn new(
+        offers: &ByPlan<PlanOffer>,
         promotion: f64,
         (curve, demand): (Curve, f64),
         noise: Word,
         params: &Params,
-    ) -> FirstLook {
+    ) -> LeadEvaluation {
         let quality = &params.quality;
         let discount = promotion.max(params.promotions.lead_promotion_min);
-        FirstLook {
+        LeadEvaluation {
             offers: *offers,
             discount,
             demand,
@@ -200,28 +204,28 @@ impl FirstLook {
     }
 
     /// Returns whether the lead signs up.
-    pub fn accepts(&self, params: &Params) -> bool {
-        accepts(&self.choice, self.noise, &self.curve, params)
+    pub fn is_accepted(&self, params: &Params) -> bool {
+        is_accepted(&self.choice, self.noise, &self.curve, params)
     }
 }
 
 /// Evaluates the n-th customer of a group of individuals on its day of arrival.
-pub fn first_look(
-    arrivals: &Arrivals<'_>,
+pub fn evaluate_individual(
+    arrivals: &ArrivalContext<'_>,
     factors: &ByGroup<LeadFactors>,
     group: Group,
     n: u32,
-) -> FirstLook {
+) -> LeadEvaluation {
     let &DayContext { params, streams, .. } = arrivals.day;
     let velocity = arrivals.market.economy.multiplier(group, Dimension::DealVelocity, params);
     let keys = [group.index() as u64, u64::from(n)];
-    let traits = traits_from(streams.open(Part::Traits, keys), group, velocity, params);
+    let traits = draw_traits_from_stream(streams.open(Part::Traits, keys), group, velocity, params);
     let first_word = |part| streams.first_words(part, &[keys])[0];
-    let source = factors[group].source(first_word(Part::LeadSource).uniform());
+    let source = factors[group].pick_source(first_word(Part::LeadSource).uniform());
     let (curve, demand) = curve_and_demand(arrivals, group, &traits);
-    look_first(
+    evaluate_offers(
         arrivals,
-        &offers(arrivals, group),
+        &plan_offers(arrivals, group),
         group,
         source,
         (curve, demand),
@@ -229,35 +233,35 @@ pub fn first_look(
     )
 }
 
-fn look_first(
-    arrivals: &Arrivals<'_>,
-    offers: &ByPlan<Offer>,
+fn evaluate_offers(
+    arrivals: &ArrivalContext<'_>,
+    offers: &ByPlan<PlanOffer>,
     group: Group,
     source: Source,
     (curve, demand): (Curve, f64),
     noise: Word,
-) -> FirstLook {
+) -> LeadEvaluation {
     let &DayContext { settings, params, .. } = arrivals.day;
     let promotion = settings.lead_promotion.sum(group, source.channel());
-    FirstLook::of(offers, promotion, (curve, demand), noise, params)
+    LeadEvaluation::new(offers, promotion, (curve, demand), noise, params)
 }
 
-fn curve_and_demand(arrivals: &Arrivals<'_>, group: Group, traits: &Traits) -> (Curve, f64) {
+fn curve_and_demand(arrivals: &ArrivalContext<'_>, group: Group, traits: &Traits) -> (Curve, f64) {
     let &DayContext { morning, params, .. } = arrivals.day;
-    curve_and_demand_under(morning.expectations[group], traits, params)
+    curve_and_demand_with(morning.expectations[group], traits, params)
 }
 
 /// Returns the curve of a lead including the market's expectations, and the demand that quotas are compared with.
-pub fn curve_and_demand_under(expectation: Expectation, traits: &Traits, params: &Params) -> (Curve, f64) {
+pub fn curve_and_demand_with(expectation: Expectation, traits: &Traits, params: &Params) -> (Curve, f64) {
     let floor = params.customer_generation.c_max_min;
-    let curve = traits.curve.drifted(expectation.quality, expectation.c_max, floor);
+    let curve = traits.curve.with_drift(expectation.quality, expectation.c_max, floor);
     let rate = traits.usage_demand * traits.seats;
     (curve, quota_demand(rate, rate, params))
 }
 
 fn evaluate_lead(
-    arrivals: &Arrivals<'_>,
-    offers: &ByPlan<Offer>,
+    arrivals: &ArrivalContext<'_>,
+    offers: &ByPlan<PlanOffer>,
     (group, customer): (Group, u32),
     traits: Traits,
     source: Source,
@@ -266,18 +270,22 @@ fn evaluate_lead(
     let &DayContext { morning, params, .. } = arrivals.day;
     let (curve, demand) = curve_and_demand(arrivals, group, &traits);
     let outcome = if group.is_enterprise() {
-        if passes_gate(offers, demand, &curve, params) { Outcome::Prospect } else { Outcome::GatedOut }
+        if passes_quality_gate(offers, demand, &curve, params) {
+            LeadOutcome::Prospect
+        } else {
+            LeadOutcome::GatedOut
+        }
     } else {
-        let look = look_first(arrivals, offers, group, source, (curve, demand), noise);
-        let FirstLook { choice, discount, .. } = look;
-        if look.accepts(params) {
-            let terms = first_terms(arrivals, group, customer, choice, discount);
+        let look = evaluate_offers(arrivals, offers, group, source, (curve, demand), noise);
+        let LeadEvaluation { choice, discount, .. } = look;
+        if look.is_accepted(params) {
+            let terms = initial_terms(arrivals, group, customer, choice, discount);
             let own = stored_curve(&traits, &curve, params);
             let c_drift = morning.expectations[group].c_max;
-            let required = required_of(&own, own.c_max, terms.effective_price, c_drift, params);
-            Outcome::Subscribes { choice, terms, required }
+            let required = required_at_price(&own, own.c_max, terms.effective_price, c_drift, params);
+            LeadOutcome::Subscribes { choice, terms, required }
         } else {
-            Outcome::Lost { choice, discount }
+            LeadOutcome::Lost { choice, discount }
         }
     };
     Lead { traits, curve, source, outcome }
@@ -303,8 +311,8 @@ fn record_arrivals(came: &[(ArrivalRun, Vec<Lead>)], counts: &mut LeadCounts, fa
 
 /// Records one row per funded pair of a known group and a channel with a yield. Channels are in channel
 /// order, groups in the order in which the player listed them.
-fn record_channels(arrivals: &Arrivals<'_>, came: &[(ArrivalRun, Vec<Lead>)], facts: &mut Facts) {
-    let &Arrivals { day: &DayContext { settings, .. }, market } = arrivals;
+fn record_channels(arrivals: &ArrivalContext<'_>, came: &[(ArrivalRun, Vec<Lead>)], facts: &mut Facts) {
+    let &ArrivalContext { day: &DayContext { settings, .. }, market } = arrivals;
     for channel in crate::identifiers::Channel::ALL {
         let Some(groups) = settings.targeted_ads.targeted_spend.get(&channel) else { continue };
         for (&group, &spend) in groups {
@@ -318,44 +326,49 @@ fn record_channels(arrivals: &Arrivals<'_>, came: &[(ArrivalRun, Vec<Lead>)], fa
 }
 
 /// Returns the individuals among the arrivals with their customer numbers.
-fn individuals(came: &[(ArrivalRun, Vec<Lead>)]) -> impl Iterator<Item = (u32, &Lead)> {
+fn individual_leads(came: &[(ArrivalRun, Vec<Lead>)]) -> impl Iterator<Item = (u32, &Lead)> {
     came.iter()
         .filter(|(run, _)| !run.group.is_enterprise())
         .flat_map(|(run, leads)| run.numbers().map(|(_, customer)| customer).zip(leads))
 }
 
 /// Activates those who sign up, with subscription numbers from `first`.
-fn enrol(arrivals: &Arrivals<'_>, came: &[(ArrivalRun, Vec<Lead>)], first: u32, customers: &mut Customers) {
+fn activate_subscribers(
+    arrivals: &ArrivalContext<'_>,
+    came: &[(ArrivalRun, Vec<Lead>)],
+    first: u32,
+    customers: &mut Customers,
+) {
     let mut subscription = first;
     for (run, leads) in came.iter().filter(|(run, _)| !run.group.is_enterprise()) {
         let mut rows = Vec::with_capacity(leads.len());
         for ((n, customer), lead) in run.numbers().zip(leads) {
-            if let Outcome::Subscribes { choice, terms, required } = lead.outcome {
-                let FirstTerms { listed_price, promotion, effective_price } = terms;
+            if let LeadOutcome::Subscribes { choice, terms, required } = lead.outcome {
+                let InitialTerms { listed_price, promotion, effective_price } = terms;
                 rows.push(Subscriber {
                     plan: choice.plan,
                     listed_price,
                     promotion,
                     effective_price,
                     required,
-                    ..newcomer(arrivals, n, customer, subscription, lead)
+                    ..new_subscriber_row(arrivals, n, customer, subscription, lead)
                 });
                 subscription += 1;
             }
         }
-        customers.groups[run.group].enrol(&rows);
+        customers.groups[run.group].append_subscribers(&rows);
     }
 }
 
 /// Records the subscriptions of individuals, numbered from `first`: subscribers, then lost leads.
 fn record_openings(
-    arrivals: &Arrivals<'_>,
+    arrivals: &ArrivalContext<'_>,
     came: &[(ArrivalRun, Vec<Lead>)],
     first: u32,
     counts: &mut LeadCounts,
     facts: &mut Facts,
 ) {
-    let mut open = |customer, plan, status, FirstTerms { listed_price, promotion, effective_price }| {
+    let mut open = |customer, plan, status, InitialTerms { listed_price, promotion, effective_price }| {
         facts.openings.push(SubscriptionOpened {
             subscription: first + counts.individuals,
             customer,
@@ -368,33 +381,33 @@ fn record_openings(
         });
         counts.individuals += 1;
     };
-    for (customer, lead) in individuals(came) {
-        if let Outcome::Subscribes { choice, terms, .. } = lead.outcome {
+    for (customer, lead) in individual_leads(came) {
+        if let LeadOutcome::Subscribes { choice, terms, .. } = lead.outcome {
             open(customer, choice.plan, SubscriptionStatus::Subscribed, terms);
             counts.subscribed += 1;
         }
     }
-    for (customer, lead) in individuals(came) {
-        if let Outcome::Lost { choice, discount } = lead.outcome {
+    for (customer, lead) in individual_leads(came) {
+        if let LeadOutcome::Lost { choice, discount } = lead.outcome {
             let listed_price = arrivals.day.morning.core.prices[choice.plan];
-            let terms = FirstTerms { listed_price, promotion: discount, effective_price: choice.price };
+            let terms = InitialTerms { listed_price, promotion: discount, effective_price: choice.price };
             open(customer, choice.plan, SubscriptionStatus::Lost, terms);
         }
     }
 }
 
-fn first_terms(
-    arrivals: &Arrivals<'_>,
+fn initial_terms(
+    arrivals: &ArrivalContext<'_>,
     group: Group,
     customer: u32,
-    choice: Choice,
+    choice: PlanChoice,
     discount: f64,
-) -> FirstTerms {
+) -> InitialTerms {
     let &DayContext { morning, settings, params, .. } = arrivals.day;
     let listed_price = morning.core.prices[choice.plan];
     let promotion = discount + ongoing_discount(customer, group, choice.plan, settings, params);
     let effective_price = (listed_price - promotion).max(params.billing.effective_price_min);
-    FirstTerms { listed_price, promotion, effective_price }
+    InitialTerms { listed_price, promotion, effective_price }
 }
 
 /// Returns the stored curve. If drift is counted once, it applies to the decision but is not stored.
@@ -406,7 +419,13 @@ fn stored_curve(traits: &Traits, drifted: &Curve, params: &Params) -> Curve {
 }
 
 /// Returns the row of a lead before it has agreed to anything.
-fn newcomer(arrivals: &Arrivals<'_>, n: u32, customer: u32, subscription: u32, lead: &Lead) -> Subscriber {
+fn new_subscriber_row(
+    arrivals: &ArrivalContext<'_>,
+    n: u32,
+    customer: u32,
+    subscription: u32,
+    lead: &Lead,
+) -> Subscriber {
     let &DayContext { morning, params, .. } = arrivals.day;
     let stored = stored_curve(&lead.traits, &lead.curve, params);
     Subscriber {
@@ -441,8 +460,8 @@ fn newcomer(arrivals: &Arrivals<'_>, n: u32, customer: u32, subscription: u32, l
     }
 }
 
-fn open_prospects(
-    arrivals: &Arrivals<'_>,
+fn open_lead_threads(
+    arrivals: &ArrivalContext<'_>,
     came: Vec<(ArrivalRun, Vec<Lead>)>,
     customers: &mut Customers,
     enterprise: &mut Enterprise,
@@ -451,7 +470,7 @@ fn open_prospects(
 ) {
     for (run, leads) in came {
         for ((n, customer), lead) in run.numbers().zip(leads) {
-            if !matches!(lead.outcome, Outcome::Prospect) {
+            if !matches!(lead.outcome, LeadOutcome::Prospect) {
                 continue;
             }
             counts.companies += 1;
@@ -467,7 +486,7 @@ fn open_prospects(
                 effective_price: 0.0,
                 seats: lead.traits.seats as u32,
             });
-            let row = newcomer(arrivals, n, customer, subscription, &lead);
+            let row = new_subscriber_row(arrivals, n, customer, subscription, &lead);
             if let Some(negotiator) = lead.traits.negotiator {
                 let company = Company {
                     customer,
@@ -477,9 +496,9 @@ fn open_prospects(
                     negotiator,
                     persona: lead.traits.persona,
                     contract_end_day: 0,
-                    standing: Standing::Lead(row),
+                    standing: EnterpriseStatus::Lead(row),
                 };
-                enterprise.open_lead(arrivals.day.day(), company, facts);
+                enterprise.open_lead_thread(arrivals.day.day(), company, facts);
             }
         }
     }

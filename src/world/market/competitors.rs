@@ -9,7 +9,7 @@ use crate::identifiers::{ByGroup, Group};
 use crate::params::{Competitor, Params};
 use crate::product::Product;
 use crate::random::{Part, Stream, Streams};
-use crate::series::GivenEvent;
+use crate::series::RecordedEvent;
 
 /// One competitor event.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,7 +38,7 @@ pub fn severity(boost: f64, law: &Competitor) -> Severity {
     }
 }
 
-fn events_possible(day: u32, total_days: u32, params: &Params) -> bool {
+fn can_occur(day: u32, total_days: u32, params: &Params) -> bool {
     let law = &params.competitor;
     let too_early = day < params.drift.drift_grace_period_days;
     let too_late = i64::from(day) > i64::from(total_days) - i64::from(law.competitor_event_late_cutoff_days);
@@ -48,7 +48,7 @@ fn events_possible(day: u32, total_days: u32, params: &Params) -> bool {
 /// Returns the probability of an event on a day, 0 if none is possible.
 pub fn event_probability(day: u32, total_days: u32, last_event: Option<u32>, params: &Params) -> f64 {
     let law = &params.competitor;
-    if !events_possible(day, total_days, params) {
+    if !can_occur(day, total_days, params) {
         return 0.0;
     }
     let (mut mean, mut least) = (law.competitor_event_mean_interval, law.competitor_event_min_interval);
@@ -89,7 +89,7 @@ pub fn resolve_event(day: u32, sampled: f64, u: f64, bank: &mut f64, params: &Pa
 
 /// A competitor's move on a day, before any change by either side.
 #[derive(Debug, Clone)]
-pub struct RivalMove {
+pub struct CompetitorMove {
     /// The day.
     pub day: u32,
     /// Drawn size, including growth over the run.
@@ -97,13 +97,13 @@ pub struct RivalMove {
     /// Share of the shared bank that can be copied.
     pub u: f64,
     /// The rest of the stream, from which the shares of the targeted banks are drawn.
-    shares: Stream,
+    remaining_stream: Stream,
 }
 
-impl RivalMove {
+impl CompetitorMove {
     /// Returns the copied share of each non-empty targeted bank, in alphabetical order of the groups.
-    pub fn shares(&self, group_bank: &ByGroup<f64>, law: &Competitor) -> Vec<(Group, f64)> {
-        let mut stream = self.shares.clone();
+    pub fn copied_group_shares(&self, group_bank: &ByGroup<f64>, law: &Competitor) -> Vec<(Group, f64)> {
+        let mut stream = self.remaining_stream.clone();
         let mut funded: Vec<Group> = Group::all().filter(|group| group_bank[*group] > 0.0).collect();
         funded.sort_by_key(|group| group.id());
         let mut share =
@@ -113,22 +113,27 @@ impl RivalMove {
 }
 
 /// Returns the move on a day after the last event, if there is one.
-pub fn move_of(
+pub fn move_on_day(
     day: u32,
     total_days: u32,
     last_event: Option<u32>,
     params: &Params,
     streams: &Streams,
-) -> Option<RivalMove> {
+) -> Option<CompetitorMove> {
     let law = &params.competitor;
     let chance = event_probability(day, total_days, last_event, params);
     let mut stream = streams.open(Part::CompetitorEvent, [u64::from(day)]);
     let drawn = match params.replayed_series().and_then(|series| series.competitor_event(day)) {
-        Some(given) => given.filter(|_| events_possible(day, total_days, params)),
+        Some(given) => given.filter(|_| can_occur(day, total_days, params)),
         None => draw_event(chance, law, &mut stream),
     };
-    let GivenEvent { size, u } = drawn?;
-    Some(RivalMove { day, sampled: sampled_boost(size, day, total_days, law), u, shares: stream })
+    let RecordedEvent { size, u } = drawn?;
+    Some(CompetitorMove {
+        day,
+        sampled: sampled_boost(size, day, total_days, law),
+        u,
+        remaining_stream: stream,
+    })
 }
 
 /// Returns the next move after a day. It is already determined: draws are keyed by day, and possible days
@@ -139,12 +144,12 @@ pub fn next_move(
     last_event: Option<u32>,
     params: &Params,
     streams: &Streams,
-) -> Option<RivalMove> {
-    (after + 1..=total_days).find_map(|day| move_of(day, total_days, last_event, params, streams))
+) -> Option<CompetitorMove> {
+    (after + 1..=total_days).find_map(|day| move_on_day(day, total_days, last_event, params, streams))
 }
 
 /// Applies the move of the day, if there is one.
-pub fn react(
+pub fn apply_move(
     day: u32,
     total_days: u32,
     events: &mut Vec<Event>,
@@ -155,23 +160,23 @@ pub fn react(
 ) {
     let law = &params.competitor;
     let last_event = events.last().map(|event| event.day);
-    let Some(made) = move_of(day, total_days, last_event, params, streams) else { return };
+    let Some(made) = move_on_day(day, total_days, last_event, params, streams) else { return };
     let event = resolve_event(day, made.sampled, made.u, &mut product.shared_bank, params);
     raise_expectations(event.boost, drift, params);
-    for (group, v) in made.shares(&product.group_bank, law) {
-        drain_group(group, v, product, drift, law);
+    for (group, v) in made.copied_group_shares(&product.group_bank, law) {
+        copy_group_bank(group, v, product, drift, law);
     }
     events.push(event);
 }
 
 /// Returns today's event, if any: its size before growth over the run, and the share of the bank.
-pub fn draw_event(chance: f64, law: &Competitor, stream: &mut Stream) -> Option<GivenEvent> {
+pub fn draw_event(chance: f64, law: &Competitor, stream: &mut Stream) -> Option<RecordedEvent> {
     if chance <= 0.0 || !stream.bernoulli(chance) {
         return None;
     }
     let size = stream.log_normal(law.competitor_event_boost_mu, law.competitor_event_boost_sigma);
     let u = stream.between(law.competitor_feedback_u_min, law.competitor_feedback_u_max);
-    Some(GivenEvent { size, u })
+    Some(RecordedEvent { size, u })
 }
 
 /// Raises the expectations of all groups, and those of reactive groups further.
@@ -183,7 +188,13 @@ pub fn raise_expectations(boost: f64, drift: &mut DriftTotals, params: &Params) 
 }
 
 /// Copies a share `v` of a group's targeted bank, which raises that group's expectations.
-pub fn drain_group(group: Group, v: f64, product: &mut Product, drift: &mut DriftTotals, law: &Competitor) {
+pub fn copy_group_bank(
+    group: Group,
+    v: f64,
+    product: &mut Product,
+    drift: &mut DriftTotals,
+    law: &Competitor,
+) {
     let drained = v * product.group_bank[group];
     drift.quality[group] += drained;
     product.group_bank[group] = (product.group_bank[group] - drained).max(law.bank_min);
@@ -203,7 +214,7 @@ mod tests {
 
     /// An event with given draws: log-normal size and the fraction of the range of u.
     fn event(day: u32, size: f64, bank: f64, fraction: f64) -> (Event, f64, Severity) {
-        let params = Params::shipped();
+        let params = Params::bundled();
         let law = &params.competitor;
         let u = law.competitor_feedback_u_min
             + fraction * (law.competitor_feedback_u_max - law.competitor_feedback_u_min);
@@ -213,8 +224,8 @@ mod tests {
     }
 
     #[test]
-    fn rivals_move_between_the_grace_period_and_the_last_month() {
-        let params = Params::shipped();
+    fn events_occur_between_grace_period_and_last_month() {
+        let params = Params::bundled();
         let chance = |day, total, last| event_probability(day, total, last, &params);
         assert_eq!(chance(59, 500, None), 0.0);
         assert_eq!(chance(471, 500, None), 0.0);
@@ -232,12 +243,12 @@ mod tests {
     }
 
     #[test]
-    fn sizes_grow_over_the_run_and_copying_takes_from_the_bank() {
+    fn event_sizes_grow_and_copying_reduces_the_bank() {
         let (small, _, class) = event(60, 0.02, 0.0, 0.5);
         near(small.boost, 0.027547974413646);
         assert_eq!(class, Severity::Minor);
         let mut drift = DriftTotals::default();
-        raise_expectations(small.boost, &mut drift, &Params::shipped());
+        raise_expectations(small.boost, &mut drift, &Params::bundled());
         near(drift.quality[group("S1")], 0.004132196162047);
         near(drift.quality[group("S2")], 0.001652878464819);
         near(drift.quality[group("D_S08")], 0.009641791044776);
@@ -256,25 +267,25 @@ mod tests {
     }
 
     #[test]
-    fn targeted_banks_are_copied_apart() {
-        let params = Params::shipped();
+    fn targeted_banks_are_copied_separately() {
+        let params = Params::bundled();
         let (event, bank, _) = event(200, 0.03, 1.0, 0.25);
         near(event.boost, 0.275);
         near(bank, 0.725);
-        let (mut product, mut drift) = (Product::opening(&params), DriftTotals::default());
+        let (mut product, mut drift) = (Product::initial(&params), DriftTotals::default());
         product.group_bank[group("D_E03")] = 0.1;
         product.group_bank[group("S1")] = 0.4;
         raise_expectations(event.boost, &mut drift, &params);
-        drain_group(group("D_E03"), 0.05, &mut product, &mut drift, &params.competitor);
-        drain_group(group("S1"), 0.08, &mut product, &mut drift, &params.competitor);
+        copy_group_bank(group("D_E03"), 0.05, &mut product, &mut drift, &params.competitor);
+        copy_group_bank(group("S1"), 0.08, &mut product, &mut drift, &params.competitor);
         near(drift.quality[group("S1")], 0.07325);
         near(product.group_bank[group("D_E03")], 0.095);
         near(product.group_bank[group("S1")], 0.368);
     }
 
     #[test]
-    fn sizes_are_clamped_before_they_grow() {
-        let params = Params::shipped();
+    fn event_sizes_are_clamped_before_scaling() {
+        let params = Params::bundled();
         let law = &params.competitor;
         near(sampled_boost(0.01, 250, 500, law), 0.02592750533049);
         near(sampled_boost(0.01, 470, 500, law), 0.04);
@@ -289,15 +300,15 @@ mod tests {
     }
 
     #[test]
-    fn events_without_development_are_distributed_as_measured() {
-        let params = Params::shipped();
+    fn events_without_development_match_measured_distribution() {
+        let params = Params::bundled();
         let (mut counts, mut sums, mut first_half) = (0.0, 0.0, 0.0);
         let seeds = 200;
         for seed in 0..seeds {
-            let (mut events, mut product) = (Vec::new(), Product::opening(&params));
+            let (mut events, mut product) = (Vec::new(), Product::initial(&params));
             let (mut drift, streams) = (DriftTotals::default(), Streams::new(seed));
             for day in 1..=500 {
-                react(day, 500, &mut events, &mut product, &mut drift, &params, &streams);
+                apply_move(day, 500, &mut events, &mut product, &mut drift, &params, &streams);
             }
             counts += events.len() as f64;
             sums += events.iter().map(|event| event.boost).sum::<f64>();

@@ -36,10 +36,10 @@ impl Market {
     }
 
     /// Counts an attempt and marks the group it found as known.
-    pub fn note_attempt(&mut self, attempt: &Attempt, day: u32, params: &Params) {
+    pub fn record_attempt(&mut self, attempt: &Attempt, day: u32, params: &Params) {
         self.attempts += 1;
         if let Some(group) = attempt.found {
-            let snapshot = Snapshot::take(group, day, &self.drift, params);
+            let snapshot = Snapshot::take_snapshot(group, day, &self.drift, params);
             let knowledge = &mut self.knowledge[group];
             knowledge.level = params.initial.initial_group_info_level;
             (knowledge.discovered_day, knowledge.last_research_day) = (Some(day), Some(day));
@@ -49,8 +49,8 @@ impl Market {
 }
 
 /// Returns the snapshot of an initial group on day 0.
-pub(super) fn opening_snapshot(group: Group, params: &Params) -> Option<Snapshot> {
-    group.initially_known().then(|| Snapshot::take(group, 0, &DriftTotals::default(), params))
+pub(super) fn initial_snapshot(group: Group, params: &Params) -> Option<Snapshot> {
+    group.is_initially_known().then(|| Snapshot::take_snapshot(group, 0, &DriftTotals::default(), params))
 }
 
 #[cfg(test)]
@@ -58,41 +58,42 @@ mod tests {
     use super::*;
 
     /// Groups that consecutive attempts find, with `pause` days between attempts.
-    fn found(params: &Params, seed: u64, attempts: u32, pause: u32) -> Vec<Option<Group>> {
+    fn discovered_groups(params: &Params, seed: u64, attempts: u32, pause: u32) -> Vec<Option<Group>> {
         let streams = Streams::new(seed);
-        let mut market = Market::opening(params);
+        let mut market = Market::initial(params);
         let each = |number: u32| {
             let attempt = market.next_attempt(params, &streams);
             assert_eq!((attempt.earlier, attempt.cost), (number, 25_000.0));
-            market.note_attempt(&attempt, number * pause, params);
+            market.record_attempt(&attempt, number * pause, params);
             attempt.found
         };
         (0..attempts).map(each).collect()
     }
 
     #[test]
-    fn the_sequence_depends_on_seed_and_number_alone() {
-        let params = Params::shipped();
-        assert_eq!(found(&params, 42, 60, 0), found(&params, 42, 60, 7));
-        assert_ne!(found(&params, 42, 60, 0), found(&params, 43, 60, 0));
+    fn attempts_depend_only_on_seed_and_number() {
+        let params = Params::bundled();
+        assert_eq!(discovered_groups(&params, 42, 60, 0), discovered_groups(&params, 42, 60, 7));
+        assert_ne!(discovered_groups(&params, 42, 60, 0), discovered_groups(&params, 43, 60, 0));
     }
 
     #[test]
-    fn every_group_is_found_once_and_then_nothing_more() {
-        let all: Vec<Group> = found(&Params::shipped(), 7, 400, 1).into_iter().flatten().collect();
+    fn each_group_is_discovered_once() {
+        let all: Vec<Group> =
+            discovered_groups(&Params::bundled(), 7, 400, 1).into_iter().flatten().collect();
         let mut distinct = all.clone();
         distinct.sort_unstable();
         distinct.dedup();
         assert_eq!((all.len(), distinct.len()), (20, 20));
-        assert!(all.iter().all(|group| !group.initially_known()));
+        assert!(all.iter().all(|group| !group.is_initially_known()));
     }
 
     #[test]
-    fn three_attempts_in_ten_succeed_and_no_group_is_preferred() {
-        let params = Params::shipped();
+    fn attempts_succeed_uniformly_at_thirty_percent() {
+        let params = Params::bundled();
         let (mut successes, mut first) = (0u32, [0u32; Group::COUNT]);
         for seed in 0..4000 {
-            let outcomes = found(&params, seed, 5, 0);
+            let outcomes = discovered_groups(&params, seed, 5, 0);
             successes += outcomes.iter().flatten().count() as u32;
             if let Some(group) = outcomes[0] {
                 first[group.index()] += 1;
@@ -105,13 +106,13 @@ mod tests {
     }
 
     #[test]
-    fn a_found_group_is_known_from_that_day_with_the_market_of_that_day() {
-        let params = Params::shipped();
-        let mut market = Market::opening(&params);
+    fn discovered_group_has_a_snapshot_of_that_day() {
+        let params = Params::bundled();
+        let mut market = Market::initial(&params);
         market.drift.global_quality = 0.12;
         let group = Group::parse("D_S06").expect("a group");
         let attempt = Attempt { earlier: 0, cost: 25_000.0, found: Some(group) };
-        market.note_attempt(&attempt, 28, &params);
+        market.record_attempt(&attempt, 28, &params);
         let own = market.knowledge[group];
         assert_eq!((own.level, own.discovered_day, own.last_research_day), (1, Some(28), Some(28)));
         let snapshot = own.snapshot.expect("a snapshot");

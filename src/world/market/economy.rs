@@ -6,7 +6,7 @@ use crate::fault::Fault;
 use crate::identifiers::Group;
 use crate::params::{MacroEconomy, Params};
 use crate::random::{Part, Streams};
-use novamind_base::notation::round_to;
+use novamind_base::formatting::round_to;
 
 /// The state of the economy.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,7 +59,7 @@ pub enum Dimension {
 
 impl Economy {
     /// Returns the economy on day 0.
-    pub fn opening(params: &Params) -> Economy {
+    pub fn initial(params: &Params) -> Economy {
         Economy {
             pmi: params.economy.macro_pmi_initial,
             started: false,
@@ -71,7 +71,7 @@ impl Economy {
     }
 
     /// Returns the newest measurement, published or not.
-    pub fn measured(&self) -> Option<&Reading> {
+    pub fn latest_measurement(&self) -> Option<&Reading> {
         self.waiting.last().or(self.published.as_ref())
     }
 
@@ -95,19 +95,19 @@ impl Economy {
     }
 }
 
-fn phase_of_run(law: &MacroEconomy, streams: &Streams) -> f64 {
+fn cycle_phase(law: &MacroEconomy, streams: &Streams) -> f64 {
     if law.macro_pmi_random_phase {
-        streams.open_since(0, Part::Macro, [0]).between(0.0, 2.0 * std::f64::consts::PI)
+        streams.open_for_day(0, Part::Macro, [0]).between(0.0, 2.0 * std::f64::consts::PI)
     } else {
         law.macro_pmi_fixed_phase
     }
 }
 
 /// Returns the index of a day from that of the day before.
-pub fn index_of(day: u32, yesterday: f64, params: &Params, streams: &Streams) -> f64 {
+pub fn index_on_day(day: u32, yesterday: f64, params: &Params, streams: &Streams) -> f64 {
     let law = &params.economy;
     let drawn = || {
-        let target = cycle_target(day, phase_of_run(law, streams), law);
+        let target = cycle_target(day, cycle_phase(law, streams), law);
         let z = streams.open(Part::Macro, [u64::from(day)]).standard_normal();
         next_pmi(yesterday, target, z, law)
     };
@@ -126,7 +126,7 @@ pub fn step(
 ) {
     let law = &params.economy;
     if !held {
-        economy.pmi = index_of(day, economy.pmi, params, streams);
+        economy.pmi = index_on_day(day, economy.pmi, params, streams);
     }
     economy.started = true;
     economy.history.push(economy.pmi);
@@ -140,9 +140,9 @@ pub fn step(
 fn measure(day: u32, economy: &mut Economy, law: &MacroEconomy) {
     let mean = economy.history.iter().sum::<f64>() / economy.history.len() as f64;
     let value = round_to(mean, law.published_pmi_decimals);
-    let before = economy.measured().map_or(law.macro_pmi_initial, |reading| reading.value);
+    let before = economy.latest_measurement().map_or(law.macro_pmi_initial, |reading| reading.value);
     let change = round_to(value - before, law.published_pmi_decimals);
-    let (trend, phase) = (Trend::of(value, law), Phase::of(value, change, law));
+    let (trend, phase) = (Trend::from_index(value, law), Phase::from_reading(value, change, law));
     economy.waiting.push(Reading { measured_day: day, value, change, trend, phase });
     economy.history.clear();
     economy.last_measurement = Some(day);
@@ -164,7 +164,7 @@ pub(crate) mod tests {
 
     /// An economy that has started, at a given index.
     pub(crate) fn economy_at(pmi: f64) -> Economy {
-        Economy { pmi, started: true, ..Economy::opening(&Params::shipped()) }
+        Economy { pmi, started: true, ..Economy::initial(&Params::bundled()) }
     }
 
     fn near(actual: f64, expected: f64) {
@@ -172,15 +172,15 @@ pub(crate) mod tests {
     }
 
     fn multiplier(id: &str, dimension: Dimension, pmi: f64) -> f64 {
-        let params = Params::shipped();
+        let params = Params::bundled();
         economy_at(pmi).multiplier(Group::parse(id).expect("a group"), dimension, &params)
     }
 
     #[test]
-    fn without_chance_the_index_follows_its_cycle_and_is_published_a_month_late() {
-        let mut params = Params::shipped();
+    fn index_without_noise_follows_the_cycle() {
+        let mut params = Params::bundled();
         params.economy.macro_pmi_daily_volatility = 0.0;
-        let (mut economy, streams) = (Economy::opening(&params), Streams::new(1));
+        let (mut economy, streams) = (Economy::initial(&params), Streams::new(1));
         let mut readings = Vec::new();
         for day in 1..=61 {
             let mut facts = Facts::default();
@@ -205,12 +205,12 @@ pub(crate) mod tests {
         {
             assert_eq!((*published, *reading), (day, Reading { measured_day, value, change, trend, phase }));
         }
-        let law = Params::shipped().economy;
+        let law = Params::bundled().economy;
         assert_eq!(next_pmi(30.1, cycle_target(200, law.macro_pmi_fixed_phase, &law), -3.0, &law), 30.0);
     }
 
     #[test]
-    fn factors_follow_the_sensitivities_of_a_group() {
+    fn multiplier_follows_group_sensitivities() {
         use Dimension::*;
         for (id, dimension, pmi, expected) in [
             ("S1", LeadGeneration, 42.5, 0.775),
@@ -237,8 +237,8 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn readings_are_named_by_their_value_and_change() {
-        let law = Params::shipped().economy;
+    fn readings_are_labeled_by_value_and_change() {
+        let law = Params::bundled().economy;
         for (pmi, trend) in [
             (58.0, "strong_expansion"),
             (57.9, "expansion"),
@@ -246,7 +246,7 @@ pub(crate) mod tests {
             (47.9, "contraction"),
             (41.9, "severe_contraction"),
         ] {
-            assert_eq!(Trend::of(pmi, &law).id(), trend);
+            assert_eq!(Trend::from_index(pmi, &law).id(), trend);
         }
         for (value, change, phase) in [
             (53.0, 0.0, "peak"),
@@ -256,16 +256,16 @@ pub(crate) mod tests {
             (47.0, 0.0, "trough"),
             (47.0, -1.0, "declining"),
         ] {
-            assert_eq!(Phase::of(value, change, &law).id(), phase);
+            assert_eq!(Phase::from_reading(value, change, &law).id(), phase);
         }
     }
 
     #[test]
-    fn the_index_is_distributed_as_measured() {
-        let params = Params::shipped();
+    fn index_matches_measured_distribution() {
+        let params = Params::bundled();
         let (mut means, mut lows, mut highs, mut below) = (vec![], vec![], vec![], vec![]);
         for seed in 0..60 {
-            let (mut economy, streams) = (Economy::opening(&params), Streams::new(seed));
+            let (mut economy, streams) = (Economy::initial(&params), Streams::new(seed));
             let path: Vec<f64> = (1..=500)
                 .map(|day| {
                     step(day, &mut economy, false, &params, &streams, &mut Facts::default());

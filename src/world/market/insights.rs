@@ -8,11 +8,11 @@ use crate::events::Snapshot;
 use crate::identifiers::Group;
 use crate::params::{GroupParams, InsightNoise, Params};
 use crate::random::{NumpyStream, Part, Streams};
-use novamind_base::notation::round_to;
+use novamind_base::formatting::round_to;
 
 impl Snapshot {
     /// Takes a snapshot of a group on a day, including drift of the whole group but not of single customers.
-    pub fn take(group: Group, day: u32, drift: &DriftTotals, params: &Params) -> Snapshot {
+    pub fn take_snapshot(group: Group, day: u32, drift: &DriftTotals, params: &Params) -> Snapshot {
         let own = params.group(group);
         let moved = drift.expectation(group);
         Snapshot {
@@ -26,7 +26,7 @@ impl Snapshot {
 
 /// An estimated value; each has its own noise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Field {
+pub enum EstimatedField {
     /// Budget.
     WillingnessToPay,
     /// Units a day.
@@ -59,26 +59,26 @@ pub enum Field {
     ReputationFrom(Group),
 }
 
-impl Field {
+impl EstimatedField {
     /// Returns the key of the field in random streams. The keys are fixed because recorded runs depend on them.
     fn key(self) -> u64 {
         let linked = |direction: u64, group: Group| 100 * direction + group.index() as u64;
         match self {
-            Field::WillingnessToPay => 0,
-            Field::UsageVolume => 1,
-            Field::QualityFloor => 2,
-            Field::MarketCap => 3,
-            Field::GrowthRate => 4,
-            Field::LockinAversion => 5,
-            Field::SeatMinimum => 6,
-            Field::SeatMaximum => 7,
-            Field::DecisionRounds => 8,
-            Field::ResponseDays => 9,
-            Field::ReferralToItself => 10,
-            Field::ReferralTo(other) => linked(1, other),
-            Field::ReferralFrom(other) => linked(2, other),
-            Field::ReputationTo(other) => linked(3, other),
-            Field::ReputationFrom(other) => linked(4, other),
+            EstimatedField::WillingnessToPay => 0,
+            EstimatedField::UsageVolume => 1,
+            EstimatedField::QualityFloor => 2,
+            EstimatedField::MarketCap => 3,
+            EstimatedField::GrowthRate => 4,
+            EstimatedField::LockinAversion => 5,
+            EstimatedField::SeatMinimum => 6,
+            EstimatedField::SeatMaximum => 7,
+            EstimatedField::DecisionRounds => 8,
+            EstimatedField::ResponseDays => 9,
+            EstimatedField::ReferralToItself => 10,
+            EstimatedField::ReferralTo(other) => linked(1, other),
+            EstimatedField::ReferralFrom(other) => linked(2, other),
+            EstimatedField::ReputationTo(other) => linked(3, other),
+            EstimatedField::ReputationFrom(other) => linked(4, other),
         }
     }
 }
@@ -105,7 +105,7 @@ pub struct Insights {
     /// Aversion to long contracts, at least 0.
     pub lockin_aversion: f64,
     /// Estimates that only enterprises have.
-    pub company: Option<CompanyInsights>,
+    pub enterprise: Option<EnterpriseInsights>,
     /// Leads a day and subscriber that the group brings to others, in descending order.
     pub referrals_to: Vec<(Group, f64)>,
     /// Leads a day and subscriber that others bring to the group, in descending order.
@@ -118,11 +118,11 @@ pub struct Insights {
 
 /// Estimates of a group of enterprises.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CompanyInsights {
+pub struct EnterpriseInsights {
     /// Minimum seats, at least 1.
-    pub seats_least: u64,
+    pub min_seats: u64,
     /// Maximum seats, at least the minimum.
-    pub seats_most: u64,
+    pub max_seats: u64,
     /// Maximum turns of an enterprise, at least 1.
     pub decision_rounds: u64,
     /// Reply delay of an enterprise in days, at least 1.
@@ -145,7 +145,7 @@ pub fn insights(group: Group, market: &Market, params: &Params, streams: &Stream
         }
         InsightNoise::Release => {
             let mut sequence = NumpyStream::new(release_seed(group));
-            insights_with(group, market, params, &mut |_| 2.0 * sequence.unit() - 1.0)
+            insights_with(group, market, params, &mut |_| 2.0 * sequence.uniform() - 1.0)
         }
     }
 }
@@ -163,24 +163,25 @@ fn insights_with(
     group: Group,
     market: &Market,
     params: &Params,
-    draw: &mut dyn FnMut(Field) -> f64,
+    draw: &mut dyn FnMut(EstimatedField) -> f64,
 ) -> Option<Insights> {
     let known = &market.knowledge[group];
     let snapshot = known.snapshot.filter(|_| known.level >= 1)?;
     let (own, law) = (params.group(group), &params.group_research);
     let noise = params.level(known.level).noise;
-    let mut estimate = |field: Field, truth: f64| truth * (1.0 + noise * draw(field));
+    let mut estimate = |field: EstimatedField, truth: f64| truth * (1.0 + noise * draw(field));
     let willingness_to_pay =
-        round_to(estimate(Field::WillingnessToPay, snapshot.c_max), law.willingness_to_pay_decimals);
+        round_to(estimate(EstimatedField::WillingnessToPay, snapshot.c_max), law.willingness_to_pay_decimals);
     let usage_volume =
-        round_to(estimate(Field::UsageVolume, own.usage_demand_mean), law.usage_volume_decimals);
-    let quality_floor = round_to(estimate(Field::QualityFloor, snapshot.q_min), law.quality_floor_decimals);
-    let market_cap = whole(estimate(Field::MarketCap, snapshot.market_cap));
-    let growth = estimate(Field::GrowthRate, own.annual_cap_growth_rate).max(0.0);
-    let lockin = estimate(Field::LockinAversion, own.lockin_penalty_mean).max(0.0);
-    let company = company_insights(own, law.response_days_decimals, &mut estimate);
-    let links = |estimate: &mut dyn FnMut(Field, f64) -> f64,
-                 field: fn(Group) -> Field,
+        round_to(estimate(EstimatedField::UsageVolume, own.usage_demand_mean), law.usage_volume_decimals);
+    let quality_floor =
+        round_to(estimate(EstimatedField::QualityFloor, snapshot.q_min), law.quality_floor_decimals);
+    let market_cap = truncate_to_at_least_one(estimate(EstimatedField::MarketCap, snapshot.market_cap));
+    let growth = estimate(EstimatedField::GrowthRate, own.annual_cap_growth_rate).max(0.0);
+    let lockin = estimate(EstimatedField::LockinAversion, own.lockin_penalty_mean).max(0.0);
+    let company = enterprise_insights(own, law.response_days_decimals, &mut estimate);
+    let links = |estimate: &mut dyn FnMut(EstimatedField, f64) -> f64,
+                 field: fn(Group) -> EstimatedField,
                  least: f64,
                  truth: &dyn Fn(Group) -> f64| {
         let others = Group::all().filter(|other| *other != group && market.is_known(*other));
@@ -195,17 +196,19 @@ fn insights_with(
         values
     };
     let (network, reputation) = (law.network_display_min, law.reputation_display_min);
-    let referrals_to =
-        links(&mut estimate, Field::ReferralTo, network, &|other| params.referral_rate(group, other));
-    let referrals_from =
-        links(&mut estimate, Field::ReferralFrom, network, &|other| params.referral_rate(other, group));
+    let referrals_to = links(&mut estimate, EstimatedField::ReferralTo, network, &|other| {
+        params.referral_rate(group, other)
+    });
+    let referrals_from = links(&mut estimate, EstimatedField::ReferralFrom, network, &|other| {
+        params.referral_rate(other, group)
+    });
     if params.referral_rate(group, group) > 0.0 {
-        estimate(Field::ReferralToItself, 0.0);
+        estimate(EstimatedField::ReferralToItself, 0.0);
     }
-    let reputation_to = links(&mut estimate, Field::ReputationTo, reputation, &|other| {
+    let reputation_to = links(&mut estimate, EstimatedField::ReputationTo, reputation, &|other| {
         params.reputation_weight(group, other)
     });
-    let reputation_from = links(&mut estimate, Field::ReputationFrom, reputation, &|other| {
+    let reputation_from = links(&mut estimate, EstimatedField::ReputationFrom, reputation, &|other| {
         params.reputation_weight(other, group)
     });
     Some(Insights {
@@ -218,7 +221,7 @@ fn insights_with(
         market_cap,
         growth_rate: round_to(growth, law.growth_rate_decimals),
         lockin_aversion: round_to(lockin, law.lockin_decimals),
-        company,
+        enterprise: company,
         referrals_to,
         referrals_from,
         reputation_to,
@@ -226,22 +229,22 @@ fn insights_with(
     })
 }
 
-fn company_insights(
+fn enterprise_insights(
     own: &GroupParams,
     decimals: u32,
-    estimate: &mut dyn FnMut(Field, f64) -> f64,
-) -> Option<CompanyInsights> {
+    estimate: &mut dyn FnMut(EstimatedField, f64) -> f64,
+) -> Option<EnterpriseInsights> {
     let (least, most) = (f64::from(own.seat_count_min?), f64::from(own.seat_count_max?));
     let (rounds, delay) = (own.max_negotiation_turns_mean?, own.reply_delay_mean?);
-    let seats_least = whole(estimate(Field::SeatMinimum, least));
-    let seats_most = whole(estimate(Field::SeatMaximum, most)).max(seats_least);
-    let decision_rounds = whole(estimate(Field::DecisionRounds, rounds));
-    let response_days = round_to(estimate(Field::ResponseDays, delay).max(1.0), decimals);
-    Some(CompanyInsights { seats_least, seats_most, decision_rounds, response_days })
+    let seats_least = truncate_to_at_least_one(estimate(EstimatedField::SeatMinimum, least));
+    let seats_most = truncate_to_at_least_one(estimate(EstimatedField::SeatMaximum, most)).max(seats_least);
+    let decision_rounds = truncate_to_at_least_one(estimate(EstimatedField::DecisionRounds, rounds));
+    let response_days = round_to(estimate(EstimatedField::ResponseDays, delay).max(1.0), decimals);
+    Some(EnterpriseInsights { min_seats: seats_least, max_seats: seats_most, decision_rounds, response_days })
 }
 
 /// Returns the integer part of an estimate, at least 1.
-fn whole(value: f64) -> u64 {
+fn truncate_to_at_least_one(value: f64) -> u64 {
     value.trunc().max(1.0) as u64
 }
 
@@ -251,12 +254,12 @@ mod tests {
 
     /// Estimates with the errors of the release.
     fn estimates(id: &str, level: u8, day: u32) -> Insights {
-        let mut params = Params::shipped();
+        let mut params = Params::bundled();
         params.fidelity.insight_noise = InsightNoise::Release;
-        let mut market = Market::opening(&params);
+        let mut market = Market::initial(&params);
         let group = Group::parse(id).expect("a group");
         market.knowledge[group].level = level;
-        market.knowledge[group].snapshot = Some(Snapshot::take(group, day, &market.drift, &params));
+        market.knowledge[group].snapshot = Some(Snapshot::take_snapshot(group, day, &market.drift, &params));
         insights(group, &market, &params, &Streams::new(u64::from(day))).expect("a known group")
     }
 
@@ -265,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn estimates_of_individuals_are_the_truth_times_noise() {
+    fn individual_estimates_are_true_values_times_noise() {
         for (id, level, values, cap) in [
             ("S1", 1, [25.87, 91.1, 0.081, 0.0962, 0.1906], 272_812),
             ("S1", 5, [48.14, 80.9, 0.099, 0.192, 0.16235], 272_062),
@@ -280,16 +283,16 @@ mod tests {
                 own.lockin_aversion,
             ];
             assert_eq!((shown, own.market_cap), (values, cap), "{id} at level {level}");
-            assert_eq!(own.company, None);
+            assert_eq!(own.enterprise, None);
         }
     }
 
     #[test]
-    fn estimates_of_companies_have_seats_rounds_and_days() {
+    fn enterprise_estimates_include_seats_rounds_and_days() {
         let company = |least, most, rounds, days| {
-            Some(CompanyInsights {
-                seats_least: least,
-                seats_most: most,
+            Some(EnterpriseInsights {
+                min_seats: least,
+                max_seats: most,
                 decision_rounds: rounds,
                 response_days: days,
             })
@@ -307,7 +310,7 @@ mod tests {
                 own.lockin_aversion,
             ];
             assert_eq!((shown, own.market_cap), (values, cap), "{id} at level {level}");
-            assert_eq!(own.company, of_company, "{id}");
+            assert_eq!(own.enterprise, of_company, "{id}");
         }
         let ten = estimates("D_E10", 1, 0);
         assert_eq!((ten.willingness_to_pay, ten.usage_volume, ten.quality_floor), (53.07, 98.7, 0.55));
@@ -315,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn links_to_known_groups_are_sorted_by_what_is_shown() {
+    fn links_to_known_groups_are_sorted_by_shown_value() {
         let e1 = estimates("E1", 1, 0);
         assert_eq!(named(&e1.referrals_from), [("S3", 0.0073), ("E3", 0.0004)]);
         let weights = [("E2", 0.0502), ("S3", 0.0488), ("E3", 0.0228), ("S1", 0.0209), ("S2", 0.0167)];
@@ -330,7 +333,7 @@ mod tests {
     }
 
     #[test]
-    fn each_level_is_closer_to_the_truth() {
+    fn higher_levels_are_more_accurate() {
         for (level, day, pay, usage, cap, growth) in [
             (2, 3, 35.15, 86.8, 272_948, 0.1361),
             (3, 19, 40.72, 84.3, 275_147, 0.1601),
@@ -347,8 +350,8 @@ mod tests {
     }
 
     #[test]
-    fn errors_of_the_release_depend_on_the_group_alone() {
-        let params = Params::shipped();
+    fn release_errors_depend_only_on_the_group() {
+        let params = Params::bundled();
         let z = |id: &str, level: u8, day: u32| {
             let truth = params.group(Group::parse(id).expect("a group")).usage_demand_mean;
             (estimates(id, level, day).usage_volume / truth - 1.0) / params.level(level).noise
@@ -367,9 +370,9 @@ mod tests {
     }
 
     #[test]
-    fn noise_is_fixed_per_level_and_fresh_at_the_next() {
-        let params = Params::shipped();
-        let mut market = Market::opening(&params);
+    fn noise_is_fixed_per_level() {
+        let params = Params::bundled();
+        let mut market = Market::initial(&params);
         let streams = Streams::new(42);
         let s1 = Group::at(0).expect("S1");
         let told = |market: &Market| insights(s1, market, &params, &streams).expect("S1 is known");
@@ -393,9 +396,9 @@ mod tests {
     }
 
     #[test]
-    fn errors_stay_within_the_noise_of_the_level_and_fill_it() {
-        let params = Params::shipped();
-        let mut market = Market::opening(&params);
+    fn errors_span_the_noise_range_of_the_level() {
+        let params = Params::bundled();
+        let mut market = Market::initial(&params);
         let s1 = Group::at(0).expect("S1");
         let truth = params.group(s1).c_max_mean;
         for level in 1..=5 {

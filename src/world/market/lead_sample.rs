@@ -1,11 +1,11 @@
 //! A sample of a group's leads and their choices, computed by the functions that decide on real arrivals
 //! (docs/mechanics/customers/curve-explorer.md).
 
-use super::arrivals::{FirstLook, curve_and_demand_under};
-use crate::customers::choice::{Offer, passes_gate};
+use super::arrivals::{LeadEvaluation, curve_and_demand_with};
+use crate::customers::choice::{PlanOffer, passes_quality_gate};
 use crate::customers::curve::{Curve, required_quality};
 use crate::customers::drift::Expectation;
-use crate::customers::traits::traits_from;
+use crate::customers::traits::draw_traits_from_stream;
 use crate::identifiers::{ByPlan, Group};
 use crate::params::Params;
 use crate::random::{Part, Stream, Streams, Word};
@@ -27,19 +27,19 @@ pub struct LeadSample {
 
 /// The choices of the leads of a sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FirstChoices {
+pub struct LeadChoices {
     /// Number of leads, at least 1.
     pub leads: u32,
     /// Individuals who sign up, by plan. Enterprises that request an offer are counted under A.
-    pub takers: ByPlan<u32>,
+    pub choices_by_plan: ByPlan<u32>,
     /// Sum of the first bills, dollars; 0 for enterprises, which negotiate their price.
     pub first_bills: f64,
 }
 
-impl FirstChoices {
+impl LeadChoices {
     /// Returns the share of leads that sign up, or of enterprises that request an offer, 0..=1.
     pub fn conversion(&self) -> f64 {
-        f64::from(self.takers.0.iter().sum::<u32>()) / f64::from(self.leads)
+        f64::from(self.choices_by_plan.0.iter().sum::<u32>()) / f64::from(self.leads)
     }
 
     /// Returns the mean first bill per lead, in dollars.
@@ -62,8 +62,8 @@ impl LeadSample {
         let noises = streams.first_words(Part::LeadNoise, &keys);
         let lead = |(key, misjudgement)| {
             // The speed of deals affects no trait that a first choice uses.
-            let traits = traits_from(Stream::of(key), group, 1.0, params);
-            let (curve, demand) = curve_and_demand_under(expectation, &traits, params);
+            let traits = draw_traits_from_stream(Stream::from_key(key), group, 1.0, params);
+            let (curve, demand) = curve_and_demand_with(expectation, &traits, params);
             SampledLead { curve, demand, misjudgement }
         };
         LeadSample { group, leads: traits.into_iter().zip(noises).map(lead).collect() }
@@ -74,25 +74,25 @@ impl LeadSample {
     /// Both in dollars a month.
     pub fn choose(
         &self,
-        offers: &ByPlan<Offer>,
+        offers: &ByPlan<PlanOffer>,
         promotion: f64,
         ongoing: &ByPlan<f64>,
         params: &Params,
-    ) -> FirstChoices {
+    ) -> LeadChoices {
         let mut choices =
-            FirstChoices { leads: self.leads.len() as u32, takers: ByPlan([0; 3]), first_bills: 0.0 };
+            LeadChoices { leads: self.leads.len() as u32, choices_by_plan: ByPlan([0; 3]), first_bills: 0.0 };
         for lead in &self.leads {
             if self.group.is_enterprise() {
-                let asks = passes_gate(offers, lead.demand, &lead.curve, params);
-                choices.takers.0[0] += u32::from(asks);
+                let asks = passes_quality_gate(offers, lead.demand, &lead.curve, params);
+                choices.choices_by_plan.0[0] += u32::from(asks);
                 continue;
             }
             let own = (lead.curve, lead.demand);
-            let look = FirstLook::of(offers, promotion, own, lead.misjudgement, params);
-            if look.accepts(params) {
+            let look = LeadEvaluation::new(offers, promotion, own, lead.misjudgement, params);
+            if look.is_accepted(params) {
                 let plan = look.choice.plan;
                 let bill = offers[plan].price - look.discount - ongoing[plan];
-                choices.takers[plan] += 1;
+                choices.choices_by_plan[plan] += 1;
                 choices.first_bills += bill.max(params.billing.effective_price_min);
             }
         }
@@ -101,7 +101,7 @@ impl LeadSample {
 
     /// Returns the qualities that these shares (0..=1) of the leads require at most at a price, in the order
     /// of the shares. Leads whose budget is below the price accept no quality and count as infinity.
-    pub fn required(&self, price: f64, shares: &[f64], params: &Params) -> Vec<f64> {
+    pub fn required_quality_quantiles(&self, price: f64, shares: &[f64], params: &Params) -> Vec<f64> {
         let required = |lead: &SampledLead| match price > lead.curve.c_max {
             true => f64::INFINITY,
             false => required_quality(price, &lead.curve, params),
@@ -113,7 +113,7 @@ impl LeadSample {
     }
 
     /// Returns the budget that a share of the leads does not exceed, dollars a month.
-    pub fn budget(&self, share: f64) -> f64 {
+    pub fn budget_quantile(&self, share: f64) -> f64 {
         let mut budgets: Vec<f64> = self.leads.iter().map(|lead| lead.curve.c_max).collect();
         budgets.sort_by(f64::total_cmp);
         let last = budgets.len() - 1;
@@ -133,18 +133,18 @@ mod tests {
     }
 
     fn sample(id: &str) -> LeadSample {
-        LeadSample::draw(group(id), SAMPLE, Expectation::default(), &Params::shipped(), &Streams::new(1))
+        LeadSample::draw(group(id), SAMPLE, Expectation::default(), &Params::bundled(), &Streams::new(1))
     }
 
-    fn alike(price: f64, quality: f64) -> ByPlan<Offer> {
-        ByPlan([Offer { price, quality, quota: 1e6 }; 3])
+    fn same_offers(price: f64, quality: f64) -> ByPlan<PlanOffer> {
+        ByPlan([PlanOffer { price, quality, quota: 1e6 }; 3])
     }
 
     /// Conversions of the first week in the simulator with the same price for all plans
     /// (configs/lessons/price-follows-quality.toml).
     #[test]
-    fn conversions_are_within_two_points_of_those_of_the_simulator() {
-        let (params, s1) = (Params::shipped(), sample("S1"));
+    fn conversions_match_the_simulator_within_two_points() {
+        let (params, s1) = (Params::bundled(), sample("S1"));
         for (price, simulated) in [
             (12.0, [0.37, 0.83, 0.96]),
             (20.0, [0.18, 0.69, 0.80]),
@@ -152,7 +152,7 @@ mod tests {
             (40.0, [0.02, 0.35, 0.56]),
         ] {
             for (quality, conversion) in [0.2, 0.4, 0.6].into_iter().zip(simulated) {
-                let own = s1.choose(&alike(price, quality), 0.0, &ByPlan([0.0; 3]), &params);
+                let own = s1.choose(&same_offers(price, quality), 0.0, &ByPlan([0.0; 3]), &params);
                 let off = own.conversion() - conversion;
                 assert!(off.abs() <= 0.02, "${price} at {quality}: {} and {conversion}", own.conversion());
             }
@@ -160,8 +160,8 @@ mod tests {
     }
 
     #[test]
-    fn the_sample_is_the_first_customers_of_the_streams() {
-        let (params, streams) = (Params::shipped(), Streams::new(1));
+    fn sample_matches_the_first_customers() {
+        let (params, streams) = (Params::bundled(), Streams::new(1));
         let s1 = sample("S1");
         assert_eq!(s1.leads.len(), 2000);
         for n in [1, 9, 2000] {
@@ -171,34 +171,37 @@ mod tests {
     }
 
     #[test]
-    fn half_of_the_leads_ask_for_less_than_the_median_and_budgets_are_a_limit() {
-        let (params, s1) = (Params::shipped(), sample("S1"));
+    fn quantiles_split_the_sample_and_budgets_limit_prices() {
+        let (params, s1) = (Params::bundled(), sample("S1"));
         let [low, median, high]: [f64; 3] =
-            s1.required(14.0, &[0.1, 0.5, 0.9], &params).try_into().expect("three shares");
+            s1.required_quality_quantiles(14.0, &[0.1, 0.5, 0.9], &params).try_into().expect("three shares");
         assert!(low < median && median < high && high < 1.0, "{low} {median} {high}");
         let asked = s1.leads.iter().filter(|own| required_quality(14.0, &own.curve, &params) <= median);
         assert_eq!(asked.count(), 1001);
-        assert_eq!(s1.required(s1.budget(0.5) + 0.01, &[0.5], &params), [f64::INFINITY]);
+        assert_eq!(
+            s1.required_quality_quantiles(s1.budget_quantile(0.5) + 0.01, &[0.5], &params),
+            [f64::INFINITY]
+        );
     }
 
     #[test]
-    fn promotions_win_leads_and_ongoing_ones_only_make_the_bill_cheaper() {
-        let (params, s1, none) = (Params::shipped(), sample("S1"), ByPlan([0.0; 3]));
-        let list = s1.choose(&alike(20.0, 0.4), 0.0, &none, &params);
-        let promoted = s1.choose(&alike(20.0, 0.4), 8.0, &none, &params);
-        let ongoing = s1.choose(&alike(20.0, 0.4), 0.0, &ByPlan([8.0; 3]), &params);
-        assert!(promoted.takers.0[0] > list.takers.0[0]);
-        assert_eq!(ongoing.takers, list.takers);
+    fn lead_promotions_raise_conversion_and_ongoing_ones_do_not() {
+        let (params, s1, none) = (Params::bundled(), sample("S1"), ByPlan([0.0; 3]));
+        let list = s1.choose(&same_offers(20.0, 0.4), 0.0, &none, &params);
+        let promoted = s1.choose(&same_offers(20.0, 0.4), 8.0, &none, &params);
+        let ongoing = s1.choose(&same_offers(20.0, 0.4), 0.0, &ByPlan([8.0; 3]), &params);
+        assert!(promoted.choices_by_plan.0[0] > list.choices_by_plan.0[0]);
+        assert_eq!(ongoing.choices_by_plan, list.choices_by_plan);
         assert!((ongoing.revenue_per_lead() / list.revenue_per_lead() - 0.6).abs() < 1e-12);
-        let same = s1.choose(&alike(12.0, 0.4), 0.0, &none, &params);
+        let same = s1.choose(&same_offers(12.0, 0.4), 0.0, &none, &params);
         assert_eq!(promoted, same, "a list price of 20 minus 8 is a price of 12");
     }
 
     #[test]
-    fn companies_ask_for_an_offer_whatever_the_price_is() {
-        let (params, e1, none) = (Params::shipped(), sample("E1"), ByPlan([0.0; 3]));
-        let cheap = e1.choose(&alike(1.0, 0.55), 0.0, &none, &params);
-        let dear = e1.choose(&alike(900.0, 0.55), 0.0, &none, &params);
+    fn enterprises_request_an_offer_at_any_price() {
+        let (params, e1, none) = (Params::bundled(), sample("E1"), ByPlan([0.0; 3]));
+        let cheap = e1.choose(&same_offers(1.0, 0.55), 0.0, &none, &params);
+        let dear = e1.choose(&same_offers(900.0, 0.55), 0.0, &none, &params);
         assert_eq!(cheap, dear);
         assert!(cheap.conversion() > 0.2 && cheap.conversion() < 0.9, "{}", cheap.conversion());
         assert_eq!(cheap.first_bills, 0.0);

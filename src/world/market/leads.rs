@@ -2,7 +2,7 @@
 
 use super::Market;
 use super::economy::Dimension;
-use super::social::own::social_multiplier;
+use super::social::own_posts::social_multiplier;
 use super::surges::surge_factor;
 use crate::canonical::canonical;
 use crate::events::Source;
@@ -48,7 +48,7 @@ impl LeadFactors {
     }
 
     /// Picks the source of a lead from a uniform draw, in proportion to today's contributions, channels first.
-    pub fn source(&self, u: f64) -> Source {
+    pub fn pick_source(&self, u: f64) -> Source {
         let total = self.paid.iter().sum::<f64>() + self.network;
         if total <= 0.0 {
             return Source::Organic;
@@ -56,7 +56,7 @@ impl LeadFactors {
         let mut rest = u * total;
         for channel in Channel::ALL {
             if rest < self.paid[channel] {
-                return Source::of_channel(channel);
+                return Source::from_channel(channel);
             }
             rest -= self.paid[channel];
         }
@@ -65,7 +65,7 @@ impl LeadFactors {
         }
         // Rounding moved the draw past the last contribution.
         let last = Channel::ALL.into_iter().rev().find(|channel| self.paid[*channel] > 0.0);
-        last.map_or(Source::Organic, Source::of_channel)
+        last.map_or(Source::Organic, Source::from_channel)
     }
 }
 
@@ -131,7 +131,7 @@ pub fn lead_factors(group: Group, context: &LeadContext<'_>) -> LeadFactors {
     };
     let network = word_of_mouth(group, context).map(|(_, leads)| leads).sum();
     LeadFactors {
-        reputation: market.reputation.of(group),
+        reputation: market.reputation.get(group),
         saturation: saturation(subscribers[group], cap, &params.leads),
         calendar,
         economy: market.economy.multiplier(group, Dimension::LeadGeneration, params),
@@ -145,7 +145,7 @@ pub fn lead_factors(group: Group, context: &LeadContext<'_>) -> LeadFactors {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::market::social::own::OwnPost;
+    use crate::market::social::own_posts::OwnPost;
     use crate::market::surges::Surge;
     use indexmap::IndexMap;
 
@@ -158,9 +158,9 @@ mod tests {
     }
 
     #[test]
-    fn every_factor_multiplies_the_expected_leads() {
-        let params = Params::shipped();
-        let mut market = Market::opening(&params);
+    fn expected_leads_is_the_product_of_all_factors() {
+        let params = Params::bundled();
+        let mut market = Market::initial(&params);
         market.economy.pmi = 45.0;
         market.economy.started = true;
         market.reputation.set(group("S1"), 0.62);
@@ -207,8 +207,8 @@ mod tests {
     }
 
     #[test]
-    fn room_shrinks_with_the_share_of_a_growing_market() {
-        let law = Params::shipped().leads;
+    fn saturation_decreases_with_market_share() {
+        let law = Params::bundled().leads;
         near(saturation(136_000, market_cap(272_000.0, 0.2, 0, &law), &law), 0.75);
         near(saturation(136_000, market_cap(272_000.0, 0.2, 250, &law), &law), 0.806611990129);
         near(saturation(600, market_cap(1190.0, 0.14, 100, &law), &law), 0.764215155299);
@@ -219,9 +219,9 @@ mod tests {
     }
 
     #[test]
-    fn a_first_campaign_brings_its_yield_times_the_calendar() {
-        let params = Params::shipped();
-        let market = Market::opening(&params);
+    fn first_campaign_yields_leads_times_calendar() {
+        let params = Params::bundled();
+        let market = Market::initial(&params);
         let subscribers = ByGroup::default();
         let ads = TargetedAds {
             targeted_spend: IndexMap::from([(
@@ -243,15 +243,15 @@ mod tests {
     }
 
     #[test]
-    fn sources_share_leads_in_proportion() {
+    fn sources_are_picked_in_proportion() {
         let mut factors = LeadFactors { network: 30.0, ..LeadFactors::default() };
         factors.paid[Channel::SearchAds] = 50.0;
         factors.paid[Channel::ReferralProgram] = 20.0;
         for (u, source) in
             [(0.0, "search_ads"), (0.499, "search_ads"), (0.501, "referral_program"), (0.71, "network")]
         {
-            assert_eq!(factors.source(u).id(), source, "{u}");
+            assert_eq!(factors.pick_source(u).id(), source, "{u}");
         }
-        assert_eq!(LeadFactors::default().source(0.5), Source::Organic);
+        assert_eq!(LeadFactors::default().pick_source(0.5), Source::Organic);
     }
 }

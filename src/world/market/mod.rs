@@ -51,9 +51,9 @@ canonical! {
 
 impl Market {
     /// Returns the market of day 0.
-    pub fn opening(params: &Params) -> Market {
+    pub fn initial(params: &Params) -> Market {
         let knowledge = |group: Group| {
-            let known = group.initially_known();
+            let known = group.is_initially_known();
             let initial = &params.initial;
             Knowledge {
                 level: if known {
@@ -63,20 +63,20 @@ impl Market {
                 },
                 discovered_day: known.then_some(0),
                 last_research_day: known.then_some(0),
-                snapshot: discovery::opening_snapshot(group, params),
+                snapshot: discovery::initial_snapshot(group, params),
             }
         };
         Market {
-            reputation: reputation::ReputationBook::opening(params),
+            reputation: reputation::ReputationBook::initial(params),
             drift: drift::DriftTotals::default(),
             yields: params.starting_yields(),
-            economy: economy::Economy::opening(params),
+            economy: economy::Economy::initial(params),
             competitors: Vec::new(),
             surges: Vec::new(),
             knowledge: ByGroup::from_fn(knowledge),
             attempts: 0,
             studies: Vec::new(),
-            social: social::Social::opening(&Settings::opening(params)),
+            social: social::Social::initial(&Settings::initial(params)),
         }
     }
 

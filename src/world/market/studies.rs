@@ -25,7 +25,7 @@ impl Market {
 
 /// Completes due studies in the order in which they were ordered: the level rises, and the snapshot is the
 /// market of this morning.
-pub fn complete(day: u32, market: &mut Market, params: &Params, facts: &mut Facts) {
+pub fn complete_due_studies(day: u32, market: &mut Market, params: &Params, facts: &mut Facts) {
     let Market { studies, knowledge, drift, .. } = market;
     for study in studies.extract_if(.., |study| study.due_day <= day) {
         let own = &mut knowledge[study.group];
@@ -33,7 +33,7 @@ pub fn complete(day: u32, market: &mut Market, params: &Params, facts: &mut Fact
             own.level = study.target;
             own.last_research_day = Some(day);
         }
-        own.snapshot = Some(Snapshot::take(study.group, day, drift, params));
+        own.snapshot = Some(Snapshot::take_snapshot(study.group, day, drift, params));
         facts.knowledge.push((study.group, *own));
         facts.notices.push(Notice::StudyComplete { study, noise: params.level(own.level).noise });
     }
@@ -55,16 +55,16 @@ mod tests {
     }
 
     #[test]
-    fn a_study_keeps_the_market_of_the_morning_it_is_complete() {
-        let params = Params::shipped();
-        let (mut market, mut facts) = (Market::opening(&params), Facts::default());
+    fn study_snapshot_is_taken_on_the_completion_morning() {
+        let params = Params::bundled();
+        let (mut market, mut facts) = (Market::initial(&params), Facts::default());
         let s1 = order(&mut market, "S1", 2, 0, &params);
         market.drift.global_quality = 0.12;
         market.drift.quality[s1] = 0.03;
         market.drift.c_max[s1] = 0.5;
-        complete(2, &mut market, &params, &mut facts);
+        complete_due_studies(2, &mut market, &params, &mut facts);
         assert_eq!(market.knowledge[s1].level, 1);
-        complete(3, &mut market, &params, &mut facts);
+        complete_due_studies(3, &mut market, &params, &mut facts);
         let snapshot = market.knowledge[s1].snapshot.expect("a snapshot");
         near(snapshot.c_max, 50.5);
         near(snapshot.q_min, 0.25);
@@ -72,7 +72,7 @@ mod tests {
         assert_eq!((market.knowledge[s1].level, market.knowledge[s1].last_research_day), (2, Some(3)));
 
         order(&mut market, "S1", 2, 7, &params);
-        complete(10, &mut market, &params, &mut facts);
+        complete_due_studies(10, &mut market, &params, &mut facts);
         let snapshot = market.knowledge[s1].snapshot.expect("a snapshot");
         near(snapshot.c_max, 50.5);
         near(snapshot.q_min, 0.25);
@@ -83,28 +83,28 @@ mod tests {
     }
 
     #[test]
-    fn studies_take_the_days_of_their_level() {
-        let params = Params::shipped();
-        let (mut market, mut facts) = (Market::opening(&params), Facts::default());
+    fn study_duration_follows_its_level() {
+        let params = Params::bundled();
+        let (mut market, mut facts) = (Market::initial(&params), Facts::default());
         for (day, target, due) in [(0, 2, 3), (14, 3, 19), (28, 4, 35), (42, 5, 52)] {
             let s1 = order(&mut market, "S1", target, day, &params);
             assert_eq!(market.running_study(s1).map(|study| study.due_day), Some(due));
-            complete(due - 1, &mut market, &params, &mut facts);
+            complete_due_studies(due - 1, &mut market, &params, &mut facts);
             assert_eq!(market.knowledge[s1].level, target - 1);
-            complete(due, &mut market, &params, &mut facts);
+            complete_due_studies(due, &mut market, &params, &mut facts);
             assert_eq!(market.knowledge[s1].level, target);
         }
     }
 
     #[test]
-    fn studies_of_several_groups_run_side_by_side_and_levels_can_be_skipped() {
-        let params = Params::shipped();
-        let (mut market, mut facts) = (Market::opening(&params), Facts::default());
+    fn studies_run_in_parallel_and_can_skip_levels() {
+        let params = Params::bundled();
+        let (mut market, mut facts) = (Market::initial(&params), Facts::default());
         let s1 = order(&mut market, "S1", 5, 0, &params);
         let e2 = order(&mut market, "E2", 2, 0, &params);
-        complete(3, &mut market, &params, &mut facts);
+        complete_due_studies(3, &mut market, &params, &mut facts);
         assert_eq!((market.knowledge[s1].level, market.knowledge[e2].level), (1, 2));
-        complete(10, &mut market, &params, &mut facts);
+        complete_due_studies(10, &mut market, &params, &mut facts);
         assert_eq!(market.knowledge[s1].level, 5);
         assert_eq!(facts.knowledge.iter().map(|(group, _)| group.id()).collect::<Vec<_>>(), ["E2", "S1"]);
         assert_eq!(

@@ -34,7 +34,7 @@ pub fn draw_surge(day: u32, law: &DemandSurge, streams: &Streams) -> Option<Surg
 }
 
 /// Returns the surge of a day: from the record if one is replayed, otherwise drawn.
-pub fn surge_of(day: u32, params: &Params, streams: &Streams) -> Option<Surge> {
+pub fn surge_on_day(day: u32, params: &Params, streams: &Streams) -> Option<Surge> {
     let law = &params.demand_surge;
     match params.replayed_series().and_then(|series| series.demand_surge(day)) {
         None => draw_surge(day, law, streams),
@@ -47,11 +47,17 @@ pub fn surge_of(day: u32, params: &Params, streams: &Streams) -> Option<Surge> {
 }
 
 /// Draws the surges of all days of a week on its first day.
-pub fn draw_week(day: u32, total_days: u32, surges: &mut Vec<Surge>, params: &Params, streams: &Streams) {
+pub fn draw_week_surges(
+    day: u32,
+    total_days: u32,
+    surges: &mut Vec<Surge>,
+    params: &Params,
+    streams: &Streams,
+) {
     let length = params.run.days_per_week;
     if day % length == 1 {
         let days = day..=week_end(day, length, total_days);
-        surges.extend(days.filter_map(|day| surge_of(day, params, streams)));
+        surges.extend(days.filter_map(|day| surge_on_day(day, params, streams)));
     }
 }
 
@@ -67,7 +73,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn surges_of_a_week_multiply_from_its_first_day() {
+    fn surges_multiply_from_the_first_day_of_their_week() {
         let surge = |day, end_day, multiplier| Surge { day, end_day, multiplier };
         let week = |day, surges: &[Surge]| surge_factor(day, surges, SurgeStart::Week);
         let stored = [surge(5, 10, 3.0), surge(6, 9, 2.0)];
@@ -83,19 +89,19 @@ mod tests {
     }
 
     #[test]
-    fn weeks_end_on_days_divisible_by_seven_or_with_the_run() {
+    fn week_end_is_divisible_by_seven_or_the_last_day() {
         assert_eq!(week_end(1, 7, 500), 7);
         assert_eq!(week_end(7, 7, 500), 7);
         assert_eq!(week_end(498, 7, 500), 500);
     }
 
     #[test]
-    fn surges_are_distributed_as_measured() {
-        let params = Params::shipped();
+    fn surges_match_measured_distribution() {
+        let params = Params::bundled();
         let (mut count, mut multipliers, mut durations) = (0.0, 0.0, 0.0);
         for seed in 0..300 {
             let (streams, mut surges) = (Streams::new(seed), Vec::new());
-            (1..=500).for_each(|day| draw_week(day, 500, &mut surges, &params, &streams));
+            (1..=500).for_each(|day| draw_week_surges(day, 500, &mut surges, &params, &streams));
             count += surges.len() as f64;
             multipliers += surges.iter().map(|surge| surge.multiplier).sum::<f64>();
             durations += surges.iter().map(|surge| f64::from(surge.end_day - surge.day)).sum::<f64>();

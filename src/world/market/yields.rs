@@ -5,13 +5,13 @@ use crate::params::{Leads, Params};
 use crate::random::{Part, Streams};
 
 /// Returns the yield after a month; `z` is a standard normal draw. A yield of 0 stays 0.
-pub fn varied_yield(value: f64, z: f64, law: &Leads) -> f64 {
+pub fn yield_after_month(value: f64, z: f64, law: &Leads) -> f64 {
     (value + law.monthly_channel_noise_fraction * value * z).max(law.monthly_channel_value_min)
 }
 
 /// Varies all yields, including those of undiscovered groups, on days divisible by 30. Channels draw in
 /// alphabetical order.
-pub fn vary(day: u32, yields: &mut ByChannel<ByGroup<f64>>, params: &Params, streams: &Streams) {
+pub fn vary_yields(day: u32, yields: &mut ByChannel<ByGroup<f64>>, params: &Params, streams: &Streams) {
     let interval = params.leads.monthly_channel_noise_interval_days;
     if !day.is_multiple_of(interval) {
         return;
@@ -28,7 +28,7 @@ pub fn vary(day: u32, yields: &mut ByChannel<ByGroup<f64>>, params: &Params, str
             if let Some(given) = series.and_then(|series| series.channel_yield(channel, group, month)) {
                 *value = given;
             } else if *value > 0.0 {
-                *value = varied_yield(*value, stream.standard_normal(), &params.leads);
+                *value = yield_after_month(*value, stream.standard_normal(), &params.leads);
             }
         }
     }
@@ -39,22 +39,22 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_yield_moves_by_its_fraction_and_never_below_its_floor() {
-        let law = Params::shipped().leads;
-        assert!((varied_yield(124.5849, 1.0, &law) - 130.814145).abs() < 1e-9);
-        assert_eq!(varied_yield(124.5849, -25.0, &law), 0.0);
+    fn yield_changes_by_a_fraction_above_its_minimum() {
+        let law = Params::bundled().leads;
+        assert!((yield_after_month(124.5849, 1.0, &law) - 130.814145).abs() < 1e-9);
+        assert_eq!(yield_after_month(124.5849, -25.0, &law), 0.0);
     }
 
     #[test]
-    fn yields_vary_by_five_percent_a_month_and_only_then() {
-        let params = Params::shipped();
+    fn yields_vary_monthly_by_five_percent() {
+        let params = Params::bundled();
         let streams = Streams::new(3);
         let start = params.starting_yields();
         let mut yields = start;
-        vary(29, &mut yields, &params, &streams);
+        vary_yields(29, &mut yields, &params, &streams);
         assert_eq!(yields, start);
         let (mut sum, mut squares) = (0.0, 0.0);
-        vary(30, &mut yields, &params, &streams);
+        vary_yields(30, &mut yields, &params, &streams);
         for channel in Channel::ALL {
             for group in Group::all() {
                 let change = yields[channel][group] / start[channel][group] - 1.0;

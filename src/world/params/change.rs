@@ -3,19 +3,19 @@
 use toml::{Table, Value};
 
 use super::Params;
-use super::load::{ParameterError, checked, override_table};
+use super::load::{ParameterError, apply_override, from_tables};
 use super::names::{keys, nearest_keys, value_at};
 
 /// Parameters, or tables and lists of parameters, that take effect only at the start of a run, or that define
 /// texts that are already recorded.
-const OF_THE_START: [&str; 6] =
+const START_ONLY_KEYS: [&str; 6] =
     ["run.seed", "run.total_days", "run.days_per_week", "initial", "channel", "personas"];
 /// Parameters of day 0 that apply to every new customer.
-const OF_EVERY_CUSTOMER: [&str; 2] = ["initial.customer_satisfaction", "initial.customer_relationship"];
+const PER_CUSTOMER_KEYS: [&str; 2] = ["initial.customer_satisfaction", "initial.customer_relationship"];
 
 /// A parameter with different values in two sets.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Difference {
+pub struct ParameterDifference {
     /// Full key.
     pub key: String,
     /// Value in the first set, or `None` if it is missing there.
@@ -30,7 +30,7 @@ impl Params {
     /// # Errors
     /// If no parameter has this name. The error lists similar names.
     pub fn value(&self, key: &str) -> Result<Value, ParameterError> {
-        let tables = self.tables();
+        let tables = self.to_tables();
         value_at(&tables, key).cloned().ok_or_else(|| {
             let near = nearest_keys(&tables, key);
             let help = if near.is_empty() {
@@ -38,46 +38,46 @@ impl Params {
             } else {
                 format!("; did you mean {}?", near.join(" or "))
             };
-            wrong(key, format!("there is no such parameter{help}"))
+            parameter_error(key, format!("there is no such parameter{help}"))
         })
     }
 
     /// Returns a copy with another value of a parameter, or of a list or table of parameters.
     ///
     /// # Errors
-    /// As [`Params::load`] for a single override, or if the parameter takes effect only at the start of a
+    /// As [`Params::load_factor`] for a single override, or if the parameter takes effect only at the start of a
     /// run.
     pub fn with(&self, key: &str, value: Value) -> Result<Params, ParameterError> {
         self.value(key)?;
         let nested = key
             .rsplit('.')
             .fold(value, |inner, part| Value::Table(Table::from_iter([(part.to_owned(), inner)])));
-        let mut tables = self.tables();
+        let mut tables = self.to_tables();
         if let Value::Table(nested) = nested {
-            override_table(&mut tables, nested).map_err(|(key, problem)| wrong(&key, problem))?;
+            apply_override(&mut tables, nested).map_err(|(key, problem)| parameter_error(&key, problem))?;
         }
-        let checked = checked(tables).map_err(|(key, problem)| wrong(&key, problem))?;
+        let checked = from_tables(tables).map_err(|(key, problem)| parameter_error(&key, problem))?;
         let other = Params { fault: self.fault, ..checked };
-        match self.differences(&other).into_iter().find(|own| acts_only_at_the_start(&own.key)) {
+        match self.differences(&other).into_iter().find(|own| is_start_only(&own.key)) {
             None => Ok(other),
             Some(own) => {
                 let problem = "acts only when a run begins; begin one with --set to change it".to_owned();
-                Err(wrong(&own.key, problem))
+                Err(parameter_error(&own.key, problem))
             }
         }
     }
 
     /// Returns the parameters in which another set differs from this one.
-    pub fn differences(&self, other: &Params) -> Vec<Difference> {
+    pub fn differences(&self, other: &Params) -> Vec<ParameterDifference> {
         if self == other {
             return Vec::new();
         }
-        let (own, other) = (self.tables(), other.tables());
+        let (own, other) = (self.to_tables(), other.to_tables());
         let mut all = keys(&own);
         all.extend(keys(&other));
         all.sort_unstable();
         all.dedup();
-        let difference = |key: String| Difference {
+        let difference = |key: String| ParameterDifference {
             old: value_at(&own, &key).cloned(),
             new: value_at(&other, &key).cloned(),
             key,
@@ -85,21 +85,21 @@ impl Params {
         all.into_iter().map(difference).filter(|found| found.old != found.new).collect()
     }
 
-    fn tables(&self) -> Table {
+    fn to_tables(&self) -> Table {
         Table::try_from(self).unwrap_or_default()
     }
 }
 
-fn wrong(key: &str, problem: String) -> ParameterError {
+fn parameter_error(key: &str, problem: String) -> ParameterError {
     ParameterError { source: String::new(), line: None, key: key.to_owned(), problem }
 }
 
-fn acts_only_at_the_start(key: &str) -> bool {
+fn is_start_only(key: &str) -> bool {
     let is_of = |table: &str| {
         let rest = key.strip_prefix(table);
         rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
     };
-    OF_THE_START.into_iter().any(is_of) && !OF_EVERY_CUSTOMER.contains(&key)
+    START_ONLY_KEYS.into_iter().any(is_of) && !PER_CUSTOMER_KEYS.contains(&key)
 }
 
 #[cfg(test)]
@@ -107,14 +107,14 @@ mod tests {
     use super::*;
 
     fn set(key: &str, value: impl Into<Value>) -> Result<Params, ParameterError> {
-        Params::shipped().with(key, value.into())
+        Params::bundled().with(key, value.into())
     }
 
     #[test]
-    fn a_parameter_a_list_and_a_table_are_set_by_their_names() {
+    fn with_sets_parameters_lists_and_tables_by_name() {
         let dear = set("group.S1.c_max_mean", 300).expect("a whole number is a number");
         assert_eq!(dear.group[0].c_max_mean, 300.0);
-        let found = Params::shipped().differences(&dear);
+        let found = Params::bundled().differences(&dear);
         assert_eq!(found.len(), 1);
         assert_eq!(
             (found[0].key.as_str(), &found[0].new),
@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_names_the_key_and_what_is_allowed() {
+    fn errors_name_the_key_and_the_allowed_range() {
         for (key, value, part) in [
             (
                 "group.S1.c_max_std",

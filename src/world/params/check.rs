@@ -20,7 +20,7 @@ pub(super) type Range = RangeInclusive<f64>;
 pub(super) const POSITIVE: f64 = f64::MIN_POSITIVE;
 pub(super) const ANY: Range = f64::NEG_INFINITY..=f64::INFINITY;
 
-/// Defines tables of parameters. `where LOW..=HIGH` after the type of a field is the range of its numbers,
+/// Defines tables of parameters. `where MIN_HEIGHT_FOR_MARGIN..=HIGH` after the type of a field is the range of its numbers,
 /// including those in lists. `as "key"` after its name is its key if it differs from the name.
 macro_rules! parameters {
     ($($(#[$meta:meta])* pub struct $name:ident {
@@ -54,7 +54,7 @@ pub(super) trait Ranged {
     fn check(value: &Value, path: &str, range: &Range) -> Checked {
         match as_number(value) {
             Some(number) if !range.contains(&number) => {
-                Err((path.to_owned(), format!("is {number}, but {}", allowed(range))))
+                Err((path.to_owned(), format!("is {number}, but {}", describe_range(range))))
             }
             _ => Ok(()),
         }
@@ -103,7 +103,7 @@ pub(super) fn field<T: Ranged>(table: &Value, path: &str, key: &str, range: &Ran
     T::check(value, &path, range)
 }
 
-fn allowed(range: &Range) -> String {
+fn describe_range(range: &Range) -> String {
     match (*range.start(), *range.end()) {
         (low, f64::INFINITY) => format!("must be at least {low}"),
         (POSITIVE, high) => format!("must be above 0 and at most {high}"),
@@ -113,31 +113,31 @@ fn allowed(range: &Range) -> String {
 }
 
 /// Checks every number of the merged tables against the range of its field.
-pub(super) fn ranges(tables: &Value) -> Checked {
+pub(super) fn check_ranges(tables: &Value) -> Checked {
     let mut named = tables.as_table().into_iter().flatten();
-    named.try_for_each(|(name, value)| finite(value, name.clone()))?;
+    named.try_for_each(|(name, value)| check_finite(value, name.clone()))?;
     Params::check(tables, "", &ANY)
 }
 
 /// Suffix of a lower bound, suffix of its upper bound, and whether the lower bound has to be strictly smaller.
-const BOUNDS: [(&str, &str, bool); 3] =
+const BOUND_PREFIXES: [(&str, &str, bool); 3] =
     [("_min", "_max", false), ("_low", "_high", false), ("_low", "_high_exclusive", true)];
 
 /// Checks that no lower bound exceeds the upper bound of the same name, in every table that has both.
-pub(super) fn bounds(tables: &Table) -> Checked {
+pub(super) fn check_bounds(tables: &Table) -> Checked {
     tables.iter().try_for_each(|(name, value)| match value {
-        Value::Table(table) => bounds_of(table, name),
+        Value::Table(table) => check_table_bounds(table, name),
         _ => Ok(()),
     })
 }
 
-fn bounds_of(table: &Table, path: &str) -> Checked {
+fn check_table_bounds(table: &Table, path: &str) -> Checked {
     table.iter().try_for_each(|(name, value)| {
         let key = format!("{path}.{name}");
         if let Value::Table(inner) = value {
-            return bounds_of(inner, &key);
+            return check_table_bounds(inner, &key);
         }
-        BOUNDS.iter().try_for_each(|(lower, upper, is_below)| {
+        BOUND_PREFIXES.iter().try_for_each(|(lower, upper, is_below)| {
             let upper = name.strip_suffix(lower).and_then(|start| table.get(&format!("{start}{upper}")));
             let (Some(low), Some(high)) = (as_number(value), upper.and_then(as_number)) else {
                 return Ok(());
@@ -156,28 +156,28 @@ fn as_number(value: &Value) -> Option<f64> {
     }
 }
 
-fn finite(value: &Value, path: String) -> Checked {
+fn check_finite(value: &Value, path: String) -> Checked {
     match value {
         Value::Float(number) if !number.is_finite() => {
             Err((path, format!("is {number}, but must be a finite number")))
         }
         Value::Table(table) => {
-            table.iter().try_for_each(|(key, inner)| finite(inner, format!("{path}.{key}")))
+            table.iter().try_for_each(|(key, inner)| check_finite(inner, format!("{path}.{key}")))
         }
         Value::Array(values) => {
-            values.iter().enumerate().try_for_each(|(at, inner)| finite(inner, format!("{path}.{at}")))
+            values.iter().enumerate().try_for_each(|(at, inner)| check_finite(inner, format!("{path}.{at}")))
         }
         _ => Ok(()),
     }
 }
 
 /// Checks relations between values: order, sizes of matrices, bounds, and sums of probabilities.
-pub(super) fn relations(params: &Params) -> Checked {
-    ordered_pairs(params)?;
-    ladders(params)?;
-    groups(params)?;
-    networks(params)?;
-    channels(params)?;
+pub(super) fn check_relations(params: &Params) -> Checked {
+    check_ordered_pairs(params)?;
+    check_tiers(params)?;
+    check_groups(params)?;
+    check_networks(params)?;
+    check_channels(params)?;
     let downtime: f64 = params.operations.downtime_minutes_probabilities.iter().sum();
     require((downtime - 1.0).abs() < 1e-9, "operations.downtime_minutes_probabilities", || {
         format!("add up to {downtime}, but must add up to 1")
@@ -190,7 +190,7 @@ fn require(holds: bool, key: &str, problem: impl FnOnce() -> String) -> Checked 
     if holds { Ok(()) } else { Err((key.to_owned(), problem())) }
 }
 
-fn ordered_pairs(params: &Params) -> Checked {
+fn check_ordered_pairs(params: &Params) -> Checked {
     let economy = &params.economy;
     let (low, high) = (economy.macro_pmi_floor, economy.macro_pmi_ceiling);
     require(low <= high, "macro.macro_pmi_floor", || {
@@ -198,7 +198,7 @@ fn ordered_pairs(params: &Params) -> Checked {
     })
 }
 
-fn ladders(params: &Params) -> Checked {
+fn check_tiers(params: &Params) -> Checked {
     let numbered = |key: &str, numbers: Vec<u8>, first: u8, count: usize| {
         let expected: Vec<u8> = (first..first + count as u8).collect();
         require(numbers == expected, key, || {
@@ -211,7 +211,7 @@ fn ladders(params: &Params) -> Checked {
     numbered("info_level", params.info_level.iter().map(|level| level.level).collect(), 1, 5)
 }
 
-fn groups(params: &Params) -> Checked {
+fn check_groups(params: &Params) -> Checked {
     let count = params.group.len();
     require(count == Group::COUNT, "group", || {
         format!("there are {count} groups, but must be {}", Group::COUNT)
@@ -232,7 +232,7 @@ fn groups(params: &Params) -> Checked {
         require((own.segment == Segment::Enterprise) == group.is_enterprise(), &key("segment"), || {
             "does not fit the identifier: S is individual, E is enterprise".to_owned()
         })?;
-        require(own.initially_known == group.initially_known(), &key("initially_known"), || {
+        require(own.initially_known == group.is_initially_known(), &key("initially_known"), || {
             "does not fit the identifier: D_ groups have to be discovered".to_owned()
         })?;
         if group.is_enterprise() {
@@ -253,7 +253,7 @@ fn groups(params: &Params) -> Checked {
     Ok(())
 }
 
-fn networks(params: &Params) -> Checked {
+fn check_networks(params: &Params) -> Checked {
     for (name, matrix) in [
         ("referral_leads_per_subscriber_day", &params.referral_leads_per_subscriber_day),
         ("reputation_influence", &params.reputation_influence),
@@ -269,7 +269,7 @@ fn networks(params: &Params) -> Checked {
     Ok(())
 }
 
-fn channels(params: &Params) -> Checked {
+fn check_channels(params: &Params) -> Checked {
     let ids: Vec<&str> = params.channel.iter().map(|channel| channel.id.as_str()).collect();
     require(ids == Channel::ALL.map(Channel::id), "channel", || {
         "must be social_media, search_ads, linkedin, content_marketing, referral_program".to_owned()
@@ -298,8 +298,8 @@ mod tests {
     }
 
     #[test]
-    fn sums_over_groups_and_channels_are_those_of_the_release() {
-        let params = Params::shipped();
+    fn sums_over_groups_and_channels_match_the_release() {
+        let params = Params::bundled();
         let sum = |value: fn(&super::super::GroupParams) -> f64| params.group.iter().map(value).sum::<f64>();
         near(sum(|group| group.c_max_mean), 2495.0);
         near(sum(|group| group.q_min_mean), 11.37);
@@ -316,8 +316,8 @@ mod tests {
     }
 
     #[test]
-    fn sums_of_the_networks_are_those_of_the_release() {
-        let params = Params::shipped();
+    fn network_sums_match_the_release() {
+        let params = Params::bundled();
         let pairs = || Group::all().flat_map(|source| Group::all().map(move |target| (source, target)));
         near(pairs().map(|(source, target)| params.referral_rate(source, target)).sum(), 0.46369999);
         near(pairs().map(|(source, target)| params.reputation_weight(source, target)).sum(), 75.194);

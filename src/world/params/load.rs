@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use toml::de::DeValue;
 use toml::{Spanned, Table, Value};
 
-use super::names::{NAMING, name_in, named, nearest_keys, place_in};
+use super::names::{NAME_FIELDS, element_name, element_position, nearest_keys, replace_indexes_with_names};
 use super::{Params, check};
 use crate::identifiers::Group;
 
@@ -34,7 +34,7 @@ pub struct ParameterError {
 
 impl ParameterError {
     /// Creates an error for text that is not valid TOML or has wrong keys or types.
-    pub fn of_toml(source: &str, text: &str, error: &toml::de::Error) -> ParameterError {
+    pub fn from_toml(source: &str, text: &str, error: &toml::de::Error) -> ParameterError {
         ParameterError {
             source: source.to_owned(),
             line: error.span().map(|span| line_of(text, span.start)),
@@ -44,7 +44,7 @@ impl ParameterError {
     }
 
     /// Creates an error for a key, with its line in the text.
-    pub fn of_key(source: &str, text: &str, key: &str, problem: impl Into<String>) -> ParameterError {
+    pub fn for_key(source: &str, text: &str, key: &str, problem: impl Into<String>) -> ParameterError {
         ParameterError {
             source: source.to_owned(),
             line: line_of_key(text, key),
@@ -79,7 +79,7 @@ macro_rules! shipped {
 }
 
 /// Returns the parameter files included in the binary.
-pub fn shipped_sources() -> Vec<ParameterSource> {
+pub fn bundled_sources() -> Vec<ParameterSource> {
     Vec::from(shipped![
         "run.toml",
         "customers.toml",
@@ -98,10 +98,10 @@ pub fn shipped_sources() -> Vec<ParameterSource> {
 
 impl Params {
     /// Returns the bundled parameters, which are parsed once.
-    pub fn shipped() -> Params {
-        static SHIPPED: OnceLock<Params> = OnceLock::new();
-        let read = || Params::load(&shipped_sources(), &[]).expect("the bundled parameters are valid");
-        SHIPPED.get_or_init(read).clone()
+    pub fn bundled() -> Params {
+        static BUNDLED: OnceLock<Params> = OnceLock::new();
+        let read = || Params::load(&bundled_sources(), &[]).expect("the bundled parameters are valid");
+        BUNDLED.get_or_init(read).clone()
     }
 
     /// Merges the base sources, which together contain every key once, with the overrides in order.
@@ -112,18 +112,18 @@ impl Params {
     pub fn load(base: &[ParameterSource], overrides: &[ParameterSource]) -> Result<Params, ParameterError> {
         let mut merged = Table::new();
         for source in base {
-            for (key, value) in parse(source)? {
+            for (key, value) in parse_source(source)? {
                 if merged.insert(key.clone(), value).is_some() {
                     return Err(locate(&[source], &key, "this table is also in another file"));
                 }
             }
         }
         for source in overrides {
-            override_table(&mut merged, parse(source)?)
+            apply_override(&mut merged, parse_source(source)?)
                 .map_err(|(key, problem)| locate(&[source], &key, &problem))?;
         }
         let sources: Vec<&ParameterSource> = overrides.iter().rev().chain(base).collect();
-        checked(merged).map_err(|(key, problem)| locate(&sources, &key, &problem))
+        from_tables(merged).map_err(|(key, problem)| locate(&sources, &key, &problem))
     }
 }
 
@@ -131,30 +131,33 @@ impl Params {
 ///
 /// # Errors
 /// Key and problem of the first invalid value.
-pub(super) fn checked(tables: Table) -> Result<Params, (String, String)> {
-    let with_names = |(key, problem): (String, String)| (named(&tables, &key), problem);
+pub(super) fn from_tables(tables: Table) -> Result<Params, (String, String)> {
+    let with_names = |(key, problem): (String, String)| (replace_indexes_with_names(&tables, &key), problem);
     let whole = Value::Table(tables.clone());
-    check::ranges(&whole).map_err(with_names)?;
-    check::bounds(&tables).map_err(with_names)?;
-    let params = read(whole).map_err(with_names)?;
-    check::relations(&params).map_err(with_names)?;
+    check::check_ranges(&whole).map_err(with_names)?;
+    check::check_bounds(&tables).map_err(with_names)?;
+    let params = deserialize(whole).map_err(with_names)?;
+    check::check_relations(&params).map_err(with_names)?;
     Ok(params)
 }
 
-fn parse(source: &ParameterSource) -> Result<Table, ParameterError> {
-    source.text.parse::<Table>().map_err(|error| ParameterError::of_toml(&source.name, &source.text, &error))
+fn parse_source(source: &ParameterSource) -> Result<Table, ParameterError> {
+    source
+        .text
+        .parse::<Table>()
+        .map_err(|error| ParameterError::from_toml(&source.name, &source.text, &error))
 }
 
-fn read(tables: Value) -> Result<Params, (String, String)> {
+fn deserialize(tables: Value) -> Result<Params, (String, String)> {
     serde_path_to_error::deserialize(tables).map_err(|error| {
         // List elements in paths of the reader, such as `group[0].c_max_mean`, become key parts as everywhere else.
         let key = error.path().to_string().replace('[', ".").replace(']', "");
-        (key, in_plain_words(error.inner().message()))
+        (key, plain_message(error.inner().message()))
     })
 }
 
 /// Returns an error message of the TOML reader without Rust type names.
-fn in_plain_words(message: &str) -> String {
+fn plain_message(message: &str) -> String {
     let Some((found, expected)) = message.rsplit_once(", expected ") else { return message.to_owned() };
     let words = match expected {
         "f64" => "a number",
@@ -173,10 +176,10 @@ fn in_plain_words(message: &str) -> String {
 /// # Errors
 /// Key and problem if a key does not exist in `below`, because an override never adds a parameter, or if the
 /// value of a table or list is neither.
-pub fn override_table(below: &mut Table, above: Table) -> Result<(), (String, String)> {
-    lay_over(below, above).map_err(|Misfit { key, kind }| {
+pub fn apply_override(below: &mut Table, above: Table) -> Result<(), (String, String)> {
+    merge_table(below, above).map_err(|OverrideError { key, kind }| {
         let problem = match kind {
-            MisfitKind::Unknown => {
+            OverrideErrorKind::Unknown => {
                 let near = nearest_keys(below, &key);
                 let help = match near.is_empty() {
                     true => String::new(),
@@ -184,26 +187,26 @@ pub fn override_table(below: &mut Table, above: Table) -> Result<(), (String, St
                 };
                 format!("there is no such parameter{help}")
             }
-            MisfitKind::Table(part) => {
+            OverrideErrorKind::Table(part) => {
                 format!("is a table; name one of its parameters, for instance {key}.{part}")
             }
-            MisfitKind::List(part) => {
+            OverrideErrorKind::List(part) => {
                 format!("is a list; name one of its elements, for instance {key}.{part}")
             }
-            MisfitKind::Single => "is a single value, not a table".to_owned(),
+            OverrideErrorKind::SingleValue => "is a single value, not a table".to_owned(),
         };
         (key, problem)
     })
 }
 
 /// An override that does not fit the existing value.
-struct Misfit {
+struct OverrideError {
     key: String,
-    kind: MisfitKind,
+    kind: OverrideErrorKind,
 }
 
 /// The existing value.
-enum MisfitKind {
+enum OverrideErrorKind {
     /// No value.
     Unknown,
     /// A table; one of its keys.
@@ -211,48 +214,49 @@ enum MisfitKind {
     /// A list; one of its elements.
     List(String),
     /// A single value.
-    Single,
+    SingleValue,
 }
 
-impl MisfitKind {
-    fn at(self, key: impl Into<String>) -> Misfit {
-        Misfit { key: key.into(), kind: self }
+impl OverrideErrorKind {
+    fn with_key(self, key: impl Into<String>) -> OverrideError {
+        OverrideError { key: key.into(), kind: self }
     }
 }
 
-impl Misfit {
-    fn below(self, name: &str) -> Misfit {
+impl OverrideError {
+    fn nested_under(self, name: &str) -> OverrideError {
         let key = if self.key.is_empty() { name.to_owned() } else { format!("{name}.{}", self.key) };
-        Misfit { key, ..self }
+        OverrideError { key, ..self }
     }
 }
 
-fn lay_over(below: &mut Table, above: Table) -> Result<(), Misfit> {
+fn merge_table(below: &mut Table, above: Table) -> Result<(), OverrideError> {
     above.into_iter().try_for_each(|(name, value)| {
-        let slot = below.get_mut(&name).ok_or_else(|| MisfitKind::Unknown.at(name.clone()))?;
-        replace(slot, value).map_err(|misfit| misfit.below(&name))
+        let slot = below.get_mut(&name).ok_or_else(|| OverrideErrorKind::Unknown.with_key(name.clone()))?;
+        replace_value(slot, value).map_err(|misfit| misfit.nested_under(&name))
     })
 }
 
-fn replace(slot: &mut Value, value: Value) -> Result<(), Misfit> {
+fn replace_value(slot: &mut Value, value: Value) -> Result<(), OverrideError> {
     match (slot, value) {
-        (Value::Table(inner), Value::Table(over)) => lay_over(inner, over),
+        (Value::Table(inner), Value::Table(over)) => merge_table(inner, over),
         (Value::Table(inner), _) => {
             let first = inner.keys().next().cloned().unwrap_or_default();
-            Err(MisfitKind::Table(first).at(""))
+            Err(OverrideErrorKind::Table(first).with_key(""))
         }
         (Value::Array(list), Value::Table(over)) => over.into_iter().try_for_each(|(name, value)| {
-            let at = place_in(list, &name).ok_or_else(|| MisfitKind::Unknown.at(name.clone()))?;
-            replace(&mut list[at], value).map_err(|misfit| misfit.below(&name))
+            let at = element_position(list, &name)
+                .ok_or_else(|| OverrideErrorKind::Unknown.with_key(name.clone()))?;
+            replace_value(&mut list[at], value).map_err(|misfit| misfit.nested_under(&name))
         }),
         (slot @ Value::Array(_), Value::Array(values)) => {
             *slot = Value::Array(values);
             Ok(())
         }
-        (Value::Array(list), _) => Err(MisfitKind::List(name_in(list, 0)).at("")),
+        (Value::Array(list), _) => Err(OverrideErrorKind::List(element_name(list, 0)).with_key("")),
         (_, Value::Table(over)) => Err(match over.into_iter().next() {
-            Some((name, _)) => MisfitKind::Unknown.at(name),
-            None => MisfitKind::Single.at(""),
+            Some((name, _)) => OverrideErrorKind::Unknown.with_key(name),
+            None => OverrideErrorKind::SingleValue.with_key(""),
         }),
         (slot, value) => {
             *slot = value;
@@ -291,7 +295,8 @@ pub fn line_of_key(text: &str, key: &str) -> Option<usize> {
                 (found.span(), value.into_inner())
             }
             DeValue::Array(values) => {
-                let called = |value: &Spanned<DeValue<'_>>| name_of(value.get_ref()).as_deref() == Some(part);
+                let called =
+                    |value: &Spanned<DeValue<'_>>| entry_name(value.get_ref()).as_deref() == Some(part);
                 let of_group =
                     || Group::parse(part).map(Group::index).filter(|_| values.len() == Group::COUNT);
                 let at = values.iter().position(called).or_else(of_group).or_else(|| part.parse().ok())?;
@@ -306,9 +311,9 @@ pub fn line_of_key(text: &str, key: &str) -> Option<usize> {
     line
 }
 
-fn name_of(entry: &DeValue<'_>) -> Option<String> {
+fn entry_name(entry: &DeValue<'_>) -> Option<String> {
     let DeValue::Table(fields) = entry else { return None };
-    NAMING.iter().find_map(|field| match fields.get(*field)?.get_ref() {
+    NAME_FIELDS.iter().find_map(|field| match fields.get(*field)?.get_ref() {
         DeValue::String(id) => Some(id.to_string()),
         DeValue::Integer(number) => Some(number.as_str().to_owned()),
         _ => None,
@@ -321,29 +326,29 @@ mod tests {
 
     fn with_override(text: &str) -> ParameterError {
         let over = ParameterSource { name: "scenario.toml".to_owned(), text: text.to_owned() };
-        Params::load(&shipped_sources(), &[over]).expect_err("the override is invalid")
+        Params::load(&bundled_sources(), &[over]).expect_err("the override is invalid")
     }
 
     #[test]
-    fn the_shipped_files_load() {
-        let params = Params::shipped();
-        assert_eq!(params.digest(), Params::shipped().digest());
+    fn bundled_files_load() {
+        let params = Params::bundled();
+        assert_eq!(params.digest(), Params::bundled().digest());
         assert_eq!(params.digest().len(), 16);
     }
 
     #[test]
-    fn an_override_changes_one_value_and_the_digest() {
+    fn override_changes_one_value_and_the_digest() {
         let over = ParameterSource {
             name: "x".to_owned(),
             text: "[competitor]\ncompetitor_events_disabled = true".to_owned(),
         };
-        let params = Params::load(&shipped_sources(), &[over]).expect("a correct override");
+        let params = Params::load(&bundled_sources(), &[over]).expect("a correct override");
         assert!(params.competitor.competitor_events_disabled);
-        assert_ne!(params.digest(), Params::shipped().digest());
+        assert_ne!(params.digest(), Params::bundled().digest());
     }
 
     #[test]
-    fn an_unknown_key_names_file_line_key_and_neighbours() {
+    fn unknown_key_error_names_location_and_similar_keys() {
         let error = with_override("# a comment\n[competitor]\ncompetitor_feedback_max = 1.0\n");
         assert_eq!(error.source, "scenario.toml");
         assert_eq!(error.line, Some(3));
@@ -352,14 +357,14 @@ mod tests {
     }
 
     #[test]
-    fn a_value_out_of_range_names_what_is_allowed() {
+    fn out_of_range_error_names_the_range() {
         let error = with_override("[competitor]\n\ncompetitor_feedback_u_max = 1.5\n");
         assert_eq!((error.line, error.key.as_str()), (Some(3), "competitor.competitor_feedback_u_max"));
         assert!(error.problem.contains("between 0 and 1"), "{}", error.problem);
     }
 
     #[test]
-    fn a_wrong_type_is_located_in_the_file_that_set_it() {
+    fn wrong_type_error_names_the_file() {
         let error = with_override("[quality]\nbase_product_quality = \"good\"\n");
         assert_eq!((error.source.as_str(), error.line), ("scenario.toml", Some(2)));
         assert!(error.key.ends_with("base_product_quality"), "{}", error.key);
@@ -369,20 +374,20 @@ mod tests {
     }
 
     #[test]
-    fn broken_text_names_the_line() {
+    fn syntax_error_names_the_line() {
         let error = with_override("[quality]\nbase_product_quality = = 1\n");
         assert_eq!(error.line, Some(2));
     }
 
     #[test]
-    fn contradictions_are_found() {
+    fn contradicting_values_are_rejected() {
         let error = with_override("[competitor]\ncompetitor_feedback_u_min = 0.6\n");
         assert!(error.key.contains("competitor_feedback_u_m"), "{error}");
     }
 
     #[test]
-    fn a_missing_key_is_an_error_with_the_file() {
-        let mut sources = shipped_sources();
+    fn missing_key_error_names_the_file() {
+        let mut sources = bundled_sources();
         sources[4].text = sources[4].text.replace("competitor_event_mean_interval", "# gone");
         let error = Params::load(&sources, &[]).expect_err("a key is missing");
         assert!(error.problem.contains("competitor_event_mean_interval"), "{error}");
@@ -390,8 +395,8 @@ mod tests {
     }
 
     #[test]
-    fn two_files_with_one_table_are_refused() {
-        let mut sources = shipped_sources();
+    fn duplicate_tables_are_rejected() {
+        let mut sources = bundled_sources();
         sources.push(ParameterSource { name: "more.toml".to_owned(), text: "[quality]\nx = 1".to_owned() });
         let error = Params::load(&sources, &[]).expect_err("a table is defined twice");
         assert_eq!((error.source.as_str(), error.key.as_str()), ("more.toml", "quality"));

@@ -242,7 +242,7 @@ parameters! {
 
 impl Calendar {
     /// Returns the factor of the leads of a day.
-    pub fn of_leads(&self, day: u32) -> f64 {
+    pub fn lead_factor(&self, day: u32) -> f64 {
         self.weekly[(day % 7) as usize] * self.monthly[(day % 30) as usize]
     }
 }

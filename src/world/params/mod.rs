@@ -20,11 +20,11 @@ use std::collections::BTreeMap;
 
 use serde_json::Value as Json;
 
-pub use change::Difference;
+pub use change::ParameterDifference;
 pub use customers::*;
 pub use discovery::*;
 pub use enterprise::*;
-pub use load::{ParameterError, ParameterSource, line_of_key, override_table, shipped_sources};
+pub use load::{ParameterError, ParameterSource, apply_override, bundled_sources, line_of_key};
 pub use market::*;
 #[cfg(test)]
 pub(crate) use names::keys;
@@ -225,8 +225,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn added_keys_leave_the_digest_of_earlier_runs() {
-        let shipped = Params::shipped();
+    fn added_keys_preserve_earlier_digests() {
+        let shipped = Params::bundled();
         assert_eq!(shipped.digest(), "a9623642a136c0a4", "the digest in recorded runs");
         let mut release = shipped.clone();
         release.fidelity.insight_noise = InsightNoise::Release;
@@ -243,13 +243,13 @@ mod tests {
     }
 
     #[test]
-    fn a_new_key_at_its_earlier_behaviour_changes_no_digest() {
-        let shipped = Params::shipped();
+    fn added_key_at_default_preserves_the_digest() {
+        let shipped = Params::bundled();
         let mut rivals = shipped.clone();
         rivals.competitor.competitor_feedback_u_max = 0.7;
         let mut noisy = shipped.clone();
         noisy.fidelity.insight_noise = InsightNoise::Release;
-        let faulty = Params { fault: Fault::numbered(3), ..shipped.clone() };
+        let faulty = Params { fault: Fault::from_number(3), ..shipped.clone() };
         let added = [&ADDED_KEYS[..], &[("fidelity", "next_form", "\"release\"")]].concat();
         let mut digests = std::collections::BTreeSet::new();
         for params in [shipped, rivals, faulty, noisy] {

@@ -4,14 +4,14 @@
 use toml::{Table, Value};
 
 use super::super::identifiers::Group;
-use novamind_base::nearest;
+use novamind_base::similar_names;
 
 /// Fields that name list elements.
-pub(super) const NAMING: [&str; 3] = ["id", "tier", "level"];
+pub(super) const NAME_FIELDS: [&str; 3] = ["id", "tier", "level"];
 
 /// Returns the name of a list element.
-pub(super) fn name_in(list: &[Value], at: usize) -> String {
-    let own = NAMING.iter().find_map(|field| match list.get(at)?.get(field)? {
+pub(super) fn element_name(list: &[Value], at: usize) -> String {
+    let own = NAME_FIELDS.iter().find_map(|field| match list.get(at)?.get(field)? {
         Value::String(id) => Some(id.clone()),
         Value::Integer(number) => Some(number.to_string()),
         _ => None,
@@ -21,8 +21,8 @@ pub(super) fn name_in(list: &[Value], at: usize) -> String {
 }
 
 /// Returns the index of a list element with a given name.
-pub(super) fn place_in(list: &[Value], name: &str) -> Option<usize> {
-    (0..list.len()).find(|at| name_in(list, *at) == name)
+pub(super) fn element_position(list: &[Value], name: &str) -> Option<usize> {
+    (0..list.len()).find(|at| element_name(list, *at) == name)
 }
 
 fn is_by_group(list: &[Value]) -> bool {
@@ -31,14 +31,14 @@ fn is_by_group(list: &[Value]) -> bool {
 }
 
 /// Returns a key with list indexes replaced by element names.
-pub(super) fn named(tables: &Table, counted: &str) -> String {
+pub(super) fn replace_indexes_with_names(tables: &Table, counted: &str) -> String {
     let mut parts = counted.split('.');
     let Some(first) = parts.next() else { return String::new() };
     let (mut key, mut here) = (first.to_owned(), tables.get(first));
     for part in parts {
         let at = part.parse::<usize>().ok();
         let (name, next) = match (here, at) {
-            (Some(Value::Array(list)), Some(at)) => (name_in(list, at), list.get(at)),
+            (Some(Value::Array(list)), Some(at)) => (element_name(list, at), list.get(at)),
             (value, _) => (part.to_owned(), value.and_then(|value| value.get(part))),
         };
         key = format!("{key}.{name}");
@@ -52,7 +52,7 @@ pub(super) fn value_at<'a>(tables: &'a Table, key: &str) -> Option<&'a Value> {
     let mut parts = key.split('.');
     let first = tables.get(parts.next()?)?;
     parts.try_fold(first, |here, part| match here {
-        Value::Array(list) => list.get(place_in(list, part)?),
+        Value::Array(list) => list.get(element_position(list, part)?),
         value => value.get(part),
     })
 }
@@ -60,18 +60,20 @@ pub(super) fn value_at<'a>(tables: &'a Table, key: &str) -> Option<&'a Value> {
 /// Returns the names of all parameters.
 pub(crate) fn keys(tables: &Table) -> Vec<String> {
     let mut all = Vec::new();
-    tables.iter().for_each(|(key, value)| collect(key.clone(), value, &mut all));
+    tables.iter().for_each(|(key, value)| collect_keys(key.clone(), value, &mut all));
     all
 }
 
-fn collect(path: String, value: &Value, all: &mut Vec<String>) {
+fn collect_keys(path: String, value: &Value, all: &mut Vec<String>) {
     match value {
         Value::Table(table) => {
-            table.iter().for_each(|(key, inner)| collect(format!("{path}.{key}"), inner, all));
+            table.iter().for_each(|(key, inner)| collect_keys(format!("{path}.{key}"), inner, all));
         }
         Value::Array(list) => {
             let inner = list.iter().enumerate();
-            inner.for_each(|(at, inner)| collect(format!("{path}.{}", name_in(list, at)), inner, all));
+            inner.for_each(|(at, inner)| {
+                collect_keys(format!("{path}.{}", element_name(list, at)), inner, all)
+            });
         }
         _ => all.push(path),
     }
@@ -87,17 +89,17 @@ pub(super) fn nearest_keys(tables: &Table, key: &str) -> Vec<String> {
     let alike: Vec<&str> = all.iter().filter(ends_alike).map(String::as_str).collect();
     let near = match alike.is_empty() {
         // Regardless of distance: the user probably meant a key with the same last part.
-        false => by_distance(key, alike),
-        true => nearest(key, all.iter().map(String::as_str)),
+        false => sort_by_distance(key, alike),
+        true => similar_names(key, all.iter().map(String::as_str)),
     };
     near.into_iter().map(str::to_owned).collect()
 }
 
 /// Longest key, in bytes, for which distances are computed.
-const LONGEST_KEY: usize = 200;
+const MAX_KEY_BYTES: usize = 200;
 
-fn by_distance<'a>(key: &str, mut alike: Vec<&'a str>) -> Vec<&'a str> {
-    if key.len() <= LONGEST_KEY {
+fn sort_by_distance<'a>(key: &str, mut alike: Vec<&'a str>) -> Vec<&'a str> {
+    if key.len() <= MAX_KEY_BYTES {
         alike.sort_by_key(|one| strsim::damerau_levenshtein(key, one));
     }
     alike.truncate(3);
@@ -109,13 +111,13 @@ mod tests {
     use super::*;
     use crate::params::Params;
 
-    fn tables() -> Table {
-        Table::try_from(Params::shipped()).expect("parameters are tables")
+    fn bundled_tables() -> Table {
+        Table::try_from(Params::bundled()).expect("parameters are tables")
     }
 
     #[test]
-    fn every_parameter_has_a_name_of_its_own_and_is_found_by_it() {
-        let tables = tables();
+    fn parameter_names_are_unique_and_resolvable() {
+        let tables = bundled_tables();
         let all = keys(&tables);
         let once: std::collections::BTreeSet<&String> = all.iter().collect();
         assert_eq!(once.len(), all.len());
@@ -131,8 +133,8 @@ mod tests {
     }
 
     #[test]
-    fn elements_of_lists_are_called_as_people_call_them() {
-        let tables = tables();
+    fn list_elements_have_readable_names() {
+        let tables = bundled_tables();
         for (counted, key) in [
             ("group.0.c_max_mean", "group.S1.c_max_mean"),
             ("model_tier.0.unit_cost", "model_tier.1.unit_cost"),
@@ -142,13 +144,13 @@ mod tests {
             ("nothing.1.x", "nothing.1.x"),
             ("", ""),
         ] {
-            assert_eq!(named(&tables, counted), key);
+            assert_eq!(replace_indexes_with_names(&tables, counted), key);
         }
     }
 
     #[test]
-    fn a_key_that_does_not_exist_is_near_those_that_end_as_it_does() {
-        let tables = tables();
+    fn nearest_keys_prefers_the_same_suffix() {
+        let tables = bundled_tables();
         assert_eq!(nearest_keys(&tables, "group.S2.c_max_meen")[0], "group.S2.c_max_mean");
         assert_eq!(nearest_keys(&tables, "groups.S2.c_max_mean")[0], "group.S2.c_max_mean");
         assert_eq!(nearest_keys(&tables, "base_product_quality"), ["quality.base_product_quality"]);

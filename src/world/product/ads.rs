@@ -19,7 +19,7 @@ pub struct AdLoad<'a> {
 
 impl<'a> AdLoad<'a> {
     /// Computes effective strengths from a setting.
-    pub fn of(setting: &'a AdsStrength, params: &'a Params) -> AdLoad<'a> {
+    pub fn new(setting: &'a AdsStrength, params: &'a Params) -> AdLoad<'a> {
         AdLoad {
             setting,
             by_group: ByGroup::from_fn(|group| ads_effect(setting.for_group(group), &params.ads)),
@@ -59,11 +59,11 @@ impl<'a> AdLoad<'a> {
 
 /// Returns the revenue of the day in dollars: sensitivity times effective strength times whole seats, over
 /// all customers who see ads. Records one row per subscriber with revenue.
-pub fn earn(customers: &Customers, load: &AdLoad<'_>, facts: &mut Facts) -> f64 {
+pub fn record_ad_revenue(customers: &Customers, load: &AdLoad<'_>, facts: &mut Facts) -> f64 {
     if !load.is_used() {
         return 0.0;
     }
-    let by_block = customers.survey(|group, block| earn_block(group, block, load));
+    let by_block = customers.map_blocks(|group, block| block_ad_revenue(group, block, load));
     let mut revenue = 0.0;
     for (sum, rows) in by_block {
         revenue += sum;
@@ -72,7 +72,7 @@ pub fn earn(customers: &Customers, load: &AdLoad<'_>, facts: &mut Facts) -> f64 
     revenue
 }
 
-fn earn_block(group: Group, block: &Block, load: &AdLoad<'_>) -> (f64, Vec<AdsRevenueRow>) {
+fn block_ad_revenue(group: Group, block: &Block, load: &AdLoad<'_>) -> (f64, Vec<AdsRevenueRow>) {
     let (mut sum, mut rows) = (0.0, Vec::new());
     for at in 0..block.len() {
         let customer = block.customer[at];
@@ -98,15 +98,15 @@ mod tests {
     }
 
     #[test]
-    fn levels_of_ads_add_up_before_the_curve() {
-        let params = Params::shipped();
+    fn ad_strengths_add_up_before_the_curve() {
+        let params = Params::bundled();
         let (s1, e1) = (Group::at(0).expect("S1"), Group::at(3).expect("E1"));
         let setting = AdsStrength {
             global: 0.2,
             by_group: PerGroup::from([(s1, 0.1)]),
             by_customer: PerCustomer::from([(5, 0.3)]),
         };
-        let load = AdLoad::of(&setting, &params);
+        let load = AdLoad::new(&setting, &params);
         near(load.for_customer(e1, 1), 0.447158031);
         near(load.for_customer(s1, 1), 0.568201724);
         near(load.for_customer(s1, 5), 0.806179974);
@@ -114,30 +114,30 @@ mod tests {
         near(load.for_group(s1), 0.568201724);
         let full =
             AdsStrength { global: 0.8, by_group: PerGroup::from([(s1, 0.7)]), ..AdsStrength::default() };
-        near(AdLoad::of(&full, &params).for_customer(s1, 1), 1.0);
+        near(AdLoad::new(&full, &params).for_customer(s1, 1), 1.0);
     }
 
     #[test]
-    fn five_customers_earn_by_sensitivity_and_strength() {
-        let params = Params::shipped();
+    fn ad_revenue_depends_on_sensitivity_and_strength() {
+        let params = Params::bundled();
         let setting = AdsStrength { global: 0.1, ..AdsStrength::default() };
         let mut customers = Customers::default();
         let mut facts = Facts::default();
         (1..=5).for_each(|n| customers.groups[Group::at(0).expect("S1")].activate(subscriber(n)));
-        near(earn(&customers, &AdLoad::of(&setting, &params), &mut facts), 0.111501440);
+        near(record_ad_revenue(&customers, &AdLoad::new(&setting, &params), &mut facts), 0.111501440);
         assert_eq!(facts.ads_revenue.len(), 5);
     }
 
     #[test]
-    fn a_seat_earns_once_it_is_whole() {
-        let params = Params::shipped();
+    fn only_whole_seats_earn_ad_revenue() {
+        let params = Params::bundled();
         let setting = AdsStrength { global: 0.1, ..AdsStrength::default() };
-        let load = AdLoad::of(&setting, &params);
+        let load = AdLoad::new(&setting, &params);
         let earned = |seats: f64| {
             let mut customers = Customers::default();
             let e1 = Group::at(3).expect("E1");
             customers.groups[e1].activate(Subscriber { seats, ..subscriber(1) });
-            earn(&customers, &load, &mut Facts::default())
+            record_ad_revenue(&customers, &load, &mut Facts::default())
         };
         assert_eq!(earned(2.9), earned(2.0));
         near(earned(3.0), 1.5 * earned(2.9));

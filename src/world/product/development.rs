@@ -29,7 +29,13 @@ pub fn daily_noise(day: u32, params: &Params, streams: &Streams) -> f64 {
 }
 
 /// Improves the product by a day. Noise is added every day regardless of spending and never enters the bank.
-pub fn improve(day: u32, product: &mut Product, settings: &Settings, params: &Params, streams: &Streams) {
+pub fn apply_development(
+    day: u32,
+    product: &mut Product,
+    settings: &Settings,
+    params: &Params,
+    streams: &Streams,
+) {
     let gain = development_gain(settings.core.development, &params.development);
     product.shared_bonus += gain + daily_noise(day, params, streams);
     product.shared_bank += gain;
@@ -49,8 +55,8 @@ mod tests {
     use crate::identifiers::Group;
 
     #[test]
-    fn gains_grow_with_the_logarithm_of_spending() {
-        let development = Params::shipped().development;
+    fn development_gain_is_logarithmic_in_spending() {
+        let development = Params::bundled().development;
         for (spend, shared, targeted) in [
             (1.0, 8.99910012e-7, 4.49955006e-6),
             (200.0, 1.76493209e-4, 8.82466046e-4),
@@ -65,15 +71,15 @@ mod tests {
     }
 
     #[test]
-    fn banks_receive_what_a_day_of_development_gains() {
-        let mut params = Params::shipped();
+    fn banks_receive_daily_development_gains() {
+        let mut params = Params::bundled();
         params.development.quality_shared_noise_scale = 0.0;
         let s1 = Group::at(0).expect("S1");
-        let mut settings = Settings::opening(&params);
+        let mut settings = Settings::initial(&params);
         settings.core.development = 2500.0;
         settings.targeted_development.targeted_spend.insert(s1, 4000.0);
-        let mut product = Product::opening(&params);
-        improve(1, &mut product, &settings, &params, &Streams::new(1));
+        let mut product = Product::initial(&params);
+        apply_development(1, &mut product, &settings, &params, &Streams::new(1));
         assert!((product.shared_bonus - 0.0018245929864867).abs() < 1e-15);
         assert_eq!(product.shared_bonus, product.shared_bank);
         assert!((product.group_bonus[s1] - 0.013225199960298).abs() < 1e-14);

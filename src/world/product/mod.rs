@@ -3,7 +3,7 @@
 pub mod ads;
 pub mod development;
 pub mod research;
-pub mod research_spread;
+pub mod research_distribution;
 pub mod service;
 pub mod usage;
 
@@ -34,7 +34,7 @@ canonical! {
 
 impl Product {
     /// Returns the product of day 0.
-    pub fn opening(params: &Params) -> Product {
+    pub fn initial(params: &Params) -> Product {
         Product {
             shared_bonus: params.initial.q_shared_bonus,
             group_bonus: ByGroup::default(),

@@ -17,7 +17,7 @@ pub fn project_boost(tier: &ResearchTier, z: f64, development: &Development) -> 
 }
 
 /// Returns the project that a start on `day` would create. Duration and gain depend on (seed, tier, earlier starts).
-pub fn draw(product: &Product, day: u32, tier: u8, params: &Params, streams: &Streams) -> Project {
+pub fn draw_project(product: &Product, day: u32, tier: u8, params: &Params, streams: &Streams) -> Project {
     let earlier = product.research.iter().filter(|project| project.tier == tier).count() as u32;
     let mut stream = streams.open(Part::Research, [u64::from(tier), u64::from(earlier)]);
     let law = params.research(tier);
@@ -34,7 +34,7 @@ pub fn draw(product: &Product, day: u32, tier: u8, params: &Params, streams: &St
 }
 
 /// Completes due projects: their gain is added to the product and to the bank that competitors can copy.
-pub fn complete(day: u32, product: &mut Product, facts: &mut Facts) {
+pub fn complete_due_projects(day: u32, product: &mut Product, facts: &mut Facts) {
     for project in &mut product.research {
         if project.completed_day.is_none() && project.due_day <= day {
             project.completed_day = Some(day);
@@ -51,8 +51,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn durations_and_gains_follow_the_draw_down_to_their_floors() {
-        let params = Params::shipped();
+    fn duration_and_gain_follow_the_draw_above_minimum() {
+        let params = Params::bundled();
         let (third, development) = (params.research(3), &params.development);
         for (z, days, boost) in [(-3.0, 30, 0.001), (-0.7, 30, 0.0715), (0.5, 38, 0.1375), (2.0, 83, 0.22)] {
             assert_eq!(project_duration(third, z, development), days);
@@ -65,31 +65,31 @@ mod tests {
     }
 
     #[test]
-    fn a_project_acts_on_its_day_and_not_before() {
-        let params = Params::shipped();
-        let mut product = Product::opening(&params);
+    fn project_takes_effect_on_its_due_day() {
+        let params = Params::bundled();
+        let mut product = Product::initial(&params);
         let mut facts = Facts::default();
         let project =
             Project { tier: 3, number: 1, started_day: 10, due_day: 48, boost: 0.1375, completed_day: None };
         product.research.push(project);
-        complete(47, &mut product, &mut facts);
+        complete_due_projects(47, &mut product, &mut facts);
         assert_eq!((product.shared_bonus, facts.notices.len()), (0.0, 0));
-        complete(48, &mut product, &mut facts);
+        complete_due_projects(48, &mut product, &mut facts);
         assert_eq!((product.shared_bonus, product.shared_bank), (0.1375, 0.1375));
-        complete(49, &mut product, &mut facts);
+        complete_due_projects(49, &mut product, &mut facts);
         assert_eq!(product.shared_bonus, 0.1375);
         assert_eq!(facts.notices, [Notice::ResearchComplete { tier: 3, number: 1 }]);
     }
 
     #[test]
-    fn starts_depend_only_on_seed_tier_and_count() {
-        let params = Params::shipped();
+    fn project_depends_only_on_seed_tier_and_number() {
+        let params = Params::bundled();
         let start_at = |day| {
-            let mut product = Product::opening(&params);
+            let mut product = Product::initial(&params);
             let streams = Streams::new(5);
-            let first = draw(&product, day, 4, &params, &streams);
+            let first = draw_project(&product, day, 4, &params, &streams);
             product.research.push(first);
-            let second = draw(&product, day, 4, &params, &streams);
+            let second = draw_project(&product, day, 4, &params, &streams);
             (first.due_day - day, first.boost, second.due_day - day, second.boost, second.id())
         };
         assert_eq!(start_at(0), start_at(77));
@@ -97,13 +97,13 @@ mod tests {
     }
 
     #[test]
-    fn outcomes_over_seeds_have_the_moments_of_their_tier() {
-        let params = Params::shipped();
+    fn projects_match_the_moments_of_their_tier() {
+        let params = Params::bundled();
         for (tier, thirty, days, gain) in [(1, 0.943327, 30.3192, 0.040194), (5, 0.424790, 59.3417, 0.220957)]
         {
-            let product = Product::opening(&params);
+            let product = Product::initial(&params);
             let drawn: Vec<Project> =
-                (0..4000).map(|seed| draw(&product, 0, tier, &params, &Streams::new(seed))).collect();
+                (0..4000).map(|seed| draw_project(&product, 0, tier, &params, &Streams::new(seed))).collect();
             let mean = |value: fn(&Project) -> f64| drawn.iter().map(value).sum::<f64>() / 4000.0;
             assert!((mean(|p| f64::from(u8::from(p.due_day == 30))) - thirty).abs() < 0.025);
             assert!((mean(|p| f64::from(p.due_day)) / days - 1.0).abs() < 0.03);

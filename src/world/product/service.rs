@@ -31,7 +31,7 @@ pub fn error_rate(overload: f64, z: f64, operations: &Operations) -> f64 {
 }
 
 /// Draws the length of an outage in minutes.
-pub fn downtime(stream: &mut Stream, operations: &Operations) -> u32 {
+pub fn draw_downtime_minutes(stream: &mut Stream, operations: &Operations) -> u32 {
     let (mut u, choices) = (stream.uniform(), operations.downtime_minutes_choices);
     for (minutes, probability) in choices.into_iter().zip(operations.downtime_minutes_probabilities) {
         if u < probability {
@@ -44,30 +44,30 @@ pub fn downtime(stream: &mut Stream, operations: &Operations) -> u32 {
 
 /// Fixed inputs of the service on a day.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HeldService {
+pub struct FixedService {
     /// Share of the metered usage that counts as load.
-    pub load: f64,
+    pub load_factor: f64,
     /// Day whose random draws determine outages, latency and errors.
-    pub luck_of: u32,
+    pub draw_day: u32,
 }
 
 /// Determines and records the service of the day, with fixed inputs if given.
-pub fn observe(
+pub fn observe_service(
     total_usage: u64,
     morning: &Morning,
-    held: Option<HeldService>,
+    held: Option<FixedService>,
     params: &Params,
     streams: &Streams,
     facts: &mut Facts,
 ) -> ServiceDay {
     let operations = &params.operations;
     let capacity_units = params.capacity(morning.core.capacity_tier).capacity_units;
-    let load = held.map_or(total_usage, |held| (total_usage as f64 * held.load).round() as u64);
+    let load = held.map_or(total_usage, |held| (total_usage as f64 * held.load_factor).round() as u64);
     let overload = overload(load, f64::from(capacity_units), operations);
-    let luck_of = held.map_or(morning.day, |held| held.luck_of);
+    let luck_of = held.map_or(morning.day, |held| held.draw_day);
     let mut stream = streams.open(Part::Service, [u64::from(luck_of)]);
     let outage = stream.bernoulli(outage_probability(morning.core.operations, overload, operations));
-    let downtime_minutes = if outage { downtime(&mut stream, operations) } else { 0 };
+    let downtime_minutes = if outage { draw_downtime_minutes(&mut stream, operations) } else { 0 };
     let service = ServiceDay {
         total_usage,
         overload,
@@ -91,8 +91,8 @@ mod tests {
     }
 
     #[test]
-    fn overload_multiplies_the_chance_of_an_outage() {
-        let operations = Params::shipped().operations;
+    fn overload_multiplies_the_outage_probability() {
+        let operations = Params::bundled().operations;
         for (usage, capacity, spend, o, probability) in [
             (75_000, 50_000.0, 0.0, 0.5, 0.09),
             (75_000, 50_000.0, 500.0, 0.5, 0.0331091497),
@@ -107,8 +107,8 @@ mod tests {
     }
 
     #[test]
-    fn operations_lower_the_chance_of_an_outage_to_its_floor() {
-        let operations = Params::shipped().operations;
+    fn operations_reduce_the_outage_probability_to_its_minimum() {
+        let operations = Params::bundled().operations;
         for (usage, spend, probability) in [
             (0, 0.0, 0.03),
             (0, 500.0, 0.0110363832),
@@ -123,11 +123,13 @@ mod tests {
     }
 
     #[test]
-    fn outages_last_10_30_or_90_minutes_with_their_chances() {
-        let (operations, streams) = (Params::shipped().operations, Streams::new(9));
+    fn outage_durations_match_their_probabilities() {
+        let (operations, streams) = (Params::bundled().operations, Streams::new(9));
         let mut counts = std::collections::BTreeMap::new();
         for day in 0..20_000 {
-            *counts.entry(downtime(&mut streams.open(Part::Service, [day]), &operations)).or_insert(0) += 1;
+            *counts
+                .entry(draw_downtime_minutes(&mut streams.open(Part::Service, [day]), &operations))
+                .or_insert(0) += 1;
         }
         let share = |minutes| f64::from(counts[&minutes]) / 20_000.0;
         assert!(

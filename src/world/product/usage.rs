@@ -9,7 +9,7 @@ use crate::params::{CustomerGeneration, Params, UsageQuota};
 
 /// Units used today.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Metered {
+pub struct MeteredUsage {
     /// By all customers.
     pub total: u64,
     /// By plan, for compute costs.
@@ -36,9 +36,14 @@ pub fn usage_today(usage_rate: f64, weekday: f64, quota: f64) -> u32 {
 }
 
 /// Meters every active subscription, with one row each even if nothing was used.
-pub fn meter(customers: &mut Customers, morning: &Morning, params: &Params, facts: &mut Facts) -> Metered {
-    let by_block = customers.skim(|group, block| (group, meter_block(block, morning, params)));
-    let mut metered = Metered::default();
+pub fn meter(
+    customers: &mut Customers,
+    morning: &Morning,
+    params: &Params,
+    facts: &mut Facts,
+) -> MeteredUsage {
+    let by_block = customers.sweep_light(|group, block| (group, meter_block(block, morning, params)));
+    let mut metered = MeteredUsage::default();
     for (group, (by_plan, rows)) in by_block {
         for plan in Plan::ALL {
             metered.by_plan[plan] += by_plan[plan];
@@ -74,15 +79,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rates_vary_with_demand_and_cover_all_seats() {
-        let bounds = Params::shipped().customer_generation;
+    fn usage_rate_scales_with_demand_and_seats() {
+        let bounds = Params::bundled().customer_generation;
         assert_eq!(usage_rate(80.0, 1.0, 1.0, &bounds), 96.0);
         assert_eq!(usage_rate(60.0, 100.0, 1.0, &bounds), 7200.0);
         assert_eq!(usage_rate(80.0, 1.0, -6.0, &bounds), 0.0);
     }
 
     #[test]
-    fn usage_is_limited_by_the_quota_and_rounded_half_up() {
+    fn usage_is_limited_by_quota_and_rounded_half_up() {
         // A busy weekday, with quotas that limit the first and the last account.
         assert_eq!(usage_today(80.0, 1.1, 60.0), 60);
         assert_eq!(usage_today(40.4, 1.1, 60.0), 44);

@@ -28,7 +28,7 @@ impl NumpyStream {
     }
 
     /// Returns the next number, uniform in [0, 1).
-    pub fn unit(&mut self) -> f64 {
+    pub fn uniform(&mut self) -> f64 {
         self.step();
         let (high, low) = ((self.state >> 64) as u64, self.state as u64);
         let word = (high ^ low).rotate_right((self.state >> 122) as u32);
@@ -66,7 +66,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_draws_what_the_release_drew_for_its_insights() {
+    fn numpy_stream_matches_released_insight_draws() {
         let recorded = include_str!("../../../tests/data/insight_noise.csv");
         assert_eq!(recorded.lines().count(), 10);
         for line in recorded.lines() {
@@ -74,7 +74,7 @@ mod tests {
             let letters: [u8; 4] = name.as_bytes().try_into().expect("four letters");
             let mut stream = NumpyStream::new(u32::from_le_bytes(letters) & 0x7fff_ffff);
             for number in numbers.split(',') {
-                assert_eq!(stream.unit(), number.parse::<f64>().expect("a number"), "{name}");
+                assert_eq!(stream.uniform(), number.parse::<f64>().expect("a number"), "{name}");
             }
         }
     }

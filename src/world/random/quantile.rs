@@ -7,7 +7,7 @@ pub fn inverse_normal(p: f64) -> f64 {
     let q = p - 0.5;
     if q.abs() <= 0.425 {
         let r = 0.180_625 - q * q;
-        return q * polynomial(r, &CENTRE_NUMERATOR) / polynomial(r, &CENTRE_DENOMINATOR);
+        return q * polynomial(r, &CENTER_NUMERATOR) / polynomial(r, &CENTER_DENOMINATOR);
     }
     let tail = if q < 0.0 { p } else { 1.0 - p };
     let r = (-libm::log(tail)).sqrt();
@@ -26,7 +26,7 @@ fn polynomial(x: f64, coefficients: &[f64; 8]) -> f64 {
 /// Coefficients as published, lowest power first.
 #[expect(clippy::excessive_precision, reason = "kept digit for digit as published")]
 mod published {
-    pub const CENTRE_NUMERATOR: [f64; 8] = [
+    pub const CENTER_NUMERATOR: [f64; 8] = [
         3.387_132_872_796_366_608,
         133.141_667_891_784_377_45,
         1_971.590_950_306_551_442_7,
@@ -36,7 +36,7 @@ mod published {
         33_430.575_583_588_128_105,
         2_509.080_928_730_122_672_7,
     ];
-    pub const CENTRE_DENOMINATOR: [f64; 8] = [
+    pub const CENTER_DENOMINATOR: [f64; 8] = [
         1.0,
         42.313_330_701_600_911_252,
         687.187_007_492_057_908_3,
@@ -93,7 +93,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_inverse_normal_agrees_with_known_quantiles() {
+    fn inverse_normal_matches_known_quantiles() {
         for (p, expected) in [
             (0.5, 0.0),
             (0.975, 1.959_963_984_540_054),

@@ -5,7 +5,7 @@
 
 use std::collections::BTreeSet;
 
-use super::renewal::{ongoing_discount, terms};
+use super::renewal::{ongoing_discount, row_terms};
 use super::{due_today, refresh_required, remembered_budget};
 use crate::context::DayContext;
 use crate::customers::Customers;
@@ -23,7 +23,7 @@ pub fn billed_list_price(stored: f64, list: f64, negotiated: bool) -> f64 {
 }
 
 /// Bills of rows of a block.
-pub struct Bills {
+pub struct BlockBills {
     group: Group,
     number: u32,
     payments: Vec<Payment>,
@@ -31,16 +31,16 @@ pub struct Bills {
 }
 
 /// Bills the individuals of a block who are due today and subscribed before today.
-pub fn bill_regulars(group: Group, number: u32, block: &mut Block, day: &DayContext<'_>) -> Bills {
+pub fn bill_block(group: Group, number: u32, block: &mut Block, day: &DayContext<'_>) -> BlockBills {
     let due = if group.is_enterprise() { Vec::new() } else { due_today(block, day.day(), day.params) };
     bill_rows(group, number, block, due, day, &BTreeSet::new())
 }
 
 /// Bills new customers and enterprises and records all bills of the day. Enterprises in `suspended` pay
 /// nothing while their threat to leave is open. Returns the payments of the day, in dollars.
-pub fn collect(
+pub fn collect_payments(
     customers: &mut Customers,
-    billed: Vec<Bills>,
+    billed: Vec<BlockBills>,
     day: &DayContext<'_>,
     suspended: &BTreeSet<u32>,
     facts: &mut Facts,
@@ -73,16 +73,16 @@ fn bill_rows(
     due: Vec<usize>,
     day: &DayContext<'_>,
     suspended: &BTreeSet<u32>,
-) -> Bills {
+) -> BlockBills {
     let (mut payments, mut changes) = (Vec::with_capacity(due.len()), Vec::new());
     let keys: Vec<[u64; 3]> =
         due.iter().map(|at| [group.index() as u64, u64::from(block.n[*at]), u64::from(day.day())]).collect();
     let rates = day.streams.first_words(Part::UsageRate, &keys);
     for (at, rate) in due.into_iter().zip(rates) {
         if !suspended.contains(&block.customer[at]) {
-            let before = terms(block, at);
-            payments.push(pay(group, block, at, day));
-            let after = terms(block, at);
+            let before = row_terms(block, at);
+            payments.push(take_payment(group, block, at, day));
+            let after = row_terms(block, at);
             // Seats of enterprises drift between two bills; the record is updated with the bill.
             if after != before || group.is_enterprise() {
                 changes.push(after);
@@ -90,11 +90,11 @@ fn bill_rows(
         }
         start_period(block, at, rate, day.params);
     }
-    Bills { group, number, payments, changes }
+    BlockBills { group, number, payments, changes }
 }
 
 /// Records the payment and sets the terms of the next period.
-fn pay(group: Group, block: &mut Block, at: usize, day: &DayContext<'_>) -> Payment {
+fn take_payment(group: Group, block: &mut Block, at: usize, day: &DayContext<'_>) -> Payment {
     let &DayContext { morning, settings, params, .. } = day;
     let floor = params.billing.effective_price_min;
     let (customer, plan) = (block.customer[at], block.plan[at]);
@@ -125,7 +125,7 @@ fn start_period(block: &mut Block, at: usize, rate: Word, params: &Params) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::context::tests::on_day;
+    use crate::context::tests::with_day_context;
     use crate::customers::columns::Subscriber;
     use crate::events::ServiceDay;
     use crate::identifiers::{ByPlan, Plan};
@@ -135,17 +135,18 @@ mod tests {
     use crate::test_kit::subscriber;
 
     fn billed(id: &str, row: Subscriber, list: f64, ongoing: f64) -> (f64, Subscriber) {
-        let (params, streams) = (Params::shipped(), Streams::new(1));
+        let (params, streams) = (Params::bundled(), Streams::new(1));
         let group = Group::parse(id).expect("a group");
         let mut day = morning(31);
         day.core.prices = ByPlan([list; 3]);
-        let mut settings = Settings::opening(&params);
+        let mut settings = Settings::initial(&params);
         settings.promotion.global = ongoing;
         let mut block = Block::default();
         block.push(row);
-        let quiet = ServiceDay::quiet();
-        let payment =
-            on_day(&day, &settings, &quiet, (&params, &streams), |day| pay(group, &mut block, 0, day));
+        let quiet = ServiceDay::without_load();
+        let payment = with_day_context(&day, &settings, &quiet, (&params, &streams), |day| {
+            take_payment(group, &mut block, 0, day)
+        });
         (payment.amount, block.row(0))
     }
 
@@ -154,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn an_individual_pays_the_lower_of_stored_and_list_price_less_promotions() {
+    fn individual_pays_the_lower_price_minus_promotions() {
         let (paid, row) = billed("S1", stored(20.0), 15.0, 0.0);
         assert_eq!((paid, row.listed_price), (15.0, 15.0));
         assert_eq!(billed("S1", stored(20.0), 15.0, 4.0).0, 11.0);
@@ -168,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn a_company_pays_its_deal_for_whole_seats() {
+    fn enterprise_pays_its_deal_for_whole_seats() {
         let deal = Subscriber {
             seats: 100.9,
             billed_once: false,
@@ -183,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn a_rise_never_reaches_a_stored_price() {
+    fn price_increase_does_not_change_stored_prices() {
         for (list, promotion, paid) in [(20.0, 0.0, 20.0), (30.0, 0.0, 20.0), (45.0, 8.0, 12.0)] {
             let (amount, row) = billed("S1", Subscriber { plan: Plan::B, ..stored(20.0) }, list, promotion);
             assert_eq!((amount, row.listed_price), (paid, 20.0), "list price {list}");
@@ -191,19 +192,20 @@ mod tests {
     }
 
     #[test]
-    fn a_suspended_company_pays_nothing_and_starts_a_new_period() {
-        let (params, streams) = (Params::shipped(), Streams::new(1));
-        let (day, settings) = (morning(31), Settings::opening(&params));
+    fn suspended_enterprise_pays_nothing_and_starts_a_period() {
+        let (params, streams) = (Params::bundled(), Streams::new(1));
+        let (day, settings) = (morning(31), Settings::initial(&params));
         let group = Group::parse("E2").expect("a group");
         let mut customers = Customers::default();
         let row = Subscriber { period_usage: 77, seats: 10.0, ..subscriber(1) };
         customers.groups[group].activate(row);
         let suspended = BTreeSet::from([row.customer]);
         let mut facts = Facts::default();
-        let received = on_day(&day, &settings, &ServiceDay::quiet(), (&params, &streams), |day| {
-            let billed = customers.sweep(|group, number, block| bill_regulars(group, number, block, day));
-            collect(&mut customers, billed, day, &suspended, &mut facts)
-        });
+        let received =
+            with_day_context(&day, &settings, &ServiceDay::without_load(), (&params, &streams), |day| {
+                let billed = customers.sweep(|group, number, block| bill_block(group, number, block, day));
+                collect_payments(&mut customers, billed, day, &suspended, &mut facts)
+            });
         assert_eq!(received, 0.0);
         let after = customers.groups[group].blocks[0].row(0);
         assert!(facts.payments.is_empty() && facts.changes.is_empty());

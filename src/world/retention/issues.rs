@@ -2,13 +2,13 @@
 //! (`docs/mechanics/retention/issues.md`).
 //!
 //! Everything is decided from the values at the start of the day. Issues are found before the satisfaction update and
-//! settled after it, by block in the sweeps of [`crate::day`]; in between, the operations budget is allocated.
+//! settled after it, by block in the sweeps of [`crate::run_day`]; in between, the operations budget is allocated.
 
-use super::support_budget::Resolution;
+use super::support_pools::ResolutionRound;
 use crate::canonical::canonical;
 use crate::context::DayContext;
 use crate::customers::Customers;
-use crate::customers::columns::{BLOCK, Block, place_in_block};
+use crate::customers::columns::{Block, CUSTOMERS_PER_BLOCK, word_position_in_block};
 use crate::events::{Facts, IssueOpened};
 use crate::identifiers::Group;
 use crate::params::{Issues, Params, Quality};
@@ -89,24 +89,24 @@ pub struct IssueBatch {
 }
 
 /// Rows whose flags fit into one word.
-const ROWS: usize = u64::BITS as usize;
+const ROWS_PER_WORD: usize = u64::BITS as usize;
 
 /// Finds the rows with an open issue and those that open one today.
 ///
 /// The conditions are unpredictable, so they are collected as bits without branches and turned into lists afterwards.
-pub fn read_calls(group: Group, number: u32, block: &Block, day: &DayContext<'_>) -> IssueBatch {
+pub fn find_issues(group: Group, number: u32, block: &Block, day: &DayContext<'_>) -> IssueBatch {
     let &DayContext { service, params, streams, .. } = day;
     let (day, outage) = (day.day(), service.outage);
     let keys = [u64::from(day), group.index() as u64, u64::from(number)];
-    let mut words = [0u32; BLOCK as usize];
+    let mut words = [0u32; CUSTOMERS_PER_BLOCK as usize];
     streams.open(Part::IssueOpening, keys).fill(&mut words);
     // Copied to locals so that the compiler knows they are constant.
     let issues = &params.issues.clone();
-    let mut waiting = [0u64; BLOCK as usize / ROWS];
+    let mut waiting = [0u64; CUSTOMERS_PER_BLOCK as usize / ROWS_PER_WORD];
     let mut calling = waiting;
-    let (mut seats, mut probabilities) = ([1.0; ROWS], [0.0; ROWS]);
-    for (part, first) in (0..block.len()).step_by(ROWS).enumerate() {
-        let rows = (block.len() - first).min(ROWS);
+    let (mut seats, mut probabilities) = ([1.0; ROWS_PER_WORD], [0.0; ROWS_PER_WORD]);
+    for (part, first) in (0..block.len()).step_by(ROWS_PER_WORD).enumerate() {
+        let rows = (block.len() - first).min(ROWS_PER_WORD);
         let range = first..first + rows;
         if group.is_enterprise() {
             seats.iter_mut().zip(&block.seats[range.clone()]).for_each(|(whole, own)| *whole = own.trunc());
@@ -118,19 +118,19 @@ pub fn read_calls(group: Group, number: u32, block: &Block, day: &DayContext<'_>
         let (open_days, n) = (&block.open_issue_days[range.clone()], &block.n[range]);
         for at in 0..rows {
             let waits = open_days[at] > 0;
-            let calls = !waits & word_below(words[place_in_block(n[at])], probabilities[at]);
+            let calls = !waits & word_below(words[word_position_in_block(n[at])], probabilities[at]);
             waiting[part] |= u64::from(waits) << at;
             calling[part] |= u64::from(calls) << at;
         }
     }
-    let (open, new) = (positions(&waiting), positions(&calling));
+    let (open, new) = (set_bit_positions(&waiting), set_bit_positions(&calling));
     let solved = vec![false; open.len()];
     IssueBatch { group, block: number, open, new, solved, first_issue: 0 }
 }
 
-fn positions(bits: &[u64]) -> Vec<u16> {
+fn set_bit_positions(bits: &[u64]) -> Vec<u16> {
     let mut positions = Vec::with_capacity(bits.iter().map(|word| word.count_ones() as usize).sum());
-    for (word, first) in bits.iter().zip((0u16..).step_by(ROWS)) {
+    for (word, first) in bits.iter().zip((0u16..).step_by(ROWS_PER_WORD)) {
         let mut left = *word;
         while left != 0 {
             positions.push(first + left.trailing_zeros() as u16);
@@ -141,7 +141,7 @@ fn positions(bits: &[u64]) -> Vec<u16> {
 }
 
 /// Allocates the operations budget of the day among the open issues and numbers the new ones, in block order.
-pub fn allot(
+pub fn allocate_resolutions(
     calls: &mut [IssueBatch],
     settings: &Settings,
     customers: &Customers,
@@ -150,7 +150,7 @@ pub fn allot(
 ) {
     let &DayContext { params, streams, .. } = day;
     let day = day.day();
-    Resolution { day, calls, customers, params, streams }.run(settings);
+    ResolutionRound { day, calls, customers, params, streams }.resolve_all(settings);
     for own in calls {
         own.first_issue = desk.next_issue;
         desk.next_issue += own.new.len() as u32;
@@ -159,7 +159,7 @@ pub fn allot(
 
 /// Results of the issues of a block.
 #[derive(Debug, PartialEq, Eq)]
-pub struct Settled {
+pub struct SettledIssues {
     /// Whether any issue was open.
     pub any_open: bool,
     /// Numbers of the resolved issues.
@@ -169,10 +169,10 @@ pub struct Settled {
 }
 
 /// Resolves, ages and opens issues of a block. No row may have been removed since they were found.
-pub fn settle(block: &mut Block, own: &IssueBatch, day: &DayContext<'_>) -> Settled {
+pub fn settle(block: &mut Block, own: &IssueBatch, day: &DayContext<'_>) -> SettledIssues {
     let &DayContext { service, params, .. } = day;
     let outage = service.outage;
-    Settled {
+    SettledIssues {
         any_open: !own.open.is_empty(),
         resolved: settle_open(block, own, outage, params),
         opened: open_new(block, own, params),
@@ -180,7 +180,7 @@ pub fn settle(block: &mut Block, own: &IssueBatch, day: &DayContext<'_>) -> Sett
 }
 
 /// Records the results.
-pub fn record(by_block: Vec<Settled>, facts: &mut Facts) {
+pub fn record_issues(by_block: Vec<SettledIssues>, facts: &mut Facts) {
     for own in by_block {
         facts.issues_aged |= own.any_open;
         facts.issues_resolved.extend(own.resolved);
@@ -219,7 +219,7 @@ fn open_new(block: &mut Block, own: &IssueBatch, params: &Params) -> Vec<IssueOp
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::context::tests::on_day;
+    use crate::context::tests::with_day_context;
     use crate::events::ServiceDay;
     use crate::morning::tests::morning;
     use crate::params::Params;
@@ -231,8 +231,8 @@ mod tests {
     }
 
     #[test]
-    fn issues_come_with_discontent_outages_and_seats() {
-        let issues = Params::shipped().issues;
+    fn issue_probability_depends_on_satisfaction_outages_and_seats() {
+        let issues = Params::bundled().issues;
         for (satisfaction, seats, quiet, outage) in [
             (0.5, 1.0, 0.085, 0.335),
             (0.0, 1.0, 0.16, 0.4),
@@ -247,15 +247,15 @@ mod tests {
     }
 
     #[test]
-    fn bits_are_listed_in_their_order() {
-        assert!(positions(&[0, 0]).is_empty());
-        assert_eq!(positions(&[1 | 1 << 63, 0, 1 << 5 | 1 << 6]), [0, 63, 133, 134]);
-        assert_eq!(positions(&[u64::MAX; 16]), (0..1024).collect::<Vec<u16>>());
+    fn set_bit_positions_are_ascending() {
+        assert!(set_bit_positions(&[0, 0]).is_empty());
+        assert_eq!(set_bit_positions(&[1 | 1 << 63, 0, 1 << 5 | 1 << 6]), [0, 63, 133, 134]);
+        assert_eq!(set_bit_positions(&[u64::MAX; 16]), (0..1024).collect::<Vec<u16>>());
     }
 
     #[test]
-    fn pools_solve_by_money_and_share_and_quick_help_pleases() {
-        let params = Params::shipped();
+    fn resolution_depends_on_budget_and_speed_affects_relationship() {
+        let params = Params::bundled();
         let (s1, e1) = (Group::at(0).expect("S1"), Group::at(3).expect("E1"));
         let mean = |base, spend, group, of_group, of_pool| {
             mean_resolved(base, spend, group, of_group, of_pool, &params.issues)
@@ -275,8 +275,8 @@ mod tests {
     }
 
     #[test]
-    fn fifty_one_days_of_waiting_start_again_from_neutral() {
-        let params = Params::shipped();
+    fn relationship_resets_to_neutral_after_51_days_of_waiting() {
+        let params = Params::bundled();
         let mut relationship: f64 = 0.5;
         for _ in 0..50 {
             relationship = relationship_after_waiting(relationship, &params.issues, &params.quality);
@@ -295,25 +295,25 @@ mod tests {
         customers
     }
 
-    fn a_day(customers: &mut Customers, operations: f64) -> (Facts, IssueDesk) {
-        let (params, streams) = (Params::shipped(), Streams::new(4));
-        let mut settings = Settings::opening(&params);
+    fn run_day(customers: &mut Customers, operations: f64) -> (Facts, IssueDesk) {
+        let (params, streams) = (Params::bundled(), Streams::new(4));
+        let mut settings = Settings::initial(&params);
         settings.core.operations = operations;
         let (mut facts, mut desk) = (Facts::default(), IssueDesk { next_issue: 10_000 });
-        let quiet = ServiceDay::quiet();
-        let settled = on_day(&morning(3), &settings, &quiet, (&params, &streams), |day| {
-            let mut calls = customers.sweep(|group, number, block| read_calls(group, number, block, day));
-            allot(&mut calls, &settings, customers, &mut desk, day);
+        let quiet = ServiceDay::without_load();
+        let settled = with_day_context(&morning(3), &settings, &quiet, (&params, &streams), |day| {
+            let mut calls = customers.sweep(|group, number, block| find_issues(group, number, block, day));
+            allocate_resolutions(&mut calls, &settings, customers, &mut desk, day);
             customers.sweep_with(calls, |_, _, block, own| settle(block, &own, day))
         });
-        record(settled, &mut facts);
+        record_issues(settled, &mut facts);
         (facts, desk)
     }
 
     #[test]
-    fn solved_issues_please_and_the_others_age() {
+    fn solved_issues_raise_relationship_and_open_ones_age() {
         let mut customers = company_with_issues(3000);
-        let (facts, _) = a_day(&mut customers, 2_000.0);
+        let (facts, _) = run_day(&mut customers, 2_000.0);
         let solved = facts.issues_resolved.len();
         assert!((1_060..1_340).contains(&solved), "Poisson of 1202: {solved}");
         let s1 = &customers.groups[Group::at(0).expect("S1")];
@@ -330,16 +330,16 @@ mod tests {
     }
 
     #[test]
-    fn all_are_solved_when_there_is_money_enough() {
+    fn sufficient_budget_solves_all_issues() {
         let mut customers = company_with_issues(50);
-        assert_eq!(a_day(&mut customers, 1e6).0.issues_resolved.len(), 50);
+        assert_eq!(run_day(&mut customers, 1e6).0.issues_resolved.len(), 50);
     }
 
     #[test]
-    fn new_issues_come_at_their_rate_and_are_numbered() {
+    fn new_issues_match_their_rate_and_are_numbered() {
         let mut customers = Customers::default();
         (1..=4000).for_each(|n| customers.groups[Group::at(0).expect("S1")].activate(subscriber(n)));
-        let (facts, desk) = a_day(&mut customers, 0.0);
+        let (facts, desk) = run_day(&mut customers, 0.0);
         let opened = facts.issues_opened.len() as u32;
         assert!((270..410).contains(&opened), "binomial of 340: {opened}");
         assert!(!facts.issues_aged);

@@ -2,10 +2,10 @@
 
 pub mod billing;
 pub mod issues;
+pub mod plan_comparison;
 pub mod renewal;
 pub mod satisfaction;
-mod support_budget;
-pub mod weighing;
+mod support_pools;
 
 use super::customers::columns::Block;
 use super::customers::curve::{Curve, required_quality};
@@ -20,13 +20,13 @@ use super::params::{DriftCounted, Params};
 #[inline]
 pub fn refresh_required(block: &mut Block, at: usize, c_drift: f64, params: &Params) {
     let (curve, remembered) = (block.curve(at), block.effective_c_max[at]);
-    block.required[at] = required_of(&curve, remembered, block.effective_price[at], c_drift, params);
+    block.required[at] = required_at_price(&curve, remembered, block.effective_price[at], c_drift, params);
 }
 
 /// Returns the required quality at a price, with the budget of the last bill (0: none yet) and the group's
 /// budget drift.
 #[inline]
-pub fn required_of(curve: &Curve, remembered: f64, price: f64, c_drift: f64, params: &Params) -> f64 {
+pub fn required_at_price(curve: &Curve, remembered: f64, price: f64, c_drift: f64, params: &Params) -> f64 {
     let budget = if remembered != 0.0 { remembered } else { curve.c_max };
     let budget =
         if c_drift != 0.0 { (budget + c_drift).max(params.quality.read_time_c_max_min) } else { budget };
@@ -35,7 +35,7 @@ pub fn required_of(curve: &Curve, remembered: f64, price: f64, c_drift: f64, par
 
 /// Returns the positions of a block's subscribers who are billed today.
 pub fn due_today(block: &Block, day: u32, params: &Params) -> Vec<usize> {
-    block.due((day % params.billing.billing_period_days) as u8)
+    block.due_positions((day % params.billing.billing_period_days) as u8)
 }
 
 /// Updates the required quality of all rows of a block.

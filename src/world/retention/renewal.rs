@@ -1,14 +1,14 @@
 //! Decisions of individuals on their billing day: stay, switch, or cancel (`docs/mechanics/retention/renewal.md`).
 
 use crate::context::DayContext;
-use crate::customers::columns::{BLOCK, Block};
+use crate::customers::columns::{Block, CUSTOMERS_PER_BLOCK};
 use crate::events::{EndCause, Facts, SubscriptionEnded, SubscriptionStatus, TermsChanged};
 use crate::identifiers::{ByGroup, Group, Plan};
 use crate::params::{DriftCounted, InvoluntaryChurn, Params};
 use crate::random::{Part, Streams, Word, word_below};
-use crate::reputation::{OnWrite, ReputationBook, ReputationCause, cancel_damage};
+use crate::reputation::{OnReputationWrite, ReputationBook, ReputationCause, cancel_damage};
 use crate::retention::due_today;
-use crate::retention::weighing::{drifted_curve, weigh};
+use crate::retention::plan_comparison::{compare_plans, drifted_curve};
 use crate::settings::Settings;
 
 /// Returns the monthly rate of involuntary churn from a standard normal draw; 0 if the group has none.
@@ -22,12 +22,12 @@ pub fn involuntary_rate(mean: f64, std: f64, z: f64, law: &InvoluntaryChurn) -> 
 /// Returns the rates of all groups in the month of a day; 0 for enterprises.
 pub fn involuntary_rates(day: u32, params: &Params, streams: &Streams) -> ByGroup<f64> {
     ByGroup::from_fn(|group| {
-        if group.is_enterprise() { 0.0 } else { involuntary_rate_of(group, day, params, streams) }
+        if group.is_enterprise() { 0.0 } else { group_involuntary_rate(group, day, params, streams) }
     })
 }
 
 /// Returns the rate of a group in the month of a day.
-pub fn involuntary_rate_of(group: Group, day: u32, params: &Params, streams: &Streams) -> f64 {
+pub fn group_involuntary_rate(group: Group, day: u32, params: &Params, streams: &Streams) -> f64 {
     let law = &params.involuntary_churn;
     let month = day / law.month_days;
     let given = params.replayed_series().and_then(|series| series.involuntary_rate(group, month));
@@ -35,14 +35,14 @@ pub fn involuntary_rate_of(group: Group, day: u32, params: &Params, streams: &St
         return rate;
     }
     let keys = [group.index() as u64, u64::from(month)];
-    let z = streams.open_since(month * law.month_days, Part::InvoluntaryMu, keys).standard_normal();
+    let z = streams.open_for_day(month * law.month_days, Part::InvoluntaryMu, keys).standard_normal();
     let own = params.group(group);
     involuntary_rate(own.involuntary_churn_mean, own.involuntary_churn_std, z, law)
 }
 
 /// An individual who cancelled today because no plan was acceptable.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct GaveUp {
+pub struct CancelledIndividual {
     /// Customer number.
     pub customer: u32,
     /// Group.
@@ -61,7 +61,7 @@ pub struct GaveUp {
 
 /// Results of the billing decisions of a day.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Renewals {
+pub struct RenewalResults {
     /// Cancellations, voluntary and involuntary.
     pub cancellations: u32,
     /// Switches to a plan with a higher list price than the stored one.
@@ -69,7 +69,7 @@ pub struct Renewals {
     /// Other switches.
     pub downgrades: u32,
     /// Individuals who found no acceptable plan.
-    pub gave_up: Vec<GaveUp>,
+    pub cancelled_individuals: Vec<CancelledIndividual>,
 }
 
 /// Shared inputs of the decisions of a day.
@@ -84,10 +84,10 @@ pub struct RenewalContext<'a> {
 
 /// Decisions of the individuals of a block.
 #[derive(Default)]
-pub struct Decisions {
+pub struct BlockDecisions {
     endings: Vec<SubscriptionEnded>,
     /// Individuals who found no acceptable plan.
-    gave_up: Vec<GaveUp>,
+    cancelled_individuals: Vec<CancelledIndividual>,
     /// Reputation damage by each of them.
     damages: Vec<f64>,
     switches: Vec<(bool, TermsChanged)>,
@@ -95,14 +95,14 @@ pub struct Decisions {
 
 /// Adds up and records the decisions of all blocks. Each individual without an acceptable plan damages the
 /// group's reputation, in order; failed payments do not.
-pub fn conclude(
-    by_block: Vec<Decisions>,
+pub fn record_decisions(
+    by_block: Vec<BlockDecisions>,
     reputation: &mut ReputationBook,
     params: &Params,
     facts: &mut Facts,
-    told: &mut OnWrite<'_>,
-) -> Renewals {
-    let mut renewals = Renewals::default();
+    told: &mut OnReputationWrite<'_>,
+) -> RenewalResults {
+    let mut renewals = RenewalResults::default();
     for decided in by_block {
         for (upgrade, terms) in decided.switches {
             if upgrade {
@@ -114,22 +114,23 @@ pub fn conclude(
         }
         renewals.cancellations += decided.endings.len() as u32;
         facts.endings.extend(decided.endings);
-        if let Some(person) = decided.gave_up.first() {
-            let write = (person.group, ReputationCause::Departures);
-            reputation.write(write, &decided.damages, params, told);
+        if let Some(person) = decided.cancelled_individuals.first() {
+            let write = (person.group, ReputationCause::Cancellations);
+            reputation.add_all(write, &decided.damages, params, told);
         }
-        renewals.gave_up.extend(decided.gave_up);
+        renewals.cancelled_individuals.extend(decided.cancelled_individuals);
     }
     renewals
 }
 
 /// Returns the change of reputation by each individual without an acceptable plan: negative.
-fn damages(gave_up: &[GaveUp], day: &DayContext<'_>) -> Vec<f64> {
+fn reputation_damages(gave_up: &[CancelledIndividual], day: &DayContext<'_>) -> Vec<f64> {
     let &DayContext { morning, params, streams, .. } = day;
-    let keys_of = |person: &GaveUp| [morning.day.into(), person.group.index() as u64, person.n.into(), 0];
+    let keys_of =
+        |person: &CancelledIndividual| [morning.day.into(), person.group.index() as u64, person.n.into(), 0];
     let keys: Vec<[u64; 4]> = gave_up.iter().map(keys_of).collect();
     let rolls = streams.first_words(Part::ReputationEvent, &keys);
-    let damage = |(person, roll): (&GaveUp, Word)| {
+    let damage = |(person, roll): (&CancelledIndividual, Word)| {
         let subscribers = morning.subscribers[person.group];
         -cancel_damage(person.satisfaction, subscribers, roll.uniform(), &params.reputation)
     };
@@ -137,16 +138,26 @@ fn damages(gave_up: &[GaveUp], day: &DayContext<'_>) -> Vec<f64> {
 }
 
 /// Returns a random word for each position of a block, which decides whether a payment fails permanently.
-pub fn payment_rolls(group: Group, number: u32, day: u32, streams: &Streams) -> [u32; BLOCK as usize] {
-    let mut words = [0; BLOCK as usize];
+pub fn payment_rolls(
+    group: Group,
+    number: u32,
+    day: u32,
+    streams: &Streams,
+) -> [u32; CUSTOMERS_PER_BLOCK as usize] {
+    let mut words = [0; CUSTOMERS_PER_BLOCK as usize];
     let keys = [u64::from(day), group.index() as u64, u64::from(number)];
     streams.open(Part::InvoluntaryRoll, keys).fill(&mut words);
     words
 }
 
 /// Lets the individuals of a block decide who are billed today; removes those who leave.
-pub fn decide(group: Group, number: u32, block: &mut Block, judgement: &RenewalContext<'_>) -> Decisions {
-    let mut outcome = Decisions::default();
+pub fn decide_block(
+    group: Group,
+    number: u32,
+    block: &mut Block,
+    judgement: &RenewalContext<'_>,
+) -> BlockDecisions {
+    let mut outcome = BlockDecisions::default();
     if group.is_enterprise() {
         return outcome;
     }
@@ -157,18 +168,18 @@ pub fn decide(group: Group, number: u32, block: &mut Block, judgement: &RenewalC
     }
     let words = match rate > 0.0 {
         true => payment_rolls(group, number, morning.day, judgement.day.streams),
-        false => [0; BLOCK as usize],
+        false => [0; CUSTOMERS_PER_BLOCK as usize],
     };
     let mut gone = Vec::new();
     for at in due {
-        let cause = if rate > 0.0 && word_below(words[block.place(at)], rate) {
+        let cause = if rate > 0.0 && word_below(words[block.word_position(at)], rate) {
             Some(EndCause::Involuntary)
         } else {
-            match weigh(group, block, at, judgement).choice(judgement.day.params) {
+            match compare_plans(group, block, at, judgement).choice(judgement.day.params) {
                 None if block.satisfaction[at] < 0.0 => Some(EndCause::Quality),
                 None => Some(EndCause::Price),
                 Some(plan) if plan != block.plan[at] => {
-                    outcome.switches.push(switch(group, block, at, plan, judgement));
+                    outcome.switches.push(switch_plan(group, block, at, plan, judgement));
                     None
                 }
                 Some(_) => None,
@@ -178,12 +189,12 @@ pub fn decide(group: Group, number: u32, block: &mut Block, judgement: &RenewalC
             gone.push(at);
             outcome.endings.push(ending(group, block, at, cause, morning.day));
             if cause != EndCause::Involuntary {
-                outcome.gave_up.push(person(group, block, at, morning.day));
+                outcome.cancelled_individuals.push(cancelled_individual(group, block, at, morning.day));
             }
         }
     }
     block.remove(&gone);
-    outcome.damages = damages(&outcome.gave_up, judgement.day);
+    outcome.damages = reputation_damages(&outcome.cancelled_individuals, judgement.day);
     outcome
 }
 
@@ -199,8 +210,8 @@ fn ending(group: Group, block: &Block, at: usize, cause: EndCause, day: u32) -> 
     }
 }
 
-fn person(group: Group, block: &Block, at: usize, day: u32) -> GaveUp {
-    GaveUp {
+fn cancelled_individual(group: Group, block: &Block, at: usize, day: u32) -> CancelledIndividual {
+    CancelledIndividual {
         customer: block.customer[at],
         group,
         n: block.n[at],
@@ -223,7 +234,7 @@ pub fn ongoing_discount(
 }
 
 /// Switches a row to another plan at today's terms; tenure continues. Returns whether it is an upgrade.
-fn switch(
+fn switch_plan(
     group: Group,
     block: &mut Block,
     at: usize,
@@ -242,11 +253,11 @@ fn switch(
         DriftCounted::EveryRead => drifted_curve(block.curve(at), morning.expectations[group], params).c_max,
         DriftCounted::Once => block.c_max[at],
     };
-    (upgrade, terms(block, at))
+    (upgrade, row_terms(block, at))
 }
 
 /// Returns the current terms of a row.
-pub fn terms(block: &Block, at: usize) -> TermsChanged {
+pub fn row_terms(block: &Block, at: usize) -> TermsChanged {
     TermsChanged {
         subscription: block.subscription[at],
         customer: block.customer[at],
@@ -262,7 +273,7 @@ pub fn terms(block: &Block, at: usize) -> TermsChanged {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::context::tests::on_day;
+    use crate::context::tests::with_day_context;
     use crate::customers::Customers;
     use crate::customers::columns::Subscriber;
     use crate::events::ServiceDay;
@@ -286,8 +297,8 @@ mod tests {
         willingness: f64,
         check: impl FnOnce(&RenewalContext<'_>) -> R,
     ) -> R {
-        let (params, streams) = (Params::shipped(), Streams::new(1));
-        on_day(day, settings, &ServiceDay::quiet(), (&params, &streams), |day| {
+        let (params, streams) = (Params::bundled(), Streams::new(1));
+        with_day_context(day, settings, &ServiceDay::without_load(), (&params, &streams), |day| {
             check(&RenewalContext {
                 day,
                 involuntary: ByGroup::default(),
@@ -297,8 +308,8 @@ mod tests {
     }
 
     #[test]
-    fn the_rate_of_failed_payments_follows_its_draw_within_bounds() {
-        let law = Params::shipped().involuntary_churn;
+    fn involuntary_rate_follows_its_draw_within_bounds() {
+        let law = Params::bundled().involuntary_churn;
         for (z, rate) in [(-5.0, 0.0), (1.0, 0.07), (80.0, 1.0)] {
             assert!((involuntary_rate(0.055, 0.015, z, &law) - rate).abs() < 1e-12);
         }
@@ -308,13 +319,13 @@ mod tests {
     }
 
     #[test]
-    fn a_subscriber_judges_every_plan_by_what_it_would_deliver() {
+    fn subscriber_compares_plans_by_delivered_quality() {
         let mut day = morning(31);
         day.product[group()] = 0.4;
         day.multipliers = ByPlan([0.6, 0.9, 1.1]);
         day.quotas = ByPlan([60.0, 70.0, 1200.0]);
         day.core.prices = ByPlan([12.0, 25.0, 55.0]);
-        let mut settings = Settings::opening(&Params::shipped());
+        let mut settings = Settings::initial(&Params::bundled());
         settings.ads_strength = AdsStrength {
             global: 0.2,
             by_group: [(group(), 0.1)].into_iter().collect(),
@@ -323,17 +334,17 @@ mod tests {
         let mut block = Block::default();
         block.push(Subscriber { plan: Plan::B, relationship: 0.7, open_issue_days: 3, ..subscriber(1) });
         with_judgement(&day, &settings, 1.0, |judgement| {
-            let qualities = weigh(group(), &block, 0, judgement).qualities(judgement.day.params);
+            let qualities = compare_plans(group(), &block, 0, judgement).qualities(judgement.day.params);
             for (plan, expected) in Plan::ALL.into_iter().zip([0.151809447, 0.298929601, 0.496473152]) {
                 assert!((qualities[plan] - expected).abs() < 1e-9, "{plan}: {}", qualities[plan]);
             }
-            assert_eq!(weigh(group(), &block, 0, judgement).choice(judgement.day.params), None);
+            assert_eq!(compare_plans(group(), &block, 0, judgement).choice(judgement.day.params), None);
         });
     }
 
     /// The decision only; bills are tested in `billing`.
     #[test]
-    fn a_price_rise_is_judged_at_todays_list_price() {
+    fn price_increase_is_evaluated_at_the_list_price() {
         for (list, willingness, promotion, stays) in [
             (20.0, 1.0, 0.0, true),
             (30.0, 1.0, 0.0, true),
@@ -347,12 +358,12 @@ mod tests {
             day.multipliers = ByPlan([0.0, 0.9, 0.0]);
             day.quotas = ByPlan([1e9; 3]);
             day.core.prices = ByPlan([list; 3]);
-            let mut settings = Settings::opening(&Params::shipped());
+            let mut settings = Settings::initial(&Params::bundled());
             settings.promotion.global = promotion;
             let mut block = Block::default();
             block.push(Subscriber { plan: Plan::B, start_day: 1, ..subscriber(1) });
             with_judgement(&day, &settings, willingness, |judgement| {
-                let weighing = weigh(group(), &block, 0, judgement);
+                let weighing = compare_plans(group(), &block, 0, judgement);
                 let quality = weighing.qualities(judgement.day.params)[Plan::B];
                 assert!((quality - 0.484657359).abs() < 1e-9);
                 let choice = weighing.choice(judgement.day.params);
@@ -362,27 +373,28 @@ mod tests {
     }
 
     #[test]
-    fn leaving_and_switching_change_the_columns() {
+    fn cancelling_and_switching_update_the_columns() {
         let mut day = morning(31);
         day.product[group()] = 0.9;
         day.multipliers = ByPlan([0.6, 0.9, 1.1]);
         day.quotas = ByPlan([1e9; 3]);
         day.core.prices = ByPlan([12.0, 13.0, 14.0]);
-        let settings = Settings::opening(&Params::shipped());
+        let settings = Settings::initial(&Params::bundled());
         let mut customers = Customers::default();
         let picky = Subscriber { q_min: 5.0, q_max: 6.0, satisfaction: -0.2, ..subscriber(1) };
         for row in [picky, subscriber(2), Subscriber { billing_day: 9, ..subscriber(3) }] {
             customers.groups[group()].activate(row);
         }
-        let (mut reputation, mut facts) = (ReputationBook::opening(&Params::shipped()), Facts::default());
+        let (mut reputation, mut facts) = (ReputationBook::initial(&Params::bundled()), Facts::default());
         let renewals = with_judgement(&day, &settings, 1.0, |judgement| {
-            let decided = customers.sweep(|group, number, block| decide(group, number, block, judgement));
-            conclude(decided, &mut reputation, judgement.day.params, &mut facts, &mut |_| {})
+            let decided =
+                customers.sweep(|group, number, block| decide_block(group, number, block, judgement));
+            record_decisions(decided, &mut reputation, judgement.day.params, &mut facts, &mut |_| {})
         });
         assert_eq!((renewals.cancellations, renewals.upgrades, renewals.downgrades), (1, 1, 0));
-        assert_eq!((renewals.gave_up.len(), renewals.gave_up[0].n), (1, 1));
+        assert_eq!((renewals.cancelled_individuals.len(), renewals.cancelled_individuals[0].n), (1, 1));
         assert_eq!(facts.endings[0].cause, EndCause::Quality);
-        assert!(reputation.of(group()) < 0.5);
+        assert!(reputation.get(group()) < 0.5);
         let block = &customers.groups[group()].blocks[0];
         assert_eq!(block.n, [2, 3]);
         assert_eq!((block.plan[0], block.listed_price[0], block.start_day[0]), (Plan::C, 14.0, 1));

@@ -11,17 +11,17 @@ use crate::quality::{
     Experience, perceived_quality, quota_demand, quota_factor, relationship_as_read, relationship_bonus,
     service_penalty,
 };
-use crate::reputation::{Mood, contribution};
+use crate::reputation::{ReputationContribution, contribution};
 
 /// Returns the moving average: (1 - alpha) old + alpha instant.
 #[inline]
-pub fn moved_satisfaction(old: f64, instant: f64, alpha: f64) -> f64 {
+pub fn smoothed_satisfaction(old: f64, instant: f64, alpha: f64) -> f64 {
     (1.0 - alpha) * old + alpha * instant
 }
 
 /// Adds up the contributions of the blocks of each group, in their order.
-pub fn by_group(by_block: Vec<(Group, Mood)>) -> ByGroup<Mood> {
-    let mut moods = ByGroup::<Mood>::default();
+pub fn sum_by_group(by_block: Vec<(Group, ReputationContribution)>) -> ByGroup<ReputationContribution> {
+    let mut moods = ByGroup::<ReputationContribution>::default();
     for (group, mood) in by_block {
         moods[group] += mood;
     }
@@ -30,7 +30,7 @@ pub fn by_group(by_block: Vec<(Group, Mood)>) -> ByGroup<Mood> {
 
 /// The terms of one subscriber's satisfaction update.
 #[derive(Debug, Clone, Copy)]
-pub struct FeltDay {
+pub struct SatisfactionTerms {
     /// The terms of its perceived quality.
     pub experience: Experience,
     /// Quality lost to today's service, included in the delivered quality.
@@ -49,43 +49,52 @@ pub struct FeltDay {
     pub after: f64,
 }
 
-/// Computes the update of one subscriber without applying it; the block must be in the state before [`update`].
-pub fn felt(group: Group, block: &Block, at: usize, day: &DayContext<'_>) -> FeltDay {
+/// Computes the update of one subscriber without applying it; the block must be in the state before [`update_block`].
+pub fn satisfaction_terms(group: Group, block: &Block, at: usize, day: &DayContext<'_>) -> SatisfactionTerms {
     let &DayContext { morning, service, ads, tenure, params, .. } = day;
     let quality = &params.quality;
     let penalty = service_penalty(service.overload, service.outage, quality);
     let plan = block.plan[at];
-    let own = Own {
+    let own = SubscriberInputs {
         usage_rate: block.usage_rate[at],
         relationship: block.relationship[at],
         open_issue_days: block.open_issue_days[at],
         ads_sensitivity: block.ads_quality_sensitivity[at],
     };
-    let met = Met {
+    let met = DayInputs {
         delivered: morning.delivered(group, plan) - penalty,
         quota: match params.has_fault(Fault::QuotaInverted) {
-            true => as_if_inverted(morning.quotas[plan], own.usage_rate * morning.weekday),
+            true => inverted_quota(morning.quotas[plan], own.usage_rate * morning.weekday),
             false => morning.quotas[plan],
         },
         tenure: tenure.bonus(morning.day - block.start_day[at]),
         ads: ads.for_customer(group, block.customer[at]),
     };
-    let experience = experienced(own, met, morning.weekday, quality, params);
+    let experience = build_experience(own, met, morning.weekday, quality, params);
     let perceived = perceived_quality(experience, params.fidelity.perceived_quality);
     let (required, expectation) = (block.required[at], morning.expectations[group].quality);
     let (before, instant) = (block.satisfaction[at], perceived - (required + expectation));
-    let after = moved_satisfaction(before, instant, params.satisfaction.satisfaction_ema_alpha);
-    FeltDay { experience, service_penalty: penalty, perceived, required, expectation, instant, before, after }
+    let after = smoothed_satisfaction(before, instant, params.satisfaction.satisfaction_ema_alpha);
+    SatisfactionTerms {
+        experience,
+        service_penalty: penalty,
+        perceived,
+        required,
+        expectation,
+        instant,
+        before,
+        after,
+    }
 }
 
-struct Own {
+struct SubscriberInputs {
     usage_rate: f64,
     relationship: f64,
     open_issue_days: u32,
     ads_sensitivity: f64,
 }
 
-struct Met {
+struct DayInputs {
     delivered: f64,
     quota: f64,
     tenure: f64,
@@ -94,7 +103,13 @@ struct Met {
 
 // Always inlined, because rows are vectorized only if this is part of the loop.
 #[inline(always)]
-fn experienced(own: Own, met: Met, weekday: f64, quality: &Quality, params: &Params) -> Experience {
+fn build_experience(
+    own: SubscriberInputs,
+    met: DayInputs,
+    weekday: f64,
+    quality: &Quality,
+    params: &Params,
+) -> Experience {
     let demand = quota_demand(own.usage_rate * weekday, own.usage_rate, params);
     Experience {
         delivered: met.delivered,
@@ -107,28 +122,33 @@ fn experienced(own: Own, met: Met, weekday: f64, quality: &Quality, params: &Par
 }
 
 /// Returns the quota for which quota / demand equals demand / quota of the given one.
-fn as_if_inverted(quota: f64, daily_demand: f64) -> f64 {
+fn inverted_quota(quota: f64, daily_demand: f64) -> f64 {
     daily_demand * daily_demand / quota
 }
 
 /// Rows per batch: few enough for their looked-up values to stay in cache.
-const ROWS: usize = 64;
+const ROWS_PER_BATCH: usize = 64;
 
 /// Values that have to be looked up by row.
-struct Found {
-    delivered: [f64; ROWS],
-    quota: [f64; ROWS],
-    tenure: [f64; ROWS],
-    ads: [f64; ROWS],
+struct RowInputs {
+    delivered: [f64; ROWS_PER_BATCH],
+    quota: [f64; ROWS_PER_BATCH],
+    tenure: [f64; ROWS_PER_BATCH],
+    ads: [f64; ROWS_PER_BATCH],
 }
 
-impl Found {
-    fn nothing() -> Found {
-        Found { delivered: [0.0; ROWS], quota: [0.0; ROWS], tenure: [0.0; ROWS], ads: [0.0; ROWS] }
+impl RowInputs {
+    fn zeroed() -> RowInputs {
+        RowInputs {
+            delivered: [0.0; ROWS_PER_BATCH],
+            quota: [0.0; ROWS_PER_BATCH],
+            tenure: [0.0; ROWS_PER_BATCH],
+            ads: [0.0; ROWS_PER_BATCH],
+        }
     }
 
     #[inline]
-    fn look_up(
+    fn fill(
         &mut self,
         group: Group,
         block: &Block,
@@ -139,7 +159,7 @@ impl Found {
         let &DayContext { morning, ads, tenure, .. } = day;
         let (plan, start_day) = (&block.plan[rows.clone()], &block.start_day[rows.clone()]);
         let customer = &block.customer[rows.clone()];
-        for at in 0..plan.len().min(ROWS) {
+        for at in 0..plan.len().min(ROWS_PER_BATCH) {
             self.delivered[at] = delivered[plan[at]];
             self.quota[at] = morning.quotas[plan[at]];
             self.tenure[at] = tenure.bonus(morning.day - start_day[at]);
@@ -150,7 +170,7 @@ impl Found {
             self.quota
                 .iter_mut()
                 .zip(demands)
-                .for_each(|(quota, demand)| *quota = as_if_inverted(*quota, demand));
+                .for_each(|(quota, demand)| *quota = inverted_quota(*quota, demand));
         }
     }
 }
@@ -159,7 +179,7 @@ impl Found {
 ///
 /// Rows are processed in batches. Lookups, calculation and summation are separate loops over local copies, so
 /// that the compiler can vectorize the calculation.
-pub fn update(group: Group, block: &mut Block, day: &DayContext<'_>) -> Mood {
+pub fn update_block(group: Group, block: &mut Block, day: &DayContext<'_>) -> ReputationContribution {
     let &DayContext { morning, service, params, .. } = day;
     let (quality, reputation) = (&params.quality.clone(), &params.reputation.clone());
     let penalty = service_penalty(service.overload, service.outage, quality);
@@ -167,46 +187,46 @@ pub fn update(group: Group, block: &mut Block, day: &DayContext<'_>) -> Mood {
     let (weekday, expectation) = (morning.weekday, morning.expectations[group].quality);
     let form = params.fidelity.perceived_quality;
     let alpha = params.satisfaction.satisfaction_ema_alpha;
-    let (mut found, mut moved) = (Found::nothing(), [0.0; ROWS]);
+    let (mut found, mut moved) = (RowInputs::zeroed(), [0.0; ROWS_PER_BATCH]);
     let (mut sum, count) = (0.0, block.len());
-    for first in (0..count).step_by(ROWS) {
-        let rows = (count - first).min(ROWS);
+    for first in (0..count).step_by(ROWS_PER_BATCH) {
+        let rows = (count - first).min(ROWS_PER_BATCH);
         let range = first..first + rows;
-        found.look_up(group, block, range.clone(), &delivered, day);
+        found.fill(group, block, range.clone(), &delivered, day);
         let rate = &block.usage_rate[range.clone()];
         let (relationship, required) = (&block.relationship[range.clone()], &block.required[range.clone()]);
         let open_days = &block.open_issue_days[range.clone()];
         let sensitivity = &block.ads_quality_sensitivity[range.clone()];
         let satisfaction = &mut block.satisfaction[range];
         for at in 0..rows {
-            let own = Own {
+            let own = SubscriberInputs {
                 usage_rate: rate[at],
                 relationship: relationship[at],
                 open_issue_days: open_days[at],
                 ads_sensitivity: sensitivity[at],
             };
-            let met = Met {
+            let met = DayInputs {
                 delivered: found.delivered[at],
                 quota: found.quota[at],
                 tenure: found.tenure[at],
                 ads: found.ads[at],
             };
-            let perceived = perceived_quality(experienced(own, met, weekday, quality, params), form);
+            let perceived = perceived_quality(build_experience(own, met, weekday, quality, params), form);
             let instant = perceived - (required[at] + expectation);
-            moved[at] = moved_satisfaction(satisfaction[at], instant, alpha);
+            moved[at] = smoothed_satisfaction(satisfaction[at], instant, alpha);
         }
         satisfaction.copy_from_slice(&moved[..rows]);
         for satisfaction in &moved[..rows] {
             sum += contribution(*satisfaction, reputation);
         }
     }
-    Mood { sum, count: count as u32 }
+    ReputationContribution { sum, count: count as u32 }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::context::tests::on_day;
+    use crate::context::tests::with_day_context;
     use crate::customers::columns::Subscriber;
     use crate::events::ServiceDay;
     use crate::identifiers::Plan;
@@ -223,17 +243,19 @@ mod tests {
     }
 
     fn next_satisfaction(row: Subscriber, day: &Morning, service: ServiceDay, setting: &AdsStrength) -> f64 {
-        let params = Params::shipped();
+        let params = Params::bundled();
         let mut block = Block::default();
         block.push(row);
         refresh_required(&mut block, 0, day.expectations[group()].c_max, &params);
-        let settings = Settings { ads_strength: setting.clone(), ..Settings::opening(&params) };
-        on_day(day, &settings, &service, (&params, &Streams::new(1)), |day| update(group(), &mut block, day));
+        let settings = Settings { ads_strength: setting.clone(), ..Settings::initial(&params) };
+        with_day_context(day, &settings, &service, (&params, &Streams::new(1)), |day| {
+            update_block(group(), &mut block, day)
+        });
         block.satisfaction[0]
     }
 
     #[test]
-    fn every_trouble_of_a_day_lowers_satisfaction() {
+    fn each_service_problem_lowers_satisfaction() {
         let mut day = morning(31);
         day.product[group()] = 0.2 + 0.15 + 0.05;
         day.multipliers[Plan::B] = 0.9;
@@ -248,7 +270,7 @@ mod tests {
             customer: 9,
             ..subscriber(1)
         };
-        let service = ServiceDay { overload: 0.5, outage: true, ..ServiceDay::quiet() };
+        let service = ServiceDay { overload: 0.5, outage: true, ..ServiceDay::without_load() };
         let setting = AdsStrength {
             global: 0.2,
             by_group: PerGroup::from([(group(), 0.1)]),
@@ -259,13 +281,15 @@ mod tests {
     }
 
     #[test]
-    fn nobody_feels_what_others_feel() {
-        let (params, day, service) = (Params::shipped(), morning(190), ServiceDay::quiet());
+    fn satisfaction_does_not_depend_on_other_rows() {
+        let (params, day, service) = (Params::bundled(), morning(190), ServiceDay::without_load());
         let setting = AdsStrength { by_customer: PerCustomer::from([(70, 0.4)]), ..AdsStrength::default() };
-        let settings = Settings { ads_strength: setting, ..Settings::opening(&params) };
+        let settings = Settings { ads_strength: setting, ..Settings::initial(&params) };
         let streams = Streams::new(1);
         let update = |block: &mut Block| {
-            on_day(&day, &settings, &service, (&params, &streams), |day| update(group(), block, day))
+            with_day_context(&day, &settings, &service, (&params, &streams), |day| {
+                update_block(group(), block, day)
+            })
         };
         let row = |n: u32| Subscriber {
             plan: Plan::ALL[n as usize % 3],
@@ -282,7 +306,7 @@ mod tests {
             (1..=count).for_each(|n| together.push(row(n)));
             let before = together.clone();
             let mood = update(&mut together);
-            let mut moods = Mood::default();
+            let mut moods = ReputationContribution::default();
             for n in 1..=count {
                 let mut alone = Block::default();
                 alone.push(row(n));
@@ -290,17 +314,20 @@ mod tests {
                 assert_eq!(together.row(n as usize - 1), alone.row(0), "row {n} of {count}");
             }
             assert_eq!(mood, moods, "{count} rows");
-            on_day(&day, &settings, &service, (&params, &streams), |day| {
+            with_day_context(&day, &settings, &service, (&params, &streams), |day| {
                 for (at, after) in together.satisfaction.iter().enumerate() {
-                    assert_eq!(felt(group(), &before, at, day).after.to_bits(), after.to_bits());
+                    assert_eq!(
+                        satisfaction_terms(group(), &before, at, day).after.to_bits(),
+                        after.to_bits()
+                    );
                 }
             });
         }
     }
 
     #[test]
-    fn drift_counts_twice_after_a_bill() {
-        let params = Params::shipped();
+    fn drift_is_counted_twice_after_billing() {
+        let params = Params::bundled();
         let mut day = morning(100);
         day.multipliers[Plan::A] = 1.0;
         day.quotas[Plan::A] = 1000.0;
@@ -314,7 +341,7 @@ mod tests {
             satisfaction: 0.0,
             ..subscriber(1)
         };
-        let service = ServiceDay::quiet();
+        let service = ServiceDay::without_load();
         let moved = next_satisfaction(row, &day, service, &AdsStrength::default());
         assert!((moved - -0.0133028107).abs() < 1e-9, "{moved}");
         row.effective_c_max = remembered_budget(row.c_max, 2.0, &params);

@@ -8,17 +8,17 @@ use crate::market::Market;
 use crate::market::competitors::sampled_boost;
 use crate::market::economy::Dimension;
 use crate::market::surges::surge_factor;
-use crate::params::{ParameterSource, SurgeStart, shipped_sources};
+use crate::params::{ParameterSource, SurgeStart, bundled_sources};
 use crate::random::Streams;
-use crate::retention::renewal::involuntary_rate_of;
+use crate::retention::renewal::group_involuntary_rate;
 use crate::state::World;
 
-fn replaying() -> Params {
+fn replay_params() -> Params {
     let scenario = include_str!("../../../configs/scenarios/reference-seed42.toml");
     let table: toml::Table = scenario.parse().expect("a scenario");
     let world = table.get("world").and_then(toml::Value::as_table).expect("overrides");
     let text = toml::to_string(world).expect("a table");
-    Params::load(&shipped_sources(), &[ParameterSource { name: "scenario".to_owned(), text }])
+    Params::load(&bundled_sources(), &[ParameterSource { name: "scenario".to_owned(), text }])
         .expect("parameters")
 }
 
@@ -45,9 +45,9 @@ fn group(id: &str) -> Group {
 }
 
 /// Simulates a company without actions and calls `each` with the world and the facts of every day.
-fn untouched(seed: u64, mut each: impl FnMut(&World, &Facts)) {
-    let (params, streams, mut facts) = (replaying(), Streams::new(seed), Facts::default());
-    let mut world = World::open(500, 1_000_000.0, &params, &mut facts);
+fn run_untouched_company(seed: u64, mut each: impl FnMut(&World, &Facts)) {
+    let (params, streams, mut facts) = (replay_params(), Streams::new(seed), Facts::default());
+    let mut world = World::new(500, 1_000_000.0, &params, &mut facts);
     for _ in 0..500 {
         step_day(&mut world, &params, &streams, &mut facts);
         each(&world, &facts);
@@ -55,11 +55,11 @@ fn untouched(seed: u64, mut each: impl FnMut(&World, &Facts)) {
 }
 
 #[test]
-fn the_economy_is_the_recorded_one_on_every_day_with_its_publications() {
+fn economy_matches_the_record_daily() {
     let pmi: Vec<f64> = measured!("pmi_daily").map(|row| number(row[1])).collect();
     let mut published: Vec<(u32, Reading)> = Vec::new();
     // The seed of the run has no effect.
-    untouched(7, |world, facts| {
+    run_untouched_company(7, |world, facts| {
         assert_eq!(world.market.economy.pmi.to_bits(), pmi[world.day as usize - 1].to_bits());
         published.extend(facts.readings.iter().map(|reading| (world.day, *reading)));
     });
@@ -73,9 +73,9 @@ fn the_economy_is_the_recorded_one_on_every_day_with_its_publications() {
 }
 
 #[test]
-fn multipliers_of_the_economy_agree_at_the_checkpoints() {
-    let params = replaying();
-    untouched(42, |world, _| {
+fn macro_multipliers_match_the_record() {
+    let params = replay_params();
+    run_untouched_company(42, |world, _| {
         for row in measured!("macro_multipliers").filter(|row| day(row[0]) == world.day) {
             let economy = &world.market.economy;
             let own = |dimension| economy.multiplier(group(row[1]), dimension, &params);
@@ -94,9 +94,9 @@ fn multipliers_of_the_economy_agree_at_the_checkpoints() {
 }
 
 #[test]
-fn rivals_move_on_the_recorded_days_and_expectations_follow() {
+fn competitor_events_and_expectations_match_the_record() {
     let mut seen: Vec<(u32, f64)> = Vec::new();
-    untouched(42, |world, _| {
+    run_untouched_company(42, |world, _| {
         seen = world.market.competitors.iter().map(|event| (event.day, event.sampled)).collect();
         for row in measured!("drift_untouched").filter(|row| day(row[0]) == world.day) {
             let drift = &world.market.drift;
@@ -111,7 +111,7 @@ fn rivals_move_on_the_recorded_days_and_expectations_follow() {
     let recorded: Vec<(u32, f64)> =
         measured!("competitor_events_dev_groups_0").map(|row| (day(row[0]), number(row[3]))).collect();
     assert_eq!(seen, recorded);
-    let params = replaying();
+    let params = replay_params();
     for row in measured!("competitor_events_dev_groups_0") {
         let given = SEED_42.competitor_event(day(row[0])).flatten().expect("an event");
         assert_eq!(given.u, number(row[4]));
@@ -120,9 +120,9 @@ fn rivals_move_on_the_recorded_days_and_expectations_follow() {
 }
 
 #[test]
-fn surges_act_as_recorded() {
+fn surges_match_the_record() {
     let mut seen = Vec::new();
-    untouched(42, |world, _| {
+    run_untouched_company(42, |world, _| {
         if world.day == 402 {
             // The surge of day 405 acts from the first day of its week.
             let factor = surge_factor(402, &world.market.surges, SurgeStart::Week);
@@ -136,12 +136,12 @@ fn surges_act_as_recorded() {
 }
 
 #[test]
-fn attempts_find_the_recorded_groups() {
-    let (params, streams) = (replaying(), Streams::new(3));
-    let mut market = Market::opening(&params);
+fn market_research_matches_the_record() {
+    let (params, streams) = (replay_params(), Streams::new(3));
+    let mut market = Market::initial(&params);
     for row in measured!("market_research") {
         let attempt = market.next_attempt(&params, &streams);
-        market.note_attempt(&attempt, 10, &params);
+        market.record_attempt(&attempt, 10, &params);
         assert_eq!(attempt.found.map_or("", Group::id), row[2]);
         assert_eq!(market.undiscovered().count().to_string(), row[3]);
     }
@@ -149,20 +149,20 @@ fn attempts_find_the_recorded_groups() {
 }
 
 #[test]
-fn payments_fail_at_the_recorded_rates() {
-    let (params, streams) = (replaying(), Streams::new(3));
+fn involuntary_churn_matches_the_record() {
+    let (params, streams) = (replay_params(), Streams::new(3));
     for row in measured!("involuntary_churn") {
         for own in [day(row[2]), day(row[3])] {
-            let rate = involuntary_rate_of(group(row[0]), own, &params, &streams);
+            let rate = group_involuntary_rate(group(row[0]), own, &params, &streams);
             assert_eq!(rate.to_bits(), number(row[4]).to_bits(), "{row:?}");
         }
     }
 }
 
 #[test]
-fn channels_yield_what_was_recorded() {
+fn channel_yields_match_the_record() {
     let channel = |id: &str| Channel::parse(id).expect("a channel");
-    untouched(3, |world, _| {
+    run_untouched_company(3, |world, _| {
         let month = world.day - world.day % 30;
         if [0, 29].contains(&(world.day % 30)) {
             for row in measured!("channel_drift").filter(|row| day(row[0]) == month) {
@@ -174,13 +174,13 @@ fn channels_yield_what_was_recorded() {
 }
 
 #[test]
-fn beyond_the_record_the_world_draws_as_usual() {
+fn draws_resume_after_the_end_of_the_record() {
     assert_eq!((SEED_42.pmi(0), SEED_42.pmi(505)), (None, None));
     assert_eq!((SEED_42.competitor_event(505), SEED_42.demand_surge(505)), (None, None));
     assert_eq!(SEED_42.involuntary_rate(group("S1"), 17), None);
     assert_eq!(SEED_42.channel_yield(Channel::Linkedin, group("S1"), 17), None);
-    let (params, streams, mut facts) = (replaying(), Streams::new(3), Facts::default());
-    let mut world = World::open(600, 1_000_000.0, &params, &mut facts);
+    let (params, streams, mut facts) = (replay_params(), Streams::new(3), Facts::default());
+    let mut world = World::new(600, 1_000_000.0, &params, &mut facts);
     for _ in 0..600 {
         step_day(&mut world, &params, &streams, &mut facts);
     }

@@ -11,9 +11,9 @@ use novamind::record::trajectory::{Line, Record, Trajectory};
 use novamind::session::{Access, Session};
 use serde_json::Value;
 
-use super::games::{decide, week};
+use super::random_play::{advance_week, apply_random_actions};
 use super::run::{copy, create, open, runs, view};
-use crate::support::company::open_shop;
+use crate::support::company::apply_opening_decisions;
 use crate::support::dice::Dice;
 
 /// Plays a run of some weeks with decisions in the current one and closes it properly. Returns its folder and its visible state.
@@ -21,20 +21,20 @@ fn closed_run(place: &Path) -> (PathBuf, Value) {
     let mut session = create(place, 21, 60);
     let folder = session.folder().expect("a folder").to_owned();
     let mut dice = Dice::new(4);
-    open_shop(&mut session);
+    apply_opening_decisions(&mut session);
     for _ in 0..5 {
-        decide(&mut session, &mut dice);
-        week(&mut session);
+        apply_random_actions(&mut session, &mut dice);
+        advance_week(&mut session);
     }
-    session.set_memo("weeks 1 to 5: prices first").expect("kept");
-    decide(&mut session, &mut dice);
+    session.set_notes("weeks 1 to 5: prices first").expect("kept");
+    apply_random_actions(&mut session, &mut dice);
     session.save().expect("saved");
     let view = view(&mut session);
     (folder, view)
 }
 
 /// Changes a byte, or truncates the file at its position.
-fn hurt(file: &Path, dice: &mut Dice) -> (usize, bool) {
+fn damage_file(file: &Path, dice: &mut Dice) -> (usize, bool) {
     let mut bytes = fs::read(file).expect("bytes");
     let (at, cut) = (dice.roll(bytes.len()), dice.roll(2) == 0);
     if cut {
@@ -46,14 +46,14 @@ fn hurt(file: &Path, dice: &mut Dice) -> (usize, bool) {
     (at, cut)
 }
 
-fn damage_beside_the_trajectory(places: usize) {
+fn check_damage_to_derived_files(places: usize) {
     let (own, other) = (runs(), runs());
     let (folder, expected) = closed_run(own.path());
-    let mut dice = Dice::of_test("damage beside the trajectory");
+    let mut dice = Dice::for_test("damage beside the trajectory");
     for number in 0..places {
         let name = *dice.pick(&["world.db", "snapshot.bin", "memo.md"]);
         let place = copy(&folder, &other.path().join(number.to_string()));
-        let (at, cut) = hurt(&place.join(name), &mut dice);
+        let (at, cut) = damage_file(&place.join(name), &mut dice);
         let mut session = open(&place);
         assert_eq!(view(&mut session), expected, "{name}, byte {at}, cut {cut}");
         assert!(!session.remarks().is_empty(), "{name}, byte {at}, cut {cut}: no message");
@@ -62,17 +62,17 @@ fn damage_beside_the_trajectory(places: usize) {
     }
 }
 
-fn damage_in_the_trajectory(places: usize) {
+fn check_damage_to_the_trajectory(places: usize) {
     let (own, other) = (runs(), runs());
     let (folder, expected) = closed_run(own.path());
     let whole = fs::read(folder.join("trajectory.jsonl")).expect("bytes");
     let lines = Trajectory::parse(&whole).expect("lines").lines.len();
-    let mut dice = Dice::of_test("damage in the trajectory");
+    let mut dice = Dice::for_test("damage in the trajectory");
     let (mut refused, mut dropped) = (0, 0);
     for number in 0..places {
         let place = copy(&folder, &other.path().join(number.to_string()));
         let path = place.join("trajectory.jsonl");
-        let (at, cut) = hurt(&path, &mut dice);
+        let (at, cut) = damage_file(&path, &mut dice);
         let hurt = fs::read(&path).expect("bytes");
         match Session::open(&place, Access::Write, true) {
             // Only a last line without its end may be dropped.
@@ -105,25 +105,25 @@ fn damage_in_the_trajectory(places: usize) {
 }
 
 #[test]
-fn damage_beside_the_trajectory_costs_only_time() {
-    damage_beside_the_trajectory(50);
+fn damage_to_derived_files_is_repaired() {
+    check_damage_to_derived_files(50);
 }
 
 #[test]
-fn damage_in_the_trajectory_is_named_and_refused() {
-    damage_in_the_trajectory(50);
+fn damage_to_the_trajectory_is_reported() {
+    check_damage_to_the_trajectory(50);
 }
 
 #[test]
 #[ignore = "slow: .ci/full runs it"]
-fn damage_everywhere() {
-    damage_beside_the_trajectory(1000);
-    damage_in_the_trajectory(1000);
+fn random_damage_is_detected_or_repaired() {
+    check_damage_to_derived_files(1000);
+    check_damage_to_the_trajectory(1000);
 }
 
 /// The sum protects the last line: every changed byte is detected, even without database and snapshot.
 #[test]
-fn every_byte_of_the_last_line_counts() {
+fn every_byte_of_the_last_line_is_verified() {
     let (own, other) = (runs(), runs());
     let (folder, _) = closed_run(own.path());
     let place = copy(&folder, other.path());
@@ -140,7 +140,7 @@ fn every_byte_of_the_last_line_counts() {
 
 /// Missing lines at the end are detected as long as the database or the snapshot exists.
 #[test]
-fn lines_that_are_missing_are_missed() {
+fn missing_last_lines_are_detected() {
     let (own, other) = (runs(), runs());
     let (folder, _) = closed_run(own.path());
     let whole = fs::read(folder.join("trajectory.jsonl")).expect("bytes");
@@ -157,7 +157,7 @@ fn lines_that_are_missing_are_missed() {
                 let rest = Trajectory::parse(&whole).expect("lines").lines.split_off(lines.len());
                 let idle = |line: &Line| match &line.record {
                     Record::Query(_) | Record::Activity(_) | Record::Memo(_) | Record::Note(_) => true,
-                    Record::Call(call) => matches!(call.outcome, Outcome::Refused(_)),
+                    Record::Call(call) => matches!(call.outcome, Outcome::Rejected(_)),
                     _ => false,
                 };
                 assert!(number % 2 == 1 && rest.iter().all(idle));

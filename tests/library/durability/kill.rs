@@ -10,12 +10,12 @@ use std::time::{Duration, Instant};
 
 use novamind::record::trajectory::record::Reversal;
 use novamind::record::trajectory::{Line, Record, Trajectory};
-use novamind::session::{Access, JournalEntry, Session, lines_afterwards, verify};
+use novamind::session::{Access, JournalEntry, Session, read_afterwards, verify};
 use serde_json::Value;
 
-use super::games::Deed;
+use super::random_play::RandomAction;
 use super::run::runs;
-use crate::support::company::opening;
+use crate::support::company::opening_calls;
 use crate::support::dice::Dice;
 
 fn start(runs: &Path, options: &[&str]) -> Child {
@@ -30,16 +30,16 @@ fn start(runs: &Path, options: &[&str]) -> Child {
 fn script(dice: &mut Dice, weeks: usize, begins: bool) -> String {
     let mut lines = String::new();
     if begins {
-        opening().iter().for_each(|(tool, args)| lines += &format!("{tool} {args}\n"));
+        opening_calls().iter().for_each(|(tool, args)| lines += &format!("{tool} {args}\n"));
     }
     for _ in 0..weeks {
         for _ in 0..dice.roll(8) {
-            match Deed::any(dice, &[3, 4, 5]) {
-                Deed::Call(tool, args) => lines += &format!("{tool} {args}\n"),
-                Deed::Undo => lines += "undo\n",
-                Deed::Query(sql) => lines += &format!("sql {sql}\n"),
-                Deed::Memo(text) => lines += &format!("memo {text}\n"),
-                Deed::View(_) => {}
+            match RandomAction::random(dice, &[3, 4, 5]) {
+                RandomAction::Call(tool, args) => lines += &format!("{tool} {args}\n"),
+                RandomAction::Undo => lines += "undo\n",
+                RandomAction::Query(sql) => lines += &format!("sql {sql}\n"),
+                RandomAction::Memo(text) => lines += &format!("memo {text}\n"),
+                RandomAction::View(_) => {}
             }
         }
         lines += "next naive\n";
@@ -79,16 +79,16 @@ fn play_and_kill(mut child: Child, script: String, dice: &mut Dice) -> Vec<Value
 }
 
 /// Returns the tools of accepted calls and weeks in order, according to the output.
-fn as_answered(answers: &[Value]) -> Vec<String> {
+fn answered_tools(answers: &[Value]) -> Vec<String> {
     let done = answers.iter().filter(|answer| answer["ok"] == true);
     let words = done.filter_map(|answer| answer["command"].as_str());
     words.filter(|word| !["sql", "memo", "undo"].contains(word)).map(str::to_owned).collect()
 }
 
 /// Returns the tools of accepted calls and weeks in order, according to the trajectory, without undo calls.
-fn as_recorded(folder: &Path) -> Vec<String> {
+fn recorded_tools(folder: &Path) -> Vec<String> {
     let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).expect("it reads");
-    let after = lines_afterwards(folder, &trajectory).expect("it reads");
+    let after = read_afterwards(folder, &trajectory).expect("it reads");
     let lines = [trajectory.lines, after.lines].concat();
     let word = |line: &Line| match (&line.record, line.record.accepted_call()) {
         (_, Some((call, _))) if !matches!(call.reversal, Some(Reversal::Undoes(_))) => {
@@ -108,8 +108,8 @@ fn only_run(runs: &Path) -> Option<PathBuf> {
         .find(|path| path.join("run.toml").exists())
 }
 
-fn kills(count: usize) {
-    let mut dice = Dice::of_test("kills");
+fn check_kills(count: usize) {
+    let mut dice = Dice::for_test("kills");
     let mut weeks = 0;
     for number in 0..count {
         let place = runs();
@@ -124,8 +124,8 @@ fn kills(count: usize) {
             let script = script(&mut dice, 12, !exists);
             let answers = play_and_kill(start(place.path(), options), script, &mut dice);
             let Some(folder) = only_run(place.path()) else { continue };
-            confirmed.extend(as_answered(&answers));
-            let recorded = as_recorded(&folder);
+            confirmed.extend(answered_tools(&answers));
+            let recorded = recorded_tools(&folder);
             assert!(
                 recorded.len() >= confirmed.len() && recorded[..confirmed.len()] == confirmed,
                 "run {number}, life {life}: confirmed {confirmed:?}, recorded {recorded:?}"
@@ -148,12 +148,12 @@ fn kills(count: usize) {
 }
 
 #[test]
-fn what_was_confirmed_survives_a_kill() {
-    kills(12);
+fn confirmed_calls_survive_a_kill() {
+    check_kills(12);
 }
 
 #[test]
 #[ignore = "slow: .ci/full runs it"]
-fn what_was_confirmed_survives_many_kills() {
-    kills(200);
+fn confirmed_calls_survive_many_kills() {
+    check_kills(200);
 }

@@ -9,9 +9,9 @@ use novamind::database::Cell;
 use novamind::record::trajectory::Trajectory;
 use novamind::session::{Session, verify};
 
-use super::games::{act, decide, week};
+use super::random_play::{advance_week, apply_random_action, apply_random_actions};
 use super::run::{create, open, runs};
-use crate::support::company::open_shop;
+use crate::support::company::apply_opening_decisions;
 use crate::support::dice::Dice;
 
 const WEEKS: usize = 10;
@@ -24,7 +24,7 @@ fn number(session: &mut Session, sql: &str) -> f64 {
     }
 }
 
-fn keeps_the_rules(session: &mut Session, seed: u64) {
+fn check_invariants(session: &mut Session, seed: u64) {
     let cash = *session.cash_by_day().last().expect("a day");
     let ledger = number(session, "SELECT SUM(amount) FROM ledger");
     let scale = number(session, "SELECT SUM(ABS(amount)) FROM ledger");
@@ -53,21 +53,21 @@ fn keeps_the_rules(session: &mut Session, seed: u64) {
 }
 
 /// Returns the state of a run folder, simulated from its first line on a number of threads.
-fn verified(folder: &Path, threads: usize) -> String {
+fn verified_state(folder: &Path, threads: usize) -> String {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
     pool.install(|| verify(folder)).unwrap_or_else(|error| panic!("{error}")).state_hash
 }
 
-fn game(seed: u64) {
+fn check_random_run(seed: u64) {
     let place = runs();
     let mut dice = Dice::new(seed);
     let mut session = create(place.path(), 1000 + seed, 365);
     let folder = session.folder().expect("a folder").to_owned();
     if dice.roll(4) > 0 {
-        open_shop(&mut session);
+        apply_opening_decisions(&mut session);
     }
     for _ in 0..WEEKS {
-        decide(&mut session, &mut dice);
+        apply_random_actions(&mut session, &mut dice);
         if dice.roll(3) == 0 {
             // Closed properly, or dropped like at the end of a program.
             if dice.roll(2) == 0 {
@@ -81,39 +81,39 @@ fn game(seed: u64) {
                 (before, observed),
                 "game {seed}"
             );
-            act(&mut session, &mut dice);
+            apply_random_action(&mut session, &mut dice);
         }
-        week(&mut session);
-        keeps_the_rules(&mut session, seed);
+        advance_week(&mut session);
+        check_invariants(&mut session, seed);
     }
     let last = session.weeks().last().map(|week| week.day);
     assert!(last >= Some(7), "game {seed}");
     drop(session);
     let recorded = Trajectory::read(&folder.join("trajectory.jsonl")).expect("it reads");
     let states = recorded.lines.iter().rev().find_map(|line| Some(line.record.closing()?.state_hash.clone()));
-    assert_eq!(Some(verified(&folder, 1)), states, "game {seed}");
-    assert_eq!(Some(verified(&folder, 2)), states, "game {seed}");
+    assert_eq!(Some(verified_state(&folder, 1)), states, "game {seed}");
+    assert_eq!(Some(verified_state(&folder, 2)), states, "game {seed}");
 }
 
 /// Returns and prints the seeds; `NOVAMIND_TEST_SEED` sets the first one.
-fn games(first: u64, count: u64) {
+fn check_random_runs(first: u64, count: u64) {
     let offset = std::env::var("NOVAMIND_TEST_SEED").ok().and_then(|seed| seed.parse().ok()).unwrap_or(0);
     println!("games {} to {}", offset + first, offset + first + count - 1);
-    (first..first + count).for_each(|seed| game(offset + seed));
+    (first..first + count).for_each(|seed| check_random_run(offset + seed));
 }
 
 #[test]
-fn random_games_keep_the_rules() {
-    games(1, 8);
+fn random_runs_keep_invariants() {
+    check_random_runs(1, 8);
 }
 
 #[test]
-fn more_random_games_keep_the_rules() {
-    games(9, 8);
+fn more_random_runs_keep_invariants() {
+    check_random_runs(9, 8);
 }
 
 #[test]
 #[ignore = "slow: .ci/full runs it"]
-fn a_thousand_random_games_keep_the_rules() {
-    games(1, 1000);
+fn a_thousand_random_runs_keep_invariants() {
+    check_random_runs(1, 1000);
 }

@@ -11,24 +11,24 @@ use std::fs;
 use std::path::Path;
 
 use novamind::record::folder::configuration::Configuration;
-use novamind::record::folder::derived::manifest_text;
+use novamind::record::folder::manifest_check::read_manifest_text;
 use novamind::record::trajectory::Trajectory;
-use novamind::session::{Access, Session, lines_afterwards, verify};
+use novamind::session::{Access, Session, read_afterwards, verify};
 use novamind::tools::ToolId;
 use serde_json::{Value, json};
 
 use super::run::{copy, runs};
-use crate::support::forging::forge;
+use crate::support::forging::forge_lines;
 
-fn recorded(build: &str) -> std::path::PathBuf {
+fn recorded_run_folder(build: &str) -> std::path::PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/recorded").join(build)
 }
 
 #[test]
-fn runs_of_other_builds_reach_the_same_states() {
+fn runs_of_earlier_builds_verify() {
     let mut hashes = Vec::new();
     for build in ["development", "release"] {
-        let found = verify(&recorded(build)).unwrap_or_else(|error| {
+        let found = verify(&recorded_run_folder(build)).unwrap_or_else(|error| {
             panic!(
                 "{error}\nIf the mechanics were changed on purpose, increase MECHANICS and record the runs again."
             )
@@ -40,9 +40,9 @@ fn runs_of_other_builds_reach_the_same_states() {
 }
 
 #[test]
-fn a_recorded_run_with_every_lever_reaches_the_same_states() {
+fn recorded_run_with_every_setting_verifies() {
     let place = runs();
-    let folder = copy(&recorded("everything"), place.path());
+    let folder = copy(&recorded_run_folder("everything"), place.path());
     let found = verify(&folder).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!((found.day, found.states), (119, 17));
     // A tool that is not in the run would not be tested.
@@ -69,9 +69,9 @@ fn a_recorded_run_with_every_lever_reaches_the_same_states() {
 }
 
 #[test]
-fn a_run_of_a_scenario_that_has_another_key_since_reaches_the_same_states() {
+fn run_of_a_scenario_with_a_later_key_verifies() {
     let place = runs();
-    let folder = copy(&recorded("reference-seed42"), place.path());
+    let folder = copy(&recorded_run_folder("reference-seed42"), place.path());
     let found = verify(&folder).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!((found.day, found.states), (14, 2), "its results are compared in any notation of numbers");
     let session = Session::open(&folder, Access::Read, true).expect("it opens");
@@ -99,28 +99,28 @@ const FORMAT_2: [(&str, u32, usize, &str); 16] = [
 ];
 
 #[test]
-fn runs_of_format_2_of_every_kind_reach_the_same_states() {
-    let folders = fs::read_dir(recorded("")).expect("a folder").flatten();
+fn runs_of_format_2_verify() {
+    let folders = fs::read_dir(recorded_run_folder("")).expect("a folder").flatten();
     let names = folders.map(|entry| entry.file_name().to_string_lossy().into_owned());
     let names: BTreeSet<String> = names.filter(|name| name.starts_with("format2-")).collect();
     assert_eq!(names, FORMAT_2.map(|(name, ..)| name.to_owned()).into(), "each has its line in FORMAT_2");
     for (name, day, states, hash) in FORMAT_2 {
-        let found = verify(&recorded(name)).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let found = verify(&recorded_run_folder(name)).unwrap_or_else(|error| panic!("{name}: {error}"));
         assert_eq!((found.day, found.states), (day, states), "{name}");
         assert!(found.state_hash.starts_with(hash), "{name}: {}", found.state_hash);
     }
 }
 
 #[test]
-fn runs_of_format_2_have_lines_of_every_kind_and_calls_of_every_tool() {
+fn runs_of_format_2_cover_all_line_kinds_and_tools() {
     let (mut kinds, mut tools) = (BTreeSet::new(), BTreeSet::new());
     for (name, ..) in FORMAT_2 {
-        let folder = recorded(name);
+        let folder = recorded_run_folder(name);
         let run = Trajectory::read(&folder.join("trajectory.jsonl")).expect("it reads");
-        let after = lines_afterwards(&folder, &run).expect("it reads");
+        let after = read_afterwards(&folder, &run).expect("it reads");
         for line in run.lines.iter().chain(&after.lines) {
             kinds.insert(line.record.kind().to_owned());
-            tools.extend(line.own_fields().get("tool").and_then(Value::as_str).map(str::to_owned));
+            tools.extend(line.record_fields().get("tool").and_then(Value::as_str).map(str::to_owned));
         }
     }
     let schema: Value =
@@ -154,22 +154,22 @@ const DIGESTS: [(&str, &str); 13] = [
 
 #[test]
 fn parameters_of_scenarios_keep_the_digests_that_recorded_runs_name() {
-    let shipped = Configuration::shipped();
+    let shipped = Configuration::bundled();
     let digest = |name: String| {
-        let scenario = shipped.scenario(&name).expect("a scenario");
-        let params = shipped.parameters(&scenario, &[], false).expect("parameters");
+        let scenario = shipped.load_scenario(&name).expect("a scenario");
+        let params = shipped.load_parameters(&scenario, &[], false).expect("parameters");
         (name, params.digest())
     };
-    let digests: Vec<(String, String)> = shipped.scenarios().into_iter().map(digest).collect();
+    let digests: Vec<(String, String)> = shipped.scenario_names().into_iter().map(digest).collect();
     assert_eq!(digests, DIGESTS.map(|(name, digest)| (name.to_owned(), digest.to_owned())));
 }
 
 #[test]
 fn run_toml_of_format_2_is_rebuilt_to_the_same_bytes() {
     for (name, ..) in FORMAT_2 {
-        let folder = recorded(name);
+        let folder = recorded_run_folder(name);
         let file = fs::read_to_string(folder.join("run.toml")).expect("a manifest");
-        assert_eq!(manifest_text(&folder).expect("it reads"), file, "{name}");
+        assert_eq!(read_manifest_text(&folder).expect("it reads"), file, "{name}");
     }
 }
 
@@ -179,8 +179,8 @@ fn an_answer_of_a_recorded_run_that_was_changed_is_refused() {
         [("get_cost_info", "/model_tiers/2/quality_multiplier"), ("set_prices", "/current/B")]
     {
         let place = runs();
-        let folder = copy(&recorded("reference-seed42"), place.path());
-        forge(&folder, |_, line| {
+        let folder = copy(&recorded_run_folder("reference-seed42"), place.path());
+        forge_lines(&folder, |_, line| {
             if line["tool"] == tool {
                 *line["result"].pointer_mut(field).expect("a field") = json!(26);
             }
@@ -193,7 +193,7 @@ fn an_answer_of_a_recorded_run_that_was_changed_is_refused() {
 #[test]
 fn runs_of_other_mechanics_and_parameters_are_refused_with_the_version_that_can() {
     let place = runs();
-    let folder = copy(&recorded("release"), place.path());
+    let folder = copy(&recorded_run_folder("release"), place.path());
     let path = folder.join("trajectory.jsonl");
     let whole = fs::read_to_string(&path).expect("a trajectory");
     let (first, rest) = whole.split_once('\n').expect("lines");

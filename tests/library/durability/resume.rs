@@ -4,21 +4,21 @@ use std::fs;
 
 use novamind::session::{Access, Session, verify};
 
-use super::games::{act, decide, week};
+use super::random_play::{advance_week, apply_random_action, apply_random_actions};
 use super::run::{copy, create, open, runs, view};
-use crate::support::company::open_shop;
+use crate::support::company::apply_opening_decisions;
 use crate::support::dice::Dice;
 
 /// At every week and between its decisions, a reopened run equals the uninterrupted one, and continues identically.
 #[test]
-fn a_snapshot_holds_everything_at_every_week_and_between() {
+fn snapshot_restores_the_complete_state() {
     let (own, other) = (runs(), runs());
     let mut straight = create(own.path(), 11, 120);
     let folder = straight.folder().expect("a folder").to_owned();
-    let mut dice = Dice::of_test("snapshots");
-    open_shop(&mut straight);
+    let mut dice = Dice::for_test("snapshots");
+    apply_opening_decisions(&mut straight);
     for number in 0..14 {
-        decide(&mut straight, &mut dice);
+        apply_random_actions(&mut straight, &mut dice);
         straight.save().expect("saved");
         let again = copy(&folder, &other.path().join(number.to_string()));
         // The snapshot can only be used with an up-to-date database.
@@ -31,8 +31,8 @@ fn a_snapshot_holds_everything_at_every_week_and_between() {
         let go_on = |session: &mut Session| {
             let mut dice = Dice::new(seed);
             let _ = session.undo(novamind::record::trajectory::record::Via::Form);
-            (0..2).for_each(|_| act(session, &mut dice));
-            week(session);
+            (0..2).for_each(|_| apply_random_action(session, &mut dice));
+            advance_week(session);
         };
         go_on(&mut straight);
         go_on(&mut resumed);
@@ -50,21 +50,21 @@ fn a_snapshot_holds_everything_at_every_week_and_between() {
 }
 
 #[test]
-fn snapshots_that_cannot_be_used_cost_only_time() {
+fn unusable_snapshots_are_replaced_by_replay() {
     let (own, other) = (runs(), runs());
     let mut session = create(own.path(), 5, 60);
     let folder = session.folder().expect("a folder").to_owned();
-    open_shop(&mut session);
-    week(&mut session);
+    apply_opening_decisions(&mut session);
+    advance_week(&mut session);
     session.save().expect("saved");
     let early = fs::read(folder.join("snapshot.bin")).expect("a snapshot");
-    (0..2).for_each(|_| week(&mut session));
+    (0..2).for_each(|_| advance_week(&mut session));
     session.save().expect("saved");
     let expected = view(&mut session);
     drop(session);
     let late = fs::read(folder.join("snapshot.bin")).expect("a snapshot");
     let mut foreign = create(other.path(), 6, 60);
-    open_shop(&mut foreign);
+    apply_opening_decisions(&mut foreign);
     foreign.save().expect("saved");
     let foreign = fs::read(foreign.folder().expect("a folder").join("snapshot.bin")).expect("a snapshot");
 
@@ -92,7 +92,7 @@ fn snapshots_that_cannot_be_used_cost_only_time() {
         let remarks = session.remarks().join(" ");
         assert_eq!(told.is_some(), !remarks.is_empty(), "{name}: {remarks}");
         assert!(remarks.contains(told.unwrap_or_default()), "{name}: {remarks}");
-        week(&mut session);
+        advance_week(&mut session);
         session.save().expect("saved");
         drop(session);
         let mut session = open(&place);
@@ -103,12 +103,12 @@ fn snapshots_that_cannot_be_used_cost_only_time() {
 
 /// Reading a run neither needs nor changes other files than its trajectory.
 #[test]
-fn reading_changes_nothing() {
+fn reading_a_run_changes_no_files() {
     let own = runs();
     let mut session = create(own.path(), 3, 60);
     let folder = session.folder().expect("a folder").to_owned();
-    open_shop(&mut session);
-    week(&mut session);
+    apply_opening_decisions(&mut session);
+    advance_week(&mut session);
     session.save().expect("saved");
     let expected = view(&mut session);
     drop(session);

@@ -17,7 +17,7 @@ pub fn runs() -> TempDir {
 pub fn create(runs: &Path, seed: u64, days: u32) -> Session {
     let storage = Storage::Runs(runs.to_owned());
     let new = NewRun { seed: Some(seed), days: Some(days), storage, ..NewRun::default() };
-    Session::create(new, &Configuration::shipped()).expect("the run begins")
+    Session::create(new, &Configuration::bundled()).expect("the run begins")
 }
 
 /// Opens a run for play.
@@ -58,7 +58,7 @@ pub fn view(session: &mut Session) -> Value {
         .map(|sql| {
             format!(
                 "{:?}",
-                connection.ask(sql, limits).unwrap_or_else(|error| panic!("{sql}: {error:?}")).rows
+                connection.query(sql, limits).unwrap_or_else(|error| panic!("{sql}: {error:?}")).rows
             )
         })
         .collect();
@@ -69,7 +69,7 @@ pub fn view(session: &mut Session) -> Value {
         "decisions": session.company().decisions(),
         "notices": session.company().notices(),
         "posts": session.company().posts(),
-        "asked": session.company().asked(),
+        "asked": session.company().query_history(),
         "cash": session.cash_by_day(),
         "weeks": session.weeks(),
         "rows": rows,

@@ -5,22 +5,22 @@ use std::fs;
 use novamind::record::folder::configuration::Configuration;
 use novamind::session::{Access, NewRun, SealKey, Session, Storage};
 
-use super::games::week;
+use super::random_play::advance_week;
 use super::run::{copy, create, open, runs, view};
-use crate::support::company::open_shop;
+use crate::support::company::apply_opening_decisions;
 
 const TITLE: &[u8] = b"novamind snapshot 6\n";
 
 #[test]
-fn nothing_can_be_read_in_a_snapshot() {
+fn snapshot_is_encrypted() {
     let own = runs();
     let mut session = create(own.path(), 5, 60);
-    open_shop(&mut session);
-    session.set_memo("content marketing").expect("notes");
+    apply_opening_decisions(&mut session);
+    session.set_notes("content marketing").expect("notes");
     let folder = session.folder().expect("a folder").to_owned();
     let mut files = Vec::new();
     for _ in 0..2 {
-        week(&mut session);
+        advance_week(&mut session);
         session.save().expect("saved");
         files.push(fs::read(folder.join("snapshot.bin")).expect("a snapshot"));
     }
@@ -45,9 +45,9 @@ fn nothing_can_be_read_in_a_snapshot() {
 }
 
 #[test]
-fn a_snapshot_of_a_study_opens_with_its_secret_only() {
+fn study_snapshot_requires_its_seal_key() {
     let (own, other) = (runs(), runs());
-    let key = SealKey::of_study(&[3; 32]);
+    let key = SealKey::with_study_secret(&[3; 32]);
     let new = NewRun {
         seed: Some(5),
         days: Some(60),
@@ -55,9 +55,9 @@ fn a_snapshot_of_a_study_opens_with_its_secret_only() {
         seal_key: key.clone(),
         ..NewRun::default()
     };
-    let mut session = Session::create(new, &Configuration::shipped()).expect("a run");
-    open_shop(&mut session);
-    week(&mut session);
+    let mut session = Session::create(new, &Configuration::bundled()).expect("a run");
+    apply_opening_decisions(&mut session);
+    advance_week(&mut session);
     session.save().expect("saved");
     let expected = view(&mut session);
     let folder = session.folder().expect("a folder").to_owned();
@@ -72,11 +72,11 @@ fn a_snapshot_of_a_study_opens_with_its_secret_only() {
     assert_eq!(with("the secret", &key), "");
     let remark = with("none", &SealKey::default());
     assert!(remark.contains("sealed with the key of a study and is not used"), "{remark}");
-    let remark = with("another", &SealKey::of_study(&[4; 32]));
+    let remark = with("another", &SealKey::with_study_secret(&[4; 32]));
     assert!(remark.contains("damaged or of another run"), "{remark}");
     // Playing with the secret seals with the secret again.
     let mut session = Session::open_sealed(&folder, Access::Write, true, key.clone()).expect("it opens");
-    week(&mut session);
+    advance_week(&mut session);
     session.save().expect("saved");
     drop(session);
     assert_eq!(fs::read(folder.join("snapshot.bin")).expect("a snapshot")[TITLE.len()], b's');

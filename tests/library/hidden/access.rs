@@ -7,14 +7,14 @@ use novamind::insight::Inspect;
 use novamind::record::mode::Mode;
 use novamind::record::trajectory::record::Activity;
 use novamind::record::trajectory::{Record, Trajectory};
-use novamind::session::{Access, Session, lines_afterwards, verify};
+use novamind::session::{Access, Session, read_afterwards, verify};
 
-use super::{hidden, open_wide, run_in, whole};
-use crate::support::company::{week, weeks};
+use super::{integer, open_many_markets, query_hidden, run_in};
+use crate::support::company::{advance_week, advance_weeks};
 
-fn looks(lines: &Trajectory) -> Vec<(String, String, u32)> {
+fn inspections(lines: &Trajectory) -> Vec<(String, String, u32)> {
     let look = |record: &Record| match record {
-        Record::Activity(Activity::Xray(look)) => {
+        Record::Activity(Activity::Inspection(look)) => {
             Some((look.what.clone(), look.which.clone(), look.shown_day))
         }
         _ => None,
@@ -23,13 +23,13 @@ fn looks(lines: &Trajectory) -> Vec<(String, String, u32)> {
 }
 
 #[test]
-fn asking_changes_no_hash_and_each_statement_is_a_line() {
+fn hidden_queries_are_recorded_without_changing_the_state() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut asked = run_in(folder.path(), Mode::Debug, 60);
     let mut alone = run_in(folder.path(), Mode::Debug, 60);
     for session in [&mut asked, &mut alone] {
-        open_wide(session);
-        weeks(session, 2);
+        open_many_markets(session);
+        advance_weeks(session, 2);
     }
     let place = asked.folder().expect("a folder").to_owned();
     let world = || fs::read(place.join("world.db")).expect("a database");
@@ -38,16 +38,18 @@ fn asking_changes_no_hash_and_each_statement_is_a_line() {
     let statements: Vec<String> =
         hidden_tables().iter().map(|table| format!("SELECT count(*) FROM {}", table.name)).collect();
     for sql in &statements {
-        hidden(&mut asked, sql);
+        query_hidden(&mut asked, sql);
     }
-    let refused =
-        asked.inspect().xray_query("SELECT c_mx FROM hidden.customers", Some(3)).expect_err("no column");
+    let refused = asked
+        .inspect()
+        .query_hidden_tables("SELECT c_mx FROM hidden.customers", Some(3))
+        .expect_err("no column");
     assert!(refused.message.contains("did you mean c_max"), "{refused}");
-    let refused = asked.inspect().xray_query("SELECT 1", Some(15)).expect_err("no day");
+    let refused = asked.inspect().query_hidden_tables("SELECT 1", Some(15)).expect_err("no day");
     assert_eq!(refused.to_string(), "day_unknown (day): there is no day 15; choose a day from 1 to 14");
     assert!(world() == before, "no hidden table is in the file");
     for session in [&mut asked, &mut alone] {
-        week(session);
+        advance_week(session);
     }
     assert_eq!(asked.state_hash(), alone.state_hash());
     drop(asked);
@@ -55,43 +57,43 @@ fn asking_changes_no_hash_and_each_statement_is_a_line() {
     let mut expected: Vec<(String, String, u32)> =
         statements.into_iter().map(|sql| ("sql".to_owned(), sql, 14)).collect();
     expected.push(("sql".to_owned(), "SELECT c_mx FROM hidden.customers".to_owned(), 3));
-    assert_eq!(looks(&trajectory), expected);
+    assert_eq!(inspections(&trajectory), expected);
     assert_eq!(verify(&place).expect("it verifies").day, 21);
     // After reopening, the tables exist again.
     let mut again = Session::open(&place, Access::Write, true).expect("it opens");
-    assert_eq!(hidden(&mut again, "SELECT max(day) FROM hidden.groups"), [[whole(21)]]);
+    assert_eq!(query_hidden(&mut again, "SELECT max(day) FROM hidden.groups"), [[integer(21)]]);
 }
 
 #[test]
-fn unfinished_runs_refuse_alike_whatever_is_asked_and_open_once_they_are_over() {
+fn unfinished_runs_reject_hidden_queries_uniformly() {
     let folder = tempfile::tempdir().expect("a folder");
     for mode in [Mode::Baseline, Mode::Sandbox, Mode::Lesson] {
         let mut session = run_in(folder.path(), mode, 28);
-        open_wide(&mut session);
-        week(&mut session);
+        open_many_markets(&mut session);
+        advance_week(&mut session);
         let place = session.folder().expect("a folder").to_owned();
         let lines = || Trajectory::read(&place.join("trajectory.jsonl")).expect("lines").lines.len();
         let before = lines();
         let asked =
             ["SELECT * FROM hidden.groups", "SELECT 1", "", "nonsense", "SELECT * FROM hidden.nothing"];
         for (sql, day) in asked.into_iter().zip([None, Some(3), Some(9000), None, Some(1)]) {
-            let refused = session.inspect().xray_query(sql, day).expect_err("hidden").to_string();
+            let refused = session.inspect().query_hidden_tables(sql, day).expect_err("hidden").to_string();
             assert_eq!(refused, "not_in_this_mode: the x-ray works in debug runs and in runs that are over");
         }
-        assert!(session.inspect().xray_interrupt().is_err());
+        assert!(session.inspect().hidden_query_interrupt().is_err());
         assert_eq!(lines(), before, "no inspection happened, so no line is recorded");
-        session.end().expect("it ends");
+        session.abandon().expect("it ends");
         drop(session);
         let mut session = Session::open(&place, Access::Write, true).expect("it opens");
-        let rows = hidden(&mut session, "SELECT count(*), max(day) FROM hidden.groups");
-        assert_eq!(rows, [[whole(7 * 26), whole(7)]]);
+        let rows = query_hidden(&mut session, "SELECT count(*), max(day) FROM hidden.groups");
+        assert_eq!(rows, [[integer(7 * 26), integer(7)]]);
         let active = "SELECT (SELECT count(*) FROM hidden.customers WHERE standing = 'subscriber') \
                       = (SELECT count(*) FROM subscriptions WHERE status = 'subscribed')";
-        assert_eq!(hidden(&mut session, active), [[whole(1)]]);
+        assert_eq!(query_hidden(&mut session, active), [[integer(1)]]);
         drop(session);
         let trajectory = Trajectory::read(&place.join("trajectory.jsonl")).expect("lines");
-        assert_eq!(looks(&trajectory), [], "the end is the last line");
-        assert_eq!(looks(&lines_afterwards(&place, &trajectory).expect("lines")).len(), 2);
+        assert_eq!(inspections(&trajectory), [], "the end is the last line");
+        assert_eq!(inspections(&read_afterwards(&place, &trajectory).expect("lines")).len(), 2);
     }
 }
 
@@ -111,16 +113,16 @@ const FORMS: [&str; 12] = [
 ];
 
 #[test]
-fn other_connections_know_no_such_table_and_say_what_they_say_of_any_name() {
+fn other_connections_report_an_unknown_table() {
     let folder = tempfile::tempdir().expect("a folder");
     for mode in [Mode::Debug, Mode::Sandbox] {
         let mut session = run_in(folder.path(), mode, 28);
-        open_wide(&mut session);
-        week(&mut session);
+        open_many_markets(&mut session);
+        advance_week(&mut session);
         if mode == Mode::Debug {
             // Also after a query of the x-ray.
             hidden_tables().iter().for_each(|table| {
-                hidden(&mut session, &format!("SELECT * FROM {}", table.name));
+                query_hidden(&mut session, &format!("SELECT * FROM {}", table.name));
             });
         }
         let connection = session.database().open_connection().expect("a connection");
@@ -130,7 +132,7 @@ fn other_connections_know_no_such_table_and_say_what_they_say_of_any_name() {
             for form in FORMS {
                 let told = |schema: &str| {
                     let sql = form.replace("{t}", &format!("{schema}.{alone}"));
-                    let error = connection.ask(&sql, limits).expect_err("unknown");
+                    let error = connection.query(&sql, limits).expect_err("unknown");
                     (error.code, error.message.replace(schema, "other"), error.position)
                 };
                 assert_eq!(told("hidden"), told("secret"), "{form} of {alone}");
@@ -144,7 +146,7 @@ fn other_connections_know_no_such_table_and_say_what_they_say_of_any_name() {
                 assert!(!refused.message.contains("hidden"), "{refused}");
             }
         }
-        let columns: Vec<String> = connection.ask("SELECT * FROM customers", limits).expect("rows").columns;
+        let columns: Vec<String> = connection.query("SELECT * FROM customers", limits).expect("rows").columns;
         assert_eq!(columns.len(), 17, "the visible table");
     }
 }

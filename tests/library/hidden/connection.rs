@@ -4,16 +4,16 @@ use novamind::database::Cell;
 use novamind::insight::Inspect;
 use novamind::record::mode::Mode;
 
-use super::{hidden, open_wide, run_in, whole};
-use crate::support::company::{week, weeks};
+use super::{integer, open_many_markets, query_hidden, run_in};
+use crate::support::company::{advance_week, advance_weeks};
 
 #[test]
-fn the_connection_of_the_xray_only_reads_and_names_nothing_else() {
+fn xray_connection_is_read_only_and_discloses_nothing_else() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = run_in(folder.path(), Mode::Debug, 28);
-    open_wide(&mut session);
-    week(&mut session);
-    let count = hidden(&mut session, "SELECT count(*) FROM hidden.groups");
+    open_many_markets(&mut session);
+    advance_week(&mut session);
+    let count = query_hidden(&mut session, "SELECT count(*) FROM hidden.groups");
     for (code, sql) in [
         ("sql_write", "ATTACH ':memory:' AS other"),
         ("sql_write", "ATTACH 'file:hidden?mode=memory' AS again"),
@@ -43,10 +43,10 @@ fn the_connection_of_the_xray_only_reads_and_names_nothing_else() {
         ("sql_write", "SELECT load_extension('x') FROM hidden.groups"),
         ("sql_empty", "-- nothing"),
     ] {
-        let refused = session.inspect().xray_query(sql, None).expect_err(sql);
+        let refused = session.inspect().query_hidden_tables(sql, None).expect_err(sql);
         assert_eq!(refused.code, code, "{sql}: {refused}");
     }
-    assert_eq!(hidden(&mut session, "SELECT count(*) FROM hidden.groups"), count);
+    assert_eq!(query_hidden(&mut session, "SELECT count(*) FROM hidden.groups"), count);
     for (sql, answer) in [
         ("SELECT count(DISTINCT group_id) FROM groups", 26),
         ("SELECT count(*) FROM HIDDEN.\"Groups\" WHERE [hidden].[groups].rowid = 1", 1),
@@ -64,58 +64,62 @@ fn the_connection_of_the_xray_only_reads_and_names_nothing_else() {
             0,
         ),
     ] {
-        assert_eq!(hidden(&mut session, sql), [[whole(answer)]], "{sql}");
+        assert_eq!(query_hidden(&mut session, sql), [[integer(answer)]], "{sql}");
     }
-    let plan = hidden(&mut session, "EXPLAIN QUERY PLAN SELECT * FROM hidden.groups WHERE day = 3");
+    let plan = query_hidden(&mut session, "EXPLAIN QUERY PLAN SELECT * FROM hidden.groups WHERE day = 3");
     assert!(
         matches!(&plan[0][3], Cell::Text(text) if text == "SEARCH hidden.groups USING INDEX (day=?)"),
         "{plan:?}"
     );
     let many = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n WHERE x < 9000) \
                 SELECT x FROM n, hidden.pmi WHERE day = 1";
-    let rows = session.inspect().xray_query(many, None).expect("rows");
+    let rows = session.inspect().query_hidden_tables(many, None).expect("rows");
     assert!(rows.truncated && rows.rows.len() == 5000, "the limits are those of any query");
 }
 
 #[test]
-fn a_statement_that_is_stopped_leaves_the_tables_as_they_were() {
+fn stopped_statement_keeps_hidden_tables() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = run_in(folder.path(), Mode::Debug, 60);
-    open_wide(&mut session);
-    weeks(&mut session, 2);
-    let interrupt = session.inspect().xray_interrupt().expect("a debug run");
+    open_many_markets(&mut session);
+    advance_weeks(&mut session, 2);
+    let interrupt = session.inspect().hidden_query_interrupt().expect("a debug run");
     let ticket = interrupt.ticket();
     interrupt.stop();
-    let refused =
-        session.inspect().xray_query_as(ticket, "SELECT * FROM hidden.groups", None).expect_err("stopped");
+    let refused = session
+        .inspect()
+        .query_hidden_tables_with_ticket(ticket, "SELECT * FROM hidden.groups", None)
+        .expect_err("stopped");
     assert_eq!((refused.code, refused.message.as_str()), ("sql_cancelled", "the query was cancelled"));
-    assert_eq!(hidden(&mut session, "SELECT count(*) FROM hidden.groups"), [[whole(14 * 26)]]);
+    assert_eq!(query_hidden(&mut session, "SELECT count(*) FROM hidden.groups"), [[integer(14 * 26)]]);
 }
 
 #[test]
-fn the_run_goes_on_and_other_threads_ask_while_the_tables_are_open() {
+fn hidden_tables_do_not_block_the_run() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = run_in(folder.path(), Mode::Debug, 60);
-    open_wide(&mut session);
-    week(&mut session);
+    open_many_markets(&mut session);
+    advance_week(&mut session);
     let mut connection = session.database().open_connection().expect("a connection");
     let limits = session.company().query_limits();
     for week_number in 2..=4 {
         session.wait_for_database().expect("written");
         let asking = std::thread::scope(|scope| {
             let other = scope.spawn(move || {
-                let answer = connection.ask("SELECT max(day) FROM ledger", limits);
+                let answer = connection.query("SELECT max(day) FROM ledger", limits);
                 (connection, answer)
             });
-            let own = session.inspect().xray_query("SELECT count(*) FROM hidden.customers, hidden.pmi", None);
+            let own = session
+                .inspect()
+                .query_hidden_tables("SELECT count(*) FROM hidden.customers, hidden.pmi", None);
             assert!(own.is_ok(), "{own:?}");
             other.join().expect("a thread")
         });
         connection = asking.0;
-        assert_eq!(asking.1.expect("rows").rows, [[whole((week_number - 1) * 7)]]);
-        week(&mut session);
+        assert_eq!(asking.1.expect("rows").rows, [[integer((week_number - 1) * 7)]]);
+        advance_week(&mut session);
         session.wait_for_database().expect("the week is written");
         let sql = "SELECT (SELECT max(day) FROM ledger), (SELECT max(day) FROM hidden.groups)";
-        assert_eq!(hidden(&mut session, sql), [[whole(week_number * 7), whole(week_number * 7)]]);
+        assert_eq!(query_hidden(&mut session, sql), [[integer(week_number * 7), integer(week_number * 7)]]);
     }
 }

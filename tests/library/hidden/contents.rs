@@ -3,48 +3,48 @@
 use std::collections::BTreeMap;
 
 use novamind::database::Cell;
-use novamind::insight::{Inspect, Lens};
+use novamind::insight::{CustomerView, Inspect};
 use novamind::record::mode::Mode;
 use novamind::record::trajectory::record::Via;
-use novamind::session::{CompanyAnswer, DayReport, Session};
+use novamind::session::{DayReport, OfferResponse, Session};
 use novamind::world::identifiers::{Channel, Group, Plan};
 use novamind::world::market::economy::Dimension;
 
-use super::{cell, hidden, make_offers, open_wide, run_in, whole, word};
-use crate::support::company::week;
+use super::{cell, integer, make_offers, open_many_markets, query_hidden, run_in, text};
+use crate::support::company::advance_week;
 
 /// Rows by table and day, collected from the simulator during play.
 #[derive(Default)]
-struct Watched(BTreeMap<&'static str, Vec<Vec<Cell>>>);
+struct WatchedTables(BTreeMap<&'static str, Vec<Vec<Cell>>>);
 
-impl Watched {
+impl WatchedTables {
     fn add(&mut self, table: &'static str, row: Vec<Cell>) {
         self.0.entry(table).or_default().push(row);
     }
 
     fn watch(&mut self, report: &DayReport<'_>) {
-        let (xray, day) = (report.xray.expect("a debug run"), whole(report.figures.day));
+        let (xray, day) = (report.xray.expect("a debug run"), integer(report.figures.day));
         let (world, params) = (xray.world(), xray.params());
         for group in Group::all() {
-            let id = word(group.id());
+            let id = text(group.id());
             let issues: usize = xray
                 .blocks(group)
                 .map(|block| block.open_issue_days.iter().filter(|days| **days > 0).count())
                 .sum();
             let expectation = world.market.drift.expectation(group);
-            let mood = xray.mood(group);
+            let mood = xray.mean_satisfaction(group);
             let economy = |dimension| cell(xray.macro_multiplier(group, dimension));
             self.add(
                 "hidden.groups",
                 vec![
                     day.clone(),
                     id.clone(),
-                    whole(world.market.knowledge[group].level),
-                    whole(xray.subscribers(group)),
+                    integer(world.market.knowledge[group].level),
+                    integer(xray.subscribers(group)),
                     cell(xray.reputation(group)),
                     cell(mood.map(|mood| mood.0)),
                     cell(mood.map(|mood| mood.1)),
-                    whole(issues as i64),
+                    integer(issues as i64),
                     cell(expectation.quality),
                     cell(expectation.c_max),
                     cell(world.product.quality(group, params)),
@@ -64,7 +64,7 @@ impl Watched {
                 let paid = Channel::ALL.map(|channel| cell(own.paid[channel]));
                 let came = xray.facts().arrivals.iter().filter(|arrival| arrival.group == group).count();
                 let mut row = [vec![day.clone(), id], factors.map(cell).to_vec(), paid.to_vec()].concat();
-                row.extend([cell(own.network), cell(own.expected()), whole(came as i64)]);
+                row.extend([cell(own.network), cell(own.expected()), integer(came as i64)]);
                 self.add("hidden.factors", row);
             }
         }
@@ -78,14 +78,14 @@ impl Watched {
                 cell(event.map(|event| event.boost)),
                 cell(event.map(|event| event.sampled)),
                 cell(event.map(|event| event.u)),
-                event.map_or(Cell::Null, |event| whole(event.by_feedback)),
+                event.map_or(Cell::Null, |event| integer(event.by_feedback)),
             ],
         );
         self.add("hidden.pmi", vec![day, cell(world.market.economy.pmi)]);
     }
 }
 
-fn watched_week(session: &mut Session, watched: &mut Watched) {
+fn watched_week(session: &mut Session, watched: &mut WatchedTables) {
     let forecasts = session.company().naive_forecasts();
     session
         .advance("wait", &forecasts, Via::Script, &mut |report: &DayReport<'_>| watched.watch(report))
@@ -93,11 +93,11 @@ fn watched_week(session: &mut Session, watched: &mut Watched) {
 }
 
 #[test]
-fn tables_by_day_hold_what_the_world_held_on_every_day() {
+fn hidden_tables_match_the_state_of_each_day() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = run_in(folder.path(), Mode::Debug, 200);
-    open_wide(&mut session);
-    let mut watched = Watched::default();
+    open_many_markets(&mut session);
+    let mut watched = WatchedTables::default();
     // Queries at several times: the tables are extended.
     for (week, asks) in (1..=20).zip([true, false, false, true, false, false, false].into_iter().cycle()) {
         watched_week(&mut session, &mut watched);
@@ -105,46 +105,49 @@ fn tables_by_day_hold_what_the_world_held_on_every_day() {
             continue;
         }
         for (table, expected) in &watched.0 {
-            let rows = hidden(&mut session, &format!("SELECT * FROM {table} ORDER BY rowid"));
+            let rows = query_hidden(&mut session, &format!("SELECT * FROM {table} ORDER BY rowid"));
             let rows: Vec<_> = rows.iter().map(|row| &row[..expected[0].len()]).collect();
             let expected: Vec<_> = expected.iter().map(Vec::as_slice).take(5000).collect();
             assert_eq!(rows, expected, "{table} in week {week}");
         }
     }
-    let events = hidden(&mut session, "SELECT count(boost), count(severity) FROM hidden.competitors");
+    let events = query_hidden(&mut session, "SELECT count(boost), count(severity) FROM hidden.competitors");
     assert!(matches!(events[0][..], [Cell::Integer(some), Cell::Integer(same)] if some > 2 && some == same));
-    let moved = hidden(&mut session, "SELECT 1 FROM hidden.drift WHERE global_quality > 0 AND c_max <> 0");
+    let moved =
+        query_hidden(&mut session, "SELECT 1 FROM hidden.drift WHERE global_quality > 0 AND c_max <> 0");
     assert!(!moved.is_empty(), "something has drifted");
     // Measurements are published 30 days later, as in the visible table.
     let sql = "SELECT count(*) FROM hidden.pmi AS own JOIN macroeconomic_conditions AS told \
                ON told.day = own.measured_day AND told.pmi_value = own.measured_pmi \
                AND told.pmi_trend = own.pmi_trend \
                AND told.cycle_phase = own.cycle_phase AND own.published = 0";
-    assert!(matches!(hidden(&mut session, sql)[0][0], Cell::Integer(days) if days > 100));
+    assert!(matches!(query_hidden(&mut session, sql)[0][0], Cell::Integer(days) if days > 100));
     // The product of the equation is the expectation.
     let sql = "SELECT count(*), max(abs(reputation * saturation * calendar * economy * social * surge * (social_media \
                + search_ads + linkedin + content_marketing + referral_program + word_of_mouth) - expected) \
                / max(expected, 1)) FROM hidden.factors";
-    let [Cell::Integer(days), Cell::Real(error)] = hidden(&mut session, sql)[0][..] else { panic!("two") };
+    let [Cell::Integer(days), Cell::Real(error)] = query_hidden(&mut session, sql)[0][..] else {
+        panic!("two")
+    };
     assert!(days > 800 && error < 1e-12, "{days} {error}");
 }
 
 /// Returns the columns of a subscriber from the simulator state.
 fn subscribers(session: &Session) -> Vec<Vec<Cell>> {
-    let xray = session.xray().expect("a debug run");
+    let xray = session.debug_hidden_state().expect("a debug run");
     let mut rows = Vec::new();
     for group in Group::all() {
         for block in xray.blocks(group) {
             rows.extend((0..block.len()).map(|at| {
                 let own = block.row(at);
                 vec![
-                    whole(own.customer),
-                    word(group.id()),
-                    word(own.plan.id()),
-                    whole(own.start_day),
+                    integer(own.customer),
+                    text(group.id()),
+                    text(own.plan.id()),
+                    integer(own.start_day),
                     cell(own.satisfaction),
                     cell(own.relationship),
-                    whole(own.open_issue_days),
+                    integer(own.open_issue_days),
                     cell(own.steepness_left),
                     cell(own.c_max),
                     cell(own.q_min),
@@ -167,24 +170,24 @@ const SUBSCRIBERS: &str = "SELECT customer_id, group_id, plan, start_day, satisf
                            FROM hidden.customers WHERE standing = 'subscriber' ORDER BY customer_id";
 
 #[test]
-fn customers_are_those_of_the_day_that_is_asked_for() {
+fn hidden_customers_match_the_requested_day() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = run_in(folder.path(), Mode::Debug, 90);
-    open_wide(&mut session);
+    open_many_markets(&mut session);
     let mut evenings = BTreeMap::new();
     for _ in 0..5 {
-        week(&mut session);
+        advance_week(&mut session);
         let own = subscribers(&session);
-        assert_eq!(hidden(&mut session, SUBSCRIBERS), own, "day {}", session.day());
+        assert_eq!(query_hidden(&mut session, SUBSCRIBERS), own, "day {}", session.day());
         evenings.insert(session.day(), own);
         make_offers(&mut session);
     }
     session.step(3, &mut |_| {}).expect("days");
     evenings.insert(session.day(), subscribers(&session));
-    week(&mut session);
+    advance_week(&mut session);
     assert!(evenings[&35].len() > 100, "{}", evenings[&35].len());
     for (day, expected) in evenings.iter().chain(evenings.iter().rev()) {
-        let rows = session.inspect().xray_query(SUBSCRIBERS, Some(*day)).expect("a look").rows;
+        let rows = session.inspect().query_hidden_tables(SUBSCRIBERS, Some(*day)).expect("a look").rows;
         // The row limit of a query.
         assert_eq!(rows.len(), expected.len().min(5000), "day {day}");
         for (own, expected) in rows.iter().zip(expected) {
@@ -195,7 +198,7 @@ fn customers_are_those_of_the_day_that_is_asked_for() {
     let sql = "SELECT count(*), count(own.plan), count(reply_delay_mean), count(status) FROM hidden.customers AS own \
                JOIN subscriptions USING (customer_id) WHERE own.standing = 'lead'";
     let [Cell::Integer(leads), Cell::Integer(0), Cell::Integer(delays), Cell::Integer(known)] =
-        hidden(&mut session, sql)[0][..]
+        query_hidden(&mut session, sql)[0][..]
     else {
         panic!("leads");
     };
@@ -203,32 +206,32 @@ fn customers_are_those_of_the_day_that_is_asked_for() {
     // A call changes the current state, not the end of the previous day.
     let relationships = "SELECT customer_id, relationship FROM hidden.customers ORDER BY 1";
     session.step(7, &mut |_| {}).expect("days");
-    let before = hidden(&mut session, relationships);
+    let before = query_hidden(&mut session, relationships);
     make_offers(&mut session);
-    let after = hidden(&mut session, relationships);
+    let after = query_hidden(&mut session, relationships);
     let differ = before.iter().zip(&after).filter(|(one, other)| one != other).count();
     assert!(differ > 0, "late answers cost relationship");
     let day = session.day();
-    week(&mut session);
-    assert_eq!(session.inspect().xray_query(relationships, Some(day)).expect("a look").rows, before);
+    advance_week(&mut session);
+    assert_eq!(session.inspect().query_hidden_tables(relationships, Some(day)).expect("a look").rows, before);
 }
 
 #[test]
-fn threads_are_as_the_lens_shows_them() {
+fn hidden_threads_match_the_customer_view() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = run_in(folder.path(), Mode::Debug, 90);
-    open_wide(&mut session);
+    open_many_markets(&mut session);
     // Leads first: the re-simulation is then ahead of the kept threads.
     for _ in 0..6 {
-        week(&mut session);
+        advance_week(&mut session);
         make_offers(&mut session);
-        hidden(&mut session, "SELECT 1 FROM hidden.groups");
+        query_hidden(&mut session, "SELECT 1 FROM hidden.groups");
     }
-    hidden(&mut session, "SELECT 1 FROM hidden.threads");
-    week(&mut session);
+    query_hidden(&mut session, "SELECT 1 FROM hidden.threads");
+    advance_week(&mut session);
     let sql = "SELECT day, thread_id, customer_id, c_max, turns_left, relationship, late_penalty, reply_day, quality_B, \
                accepts_below_B, would_name_B, answer, answer_plan, answer_price, kind FROM hidden.threads ORDER BY 1, 2";
-    let rows = hidden(&mut session, sql);
+    let rows = query_hidden(&mut session, sql);
     assert!(rows.len() > 200, "{}", rows.len());
     let mut answers = BTreeMap::new();
     for row in rows.iter().step_by(rows.len() / 60) {
@@ -236,31 +239,33 @@ fn threads_are_as_the_lens_shows_them() {
             Cell::Integer(number) => number as u32,
             ref other => panic!("{other:?}"),
         };
-        let Lens::Company(lens) = session.inspect().lens(number(2), Some(number(0))).expect("a look") else {
+        let CustomerView::Enterprise(lens) =
+            session.inspect().customer_view(number(2), Some(number(0))).expect("a look")
+        else {
             panic!("a company")
         };
-        let own = lens.shown().find(|own| own.thread == number(1)).expect("its thread");
+        let own = lens.threads_of_day().find(|own| own.thread == number(1)).expect("its thread");
         let judged = own.plans[Plan::B];
         let (answer, price) = match own.answer {
             None => (Cell::Null, Cell::Null),
-            Some(CompanyAnswer::Silence) => (word("silence"), Cell::Null),
-            Some(CompanyAnswer::Accept(at)) => (word("accept"), cell(own.offerings[at].price)),
-            Some(CompanyAnswer::Counter(_, price)) => (word("counter"), cell(price)),
+            Some(OfferResponse::Silence) => (text("silence"), Cell::Null),
+            Some(OfferResponse::Accept(at)) => (text("accept"), cell(own.offerings[at].price)),
+            Some(OfferResponse::Counter(_, price)) => (text("counter"), cell(price)),
         };
         *answers.entry(format!("{answer:?}")).or_insert(0) += 1;
         let expected = vec![
             cell(own.budget),
-            whole(own.turns_left),
+            integer(own.remaining_turns),
             cell(own.relationship),
             cell(own.late_penalty),
-            own.reply_day.map_or(Cell::Null, whole),
+            own.reply_day.map_or(Cell::Null, integer),
             cell(judged.quality),
             cell((!judged.accepts_any_price).then_some(judged.accepts_below)),
             cell(judged.counter),
             answer,
         ];
         assert_eq!(row[3..12], expected[..], "{row:?}");
-        assert_eq!((&row[13], &row[14]), (&price, &word(own.kind.id())));
+        assert_eq!((&row[13], &row[14]), (&price, &text(own.kind.id())));
     }
     assert!(answers.len() > 2, "{answers:?}");
 }

@@ -4,7 +4,7 @@
 mod access;
 mod connection;
 mod contents;
-mod page;
+mod documentation;
 
 use std::path::Path;
 
@@ -16,7 +16,7 @@ use novamind::record::trajectory::record::Via;
 use novamind::session::{NewRun, Session, Storage};
 use serde_json::json;
 
-use crate::support::company::open_shop;
+use crate::support::company::apply_opening_decisions;
 
 fn run_in(folder: &Path, mode: Mode, days: u32) -> Session {
     let new = NewRun {
@@ -28,12 +28,12 @@ fn run_in(folder: &Path, mode: Mode, days: u32) -> Session {
         storage: Storage::Runs(folder.to_owned()),
         ..NewRun::default()
     };
-    Session::create(new, &Configuration::shipped()).expect("the run begins")
+    Session::create(new, &Configuration::bundled()).expect("the run begins")
 }
 
 /// Returns a company with subscribers in several groups, in-app advertising and negotiations.
-fn open_wide(session: &mut Session) {
-    open_shop(session);
+fn open_many_markets(session: &mut Session) {
+    apply_opening_decisions(session);
     for (tool, arguments) in [
         (
             "set_targeted_dev_spend",
@@ -63,18 +63,18 @@ fn make_offers(session: &mut Session) {
 }
 
 #[track_caller]
-fn hidden(session: &mut Session, sql: &str) -> Vec<Vec<Cell>> {
-    session.inspect().xray_query(sql, None).unwrap_or_else(|refusal| panic!("{sql}: {refusal}")).rows
+fn query_hidden(session: &mut Session, sql: &str) -> Vec<Vec<Cell>> {
+    session.inspect().query_hidden_tables(sql, None).unwrap_or_else(|refusal| panic!("{sql}: {refusal}")).rows
 }
 
 fn cell(value: impl Into<Option<f64>>) -> Cell {
     value.into().map_or(Cell::Null, Cell::Real)
 }
 
-fn whole(value: impl Into<i64>) -> Cell {
+fn integer(value: impl Into<i64>) -> Cell {
     Cell::Integer(value.into())
 }
 
-fn word(text: &str) -> Cell {
+fn text(text: &str) -> Cell {
     Cell::Text(text.to_owned())
 }

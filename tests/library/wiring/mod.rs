@@ -3,7 +3,7 @@
 //!
 //! Fixtures have different numbers everywhere, so that swapped values show.
 
-mod past;
+mod branches_and_forecasts;
 mod settings;
 mod support_budget;
 
@@ -23,5 +23,5 @@ fn create(storage: Storage, overrides: &[(&str, &str)]) -> Session {
         storage,
         ..NewRun::default()
     };
-    Session::create(new, &Configuration::shipped()).expect("the run begins")
+    Session::create(new, &Configuration::bundled()).expect("the run begins")
 }

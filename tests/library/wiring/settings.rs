@@ -2,11 +2,11 @@
 
 use novamind::record::trajectory::record::Via;
 use novamind::session::{Session, Storage};
-use novamind::tools::{CATALOGUE, Kind};
+use novamind::tools::{CATALOGUE, ToolKind};
 use serde_json::{Value, json};
 
 use super::create;
-use crate::support::company::{call, numbers, week};
+use crate::support::company::{advance_week, call_tool, query_numbers};
 
 /// Returns two calls of a tool that differ in every number.
 fn two_calls(tool: &str) -> [Value; 2] {
@@ -56,7 +56,11 @@ fn two_calls(tool: &str) -> [Value; 2] {
 }
 
 fn setting_tools() -> impl Iterator<Item = &'static str> {
-    CATALOGUE.iter().map(|tool| tool.spec()).filter(|spec| spec.kind == Kind::Setting).map(|spec| spec.name())
+    CATALOGUE
+        .iter()
+        .map(|tool| tool.spec())
+        .filter(|spec| spec.kind == ToolKind::Setting)
+        .map(|spec| spec.name())
 }
 
 fn settings(session: &Session) -> String {
@@ -68,17 +72,25 @@ fn undo_and_redo_restore_every_setting_exactly_and_say_so() {
     for tool in setting_tools() {
         let mut session = create(Storage::Memory, &[]);
         let [first, second] = two_calls(tool);
-        let mut states = vec![(settings(&session), session.company().current(tool))];
+        let mut states = vec![(settings(&session), session.company().current_arguments(tool))];
         for arguments in [first, second] {
-            call(&mut session, tool, arguments);
-            states.push((settings(&session), session.company().current(tool)));
+            call_tool(&mut session, tool, arguments);
+            states.push((settings(&session), session.company().current_arguments(tool)));
         }
         assert!(states[0].0 != states[1].0 && states[1].0 != states[2].0, "{tool} changes nothing");
 
         let undone = session.undo(Via::Form).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
-        assert_eq!((settings(&session), session.company().current(tool)), states[1], "{tool} after undo");
+        assert_eq!(
+            (settings(&session), session.company().current_arguments(tool)),
+            states[1],
+            "{tool} after undo"
+        );
         let redone = session.redo(Via::Form).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
-        assert_eq!((settings(&session), session.company().current(tool)), states[2], "{tool} after redo");
+        assert_eq!(
+            (settings(&session), session.company().current_arguments(tool)),
+            states[2],
+            "{tool} after redo"
+        );
 
         // Undo and redo describe the same change.
         assert!(!undone.is_empty(), "{tool}");
@@ -96,10 +108,11 @@ fn undo_and_redo_restore_every_setting_exactly_and_say_so() {
 fn the_change_review_names_every_number_that_was_set() {
     for tool in setting_tools() {
         let mut session = create(Storage::Memory, &[]);
-        call(&mut session, tool, two_calls(tool)[1].clone());
+        call_tool(&mut session, tool, two_calls(tool)[1].clone());
         let mut expected = Vec::new();
         leaves(&two_calls(tool)[1], &mut expected);
-        let mut told: Vec<f64> = session.company().changes().iter().map(|change| change.new).collect();
+        let mut told: Vec<f64> =
+            session.company().setting_changes().iter().map(|change| change.new).collect();
         // An unchanged number is not a change.
         expected.retain(|number| *number != 0.0);
         told.retain(|number| *number != 0.0);
@@ -122,17 +135,19 @@ fn leaves(value: &Value, found: &mut Vec<f64>) {
 }
 
 #[test]
-fn every_core_setting_stands_in_its_own_column() {
+fn every_core_setting_has_its_column() {
     let mut session = create(Storage::Memory, &[]);
     for tool in ["set_prices", "set_model_tiers", "set_usage_quotas", "set_daily_spend", "set_capacity_tier"]
     {
-        call(&mut session, tool, two_calls(tool)[0].clone());
+        call_tool(&mut session, tool, two_calls(tool)[0].clone());
     }
-    week(&mut session);
+    advance_week(&mut session);
     let columns = "price_A, price_B, price_C, tier_A, tier_B, tier_C, quota_A, quota_B, quota_C, \
                    spend_operations, spend_development, capacity_tier";
-    let row =
-        numbers(&mut session, &format!("SELECT {columns} FROM config_history ORDER BY day DESC LIMIT 1"));
+    let row = query_numbers(
+        &mut session,
+        &format!("SELECT {columns} FROM config_history ORDER BY day DESC LIMIT 1"),
+    );
     assert_eq!(
         row,
         [[12.0, 25.0, 55.0, 2.0, 3.0, 4.0, 60_000.0, 250_000.0, 1_200_000.0, 200.0, 300.25, 2.0]]
@@ -140,7 +155,7 @@ fn every_core_setting_stands_in_its_own_column() {
 }
 
 #[test]
-fn numbers_without_bounds_are_refused_by_the_run_itself() {
+fn non_finite_numbers_are_rejected_by_the_session() {
     let mut session = create(Storage::Memory, &[]);
     for (tool, arguments) in [
         ("set_daily_spend", json!({"operations": 1e308})),
@@ -155,26 +170,26 @@ fn numbers_without_bounds_are_refused_by_the_run_itself() {
         let before = session.state_hash();
         let refusal = session.call(tool, &arguments, Via::Script).expect_err(tool);
         assert_eq!((refusal.code, session.state_hash()), ("amount_too_large", before), "{tool}");
-        let refusal = session.check(tool, &arguments).expect_err(tool);
+        let refusal = session.preview_call(tool, &arguments).expect_err(tool);
         assert_eq!(refusal.code, "amount_too_large", "{tool} is checked as it is called");
     }
-    week(&mut session);
+    advance_week(&mut session);
     assert!(session.company().observe().cash.is_finite());
 }
 
 #[test]
-fn parts_of_a_unit_of_quota_are_kept() {
+fn fractional_quotas_are_kept() {
     let mut session = create(Storage::Memory, &[]);
-    call(&mut session, "set_usage_quotas", json!({"A": 59.75, "B": 250000, "C": 1.5}));
-    let row = numbers(&mut session, "SELECT quota_A, quota_B, quota_C FROM config_history");
+    call_tool(&mut session, "set_usage_quotas", json!({"A": 59.75, "B": 250000, "C": 1.5}));
+    let row = query_numbers(&mut session, "SELECT quota_A, quota_B, quota_C FROM config_history");
     assert_eq!(row, [[59.75, 250_000.0, 1.5]]);
-    assert_eq!(session.company().current("set_usage_quotas")["A"], 59.75);
+    assert_eq!(session.company().current_arguments("set_usage_quotas")["A"], 59.75);
 }
 
 #[test]
 fn tables_are_described_with_types_and_with_values_where_they_are_few() {
     let mut session = create(Storage::Memory, &[]);
-    let described = call(&mut session, "describe_tables", json!({}));
+    let described = call_tool(&mut session, "describe_tables", json!({}));
     for table in novamind::database::tables() {
         let columns = &described["tables"][&table.name]["columns"];
         for column in &table.columns {

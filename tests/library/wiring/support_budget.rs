@@ -4,23 +4,23 @@ use novamind::session::{Session, Storage};
 use serde_json::{Value, json};
 
 use super::create;
-use crate::support::company::{call, numbers, week, weeks};
+use crate::support::company::{advance_week, advance_weeks, call_tool, query_numbers};
 
 /// Returns a company with several groups and plans in which no issue is resolved without a budget.
 fn waiting_company() -> Session {
     let overrides = [("issues.issue_resolution_base_rate", "0.0")];
     let mut session = create(Storage::Memory, &overrides);
-    call(&mut session, "set_prices", json!({"A": 8, "B": 12, "C": 16}));
-    call(&mut session, "set_model_tiers", json!({"A": 2, "B": 3, "C": 4}));
-    call(&mut session, "set_usage_quotas", json!({"A": 30000, "B": 90000, "C": 1200000}));
+    call_tool(&mut session, "set_prices", json!({"A": 8, "B": 12, "C": 16}));
+    call_tool(&mut session, "set_model_tiers", json!({"A": 2, "B": 3, "C": 4}));
+    call_tool(&mut session, "set_usage_quotas", json!({"A": 30000, "B": 90000, "C": 1200000}));
     let spend = json!({"content_marketing": {"S1": 3000, "S2": 3000}, "search_ads": {"S3": 3000}});
-    call(&mut session, "set_targeted_ad_spend", json!({"targeted_spend": spend}));
-    call(
+    call_tool(&mut session, "set_targeted_ad_spend", json!({"targeted_spend": spend}));
+    call_tool(
         &mut session,
         "set_targeted_dev_spend",
         json!({"targeted_spend": {"S1": 5000, "S2": 5000, "S3": 5000}}),
     );
-    weeks(&mut session, 5);
+    advance_weeks(&mut session, 5);
     session
 }
 
@@ -28,7 +28,7 @@ fn waiting_company() -> Session {
 const SAME_PLAN: &str = "s.billing_day_mod30 NOT BETWEEN 6 AND 12";
 
 /// Counts the issues that were open on day 35, within and outside of a condition, and how many were resolved since.
-fn solved(session: &mut Session, inside: &str) -> [f64; 4] {
+fn count_solved_issues(session: &mut Session, inside: &str) -> [f64; 4] {
     let sql = format!(
         "SELECT total(({inside})), total(({inside}) AND i.resolved_day > 35), total(NOT ({inside})), \
          total(NOT ({inside}) AND i.resolved_day > 35) \
@@ -36,53 +36,59 @@ fn solved(session: &mut Session, inside: &str) -> [f64; 4] {
          WHERE i.open_day < 35 AND s.status = 'subscribed' AND s.start_day < 35 \
            AND (i.resolved_day IS NULL OR i.resolved_day > 35) AND {SAME_PLAN}"
     );
-    numbers(session, &sql).remove(0).try_into().expect("four numbers")
+    query_numbers(session, &sql).remove(0).try_into().expect("four numbers")
 }
 
-fn fund(arguments: Value, inside: &str) {
+fn check_budget_effect(arguments: Value, inside: &str) {
     let mut session = waiting_company();
-    call(&mut session, "set_targeted_ops_spend", arguments.clone());
-    week(&mut session);
-    let [issues, helped, others, others_helped] = solved(&mut session, inside);
+    call_tool(&mut session, "set_targeted_ops_spend", arguments.clone());
+    advance_week(&mut session);
+    let [issues, helped, others, others_helped] = count_solved_issues(&mut session, inside);
     assert!(issues >= 1.0 && others > 20.0, "{arguments}: {issues} issues inside, {others} outside");
     assert_eq!(others_helped, 0.0, "{arguments} resolves other issues");
     assert!(helped > 0.8 * issues, "{arguments}: {helped} of {issues} are solved");
 }
 
 #[test]
-fn money_for_a_group_solves_its_issues_alone() {
-    fund(json!({"by_group": {"S3": 20_000}}), "c.group_id = 'S3'");
+fn budget_for_a_group_solves_only_its_issues() {
+    check_budget_effect(json!({"by_group": {"S3": 20_000}}), "c.group_id = 'S3'");
 }
 
 #[test]
-fn money_for_a_plan_solves_its_issues_alone() {
-    fund(json!({"by_plan": {"B": 20_000}}), "s.plan = 'B'");
+fn budget_for_a_plan_solves_only_its_issues() {
+    check_budget_effect(json!({"by_plan": {"B": 20_000}}), "s.plan = 'B'");
 }
 
 #[test]
-fn money_for_a_plan_of_a_group_solves_its_issues_alone() {
-    fund(json!({"by_group_plan": {"S1": {"A": 20_000}}}), "c.group_id = 'S1' AND s.plan = 'A'");
+fn budget_for_a_plan_of_a_group_solves_only_its_issues() {
+    check_budget_effect(
+        json!({"by_group_plan": {"S1": {"A": 20_000}}}),
+        "c.group_id = 'S1' AND s.plan = 'A'",
+    );
 }
 
 #[test]
-fn money_for_one_customer_solves_their_issue_alone() {
+fn budget_for_a_customer_solves_only_their_issue() {
     let mut session = waiting_company();
     let sql = format!(
         "SELECT max(i.customer_id) FROM issues i JOIN subscriptions s USING (customer_id) \
          WHERE i.resolved_day IS NULL AND i.open_day < 35 AND s.status = 'subscribed' AND s.start_day < 35 \
            AND {SAME_PLAN}"
     );
-    let customer = numbers(&mut session, &sql)[0][0];
-    fund(json!({"by_customer": {(customer.to_string()): 500}}), &format!("c.customer_id = {customer}"));
+    let customer = query_numbers(&mut session, &sql)[0][0];
+    check_budget_effect(
+        json!({"by_customer": {(customer.to_string()): 500}}),
+        &format!("c.customer_id = {customer}"),
+    );
 }
 
 #[test]
-fn money_for_everybody_solves_the_issues_of_all() {
+fn general_budget_solves_all_issues() {
     let mut session = waiting_company();
-    call(&mut session, "set_daily_spend", json!({"operations": 20_000}));
-    week(&mut session);
+    call_tool(&mut session, "set_daily_spend", json!({"operations": 20_000}));
+    advance_week(&mut session);
     for group in ["S1", "S2", "S3"] {
-        let [issues, helped, ..] = solved(&mut session, &format!("c.group_id = '{group}'"));
+        let [issues, helped, ..] = count_solved_issues(&mut session, &format!("c.group_id = '{group}'"));
         assert!(issues > 5.0 && helped > 0.8 * issues, "{group}: {helped} of {issues}");
     }
 }

@@ -4,25 +4,25 @@
 use std::fs;
 use std::path::Path;
 
-use super::{export, folders, played, text};
-use crate::support::home::{Home, Said, id, said};
+use super::{export, played_run, run_folders, text};
+use crate::support::home::{Home, ProgramOutput, run_id, run_with_input};
 
-fn checksum(said: &Said) -> String {
-    said.out.split("checksum ").nth(1).expect("a checksum").trim().to_owned()
+fn checksum(said: &ProgramOutput) -> String {
+    said.stdout.split("checksum ").nth(1).expect("a checksum").trim().to_owned()
 }
 
 #[test]
-fn an_unchanged_run_gives_the_same_archive_each_time() {
+fn export_is_reproducible() {
     let home = Home::new();
-    let run = played(&home, "P01");
+    let run = played_run(&home, "P01");
     for ending in ["tar", "tar.gz"] {
         let (first, said_first) = export(&home, &run, &format!("first.{ending}"));
         let (second, said_second) = export(&home, &run, &format!("second.{ending}"));
         assert_eq!(checksum(&said_first), checksum(&said_second));
         assert!(fs::read(first).expect("bytes") == fs::read(second).expect("bytes"), "{ending}");
     }
-    let go_on = home.play(&["--run", &id(&run)], "set_prices A=13\n");
-    assert_eq!(go_on.code, 0, "{}", go_on.err);
+    let go_on = home.play(&["--run", &run_id(&run)], "set_prices A=13\n");
+    assert_eq!(go_on.exit_code, 0, "{}", go_on.stderr);
     let (_, changed) = export(&home, &run, "third.tar");
     let (_, again) = export(&home, &run, "fourth.tar");
     assert_eq!(checksum(&changed), checksum(&again));
@@ -32,9 +32,9 @@ fn an_unchanged_run_gives_the_same_archive_each_time() {
 
 #[cfg(unix)]
 #[test]
-fn an_interrupted_export_leaves_nothing_on_the_stick() {
+fn interrupted_export_leaves_no_file() {
     let home = Home::new();
-    let run = played(&home, "P01");
+    let run = played_run(&home, "P01");
     let stick = home.0.path().join("stick");
     fs::create_dir(&stick).expect("a folder");
     let hidden = |name: &str| name.starts_with(".novamind-");
@@ -48,7 +48,7 @@ fn an_interrupted_export_leaves_nothing_on_the_stick() {
         tries += 1;
         assert!(tries < 100, "it was never interrupted");
         let mut program = home.program();
-        program.args(["runs", "export", &id(&run), "--out", &text(&stick.join("run.tar.gz"))]);
+        program.args(["runs", "export", &run_id(&run), "--out", &text(&stick.join("run.tar.gz"))]);
         let mut child = program.spawn().expect("it starts");
         while !names(&stick).iter().any(|name| hidden(name)) && child.try_wait().expect("a process").is_none()
         {
@@ -66,22 +66,28 @@ fn an_interrupted_export_leaves_nothing_on_the_stick() {
 #[test]
 fn a_run_is_imported_into_the_folder_of_its_participant() {
     let (home, lab) = (Home::new(), Home::new());
-    let run = played(&home, "P01");
+    let run = played_run(&home, "P01");
     let (archive, _) = export(&home, &run, "run.tar");
     let own = lab.runs().join("participants/P01");
     let import = |options: &[&str]| lab.run(&[options, &["runs", "import", &text(&archive)]].concat());
-    import(&["--as", "P02"]).fails(1, &["belongs to P01, not to P02", "--as P01", "Nothing was imported"]);
-    assert!(!lab.runs().join("participants/P02").join(id(&run)).exists());
+    import(&["--as", "P02"])
+        .assert_fails(1, &["belongs to P01, not to P02", "--as P01", "Nothing was imported"]);
+    assert!(!lab.runs().join("participants/P02").join(run_id(&run)).exists());
     fs::create_dir_all(&own).expect("a folder");
     let imported = import(&[]);
-    assert_eq!(imported.code, 0, "{}", imported.err);
-    assert_eq!(folders(&own), [own.join(id(&run))], "where its participant finds it");
+    assert_eq!(imported.exit_code, 0, "{}", imported.stderr);
+    assert_eq!(run_folders(&own), [own.join(run_id(&run))], "where its participant finds it");
     for options in [&[][..], &["--as", "P01"]] {
         let again = import(options);
-        assert!(again.code == 0 && again.out.contains("already exists"), "{}{}", again.out, again.err);
+        assert!(
+            again.exit_code == 0 && again.stdout.contains("already exists"),
+            "{}{}",
+            again.stdout,
+            again.stderr
+        );
     }
     let list = lab.run(&["runs"]);
-    assert_eq!(list.out.matches(&id(&run)).count(), 1, "once on a machine: {}", list.out);
-    let mine = said(lab.program().args(["--as", "P01", "runs"]), "");
-    assert!(mine.out.contains(&id(&run)), "{}", mine.out);
+    assert_eq!(list.stdout.matches(&run_id(&run)).count(), 1, "once on a machine: {}", list.stdout);
+    let mine = run_with_input(lab.program().args(["--as", "P01", "runs"]), "");
+    assert!(mine.stdout.contains(&run_id(&run)), "{}", mine.stdout);
 }

@@ -11,7 +11,7 @@ use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use crate::support::home::{Home, Said, bytes_of, id};
+use crate::support::home::{Home, ProgramOutput, read_bytes, run_id};
 use rusqlite::Connection;
 use serde_json::Value;
 
@@ -29,15 +29,15 @@ next \"as planned\" naive
 ";
 
 /// Plays a baseline run of three weeks by a participant; returns its folder.
-fn played(home: &Home, participant: &str) -> PathBuf {
-    let before: Vec<PathBuf> = folders(&home.runs());
+fn played_run(home: &Home, participant: &str) -> PathBuf {
+    let before: Vec<PathBuf> = run_folders(&home.runs());
     let options = ["--mode", "baseline", "--participant", participant, "--seed", "7"];
     let said = home.play(&options, PLAY);
-    assert_eq!(said.code, 0, "{}", said.err);
-    folders(&home.runs()).into_iter().find(|folder| !before.contains(folder)).expect("a new run")
+    assert_eq!(said.exit_code, 0, "{}", said.stderr);
+    run_folders(&home.runs()).into_iter().find(|folder| !before.contains(folder)).expect("a new run")
 }
 
-fn folders(runs: &Path) -> Vec<PathBuf> {
+fn run_folders(runs: &Path) -> Vec<PathBuf> {
     fs::read_dir(runs).expect("a folder").flatten().map(|entry| entry.path()).collect()
 }
 
@@ -45,18 +45,18 @@ fn text(path: &Path) -> String {
     path.to_string_lossy().into_owned()
 }
 
-fn export(home: &Home, run: &Path, name: &str) -> (PathBuf, Said) {
+fn export(home: &Home, run: &Path, name: &str) -> (PathBuf, ProgramOutput) {
     let archive = home.0.path().join(name);
-    let said = home.run(&["runs", "export", &id(run), "--out", &text(&archive)]);
+    let said = home.run(&["runs", "export", &run_id(run), "--out", &text(&archive)]);
     (archive, said)
 }
 
-fn import(home: &Home, archive: &Path) -> Said {
+fn import(home: &Home, archive: &Path) -> ProgramOutput {
     home.run(&["runs", "import", &text(archive)])
 }
 
 /// Returns the files of a plain archive.
-fn contents(archive: &Path) -> BTreeMap<String, Vec<u8>> {
+fn archive_contents(archive: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut files = BTreeMap::new();
     for entry in tar::Archive::new(fs::File::open(archive).expect("a file")).entries().expect("entries") {
         let mut entry = entry.expect("an entry");
@@ -69,7 +69,7 @@ fn contents(archive: &Path) -> BTreeMap<String, Vec<u8>> {
 }
 
 /// Writes an archive of arbitrary files.
-fn forged(archive: &Path, files: &[(String, Vec<u8>)]) {
+fn write_forged_archive(archive: &Path, files: &[(String, Vec<u8>)]) {
     let mut builder = tar::Builder::new(fs::File::create(archive).expect("a file"));
     for (name, bytes) in files {
         builder
@@ -91,82 +91,84 @@ fn header(name: &str, size: u64, kind: tar::EntryType) -> tar::Header {
 }
 
 #[test]
-fn a_run_goes_out_sealed_and_comes_back_the_same() {
+fn exported_run_imports_unchanged() {
     let (home, other) = (Home::new(), Home::new());
-    let run = played(&home, "P01");
-    let before = bytes_of(&run, "trajectory.jsonl");
+    let run = played_run(&home, "P01");
+    let before = read_bytes(&run, "trajectory.jsonl");
     for name in ["run.tar.gz", "run.tar"] {
         let (archive, said) = export(&home, &run, name);
-        assert_eq!(said.code, 0, "{}", said.err);
-        let checksum = said.out.split("checksum ").nth(1).expect("a checksum").trim().to_owned();
+        assert_eq!(said.exit_code, 0, "{}", said.stderr);
+        let checksum = said.stdout.split("checksum ").nth(1).expect("a checksum").trim().to_owned();
         assert_eq!(checksum.len(), 64);
         let (_, again) = export(&home, &run, name);
-        again.fails(1, &["already exists"]);
+        again.assert_fails(1, &["already exists"]);
         let imported = import(&other, &archive);
-        assert_eq!(imported.code, 0, "{}", imported.err);
-        assert!(imported.out.contains(&checksum), "{}", imported.out);
+        assert_eq!(imported.exit_code, 0, "{}", imported.stderr);
+        assert!(imported.stdout.contains(&checksum), "{}", imported.stdout);
     }
     // The second archive found an existing run.
-    let there = other.runs().join(id(&run));
+    let there = other.runs().join(run_id(&run));
     for file in ["run.toml", "trajectory.jsonl", "memo.md"] {
-        assert_eq!(bytes_of(&there, file), bytes_of(&run, file), "{file}");
+        assert_eq!(read_bytes(&there, file), read_bytes(&run, file), "{file}");
     }
-    assert_eq!(folders(&other.runs()), [there], "nothing else is left behind");
-    assert_eq!(other.run(&["replay", &id(&run), "--verify"]).code, 0);
-    let go_on = other.play(&["--run", &id(&run)], "next \"the end\" naive\n");
-    assert_eq!(go_on.code, 0, "{}", go_on.err);
+    assert_eq!(run_folders(&other.runs()), [there], "nothing else is left behind");
+    assert_eq!(other.run(&["replay", &run_id(&run), "--verify"]).exit_code, 0);
+    let go_on = other.play(&["--run", &run_id(&run)], "next \"the end\" naive\n");
+    assert_eq!(go_on.exit_code, 0, "{}", go_on.stderr);
     import(&other, &home.0.path().join("run.tar"))
-        .fails(1, &["already exists", "was continued after the export"]);
+        .assert_fails(1, &["already exists", "was continued after the export"]);
     let (later, _) = export(&other, &run, "later.tar");
-    import(&home, &later).fails(1, &["already exists", "later state"]);
-    assert_eq!(bytes_of(&run, "trajectory.jsonl"), before, "nothing was overwritten");
+    import(&home, &later).assert_fails(1, &["already exists", "later state"]);
+    assert_eq!(read_bytes(&run, "trajectory.jsonl"), before, "nothing was overwritten");
 }
 
 #[test]
-fn another_record_of_a_run_is_told_apart_and_imported_under_a_name_of_its_own() {
+fn conflicting_record_is_imported_under_another_name() {
     let (home, other) = (Home::new(), Home::new());
-    let run = played(&home, "P01");
+    let run = played_run(&home, "P01");
     let (archive, _) = export(&home, &run, "run.tar");
-    assert_eq!(import(&other, &archive).code, 0);
+    assert_eq!(import(&other, &archive).exit_code, 0);
     // Both runs continue differently.
     for (home, price) in [(&home, "A=11"), (&other, "A=19")] {
         let lines = format!("set_prices {price}\nnext \"on\" naive\n");
-        assert_eq!(home.play(&["--run", &id(&run)], &lines).code, 0);
+        assert_eq!(home.play(&["--run", &run_id(&run)], &lines).exit_code, 0);
     }
-    let there = other.runs().join(id(&run));
-    let before = bytes_of(&there, "trajectory.jsonl");
+    let there = other.runs().join(run_id(&run));
+    let before = read_bytes(&there, "trajectory.jsonl");
     let (second, _) = export(&home, &run, "second.tar");
     let parts = ["already exists", "differ from line", "the archive has", "lines up to day", "--under NAME"];
-    import(&other, &second).fails(1, &parts);
+    import(&other, &second).assert_fails(1, &parts);
     let path = text(&second);
-    other.run(&["runs", "import", &path, "--under", "../out"]).fails(1, &["is not a valid run name"]);
-    other.run(&["runs", "import", &path, "--under", &id(&run)]).fails(1, &["already exists in"]);
-    other.run(&["runs", "import", &path, &path, "--under", "second"]).fails(2, &["exactly one archive"]);
+    other.run(&["runs", "import", &path, "--under", "../out"]).assert_fails(1, &["is not a valid run name"]);
+    other.run(&["runs", "import", &path, "--under", &run_id(&run)]).assert_fails(1, &["already exists in"]);
+    other
+        .run(&["runs", "import", &path, &path, "--under", "second"])
+        .assert_fails(2, &["exactly one archive"]);
     let imported = other.run(&["runs", "import", &path, "--under", "second"]);
     assert!(
-        imported.code == 0 && imported.out.contains("as second imported"),
+        imported.exit_code == 0 && imported.stdout.contains("as second imported"),
         "{}{}",
-        imported.out,
-        imported.err
+        imported.stdout,
+        imported.stderr
     );
     let beside = other.runs().join("second");
-    assert_eq!(bytes_of(&beside, "trajectory.jsonl"), bytes_of(&run, "trajectory.jsonl"));
-    assert_eq!(bytes_of(&there, "trajectory.jsonl"), before, "the existing record is unchanged");
-    assert_eq!(other.run(&["replay", "second", "--verify"]).code, 0);
-    assert!(other.run(&["runs", "list"]).out.contains("second"));
+    assert_eq!(read_bytes(&beside, "trajectory.jsonl"), read_bytes(&run, "trajectory.jsonl"));
+    assert_eq!(read_bytes(&there, "trajectory.jsonl"), before, "the existing record is unchanged");
+    assert_eq!(other.run(&["replay", "second", "--verify"]).exit_code, 0);
+    assert!(other.run(&["runs", "list"]).stdout.contains("second"));
 }
 
 #[test]
-fn the_database_of_an_archive_opens_without_the_program() {
+fn archive_database_opens_in_plain_sqlite() {
     let home = Home::new();
-    let run = played(&home, "P01");
+    let run = played_run(&home, "P01");
     fs::write(run.join("snapshot.bin"), "hidden").expect("a snapshot");
     let (archive, _) = export(&home, &run, "run.tar");
-    let files = contents(&archive);
+    let files = archive_contents(&archive);
     let names: Vec<&str> = files.keys().map(|name| name.split_once('/').expect("a folder").1).collect();
     assert_eq!(names, ["memo.md", "run.toml", "seal.toml", "trajectory.jsonl", "world.db"]);
     let file = home.0.path().join("copy.db");
-    fs::write(&file, &files[&format!("{}/world.db", id(&run))]).expect("a copy");
+    fs::write(&file, &files[&format!("{}/world.db", run_id(&run))]).expect("a copy");
     let database = Connection::open(&file).expect("it opens");
     let ask = |sql: &str| -> f64 {
         database.query_row(sql, [], |row| row.get(0)).unwrap_or_else(|e| panic!("{sql}: {e}"))
@@ -182,8 +184,8 @@ fn the_database_of_an_archive_opens_without_the_program() {
         "SELECT coalesce(sum(revenue), 0.0) FROM ads_revenue",
         "SELECT sum(amount) FROM ledger",
     ] {
-        let own = home.run(&["query", &id(&run), sql, "--format", "csv"]);
-        let expected: f64 = own.out.lines().nth(1).expect("a row").parse().expect("a number");
+        let own = home.run(&["query", &run_id(&run), sql, "--format", "csv"]);
+        let expected: f64 = own.stdout.lines().nth(1).expect("a row").parse().expect("a number");
         assert!(
             (ask(sql) - expected).abs() <= 1e-9 * expected.abs(),
             "{sql}: {} is not {expected}",
@@ -212,20 +214,20 @@ fn the_database_of_an_archive_opens_without_the_program() {
 }
 
 #[test]
-fn what_was_changed_is_refused_and_named() {
+fn modified_archives_are_rejected() {
     let (home, other) = (Home::new(), Home::new());
-    let run = played(&home, "P01");
+    let run = played_run(&home, "P01");
     let (archive, _) = export(&home, &run, "run.tar");
-    let files: Vec<(String, Vec<u8>)> = contents(&archive).into_iter().collect();
+    let files: Vec<(String, Vec<u8>)> = archive_contents(&archive).into_iter().collect();
     let bad = home.0.path().join("bad.tar");
     let refused = |files: &[(String, Vec<u8>)], parts: &[&str]| {
-        forged(&bad, files);
-        import(&other, &bad).fails(3, &[parts, &["bad.tar", "Nothing was imported"]].concat());
-        assert!(folders(&other.runs()).is_empty());
+        write_forged_archive(&bad, files);
+        import(&other, &bad).assert_fails(3, &[parts, &["bad.tar", "Nothing was imported"]].concat());
+        assert!(run_folders(&other.runs()).is_empty());
     };
-    forged(&bad, &files);
-    assert_eq!(import(&other, &bad).code, 0, "the unchanged files are valid");
-    fs::remove_dir_all(other.runs().join(id(&run))).expect("it was there");
+    write_forged_archive(&bad, &files);
+    assert_eq!(import(&other, &bad).exit_code, 0, "the unchanged files are valid");
+    fs::remove_dir_all(other.runs().join(run_id(&run))).expect("it was there");
     for (at, (name, bytes)) in files.iter().enumerate().filter(|(_, (name, _))| !name.ends_with("seal.toml"))
     {
         let file = name.split_once('/').expect("a folder").1;
@@ -251,7 +253,7 @@ fn what_was_changed_is_refused_and_named() {
     twice.push(files[0].clone());
     refused(&twice, &["twice"]);
     let mut stranger = files.clone();
-    stranger.push((format!("{}/snapshot.bin", id(&run)), b"x".to_vec()));
+    stranger.push((format!("{}/snapshot.bin", run_id(&run)), b"x".to_vec()));
     refused(&stranger, &["snapshot.bin", "is not a file of a run"]);
 }
 
@@ -260,8 +262,8 @@ fn dangerous_and_foreign_files_are_refused() {
     let home = Home::new();
     let bad = home.0.path().join("bad.tar");
     for name in ["../../evil", "/etc/evil", "0123abcd/../evil", "0123abcd/sub/run.toml", "latest/run.toml"] {
-        forged(&bad, &[(name.to_owned(), b"x".to_vec())]);
-        import(&home, &bad).fails(3, &["is not a file of a run"]);
+        write_forged_archive(&bad, &[(name.to_owned(), b"x".to_vec())]);
+        import(&home, &bad).assert_fails(3, &["is not a file of a run"]);
     }
     for kind in
         [tar::EntryType::Symlink, tar::EntryType::Link, tar::EntryType::XHeader, tar::EntryType::GNULongName]
@@ -269,94 +271,97 @@ fn dangerous_and_foreign_files_are_refused() {
         let mut builder = tar::Builder::new(fs::File::create(&bad).expect("a file"));
         builder.append(&header("0123abcd/run.toml", 0, kind), &b""[..]).expect("an entry");
         builder.finish().expect("an archive");
-        import(&home, &bad).fails(3, &["not a regular file"]);
+        import(&home, &bad).assert_fails(3, &["not a regular file"]);
     }
     // The contents of a damaged archive are reported in one line without terminal control sequences.
-    forged(&bad, &[("0123abcd/\u{1b}[2J\nrun.toml".to_owned(), b"x".to_vec())]);
-    import(&home, &bad).fails(3, &["0123abcd/\\u{1b}[2J\\nrun.toml is not a file of a run"]);
+    write_forged_archive(&bad, &[("0123abcd/\u{1b}[2J\nrun.toml".to_owned(), b"x".to_vec())]);
+    import(&home, &bad).assert_fails(3, &["0123abcd/\\u{1b}[2J\\nrun.toml is not a file of a run"]);
     let mut torn = header("0123abcd/run.toml", 0, tar::EntryType::Regular);
     torn.as_old_mut().cksum = *b"FRO\nM\x1b[m";
     fs::write(&bad, torn.as_bytes()).expect("a header");
-    import(&home, &bad).fails(3, &["not an archive of a run", "FRO\\nM\\u{1b}[m"]);
+    import(&home, &bad).assert_fails(3, &["not an archive of a run", "FRO\\nM\\u{1b}[m"]);
     // A false size: nothing is read and no memory is reserved.
     fs::write(&bad, header("0123abcd/run.toml", 7 << 30, tar::EntryType::Regular).as_bytes())
         .expect("a header");
-    import(&home, &bad).fails(3, &["run.toml is too large"]);
+    import(&home, &bad).assert_fails(3, &["run.toml is too large"]);
     fs::write(&bad, "this is a letter, not an archive").expect("a file");
-    import(&home, &bad).fails(3, &["not an archive of a run"]);
+    import(&home, &bad).assert_fails(3, &["not an archive of a run"]);
     fs::write(&bad, "").expect("a file");
-    import(&home, &bad).fails(3, &["seal.toml is missing"]);
-    import(&home, &home.0.path().join("nowhere.tar")).fails(3, &["nowhere.tar"]);
-    assert!(folders(&home.runs()).is_empty(), "nothing is left behind");
+    import(&home, &bad).assert_fails(3, &["seal.toml is missing"]);
+    import(&home, &home.0.path().join("nowhere.tar")).assert_fails(3, &["nowhere.tar"]);
+    assert!(run_folders(&home.runs()).is_empty(), "nothing is left behind");
     assert!(!home.0.path().join("evil").exists());
 }
 
 #[test]
 fn a_compressed_archive_that_is_cut_or_flipped_anywhere_is_refused() {
     let (home, other) = (Home::new(), Home::new());
-    let run = played(&home, "P01");
+    let run = played_run(&home, "P01");
     let (archive, _) = export(&home, &run, "run.tar.gz");
     let whole = fs::read(&archive).expect("bytes");
     let bad = home.0.path().join("bad.tar.gz");
     for share in [0.1, 0.5, 0.9, 0.999] {
         let at = (whole.len() as f64 * share) as usize;
         fs::write(&bad, &whole[..at]).expect("a cut");
-        import(&other, &bad).fails(3, &["bad.tar.gz"]);
+        import(&other, &bad).assert_fails(3, &["bad.tar.gz"]);
         let mut flipped = whole.clone();
         flipped[at] ^= 0x10;
         fs::write(&bad, &flipped).expect("a flip");
-        import(&other, &bad).fails(3, &["bad.tar.gz"]);
-        assert!(folders(&other.runs()).is_empty());
+        import(&other, &bad).assert_fails(3, &["bad.tar.gz"]);
+        assert!(run_folders(&other.runs()).is_empty());
     }
 }
 
 #[test]
 fn damaged_runs_are_not_exported_and_unfinished_lines_are_left_out() {
     let home = Home::new();
-    let run = played(&home, "P01");
-    let good = bytes_of(&run, "trajectory.jsonl");
+    let run = played_run(&home, "P01");
+    let good = read_bytes(&run, "trajectory.jsonl");
     let torn = [&good[..], b"{\"seq\":99,\"ki"].concat();
     fs::write(run.join("trajectory.jsonl"), &torn).expect("a torn line");
     let (archive, said) = export(&home, &run, "torn.tar");
-    assert_eq!(said.code, 0, "{}", said.err);
-    assert_eq!(contents(&archive)[&format!("{}/trajectory.jsonl", id(&run))], good);
-    assert_eq!(bytes_of(&run, "trajectory.jsonl"), torn, "an export changes nothing");
+    assert_eq!(said.exit_code, 0, "{}", said.stderr);
+    assert_eq!(archive_contents(&archive)[&format!("{}/trajectory.jsonl", run_id(&run))], good);
+    assert_eq!(read_bytes(&run, "trajectory.jsonl"), torn, "an export changes nothing");
     let text = String::from_utf8(good).expect("text");
     fs::write(run.join("trajectory.jsonl"), text.replacen("\"A\":12", "\"A\":13", 1)).expect("a change");
     let (archive, said) = export(&home, &run, "bad.tar");
-    said.fails(3, &["trajectory.jsonl, line 3", "its sum", "good"]);
+    said.assert_fails(3, &["trajectory.jsonl, line 3", "its sum", "good"]);
     assert!(!archive.exists());
     let hidden = |entry: &PathBuf| {
         entry.file_name().is_some_and(|name| name.to_string_lossy().starts_with(".novamind"))
     };
-    assert!(!folders(home.0.path()).iter().any(hidden), "no drafts are left behind");
+    assert!(!run_folders(home.0.path()).iter().any(hidden), "no drafts are left behind");
 }
 
-fn table(path: &Path) -> Vec<BTreeMap<String, String>> {
+fn read_table(path: &Path) -> Vec<BTreeMap<String, String>> {
     let mut reader = csv::Reader::from_path(path).expect("a table");
     reader.deserialize().map(|row| row.expect("a row")).collect()
 }
 
 #[test]
-fn all_runs_go_out_with_tables_that_agree_with_them() {
+fn export_all_writes_consistent_tables() {
     let home = Home::new();
-    let (first, second) = (played(&home, "P01"), played(&home, "P, \"02\""));
+    let (first, second) = (played_run(&home, "P01"), played_run(&home, "P, \"02\""));
     let out = home.0.path().join("study");
     let said = home.run(&["runs", "export", "--all", "--out", &text(&out)]);
-    assert_eq!(said.code, 0, "{}", said.err);
-    let runs = table(&out.join("runs.csv"));
-    assert_eq!(runs.iter().map(|row| row["run"].clone()).collect::<Vec<_>>(), [id(&first), id(&second)]);
+    assert_eq!(said.exit_code, 0, "{}", said.stderr);
+    let runs = read_table(&out.join("runs.csv"));
+    assert_eq!(
+        runs.iter().map(|row| row["run"].clone()).collect::<Vec<_>>(),
+        [run_id(&first), run_id(&second)]
+    );
     assert_eq!(runs[1]["participant"], "P, \"02\"");
     let row = &runs[0];
     let told = |name: &str| row[name].as_str();
     assert_eq!([told("mode"), told("day"), told("weeks"), told("calls")], ["baseline", "21", "3", "5"]);
     assert_eq!([told("refused"), told("queries"), told("if_words"), told("memos")], ["1", "1", "1", "1"]);
-    let weeks = table(&out.join("weeks.csv"));
-    let own: Vec<_> = weeks.iter().filter(|row| row["run"] == id(&first)).collect();
+    let weeks = read_table(&out.join("weeks.csv"));
+    let own: Vec<_> = weeks.iter().filter(|row| row["run"] == run_id(&first)).collect();
     assert_eq!(own.iter().map(|row| row["day"].as_str()).collect::<Vec<_>>(), ["7", "14", "21"]);
     assert_eq!(own[2]["cash"], row["cash"]);
     assert_eq!(own[0]["forecast_7_outcome"], own[0]["cash"]);
-    let trajectory = String::from_utf8(bytes_of(&first, "trajectory.jsonl")).expect("text");
+    let trajectory = String::from_utf8(read_bytes(&first, "trajectory.jsonl")).expect("text");
     for (week, line) in own.iter().zip(trajectory.lines().filter(|line| line.contains("\"kind\":\"week\""))) {
         let line: Value = serde_json::from_str(line).expect("a line");
         assert_eq!(week["state_hash"], line["state_hash"].as_str().expect("a hash"));
@@ -365,10 +370,10 @@ fn all_runs_go_out_with_tables_that_agree_with_them() {
         }
     }
     // The codebook describes every column of every table.
-    let columns = table(&out.join("columns.csv"));
+    let columns = read_table(&out.join("columns.csv"));
     let all = ["forecasts", "queries", "events", "notes"]
-        .map(|name| (name, table(&out.join(format!("{name}.csv")))));
-    assert_eq!(table(&out.join("answers.csv")).len(), 0, "there were no questions");
+        .map(|name| (name, read_table(&out.join(format!("{name}.csv")))));
+    assert_eq!(read_table(&out.join("answers.csv")).len(), 0, "there were no questions");
     assert_eq!(all[2].1.len(), 2 * trajectory.lines().count(), "both runs had the same decisions");
     let others = all.iter().map(|(name, rows)| (*name, &rows[0]));
     for (name, first) in [("runs", &runs[0]), ("weeks", &weeks[0])].into_iter().chain(others) {
@@ -378,48 +383,54 @@ fn all_runs_go_out_with_tables_that_agree_with_them() {
         assert!(first.keys().all(|column| known.contains(&column.as_str())));
     }
     for run in [&first, &second] {
-        let archive = out.join(format!("{}.tar.gz", id(run)));
+        let archive = out.join(format!("{}.tar.gz", run_id(run)));
         let there = Home::new();
-        assert_eq!(import(&there, &archive).code, 0);
+        assert_eq!(import(&there, &archive).exit_code, 0);
     }
     // Again, for one participant only; the archives may exist.
     let one = home.run(&["runs", "export", "--all", "--participant", "P01", "--out", &text(&out)]);
-    assert_eq!((one.code, table(&out.join("runs.csv")).len()), (0, 1));
+    assert_eq!((one.exit_code, read_table(&out.join("runs.csv")).len()), (0, 1));
     let list = home.run(&["runs", "list", "--participant", "P01"]);
-    assert_eq!(list.out.lines().count(), 1, "{}", list.out);
+    assert_eq!(list.stdout.lines().count(), 1, "{}", list.stdout);
     // A damaged run is reported and does not prevent the export of the others.
     fs::write(first.join("trajectory.jsonl"), "nonsense\n").expect("damage");
     let said = home.run(&["runs", "export", "--all", "--out", &text(&out)]);
-    said.fails(3, &["1 of 2 runs"]);
-    let damaged =
-        table(&out.join("runs.csv")).into_iter().find(|row| row["run"] == id(&first)).expect("a row");
+    said.assert_fails(3, &["1 of 2 runs"]);
+    let damaged = read_table(&out.join("runs.csv"))
+        .into_iter()
+        .find(|row| row["run"] == run_id(&first))
+        .expect("a row");
     assert!(damaged["problem"].contains("line 1") && damaged["cash"].is_empty(), "{damaged:?}");
 }
 
 #[test]
-fn sessions_are_summed_up_and_runs_compared() {
+fn reports_summarize_sessions_and_compare_runs() {
     let home = Home::new();
-    let (first, second) = (played(&home, "P01"), played(&home, "P02"));
-    let ended = home.run(&["runs", "end", &id(&second)]);
-    assert_eq!(ended.code, 0, "{}", ended.err);
-    let page = home.run(&["report", &id(&first), "--session"]);
-    assert!(page.out.contains("P01 played 3 weeks") && page.out.contains("## Breaks"), "{}", page.out);
+    let (first, second) = (played_run(&home, "P01"), played_run(&home, "P02"));
+    let ended = home.run(&["runs", "end", &run_id(&second)]);
+    assert_eq!(ended.exit_code, 0, "{}", ended.stderr);
+    let page = home.run(&["report", &run_id(&first), "--session"]);
+    assert!(
+        page.stdout.contains("P01 played 3 weeks") && page.stdout.contains("## Breaks"),
+        "{}",
+        page.stdout
+    );
     let summary: Value =
-        serde_json::from_str(&home.run(&["report", &id(&first), "--session", "--format", "json"]).out)
+        serde_json::from_str(&home.run(&["report", &run_id(&first), "--session", "--format", "json"]).stdout)
             .expect("JSON");
     assert_eq!(
         (&summary["total"]["calls"], &summary["weeks"][0]["queries"]),
         (&Value::from(5), &Value::from(1))
     );
-    home.run(&["report", &id(&first), "--format", "json"]).fails(2, &["--session"]);
+    home.run(&["report", &run_id(&first), "--format", "json"]).assert_fails(2, &["--session"]);
 
-    let names = [id(&first), id(&second)];
+    let names = [run_id(&first), run_id(&second)];
     let said = home.run(&["lab", "compare", &names[0], &names[1]]);
     for part in ["P01", "P02", "rule-based baseline", "cash on day 21", "day 0", "Claude Fable 5", "differ"] {
         // Both runs have the same decisions, so only their end differs.
-        assert_eq!(said.out.contains(part), part != "differ", "{part}: {}", said.out);
+        assert_eq!(said.stdout.contains(part), part != "differ", "{part}: {}", said.stdout);
     }
-    let object = home.run(&["lab", "compare", &names[0], &names[1], "--json"]).out;
+    let object = home.run(&["lab", "compare", &names[0], &names[1], "--json"]).stdout;
     let object: Value = serde_json::from_str(&object).expect("JSON");
     let figures = object["comparison"]["figures"].as_array().expect("figures");
     let figure = |name: &str| figures.iter().find(|row| row["figure"] == name).expect(name)["values"].clone();
@@ -429,18 +440,18 @@ fn sessions_are_summed_up_and_runs_compared() {
     assert!(truly[0].is_null() && truly[1].is_number(), "only a run that is over tells: {truly}");
     let cash = object["comparison"]["cash"].as_array().expect("cash");
     assert_eq!(cash.last().expect("a row")["values"][0], object["runs"][0]["logbook"]["cash"]);
-    let csv = home.run(&["lab", "compare", &names[0], &names[1], "--csv"]).out;
+    let csv = home.run(&["lab", "compare", &names[0], &names[1], "--csv"]).stdout;
     assert!(
         csv.lines().next().expect("a head").starts_with(&format!("figure,of,unit,{},{}", names[0], names[1]))
     );
-    home.run(&["lab", "compare", "zzzz"]).fails(3, &["there is no run"]);
+    home.run(&["lab", "compare", "zzzz"]).assert_fails(3, &["there is no run"]);
 }
 
 #[test]
-fn the_documents_say_what_the_program_says() {
+fn documents_match_the_column_explanations() {
     let said = Home::new().run(&["runs", "columns"]);
     assert_eq!(
-        said.out,
+        said.stdout,
         include_str!("../../../assets/columns.md"),
         "write it again with: novamind runs columns"
     );

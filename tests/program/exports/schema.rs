@@ -119,7 +119,7 @@ fn is_hexadecimal(text: &str, pattern: &str) -> bool {
 }
 
 /// Returns the problems of a line, checked against the schema of its kind so that they name the field.
-fn against(root: &Value, line: &Value) -> Vec<String> {
+fn line_problems(root: &Value, line: &Value) -> Vec<String> {
     let kind = line["kind"].as_str().unwrap_or_default();
     let Some(part) = root.pointer(&format!("/$defs/{kind}")) else { return vec![format!("no kind {kind}")] };
     let mut found = Vec::new();
@@ -140,7 +140,7 @@ fn kinds(root: &Value) -> BTreeSet<String> {
 pub fn check_examples(examples: &[Value]) {
     let root = schema();
     for example in examples {
-        assert_eq!(against(&root, example), Vec::<String>::new());
+        assert_eq!(line_problems(&root, example), Vec::<String>::new());
     }
     let shown: BTreeSet<String> =
         examples.iter().filter_map(|line| line["kind"].as_str()).map(str::to_owned).collect();
@@ -157,24 +157,24 @@ fn note_every_activity(run: &mut Session) {
     use novamind::record::trajectory::record::*;
     let root = schema();
     let example = |kind: &str| root.pointer(&format!("/$defs/{kind}/examples/0")).expect(kind).clone();
-    fn of<T: serde::de::DeserializeOwned>(example: Value) -> T {
+    fn activity_from<T: serde::de::DeserializeOwned>(example: Value) -> T {
         serde_json::from_value(example).expect("an example")
     }
-    run.activity().take_up(novamind::session::Interface { name: "console", window: Some((120, 40)) });
-    run.activity().note_presence(PresenceEvent::Idle, Some(90_000), None);
-    run.activity().leave(LeavingCause::Quit);
-    run.activity().note(Activity::Clock(of(example("clock"))));
-    run.activity().note(Activity::Limit(of(example("limit"))));
-    run.activity().note(Activity::View(of(example("view"))));
-    run.activity().note(Activity::Select(of(example("select"))));
-    run.activity().note(Activity::Dialog(of(example("dialog"))));
-    run.activity().note(Activity::Help(of(example("help"))));
-    run.activity().note(Activity::Draft(of(example("draft"))));
-    run.activity().note(Activity::Question(of(example("question"))));
-    run.activity().note(Activity::Answer(of(example("answer"))));
-    run.activity().note(Activity::Lesson(of(example("lesson"))));
-    run.activity().note(Activity::Look(of(example("look"))));
-    run.activity().note(Activity::Xray(of(example("xray"))));
+    run.activity().attach(novamind::session::Interface { name: "console", window: Some((120, 40)) });
+    run.activity().record_presence(PresenceEvent::Idle, Some(90_000), None);
+    run.activity().detach(LeavingCause::Quit);
+    run.activity().record(Activity::Clock(activity_from(example("clock"))));
+    run.activity().record(Activity::Limit(activity_from(example("limit"))));
+    run.activity().record(Activity::View(activity_from(example("view"))));
+    run.activity().record(Activity::Select(activity_from(example("select"))));
+    run.activity().record(Activity::Dialog(activity_from(example("dialog"))));
+    run.activity().record(Activity::Help(activity_from(example("help"))));
+    run.activity().record(Activity::Draft(activity_from(example("draft"))));
+    run.activity().record(Activity::Question(activity_from(example("question"))));
+    run.activity().record(Activity::Answer(activity_from(example("answer"))));
+    run.activity().record(Activity::Lesson(activity_from(example("lesson"))));
+    run.activity().record(Activity::ExternalRead(activity_from(example("look"))));
+    run.activity().record(Activity::Inspection(activity_from(example("xray"))));
 }
 
 /// Returns lines of every kind.
@@ -187,7 +187,7 @@ fn all_kinds_of_lines(runs: &Path) -> Vec<Value> {
         storage: Storage::Runs(runs.to_owned()),
         ..NewRun::default()
     };
-    let mut run = Session::create(new, &Configuration::shipped()).expect("a run");
+    let mut run = Session::create(new, &Configuration::bundled()).expect("a run");
     run.call("set_prices", &json!({"A": 12, "B": 25, "C": 55}), Via::Form).expect("prices");
     run.call("set_prices", &json!({"A": 14}), Via::Palette).expect("a price");
     run.undo(Via::Plain).expect("it is reverted");
@@ -196,15 +196,16 @@ fn all_kinds_of_lines(runs: &Path) -> Vec<Value> {
     run.query("SELECT count(*) FROM ledger").expect("a count");
     run.query("SELECT 1 FROM nowhere").expect_err("no table");
     note_every_activity(&mut run);
-    run.set_memo("größer").expect("a memo");
+    run.set_notes("größer").expect("a memo");
     let calculation = json!({"name": "cash now", "code": "SELECT sum(amount) FROM ledger"});
     run.call("register_daily_calculation", &calculation, Via::Script).expect("a calculation");
-    run.advance_given(&json!(""), &json!({}), [false; 4], Via::Form, &mut |_| {}).expect_err("no rationale");
+    run.advance_with_json(&json!(""), &json!({}), [false; 4], Via::Form, &mut |_| {})
+        .expect_err("no rationale");
     run.call("set_wages", &json!({"A": 1}), Via::Mcp).expect_err("no tool");
     run.call_once("set_prices", &json!({"A": 15}), Via::Http, &json!("a")).expect("a price");
     let week = WeekRequest {
         rationale: &json!("wait"),
-        predictions: &run.company().naive_forecasts().as_predictions(),
+        predictions: &run.company().naive_forecasts().to_predictions(),
         expected_day: &json!(0),
         id: &json!("b"),
     };
@@ -217,17 +218,17 @@ fn all_kinds_of_lines(runs: &Path) -> Vec<Value> {
         let forecasts = branch.company().naive_forecasts();
         branch.advance("on", &forecasts, Via::Form, &mut |_| {}).expect("a week");
     }
-    run.end().expect("it is given up");
+    run.abandon().expect("it is given up");
     let folders = [run.folder(), branch.folder()].map(|folder| folder.expect("a folder").to_owned());
     folders.iter().flat_map(|folder| lines_of(folder)).collect()
 }
 
 #[test]
-fn every_line_that_runs_write_is_as_the_schema_says() {
+fn recorded_lines_match_the_schema() {
     let (root, runs) = (schema(), tempfile::tempdir().expect("a folder"));
     let lines = all_kinds_of_lines(runs.path());
     for line in &lines {
-        assert_eq!(against(&root, line), Vec::<String>::new());
+        assert_eq!(line_problems(&root, line), Vec::<String>::new());
         // New fields of the format must be documented.
         let kind = line["kind"].as_str().expect("a kind");
         let known =
@@ -256,7 +257,7 @@ fn every_line_that_runs_write_is_as_the_schema_says() {
 }
 
 #[test]
-fn every_kind_and_every_field_is_explained_with_an_example() {
+fn schema_has_examples_of_all_kinds_and_fields() {
     let root = schema();
     for kind in kinds(&root) {
         let own = root.pointer(&format!("/$defs/{kind}")).expect("a kind");
@@ -268,13 +269,13 @@ fn every_kind_and_every_field_is_explained_with_an_example() {
         let examples = own["examples"].as_array().expect("examples");
         assert!(!examples.is_empty());
         for example in examples {
-            assert_eq!(against(&root, example), Vec::<String>::new());
+            assert_eq!(line_problems(&root, example), Vec::<String>::new());
         }
     }
 }
 
 #[test]
-fn lines_that_lack_or_twist_a_field_are_not_as_the_schema_says() {
+fn invalid_lines_violate_the_schema() {
     let root = schema();
     for kind in kinds(&root) {
         let own = root.pointer(&format!("/$defs/{kind}")).expect("a kind");
@@ -282,20 +283,20 @@ fn lines_that_lack_or_twist_a_field_are_not_as_the_schema_says() {
         for name in names(&own["required"]) {
             let mut without = example.clone();
             without.remove(name);
-            assert!(!against(&root, &without.into()).is_empty(), "{kind} without {name}");
+            assert!(!line_problems(&root, &without.into()).is_empty(), "{kind} without {name}");
             if own["properties"][name].get("type").is_some() || own["properties"][name].get("$ref").is_some()
             {
                 let mut twisted = example.clone();
                 twisted.insert(name.to_owned(), json!([["no such thing"]]));
-                assert!(!against(&root, &twisted.into()).is_empty(), "{kind} with a strange {name}");
+                assert!(!line_problems(&root, &twisted.into()).is_empty(), "{kind} with a strange {name}");
             }
         }
     }
-    assert!(!against(&root, &json!({"kind": "wish"})).is_empty());
+    assert!(!line_problems(&root, &json!({"kind": "wish"})).is_empty());
 }
 
 #[test]
 fn the_program_prints_the_schema() {
     let said = Home::new().run(&["runs", "schema"]);
-    assert_eq!(serde_json::from_str::<Value>(&said.out).expect("JSON"), schema());
+    assert_eq!(serde_json::from_str::<Value>(&said.stdout).expect("JSON"), schema());
 }

@@ -4,34 +4,34 @@ use std::fs;
 
 use novamind::session::{LabKey, Seal};
 
-use super::{contents, forged, import, played, text};
-use crate::support::home::{Home, id};
+use super::{archive_contents, import, played_run, text, write_forged_archive};
+use crate::support::home::{Home, run_id};
 
 /// Changes a file of an archive; `None` removes it.
 type Change<'a> = &'a dyn Fn(&str, Vec<u8>) -> Option<Vec<u8>>;
 
 #[test]
-fn a_signature_tells_who_exported_and_refuses_what_was_changed_since() {
+fn signature_names_the_signer_and_rejects_modifications() {
     let (home, other) = (Home::new(), Home::new());
-    let run = played(&home, "P01");
+    let run = played_run(&home, "P01");
     let key = LabKey::generate().expect("a key");
     let file = home.0.path().join("lab.key");
     key.write(&file).expect("written");
     let archive = home.0.path().join("signed.tar");
     let export = |out: &std::path::Path, key: &std::path::Path| {
-        home.run(&["runs", "export", &id(&run), "--out", &text(out), "--lab-key", &text(key)])
+        home.run(&["runs", "export", &run_id(&run), "--out", &text(out), "--lab-key", &text(key)])
     };
-    assert_eq!(export(&archive, &file).code, 0);
-    let whole = contents(&archive);
-    let name = |file: &str| format!("{}/{file}", id(&run));
+    assert_eq!(export(&archive, &file).exit_code, 0);
+    let whole = archive_contents(&archive);
+    let name = |file: &str| format!("{}/{file}", run_id(&run));
     assert!(whole.contains_key(&name("seal.sig")));
-    let fingerprint = key.public().fingerprint();
+    let fingerprint = key.public_key().fingerprint();
 
     let bad = home.0.path().join("bad.tar");
     let files = |change: Change<'_>| {
         let changed =
             whole.iter().filter_map(|(name, bytes)| Some((name.clone(), change(name, bytes.clone())?)));
-        forged(&bad, &changed.collect::<Vec<_>>());
+        write_forged_archive(&bad, &changed.collect::<Vec<_>>());
     };
     // A consistent seal that is not the signed one.
     files(&|name, bytes| {
@@ -39,31 +39,36 @@ fn a_signature_tells_who_exported_and_refuses_what_was_changed_since() {
             return Some(bytes);
         }
         let seal: Seal = toml::from_str(&String::from_utf8(bytes).expect("text")).expect("a seal");
-        Some(Seal { created: "2026-01-01T00:00:00Z".to_owned(), ..seal }.signed().text().into_bytes())
+        Some(
+            Seal { created: "2026-01-01T00:00:00Z".to_owned(), ..seal }
+                .with_checksum()
+                .to_toml()
+                .into_bytes(),
+        )
     });
-    import(&other, &bad).fails(3, &["seal.sig does not belong to seal.toml"]);
+    import(&other, &bad).assert_fails(3, &["seal.sig does not belong to seal.toml"]);
     files(&|name, bytes| Some(if name.ends_with("seal.sig") { Vec::new() } else { bytes }));
-    import(&other, &bad).fails(3, &["seal.sig cannot be read"]);
+    import(&other, &bad).assert_fails(3, &["seal.sig cannot be read"]);
     files(&|name, bytes| Some(if name.ends_with("seal.sig") { vec![b'#'; 4096] } else { bytes }));
-    import(&other, &bad).fails(3, &["seal.sig is too large"]);
+    import(&other, &bad).assert_fails(3, &["seal.sig is too large"]);
 
     let said = import(&other, &archive);
     assert!(
-        said.code == 0 && said.out.contains(&format!("signed by the lab key {fingerprint}")),
+        said.exit_code == 0 && said.stdout.contains(&format!("signed by the lab key {fingerprint}")),
         "{}",
-        said.out
+        said.stdout
     );
     // Without its signature it is a complete unsigned archive.
     files(&|name, bytes| (!name.ends_with("seal.sig")).then_some(bytes));
     let said = import(&other, &bad);
-    assert!(said.code == 0 && said.out.contains("not signed"), "{}{}", said.out, said.err);
+    assert!(said.exit_code == 0 && said.stdout.contains("not signed"), "{}{}", said.stdout, said.stderr);
     // An invalid key is reported before the run is simulated, and nothing is written.
     let nothing = home.0.path().join("nothing.tar");
     fs::write(&file, "no key").expect("written");
     let said = export(&nothing, &file);
     assert!(
-        said.code != 0 && said.err.contains("is not a key of this kind") && !nothing.exists(),
+        said.exit_code != 0 && said.stderr.contains("is not a key of this kind") && !nothing.exists(),
         "{}",
-        said.err
+        said.stderr
     );
 }

@@ -6,13 +6,13 @@ use std::time::Duration;
 
 use novamind::record::folder::configuration::Configuration;
 use novamind::record::trajectory::record::{
-    Activity, Answered, Asked, Clock, ClockEvent, DialogOutcome, DialogStep, DialogUse, Draft, DraftOutcome,
-    Help, LeavingCause, LimitScope, PresenceEvent, Select, Via,
+    Activity, Clock, ClockEvent, DialogOutcome, DialogStep, DialogUse, HelpRequest, LeavingCause, LimitScope,
+    ObjectSelection, PresenceEvent, QuestionAnswer, QuestionShown, TextEdit, TextEditOutcome, Via,
 };
 use novamind::session::{Access, Interface, NewRun, Session, Storage};
 
-use super::{folders, played, table, text};
-use crate::support::home::{Home, id};
+use super::{played_run, read_table, run_folders, text};
+use crate::support::home::{Home, run_id};
 use crate::support::python::recompute;
 
 /// Plays a run of four weeks to its end, with many of the events that the measures count.
@@ -43,12 +43,12 @@ const HOSTILE: &[&str] = &["=1+1", "+1+cmd", "-1+cmd", "@SUM(A1)", "\u{1b}[31mre
 fn export(home: &Home) -> std::path::PathBuf {
     let out = home.0.path().join("study");
     let said = home.run(&["runs", "export", "--all", "--out", &text(&out)]);
-    assert_eq!(said.code, 0, "{}", said.err);
+    assert_eq!(said.exit_code, 0, "{}", said.stderr);
     out
 }
 
 /// Plays a run with lines of every kind about the player, who leaves and returns.
-fn watched(home: &Home) {
+fn run_with_all_activity_lines(home: &Home) {
     let storage = Storage::Runs(home.runs());
     let new = NewRun {
         days: Some(14),
@@ -57,15 +57,15 @@ fn watched(home: &Home) {
         participant: Some("P 3".to_owned()),
         ..NewRun::default()
     };
-    let mut run = Session::create(new, &Configuration::shipped()).expect("a run");
+    let mut run = Session::create(new, &Configuration::bundled()).expect("a run");
     let folder = run.folder().expect("a folder").to_owned();
     let wait = || std::thread::sleep(Duration::from_millis(12));
     let console = Interface { name: "console", window: Some((120, 40)) };
     for week in 0..2 {
-        run.activity().take_up(console);
+        run.activity().attach(console);
         wait();
-        run.activity().note_view("overview", "", 11);
-        run.activity().note(Activity::Question(Asked {
+        run.activity().record_view("overview", "", 11);
+        run.activity().record(Activity::Question(QuestionShown {
             questionnaire: "mood".to_owned(),
             occasion: format!("week {week}"),
             id: "q1".to_owned(),
@@ -75,7 +75,7 @@ fn watched(home: &Home) {
         }));
         wait();
         if week == 1 {
-            run.activity().note(Activity::Answer(Answered {
+            run.activity().record(Activity::Answer(QuestionAnswer {
                 questionnaire: "mood".to_owned(),
                 occasion: format!("week {week}"),
                 id: "q1".to_owned(),
@@ -85,23 +85,27 @@ fn watched(home: &Home) {
                 changes: 1,
             }));
         }
-        run.activity().note_presence(PresenceEvent::FocusLost, None, None);
+        run.activity().record_presence(PresenceEvent::FocusLost, None, None);
         wait();
-        run.activity().note_presence(PresenceEvent::FocusGained, None, None);
-        let select =
-            Select { screen: "customers".to_owned(), what: "group".to_owned(), which: "S2".to_owned() };
-        run.activity().note(Activity::Select(select));
-        run.activity().note(Activity::Help(Help { term: "churn".to_owned(), place: "customers".to_owned() }));
+        run.activity().record_presence(PresenceEvent::FocusGained, None, None);
+        let select = ObjectSelection {
+            screen: "customers".to_owned(),
+            what: "group".to_owned(),
+            which: "S2".to_owned(),
+        };
+        run.activity().record(Activity::Select(select));
+        run.activity()
+            .record(Activity::Help(HelpRequest { term: "churn".to_owned(), place: "customers".to_owned() }));
         wait();
-        run.activity().note_presence(PresenceEvent::Idle, Some(9), None);
+        run.activity().record_presence(PresenceEvent::Idle, Some(9), None);
         wait();
-        run.activity().note_presence(PresenceEvent::Active, None, None);
+        run.activity().record_presence(PresenceEvent::Active, None, None);
         for event in [ClockEvent::Stopped, ClockEvent::Started] {
-            run.activity().note(Activity::Clock(Clock { event, reason: None, stood_ms: None }));
+            run.activity().record(Activity::Clock(Clock { event, reason: None, stood_ms: None }));
             wait();
         }
-        for outcome in [DraftOutcome::Sent, DraftOutcome::Left] {
-            run.activity().note(Activity::Draft(Draft {
+        for outcome in [TextEditOutcome::Sent, TextEditOutcome::Left] {
+            run.activity().record(Activity::Draft(TextEdit {
                 place: "rationale".to_owned(),
                 outcome,
                 length: 20,
@@ -115,7 +119,7 @@ fn watched(home: &Home) {
         }
         for outcome in [DialogOutcome::Confirmed, DialogOutcome::Cancelled] {
             let steps = vec![DialogStep { step: "review".to_owned(), for_ms: 5 }];
-            run.activity().note(Activity::Dialog(DialogUse {
+            run.activity().record(Activity::Dialog(DialogUse {
                 what: "next week".to_owned(),
                 outcome,
                 for_ms: 9,
@@ -124,32 +128,32 @@ fn watched(home: &Home) {
         }
         let spent = run.log().time_spent(LimitScope::Week);
         assert!(spent.active_ms() >= 12 && spent.idle_seconds() > 0.009, "{spent:?}");
-        run.set_memo("if S2 grows,\nwe should follow").expect("notes");
-        run.activity().note_view("cash", "overview", 40);
+        run.set_notes("if S2 grows,\nwe should follow").expect("notes");
+        run.activity().record_view("cash", "overview", 40);
         let forecasts = run.company().naive_forecasts();
         run.advance("until then", &forecasts, Via::Form, &mut |_| {}).expect("a week");
-        run.activity().leave(LeavingCause::Quit);
+        run.activity().detach(LeavingCause::Quit);
         drop(run);
         run = Session::open(&folder, Access::Write, true).expect("it opens");
     }
     // The player views the end and leaves.
-    run.activity().take_up(console);
+    run.activity().attach(console);
     wait();
-    run.activity().note_view("cash", "overview", 11);
-    run.activity().note_presence(PresenceEvent::FocusLost, None, None);
+    run.activity().record_view("cash", "overview", 11);
+    run.activity().record_presence(PresenceEvent::FocusLost, None, None);
     wait();
-    run.set_memo("afterwards").expect("notes");
+    run.set_notes("afterwards").expect("notes");
 }
 
 #[test]
-fn an_independent_script_computes_every_measure_alike() {
+fn independent_script_reproduces_every_measure() {
     let home = Home::new();
     let said = home.play(&["--days", "28", "--seed", "7"], FOUR_WEEKS);
-    assert_eq!(said.code, 0, "{}{}", said.out, said.err);
-    played(&home, "P01");
-    watched(&home);
+    assert_eq!(said.exit_code, 0, "{}{}", said.stdout, said.stderr);
+    played_run(&home, "P01");
+    run_with_all_activity_lines(&home);
     let out = export(&home);
-    let runs = table(&out.join("runs.csv"));
+    let runs = read_table(&out.join("runs.csv"));
     let over = runs.iter().find(|row| row["ended"] == "horizon").expect("a run that is over");
     let person = runs.iter().find(|row| row["participant"] == "P 3").expect("a run that was watched");
     for (column, value) in [
@@ -169,7 +173,7 @@ fn an_independent_script_computes_every_measure_alike() {
     {
         assert!(person[column].parse::<f64>().expect("a number") > 0.0, "{column}");
     }
-    let answers = table(&out.join("answers.csv"));
+    let answers = read_table(&out.join("answers.csv"));
     assert_eq!([&*answers[0]["answered"], &*answers[1]["value"]], ["0", "well\n=badly"]);
     for column in
         ["truly_best_channel_share", "channels_tried", "targeted_development_share", "tool_evenness"]
@@ -188,7 +192,7 @@ fn an_independent_script_computes_every_measure_alike() {
 }
 
 #[test]
-fn what_people_write_becomes_no_formula_and_commands_no_terminal() {
+fn exported_texts_are_escaped() {
     let home = Home::new();
     let mut lines = String::from("set_prices A=12\n");
     for hostile in HOSTILE {
@@ -197,22 +201,22 @@ fn what_people_write_becomes_no_formula_and_commands_no_terminal() {
     lines += "post_social_media \"=1+1 \u{1b}[31m\u{202e}\"\n";
     let said = home.play(&["--days", "70", "--participant", "=cmd|' /C calc'!A0"], &lines);
     let acts = |text: &str| text.contains(['\u{1b}', '\u{202e}']);
-    assert!(!acts(&said.out) && !acts(&said.err), "{}", said.out);
+    assert!(!acts(&said.stdout) && !acts(&said.stderr), "{}", said.stdout);
     let out = export(&home);
     for name in ["runs", "weeks", "forecasts", "queries", "events", "answers", "notes"] {
         let path = out.join(format!("{name}.csv"));
         assert!(!acts(&std::fs::read_to_string(&path).expect("a table")), "{name}");
-        for row in table(&path) {
+        for row in read_table(&path) {
             for (column, cell) in row {
                 let begins = cell.trim_start().starts_with(['=', '+', '-', '@']);
                 assert!(!begins || cell.parse::<f64>().is_ok(), "{name} {column}: {cell:?}");
             }
         }
     }
-    let notes = table(&out.join("notes.csv"));
+    let notes = read_table(&out.join("notes.csv"));
     assert_eq!(notes[0]["text"].trim_end(), "'=1+1");
     assert!(notes.iter().any(|row| row["text"].contains("\\u{1b}[31mred")), "{notes:?}");
-    let run = id(&folders(&home.runs())[0]);
+    let run = run_id(&run_folders(&home.runs())[0]);
     for arguments in [
         vec!["report", &run],
         vec!["report", &run, "--format", "html"],
@@ -228,19 +232,19 @@ fn what_people_write_becomes_no_formula_and_commands_no_terminal() {
         vec!["query", &run, "SELECT content FROM agent_social_media_posts", "--format", "md"],
     ] {
         let said = home.run(&arguments);
-        assert!(!acts(&said.out) && !acts(&said.err), "{arguments:?}: {}", said.out);
+        assert!(!acts(&said.stdout) && !acts(&said.stderr), "{arguments:?}: {}", said.stdout);
         if arguments.contains(&"csv") || arguments.contains(&"--csv") {
             let formula = |line: &str| line.starts_with(['=', '@', '+']) || line.contains(",=");
-            assert!(!said.out.lines().any(formula), "{arguments:?}: {}", said.out);
+            assert!(!said.stdout.lines().any(formula), "{arguments:?}: {}", said.stdout);
         }
     }
 }
 
 #[test]
-fn anonymous_tables_tell_nothing_of_who_took_part_and_can_be_linked_by_who_has_the_secret() {
+fn anonymized_tables_can_be_linked_only_with_the_secret() {
     let home = Home::new();
-    watched(&home);
-    played(&home, "Ada Lovelace");
+    run_with_all_activity_lines(&home);
+    played_run(&home, "Ada Lovelace");
     let out = export(&home);
     let place = |name: &str| text(&home.0.path().join(name));
     let (anonymous, secret) = (place("anonymous"), place("study.secret"));
@@ -250,10 +254,10 @@ fn anonymous_tables_tell_nothing_of_who_took_part_and_can_be_linked_by_who_has_t
         )
     };
     let said = anonymise(&anonymous, &[]);
-    assert_eq!(said.code, 0, "{}{}", said.out, said.err);
-    let links = table(&home.0.path().join("study.links.csv"));
-    let runs = table(&Path::new(&anonymous).join("runs.csv"));
-    let original = table(&out.join("runs.csv"));
+    assert_eq!(said.exit_code, 0, "{}{}", said.stdout, said.stderr);
+    let links = read_table(&home.0.path().join("study.links.csv"));
+    let runs = read_table(&Path::new(&anonymous).join("runs.csv"));
+    let original = read_table(&out.join("runs.csv"));
     assert_eq!((links.len(), runs.len()), (2, 2));
     for (link, row) in links.iter().zip(&runs) {
         assert_eq!(
@@ -266,7 +270,7 @@ fn anonymous_tables_tell_nothing_of_who_took_part_and_can_be_linked_by_who_has_t
         assert_eq!(row["created"], "0");
     }
     let machine = {
-        let events = table(&out.join("events.csv"));
+        let events = read_table(&out.join("events.csv"));
         let detail = events.iter().find(|row| row["kind"] == "session").expect("a line")["detail"].clone();
         detail.split(';').next().and_then(|part| part.strip_prefix("machine=")).expect("a machine").to_owned()
     };
@@ -287,43 +291,43 @@ fn anonymous_tables_tell_nothing_of_who_took_part_and_can_be_linked_by_who_has_t
     }
     // Rows are ordered by the new labels, unique combinations are reported, and columns can be left out.
     for name in ["runs", "weeks", "events"] {
-        let rows = table(&Path::new(&anonymous).join(format!("{name}.csv")));
+        let rows = read_table(&Path::new(&anonymous).join(format!("{name}.csv")));
         assert!(rows.iter().map(|row| &row["participant"]).is_sorted(), "{name}");
     }
     assert!(
-        said.out.contains("the smallest group of sessions with the same seed and condition has "),
+        said.stdout.contains("the smallest group of sessions with the same seed and condition has "),
         "{}",
-        said.out
+        said.stdout
     );
     let fewer = place("fewer");
     let said = anonymise(&fewer, &["--without", "seed,condition"]);
-    assert!(said.code == 0 && !said.out.contains("smallest group"), "{}{}", said.out, said.err);
-    let without = table(&Path::new(&fewer).join("runs.csv"));
+    assert!(said.exit_code == 0 && !said.stdout.contains("smallest group"), "{}{}", said.stdout, said.stderr);
+    let without = read_table(&Path::new(&fewer).join("runs.csv"));
     assert!(!without[0].contains_key("seed") && !without[0].contains_key("condition"));
     assert_eq!(without[0]["cash"], runs[0]["cash"]);
-    let events = table(&Path::new(&fewer).join("events.csv"));
+    let events = read_table(&Path::new(&fewer).join("events.csv"));
     assert!(events.iter().filter(|row| row["kind"] == "start").all(|row| row["value"].is_empty()));
-    anonymise(&place("none"), &["--without", "run"]).fails(2, &["run cannot be left out"]);
-    anonymise(&place("none"), &["--without", "sead"]).fails(2, &["no table has a column sead"]);
+    anonymise(&place("none"), &["--without", "run"]).assert_fails(2, &["run cannot be left out"]);
+    anonymise(&place("none"), &["--without", "sead"]).assert_fails(2, &["no table has a column sead"]);
     // The same secret gives the same names, masked texts keep their lengths, and nothing is overwritten.
-    anonymise(&anonymous, &[]).fails(1, &["already exists"]);
+    anonymise(&anonymous, &[]).assert_fails(1, &["already exists"]);
     let masked = place("masked");
-    assert_eq!(anonymise(&masked, &["--mask"]).code, 0);
-    let again = table(&Path::new(&masked).join("runs.csv"));
+    assert_eq!(anonymise(&masked, &["--mask"]).exit_code, 0);
+    let again = read_table(&Path::new(&masked).join("runs.csv"));
     assert_eq!(again[0]["participant"], runs[0]["participant"]);
-    let notes = table(&Path::new(&masked).join("notes.csv"));
+    let notes = read_table(&Path::new(&masked).join("notes.csv"));
     assert!(notes.iter().any(|row| row["text"] == "[16 characters]"), "{notes:?}");
     std::fs::write(home.0.path().join("study.secret"), "guess").expect("a file");
-    anonymise(&place("third"), &[]).fails(2, &["64 hexadecimal digits"]);
+    anonymise(&place("third"), &[]).assert_fails(2, &["64 hexadecimal digits"]);
 }
 
 #[test]
 fn the_loading_scripts_read_the_tables() {
     let home = Home::new();
-    watched(&home);
-    played(&home, "=P01");
+    run_with_all_activity_lines(&home);
+    played_run(&home, "=P01");
     let out = export(&home);
-    let runs = table(&out.join("runs.csv"));
+    let runs = read_table(&out.join("runs.csv"));
     let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/studies/examples");
     for (program, script, check) in [("python3", "load.py", "-V"), ("Rscript", "load.R", "--version")] {
         if Command::new(program).arg(check).output().is_err() {
@@ -349,7 +353,7 @@ fn the_loading_scripts_read_the_tables() {
         .output()
     {
         let told = String::from_utf8_lossy(&done.stdout).trim().to_owned();
-        let events = table(&out.join("events.csv")).len().to_string();
+        let events = read_table(&out.join("events.csv")).len().to_string();
         assert_eq!(told, events, "{}", String::from_utf8_lossy(&done.stderr));
     }
 }

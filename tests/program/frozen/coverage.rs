@@ -39,7 +39,7 @@ const EXCEPTIONS: [(&str, &str); 12] = [
 #[derive(Default)]
 struct Help {
     commands: Vec<String>,
-    /// Options of `FORMS` with their possible values.
+    /// Options of `EDIT_SYNTAX` with their possible values.
     forms: BTreeMap<String, Vec<String>>,
 }
 
@@ -88,8 +88,8 @@ impl Help {
 /// Collects every command without subcommands, and its forms with each of their values.
 fn expected(home: &Home, path: &[&str], found: &mut BTreeSet<String>) {
     let said = home.run(&[path, &["--help"]].concat());
-    assert_eq!(said.code, 0, "{path:?}: {}", said.err);
-    let help = Help::read(&said.out);
+    assert_eq!(said.exit_code, 0, "{path:?}: {}", said.stderr);
+    let help = Help::read(&said.stdout);
     let name = path.join(" ");
     if help.commands.is_empty() {
         found.insert(name.clone());

@@ -9,8 +9,8 @@ use std::process::Command;
 
 use super::case::Case;
 use super::masks::Masks;
-use super::{root, stored};
-use crate::support::home::{Home, Said, said};
+use super::{root, stored_form};
+use crate::support::home::{Home, ProgramOutput, run_with_input};
 
 /// A home with the recorded runs of format 2, their study and classes, and a damaged copy.
 pub struct FrozenHome {
@@ -36,15 +36,15 @@ impl FrozenHome {
                 Some(label) if belongs => home.runs().join("participants").join(label),
                 _ => home.runs(),
             };
-            copy(&folder, &parent.join(&id), &mut masks);
+            copy_masked(&folder, &parent.join(&id), &mut masks);
             masks.keep_id(&id);
             ids.insert(name.to_owned(), id);
         }
         let damaged = home.0.path().join("damaged").join(&ids["debug"]);
-        copy(&recorded.join("format2-debug"), &damaged, &mut masks);
-        damage(&damaged.join("trajectory.jsonl"));
+        copy_masked(&recorded.join("format2-debug"), &damaged, &mut masks);
+        damage_last_week(&damaged.join("trajectory.jsonl"));
         let input = root().join("input");
-        copy(&input, home.0.path(), &mut masks);
+        copy_masked(&input, home.0.path(), &mut masks);
         fs::rename(home.0.path().join("visits.jsonl"), home.runs().join("visits.jsonl")).expect("moved");
         FrozenHome { home, ids, masks }
     }
@@ -70,20 +70,23 @@ impl FrozenHome {
         {
             command.env_remove(variable);
         }
-        let said =
-            if case.in_turn { in_turn(&mut command, &case.input) } else { said(&mut command, &case.input) };
+        let said = if case.in_turn {
+            run_line_by_line(&mut command, &case.input)
+        } else {
+            run_with_input(&mut command, &case.input)
+        };
         self.masks.keys = case.mask.clone();
         self.masks.find_new_ids(&self.home.runs());
         for file in &case.files {
             self.masks.find_class(&place.join(file).join("class.toml"));
             self.masks.find_new_ids(&place.join(file));
         }
-        let mut output = stored(self.masks.apply(&said.out));
-        if !said.err.is_empty() {
-            write!(output, "--- standard error\n{}", self.masks.apply(&said.err)).expect("a text");
+        let mut output = stored_form(self.masks.apply(&said.stdout));
+        if !said.stderr.is_empty() {
+            write!(output, "--- standard error\n{}", self.masks.apply(&said.stderr)).expect("a text");
         }
-        if said.code != 0 {
-            writeln!(output, "--- exit code {}", said.code).expect("a text");
+        if said.exit_code != 0 {
+            writeln!(output, "--- exit code {}", said.exit_code).expect("a text");
         }
         for file in &case.files {
             self.write_file(&place.join(file), &mut output);
@@ -124,7 +127,7 @@ impl FrozenHome {
     fn write_bytes(&mut self, name: &str, bytes: &[u8], output: &mut String) {
         let name = self.masks.apply(name);
         let text = match (is_derived(&name), String::from_utf8(bytes.to_vec())) {
-            (false, Ok(text)) => stored(self.masks.apply(&text)),
+            (false, Ok(text)) => stored_form(self.masks.apply(&text)),
             _ => "(bytes)\n".to_owned(),
         };
         let end = if text.ends_with('\n') || text.is_empty() { "" } else { "\n(no line end)\n" };
@@ -133,7 +136,7 @@ impl FrozenHome {
 }
 
 /// Returns the output of a program if each line is sent after the answer to the previous one. Notifications have no answer.
-fn in_turn(command: &mut Command, lines: &str) -> Said {
+fn run_line_by_line(command: &mut Command, lines: &str) -> ProgramOutput {
     let mut child = command.spawn().expect("the program starts");
     let mut input = child.stdin.take().expect("a pipe");
     let mut output = BufReader::new(child.stdout.take().expect("a pipe"));
@@ -148,7 +151,7 @@ fn in_turn(command: &mut Command, lines: &str) -> Said {
     output.read_to_string(&mut out).expect("text");
     let ended = child.wait_with_output().expect("the program ends");
     let err = String::from_utf8(ended.stderr).expect("UTF-8");
-    Said { out, err, code: ended.status.code().expect("it ends on its own") }
+    ProgramOutput { stdout: out, stderr: err, exit_code: ended.status.code().expect("it ends on its own") }
 }
 
 /// Returns whether a file is derived and not for other programs: the database, the snapshot, the lock with a process id.
@@ -169,19 +172,19 @@ fn text(path: &Path) -> String {
 }
 
 /// Changes a figure in the last week of a record.
-fn damage(trajectory: &Path) {
+fn damage_last_week(trajectory: &Path) {
     let whole = text(trajectory);
     let at = whole.rfind("\"cash\":").expect("a figure") + "\"cash\":".len();
     fs::write(trajectory, format!("{}1{}", &whole[..at], &whole[at..])).expect("written");
 }
 
 /// Copies a folder and excludes the times in its files from masking.
-fn copy(from: &Path, to: &Path, masks: &mut Masks) {
+fn copy_masked(from: &Path, to: &Path, masks: &mut Masks) {
     fs::create_dir_all(to).expect("a folder");
     for path in sorted(from) {
         let target = to.join(path.file_name().expect("a name"));
         if path.is_dir() {
-            copy(&path, &target, masks);
+            copy_masked(&path, &target, masks);
             continue;
         }
         masks.keep_moments(&text(&path));

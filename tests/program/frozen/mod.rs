@@ -25,7 +25,7 @@ fn root() -> PathBuf {
 }
 
 /// Runs the cases of a group in one home, in their order, and compares each with its expected output.
-fn check(group: &str) {
+fn check_group(group: &str) {
     let mut home = FrozenHome::new();
     let found =
         cases(group).iter().filter_map(|case| compare(group, &case.name, &home.output_of(case))).collect();
@@ -62,7 +62,7 @@ fn compare(group: &str, name: &str, output: &str) -> Option<String> {
         match (old.next(), new.next()) {
             (before, now) if before == now => line += 1,
             (before, now) => {
-                let [before, now] = around(before.unwrap_or("(end)"), now.unwrap_or("(end)"));
+                let [before, now] = differing_lines(before.unwrap_or("(end)"), now.unwrap_or("(end)"));
                 return Some(format!("{group}/{name}, line {line}:\n  expected {before}\n  found    {now}"));
             }
         }
@@ -70,14 +70,14 @@ fn compare(group: &str, name: &str, output: &str) -> Option<String> {
 }
 
 /// Returns both texts from shortly before their first difference.
-fn around<'a>(before: &'a str, now: &'a str) -> [String; 2] {
+fn differing_lines<'a>(before: &'a str, now: &'a str) -> [String; 2] {
     let same = before.chars().zip(now.chars()).take_while(|(one, other)| one == other).count();
     let part = |line: &'a str| -> String { line.chars().skip(same.saturating_sub(60)).take(160).collect() };
     [part(before), part(now)]
 }
 
 /// Returns a text, or its length and digest if it is long.
-fn stored(text: String) -> String {
+fn stored_form(text: String) -> String {
     match text.len() {
         0..=MAX_STORED_BYTES => text,
         length => format!("({length} bytes, BLAKE3 {})\n", blake3::hash(text.as_bytes()).to_hex()),
@@ -85,36 +85,36 @@ fn stored(text: String) -> String {
 }
 
 #[test]
-fn commands_that_describe_the_program() {
-    check("catalogue");
+fn output_of_descriptive_commands() {
+    check_group("catalogue");
 }
 
 #[test]
-fn commands_that_read_runs() {
-    check("runs");
+fn output_of_run_commands() {
+    check_group("runs");
 }
 
 #[test]
-fn exports_and_imports() {
-    check("exports");
+fn output_of_exports_and_imports() {
+    check_group("exports");
 }
 
 #[test]
-fn commands_of_the_laboratory() {
-    check("lab");
+fn output_of_lab_commands() {
+    check_group("lab");
 }
 
 #[test]
-fn lessons_classes_and_studies() {
-    check("people");
+fn output_of_lessons_classes_and_studies() {
+    check_group("people");
 }
 
 #[test]
-fn runs_that_are_played() {
-    check("play");
+fn output_of_played_runs() {
+    check_group("play");
 }
 
 #[test]
-fn programs_that_play() {
-    check("agents");
+fn output_of_program_interfaces() {
+    check_group("agents");
 }

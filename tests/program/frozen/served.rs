@@ -3,11 +3,11 @@
 use serde_json::{Value, json};
 
 use super::home::FrozenHome;
-use super::{compare, report, stored};
-use crate::doors::{Server, predictions};
+use super::{compare, report, stored_form};
+use crate::interfaces::{Server, predictions};
 
 #[test]
-fn answers_over_http() {
+fn output_of_http_routes() {
     let mut frozen = FrozenHome::new();
     let run = frozen.id("http").to_owned();
     let server = Server::start(&frozen.home, &["--run", &run]);
@@ -46,7 +46,7 @@ fn answers_over_http() {
     let mut found = Vec::new();
     for (name, method, path, body) in requests.into_iter().chain(calls) {
         let body = if body.is_null() { String::new() } else { body.to_string() };
-        let answer = server.raw(
+        let answer = server.send_raw(
             format!(
                 "{method} {path} HTTP/1.1\r\nhost: 127.0.0.1\r\nconnection: close\r\ncontent-length: {}\r\n\r\n{body}",
                 body.len()
@@ -55,7 +55,7 @@ fn answers_over_http() {
         );
         let (head, body) = answer.split_once("\r\n\r\n").expect("a head");
         let status = head.lines().next().unwrap_or_default();
-        let output = format!("{status}\n{}\n", stored(frozen.masks.apply(body)));
+        let output = format!("{status}\n{}\n", stored_form(frozen.masks.apply(body)));
         found.extend(compare("served", name, &output));
     }
     report(found);

@@ -19,14 +19,14 @@ fn only_run(runs: &Path) -> PathBuf {
 }
 
 /// Returns the numbers of accepted calls and weeks in the trajectory.
-fn recorded(runs: &Path) -> (usize, usize) {
+fn recorded_counts(runs: &Path) -> (usize, usize) {
     let lines = Trajectory::read(&only_run(runs).join("trajectory.jsonl")).expect("it reads").lines;
     let calls = lines.iter().filter(|line| line.record.accepted_call().is_some()).count();
     (calls, lines.iter().filter(|line| matches!(line.record, Record::Advance(_))).count())
 }
 
 /// Sets a price and waits for its confirmation.
-fn set_a_price(terminal: &mut Terminal, price: usize) {
+fn set_price(terminal: &mut Terminal, price: usize) {
     terminal.type_keys("8");
     terminal.wait_for("set_prices");
     terminal.type_keys(&format!("\r\r{price}\r"));
@@ -43,15 +43,15 @@ fn begin_a_week(terminal: &mut Terminal) {
     terminal.type_keys("f\r");
 }
 
-fn kills(count: usize) {
-    let mut dice = Dice::of_test("kills in the console");
+fn check_kills(count: usize) {
+    let mut dice = Dice::for_test("kills in the console");
     for number in 0..count {
         let runs = tempfile::tempdir().expect("a folder");
         let seed = number.to_string();
         let mut terminal = Terminal::start(runs.path(), &["--new", "--seed", &seed], (100, 30));
         terminal.wait_for("day 0/500");
         let (mut calls, mut weeks) = (0, 0);
-        set_a_price(&mut terminal, 10);
+        set_price(&mut terminal, 10);
         calls += 1;
         for week in 1..=dice.roll(3) {
             begin_a_week(&mut terminal);
@@ -69,8 +69,8 @@ fn kills(count: usize) {
             std::thread::yield_now();
         }
         terminal.signal("-KILL");
-        terminal.killed();
-        let (kept_calls, kept_weeks) = recorded(runs.path());
+        terminal.wait_for_killed();
+        let (kept_calls, kept_weeks) = recorded_counts(runs.path());
         assert!(
             kept_calls >= calls && kept_weeks >= weeks,
             "kill {number}: {kept_calls} calls, {kept_weeks} weeks"
@@ -83,17 +83,17 @@ fn kills(count: usize) {
         let mut terminal = Terminal::start(runs.path(), &["--run", "latest"], (100, 30));
         terminal.wait_for(&format!("day {}/500", 7 * kept_weeks));
         terminal.type_keys("\x03");
-        terminal.end();
+        terminal.wait_for_end();
     }
 }
 
 #[test]
-fn what_the_screen_confirmed_survives_a_kill() {
-    kills(KILLS);
+fn confirmed_changes_survive_a_kill() {
+    check_kills(KILLS);
 }
 
 #[test]
 #[ignore = "slow: .ci/full runs it"]
-fn what_the_screen_confirmed_survives_every_kill() {
-    kills(ALL_KILLS);
+fn confirmed_changes_survive_every_kill() {
+    check_kills(ALL_KILLS);
 }

@@ -1,6 +1,6 @@
 //! The built program in a pseudo terminal: start, play, quit, resume; signals, small windows.
 
-mod hardship;
+mod failures;
 mod kill;
 mod play;
 mod pty;

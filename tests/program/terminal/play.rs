@@ -1,6 +1,6 @@
 //! A user plays: weeks, SQL, enterprises, mouse, clipboard.
 
-use super::pty::{Terminal, run_of};
+use super::pty::{Terminal, play_policy};
 
 #[test]
 fn a_person_starts_plays_two_weeks_leaves_and_continues() {
@@ -26,17 +26,17 @@ fn a_person_starts_plays_two_weeks_leaves_and_continues() {
     }
     terminal.wait_for("day 14/500");
     terminal.type_keys("q");
-    let (code, screen) = terminal.end();
+    let (code, screen) = terminal.wait_for_end();
     assert_eq!(code, 0);
     assert!(screen.contains("is saved at day 14"), "{screen}");
     let mut terminal = Terminal::start(runs.path(), &["--run", "latest"], (80, 24));
     terminal.wait_for("day 14/500");
     terminal.type_keys("\x03");
-    assert_eq!(terminal.end().0, 0);
+    assert_eq!(terminal.wait_for_end().0, 0);
 }
 
 #[test]
-fn the_first_run_of_a_person_begins_with_the_tour() {
+fn first_run_starts_the_tour() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut terminal = Terminal::start(runs.path(), &[], (80, 24));
     terminal.wait_for("New here?");
@@ -65,7 +65,7 @@ fn the_first_run_of_a_person_begins_with_the_tour() {
     terminal.type_keys("\x1bOS");
     terminal.wait_until_gone("Tour ·");
     terminal.type_keys("\x03");
-    let (code, screen) = terminal.end();
+    let (code, screen) = terminal.wait_for_end();
     assert_eq!(code, 0, "{screen}");
 }
 
@@ -96,13 +96,13 @@ fn a_statement_is_completed_run_and_a_slow_one_cancelled() {
     terminal.wait_for("the query was cancelled");
     terminal.wait_for("SELECT count(*) FROM n");
     terminal.type_keys("\x03");
-    assert_eq!(terminal.end().0, 0);
+    assert_eq!(terminal.wait_for_end().0, 0);
 }
 
 #[test]
 fn many_companies_are_answered_by_one_rule() {
     let runs = tempfile::tempdir().expect("a folder");
-    run_of(runs.path(), &["--policy", "P10", "--seed", "3", "--until", "35"]);
+    play_policy(runs.path(), &["--policy", "P10", "--seed", "3", "--until", "35"]);
     let mut terminal = Terminal::start(runs.path(), &["--run", "latest"], (120, 40));
     terminal.wait_for("day 35/500");
     terminal.type_keys("6");
@@ -114,12 +114,12 @@ fn many_companies_are_answered_by_one_rule() {
     terminal.type_keys("y");
     terminal.wait_for("0 waiting for you");
     terminal.type_keys("q");
-    let (code, screen) = terminal.end();
+    let (code, screen) = terminal.wait_for_end();
     assert_eq!(code, 0, "{screen}");
 }
 
 #[test]
-fn the_mouse_presses_and_can_be_left_to_the_terminal() {
+fn mouse_can_be_disabled() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut terminal = Terminal::start(runs.path(), &["--new"], (120, 40));
     terminal.wait_for("day 0/500");
@@ -136,7 +136,7 @@ fn the_mouse_presses_and_can_be_left_to_the_terminal() {
     terminal.type_keys(";m");
     terminal.wait_for("shift-drag");
     terminal.type_keys("q");
-    assert_eq!(terminal.end().0, 0);
+    assert_eq!(terminal.wait_for_end().0, 0);
 }
 
 #[test]
@@ -150,11 +150,11 @@ fn a_call_is_copied_through_the_terminal() {
     terminal.wait_for("copied");
     terminal.wait_for_bytes(b"\x1b]52;c;");
     terminal.type_keys("\x03y");
-    assert_eq!(terminal.end().0, 0);
+    assert_eq!(terminal.wait_for_end().0, 0);
 }
 
 #[test]
-fn a_recorded_run_is_played_again_and_taken_over() {
+fn replay_can_continue_as_a_branch() {
     let runs = tempfile::tempdir().expect("a folder");
     let mut terminal = Terminal::start(runs.path(), &["--new", "--days", "28"], (120, 40));
     terminal.wait_for("day 0/28");
@@ -168,7 +168,7 @@ fn a_recorded_run_is_played_again_and_taken_over() {
         terminal.type_keys("\r");
     }
     terminal.type_keys("q");
-    assert_eq!(terminal.end().0, 0);
+    assert_eq!(terminal.wait_for_end().0, 0);
     let mut terminal = Terminal::start(runs.path(), &["replay", "latest"], (120, 40));
     terminal.wait_for("week 0/2");
     terminal.type_keys("FFFF ");
@@ -181,13 +181,13 @@ fn a_recorded_run_is_played_again_and_taken_over() {
     terminal.type_keys("\r");
     terminal.wait_for("SANDBOX");
     terminal.type_keys("q");
-    let (code, screen) = terminal.end();
+    let (code, screen) = terminal.wait_for_end();
     assert_eq!(code, 0);
     assert!(screen.contains("is saved at day 7"), "{screen}");
 }
 
 #[test]
-fn a_participant_sees_the_study_and_nothing_else_until_the_code_is_given() {
+fn participant_sees_only_the_study() {
     let place = tempfile::tempdir().expect("a folder");
     let folder = place.path().join("pilot");
     let made = std::process::Command::new(env!("CARGO_BIN_EXE_novamind"))
@@ -197,8 +197,8 @@ fn a_participant_sees_the_study_and_nothing_else_until_the_code_is_given() {
         .expect("it starts");
     assert!(made.status.success());
     let protocol = std::fs::read_to_string(folder.join("study.toml")).expect("a protocol");
-    let code = novamind::study::CodeDigest::of("open", "salt");
-    let protocol = protocol.replace("# code = \"…\"", &format!("code = \"{}\"", code.as_text()));
+    let code = novamind::study::CodeDigest::from_code("open", "salt");
+    let protocol = protocol.replace("# code = \"…\"", &format!("code = \"{}\"", code.as_str()));
     std::fs::write(folder.join("study.toml"), protocol).expect("written");
     let study = folder.display().to_string();
     let mut terminal = Terminal::start(&place.path().join("runs"), &["--study", &study], (80, 24));
@@ -208,5 +208,5 @@ fn a_participant_sees_the_study_and_nothing_else_until_the_code_is_given() {
     terminal.type_keys("\x15open\r");
     terminal.wait_for("New run");
     terminal.type_keys("\x03");
-    assert_eq!(terminal.end().0, 0);
+    assert_eq!(terminal.wait_for_end().0, 0);
 }

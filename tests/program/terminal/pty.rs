@@ -73,7 +73,7 @@ impl Terminal {
     }
 
     /// Forgets the screen, as if another program had overwritten it.
-    pub fn forget(&mut self) {
+    pub fn clear_screen(&mut self) {
         self.screen.process(b"\x1b[2J");
     }
 
@@ -104,7 +104,7 @@ impl Terminal {
         while !done(&self.screen.screen().contents(), &self.written) {
             let left = deadline.saturating_duration_since(Instant::now());
             match self.bytes.recv_timeout(left) {
-                Ok(bytes) => self.take(&bytes),
+                Ok(bytes) => self.process_output(&bytes),
                 Err(_) => panic!("waiting for {what:?} in vain:\n{}", self.screen.screen().contents()),
             }
         }
@@ -115,7 +115,7 @@ impl Terminal {
         let deadline = Instant::now() + Duration::from_secs(60);
         while !holds() {
             while let Ok(bytes) = self.bytes.try_recv() {
-                self.take(&bytes);
+                self.process_output(&bytes);
             }
             assert!(Instant::now() < deadline, "waiting for {what:?} in vain:\n{}", self.contents());
             std::thread::sleep(Duration::from_millis(5));
@@ -130,7 +130,7 @@ impl Terminal {
     /// Waits until the program has set raw mode.
     pub fn wait_until_raw(&mut self) {
         let path = self.path();
-        let is_raw = || !settings_of(&path, &["-a"]).split_whitespace().any(|word| word == "icanon");
+        let is_raw = || !terminal_settings(&path, &["-a"]).split_whitespace().any(|word| word == "icanon");
         self.wait_until_true("raw mode", is_raw);
     }
 
@@ -145,12 +145,12 @@ impl Terminal {
     }
 
     /// Sets line mode, as a shell does.
-    pub fn cook(&self) {
-        settings_of(&self.path(), &["icanon", "echo"]);
+    pub fn set_canonical_mode(&self) {
+        terminal_settings(&self.path(), &["icanon", "echo"]);
     }
 
     fn settings(&self) -> String {
-        settings_of(&self.path(), &["-a"])
+        terminal_settings(&self.path(), &["-a"])
     }
 
     fn path(&self) -> std::path::PathBuf {
@@ -165,7 +165,7 @@ impl Terminal {
                 return status.exit_code();
             }
             while let Ok(bytes) = self.bytes.try_recv() {
-                self.take(&bytes);
+                self.process_output(&bytes);
             }
             if Instant::now() > deadline {
                 let _ = self.child.kill();
@@ -175,7 +175,7 @@ impl Terminal {
         }
     }
 
-    fn take(&mut self, bytes: &[u8]) {
+    fn process_output(&mut self, bytes: &[u8]) {
         self.screen.process(bytes);
         self.written.extend_from_slice(bytes);
     }
@@ -197,7 +197,7 @@ impl Terminal {
 
     /// Limits the size of files of the process, which acts as a full disk; `unlimited` removes the limit.
     #[cfg(target_os = "linux")]
-    pub fn bound_files(&self, bytes: &str) {
+    pub fn limit_file_size(&self, bytes: &str) {
         let arguments = ["--pid", &self.process(), &format!("--fsize={bytes}:")].map(str::to_owned);
         assert!(
             std::process::Command::new("prlimit").args(arguments).status().expect("prlimit runs").success()
@@ -218,29 +218,29 @@ impl Terminal {
     }
 
     /// Waits for the end of a process that was killed.
-    pub fn killed(mut self) {
+    pub fn wait_for_killed(mut self) {
         self.exit_code();
     }
 
     /// Waits for the end; returns the exit code and the last screen.
-    pub fn end(mut self) -> (u32, String) {
+    pub fn wait_for_end(mut self) -> (u32, String) {
         let code = self.exit_code();
         while let Ok(bytes) = self.bytes.recv_timeout(Duration::from_secs(5)) {
-            self.take(&bytes);
+            self.process_output(&bytes);
         }
         assert!(!self.screen.screen().alternate_screen(), "the terminal is not restored");
         (code, self.screen.screen().contents())
     }
 }
 
-fn settings_of(terminal: &Path, arguments: &[&str]) -> String {
+fn terminal_settings(terminal: &Path, arguments: &[&str]) -> String {
     let device = std::fs::File::open(terminal).expect("the terminal opens");
     let answer = std::process::Command::new("stty").args(arguments).stdin(device).output();
     String::from_utf8(answer.expect("stty runs").stdout).expect("text")
 }
 
 /// Plays a policy and saves the run in a folder.
-pub fn run_of(runs: &Path, arguments: &[&str]) {
+pub fn play_policy(runs: &Path, arguments: &[&str]) {
     let played = std::process::Command::new(env!("CARGO_BIN_EXE_novamind"))
         .arg("run")
         .args(arguments)

@@ -35,7 +35,7 @@ fn what_was_typed_survives_a_kill_of_the_console() {
         std::fs::read_to_string(&drafts).is_ok_and(|text| text.contains("we wait for leads"))
     });
     terminal.signal("-KILL");
-    terminal.killed();
+    terminal.wait_for_killed();
     let mut terminal = Terminal::start(runs.path(), &["--run", "latest"], (100, 30));
     terminal.wait_for("Unsent when");
     terminal.wait_for("we wait for leads");
@@ -44,7 +44,7 @@ fn what_was_typed_survives_a_kill_of_the_console() {
     terminal.type_keys("n\r");
     terminal.wait_for("we wait for leads");
     terminal.signal("-TERM");
-    terminal.end();
+    terminal.wait_for_end();
     assert!(drafts.exists(), "after a signal it stays for the next session");
 }
 
@@ -61,7 +61,7 @@ fn every_end_of_a_session_has_its_cause() {
         let mut terminal = Terminal::start(runs.path(), arguments, (100, 30));
         terminal.wait_for(if arguments.contains(&"--plain") { "day 0>" } else { "day 0/500" });
         terminal.signal(signal);
-        let (code, _) = terminal.end();
+        let (code, _) = terminal.wait_for_end();
         assert!(code > 128, "{arguments:?} {signal}: {code}");
         let events = presence(runs.path());
         assert_eq!(events.first(), Some(&(PresenceEvent::Opened, None)), "{arguments:?} {signal}");
@@ -79,7 +79,7 @@ fn a_suspended_console_says_so() {
     terminal.signal("-CONT");
     terminal.wait_until_raw();
     terminal.type_keys("\x03");
-    terminal.end();
+    terminal.wait_for_end();
     let events: Vec<PresenceEvent> = presence(runs.path()).into_iter().map(|(event, _)| event).collect();
     use PresenceEvent::{Closed, Opened, Resumed, Suspended};
     assert_eq!(events, [Opened, Suspended, Resumed, Closed]);

@@ -1,211 +1,213 @@
 //! The what-if page: edits decisions from a week on and compares the results.
 
+mod comparison;
 mod decisions;
-mod outcome;
 
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
-use super::{Dialog, Outcome};
+use super::{Dialog, DialogResponse};
 use crate::action::{Action, Scope};
-use crate::context::Look;
+use crate::context::ScreenContext;
 use crate::effect::Effect;
-use decisions::Decisions;
-use novamind_insight::FORMS;
-use novamind_tools::Refusal;
-use novamind_tui::canvas::{Canvas, centered};
+use comparison::ComparisonView;
+use decisions::DecisionList;
+use novamind_insight::EDIT_SYNTAX;
+use novamind_tools::Rejection;
+use novamind_tui::canvas::{Canvas, centered_rect};
 use novamind_tui::theme::Role;
-use novamind_worker::asking::{Ask, Pending};
-use novamind_worker::branches::{BranchesFound, BranchesQuestion};
+use novamind_worker::branches::{BranchesAnswer, BranchesQuestion};
+use novamind_worker::question::{OutgoingQuestion, Pending};
 use novamind_worker::request::Request;
-use outcome::Figures;
 
-const FUTURES: u32 = 20;
+const FUTURE_COUNT: u32 = 20;
 
-enum Page {
+enum BranchesView {
     Decisions,
-    Working,
-    Figures(Box<Figures>),
+    Simulating,
+    Comparison(Box<ComparisonView>),
 }
 
 /// The what-if page.
 pub struct BranchesPage {
-    decisions: Decisions,
-    page: Page,
+    decisions: DecisionList,
+    page: BranchesView,
     asked: Pending<BranchesQuestion>,
     problem: Option<String>,
 }
 
 impl BranchesPage {
     /// Opens the page at `week`, which the user can move up to `last_week`. Requests the recorded decisions.
-    pub fn new(week: u32, last_week: u32) -> (BranchesPage, Ask) {
-        let (asked, ask) = Pending::asking(BranchesQuestion::Decisions);
-        let decisions = Decisions::new(week, last_week);
-        (BranchesPage { decisions, page: Page::Decisions, asked, problem: None }, ask)
+    pub fn new(week: u32, last_week: u32) -> (BranchesPage, OutgoingQuestion) {
+        let (asked, ask) = Pending::with_question(BranchesQuestion::Decisions);
+        let decisions = DecisionList::new(week, last_week);
+        (BranchesPage { decisions, page: BranchesView::Decisions, asked, problem: None }, ask)
     }
 
-    fn ask(&mut self, futures: Option<u32>) -> Outcome {
+    fn request_comparison(&mut self, futures: Option<u32>) -> DialogResponse {
         let alternatives = self.decisions.alternatives();
         if alternatives.is_empty() {
-            self.problem = Some(format!("change a decision first; for example {}", FORMS[0]));
-            return Outcome::stay();
+            self.problem = Some(format!("change a decision first; for example {}", EDIT_SYNTAX[0]));
+            return DialogResponse::stay();
         }
-        self.page = Page::Working;
+        self.page = BranchesView::Simulating;
         let question = BranchesQuestion::Compare { week: self.decisions.week(), alternatives, futures };
-        Outcome::with(vec![Effect::Ask(self.asked.ask(question))])
+        DialogResponse::stay_with(vec![Effect::Ask(self.asked.ask(question))])
     }
 
-    fn leave(&mut self) -> Outcome {
+    fn go_back(&mut self) -> DialogResponse {
         match self.page {
-            Page::Decisions => Outcome::close(),
-            Page::Working => {
+            BranchesView::Decisions => DialogResponse::close(),
+            BranchesView::Simulating => {
                 self.asked.cancel();
-                self.page = Page::Decisions;
-                Outcome::stay()
+                self.page = BranchesView::Decisions;
+                DialogResponse::stay()
             }
-            Page::Figures(_) => {
-                self.page = Page::Decisions;
-                Outcome::stay()
+            BranchesView::Comparison(_) => {
+                self.page = BranchesView::Decisions;
+                DialogResponse::stay()
             }
         }
     }
 
-    fn adopt(&mut self) -> Outcome {
-        let Page::Figures(figures) = &self.page else { return Outcome::stay() };
+    fn adopt_selected(&mut self) -> DialogResponse {
+        let BranchesView::Comparison(figures) = &self.page else { return DialogResponse::stay() };
         let (week, edits) = (self.decisions.week(), figures.selected_edits());
-        Outcome::close_with(vec![Effect::Request(Request::AdoptBranch { week, edits })])
+        DialogResponse::confirm_with(vec![Effect::Request(Request::AdoptBranch { week, edits })])
     }
 
-    fn take(&mut self, found: Result<BranchesFound, Refusal>) {
+    fn set_result(&mut self, found: Result<BranchesAnswer, Rejection>) {
         match found {
-            Ok(BranchesFound::Decisions(calls, days)) => self.decisions.take(calls, days),
-            Ok(BranchesFound::Compared(comparison, futures)) => {
+            Ok(BranchesAnswer::Decisions(calls, days)) => self.decisions.set_recorded(calls, days),
+            Ok(BranchesAnswer::Compared(comparison, futures)) => {
                 let figure = match &self.page {
-                    Page::Figures(figures) => figures.figure(),
+                    BranchesView::Comparison(figures) => figures.figure(),
                     _ => 0,
                 };
                 let days = self.decisions.days_per_week();
-                let figures = Figures::new(*comparison, futures.map(|own| *own), days, figure);
-                self.page = Page::Figures(Box::new(figures));
+                let figures = ComparisonView::new(*comparison, futures.map(|own| *own), days, figure);
+                self.page = BranchesView::Comparison(Box::new(figures));
             }
             Err(refusal) => {
                 self.problem = Some(refusal.message);
-                self.decisions.refuse();
-                self.page = Page::Decisions;
+                self.decisions.mark_rejected();
+                self.page = BranchesView::Decisions;
             }
         }
     }
 }
 
 impl Dialog for BranchesPage {
-    fn what(&self) -> String {
+    fn record_name(&self) -> String {
         format!("what if, week {}", self.decisions.week())
     }
 
     fn step(&self) -> Option<&'static str> {
         Some(match self.page {
-            Page::Decisions => "decisions",
-            Page::Working => "simulating",
-            Page::Figures(_) => "figures",
+            BranchesView::Decisions => "decisions",
+            BranchesView::Simulating => "simulating",
+            BranchesView::Comparison(_) => "figures",
         })
     }
 
     fn scopes(&self) -> Vec<Scope> {
         match self.page {
-            Page::Decisions if self.decisions.is_typing() => vec![Scope::Field],
-            Page::Decisions => vec![Scope::Decisions, Scope::List, Scope::Dialog],
-            Page::Working => vec![Scope::Dialog],
-            Page::Figures(_) => vec![Scope::Branches, Scope::List, Scope::Dialog],
+            BranchesView::Decisions if self.decisions.is_typing() => vec![Scope::Field],
+            BranchesView::Decisions => vec![Scope::Decisions, Scope::List, Scope::Dialog],
+            BranchesView::Simulating => vec![Scope::Dialog],
+            BranchesView::Comparison(_) => vec![Scope::Branches, Scope::List, Scope::Dialog],
         }
     }
 
     fn hints(&self) -> Vec<Action> {
         match self.page {
-            Page::Decisions if self.decisions.is_typing() => vec![Action::Commit, Action::Discard],
-            Page::Decisions => vec![
+            BranchesView::Decisions if self.decisions.is_typing() => vec![Action::Commit, Action::Discard],
+            BranchesView::Decisions => vec![
                 Action::AddDecision,
-                Action::DropDecision,
+                Action::OmitDecision,
                 Action::SimulateBranches,
                 Action::NextAlternative,
                 Action::Open,
                 Action::Close,
             ],
-            Page::Working => vec![Action::Cancel],
-            Page::Figures(_) => {
-                vec![Action::NextFigure, Action::DrawFutures, Action::AdoptBranch, Action::Close]
+            BranchesView::Simulating => vec![Action::Cancel],
+            BranchesView::Comparison(_) => {
+                vec![Action::NextFigure, Action::SimulateFutures, Action::AdoptBranch, Action::Close]
             }
         }
     }
 
-    fn act(&mut self, action: Action, _: &Look<'_>) -> Outcome {
+    fn handle_action(&mut self, action: Action, _: &ScreenContext<'_>) -> DialogResponse {
         self.problem = None;
         match (&mut self.page, action) {
-            (_, Action::Close | Action::Cancel) => return self.leave(),
-            (Page::Decisions, Action::SimulateBranches) => return self.ask(None),
-            (Page::Figures(_), Action::DrawFutures) => return self.ask(Some(FUTURES)),
-            (Page::Figures(_), Action::AdoptBranch) => return self.adopt(),
-            (Page::Decisions, action) => self.problem = self.decisions.act(action).err(),
-            (Page::Figures(figures), action) => figures.act(action),
-            (Page::Working, _) => {}
+            (_, Action::Close | Action::Cancel) => return self.go_back(),
+            (BranchesView::Decisions, Action::SimulateBranches) => return self.request_comparison(None),
+            (BranchesView::Comparison(_), Action::SimulateFutures) => {
+                return self.request_comparison(Some(FUTURE_COUNT));
+            }
+            (BranchesView::Comparison(_), Action::AdoptBranch) => return self.adopt_selected(),
+            (BranchesView::Decisions, action) => self.problem = self.decisions.handle_action(action).err(),
+            (BranchesView::Comparison(figures), action) => figures.handle_action(action),
+            (BranchesView::Simulating, _) => {}
         }
-        Outcome::stay()
+        DialogResponse::stay()
     }
 
-    fn key(&mut self, key: &KeyEvent, _: &Look<'_>) -> Outcome {
+    fn handle_key(&mut self, key: &KeyEvent, _: &ScreenContext<'_>) -> DialogResponse {
         self.problem = None;
-        self.decisions.key(key);
-        Outcome::stay()
+        self.decisions.handle_key(key);
+        DialogResponse::stay()
     }
 
-    fn paste(&mut self, text: &str, _: &Look<'_>) -> Outcome {
+    fn paste(&mut self, text: &str, _: &ScreenContext<'_>) -> DialogResponse {
         self.decisions.paste(text);
-        Outcome::stay()
+        DialogResponse::stay()
     }
 
     fn take_answers(&mut self) {
         if let Some((_, found)) = self.asked.try_take() {
-            self.take(found);
+            self.set_result(found);
         }
     }
 
-    fn click(&mut self, row: usize, _: &Look<'_>) -> Outcome {
+    fn handle_click(&mut self, row: usize, _: &ScreenContext<'_>) -> DialogResponse {
         match &mut self.page {
-            Page::Decisions => self.decisions.select(row),
-            Page::Figures(figures) => figures.select(row),
-            Page::Working => {}
+            BranchesView::Decisions => self.decisions.select(row),
+            BranchesView::Comparison(figures) => figures.select(row),
+            BranchesView::Simulating => {}
         }
-        Outcome::stay()
+        DialogResponse::stay()
     }
 
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
-        let own = centered(area, area.width.saturating_sub(2).min(140), area.height.saturating_sub(2));
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+        let own = centered_rect(area, area.width.saturating_sub(2).min(140), area.height.saturating_sub(2));
         canvas.clear(own, Role::Text);
         let week = self.decisions.week();
-        let inside = canvas.pane(own, &format!("What if, from week {week}"), &self.note(), true);
+        let inside = canvas.draw_pane_frame(own, &format!("What if, from week {week}"), &self.note(), true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         let below = self.problem.as_ref().map_or(0, |_| 1).min(inside.height);
         let page = Rect { height: inside.height - below, ..inside };
         match &self.page {
-            Page::Decisions => self.decisions.draw(canvas, page),
-            Page::Working => {
+            BranchesView::Decisions => self.decisions.draw(canvas, page),
+            BranchesView::Simulating => {
                 let (done, all) = self.asked.progress().unwrap_or_default();
                 let share = 100 * done / all.max(1);
-                canvas.text(page, &format!("simulating days again: {share} % …"), Role::Warning);
+                canvas.draw_text(page, &format!("simulating days again: {share} % …"), Role::Warning);
             }
-            Page::Figures(figures) => figures.draw(canvas, page),
+            BranchesView::Comparison(figures) => figures.draw(canvas, page),
         }
         if let Some(problem) = &self.problem {
             let row = Rect { y: page.y + page.height, height: below, ..inside };
-            canvas.text(row, problem, Role::Bad);
+            canvas.draw_text(row, problem, Role::Bad);
         }
-        canvas.pane_keys(own, &look.hints(&self.hints()));
+        canvas.draw_pane_keys(own, &look.hints(&self.hints()));
     }
 }
 
 impl BranchesPage {
     fn note(&self) -> String {
         match &self.page {
-            Page::Figures(figures) => figures.note(),
+            BranchesView::Comparison(figures) => figures.note(),
             _ => self.decisions.note(),
         }
     }

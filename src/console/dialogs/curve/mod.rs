@@ -8,122 +8,126 @@ mod tests;
 use ratatui::layout::Rect;
 use serde_json::{Map, Value, json};
 
-use super::{Dialog, Outcome};
+use super::{Dialog, DialogResponse};
 use crate::action::{Action, Scope};
-use crate::context::Look;
+use crate::context::ScreenContext;
 use crate::effect::Effect;
 use novamind_insight::{CurveExplorer, CurveOutcome, PlanPoint};
 use novamind_session::identifiers::{ByPlan, Group, Plan};
-use novamind_tools::{Refusal, ToolId};
+use novamind_tools::{Rejection, ToolId};
 use novamind_tui::canvas::Canvas;
-use novamind_worker::asking::{Ask, Pending};
-use novamind_worker::questions::CurveQuestion;
+use novamind_worker::page_questions::CurveQuestion;
+use novamind_worker::question::{OutgoingQuestion, Pending};
 
 /// Step by which qualities are changed; page keys change by ten steps.
 const QUALITY_STEP: f64 = 0.01;
-const MOST_QUALITY: f64 = 2.0;
+const MAX_QUALITY: f64 = 2.0;
 
-struct ExploredCurve {
+struct CurveExploration {
     explorer: CurveExplorer,
     plans: ByPlan<PlanPoint>,
     outcome: CurveOutcome,
 }
 
 /// The curve explorer.
-pub struct CurvePage {
+pub struct CurveDialog {
     group: Group,
     asked: Pending<CurveQuestion>,
     /// The curve, or `None` while it is computed.
-    found: Option<Result<ExploredCurve, Refusal>>,
+    exploration: Option<Result<CurveExploration, Rejection>>,
     /// The dragged plan; `None` for all plans.
-    chosen: Option<Plan>,
+    selected_plan: Option<Plan>,
 }
 
-impl CurvePage {
+impl CurveDialog {
     /// Requests the curve of a group.
-    pub fn new(group: Group) -> (CurvePage, Ask) {
-        let (asked, ask) = Pending::asking(CurveQuestion(group));
-        (CurvePage { group, asked, found: None, chosen: Some(Plan::A) }, ask)
+    pub fn new(group: Group) -> (CurveDialog, OutgoingQuestion) {
+        let (asked, ask) = Pending::with_question(CurveQuestion(group));
+        (CurveDialog { group, asked, exploration: None, selected_plan: Some(Plan::A) }, ask)
     }
 
-    fn take(&mut self, explorer: CurveExplorer) -> ExploredCurve {
+    fn set_result(&mut self, explorer: CurveExplorer) -> CurveExploration {
         let plans = explorer.plans;
         let outcome = explorer.outcome(&plans);
         // Plans with the same quality and price move together.
         if Plan::ALL.iter().all(|plan| plans[*plan] == plans[Plan::A]) {
-            self.chosen = None;
+            self.selected_plan = None;
         }
-        ExploredCurve { explorer, plans, outcome }
+        CurveExploration { explorer, plans, outcome }
     }
 
-    fn opened(&self) -> Option<&ExploredCurve> {
-        self.found.as_ref()?.as_ref().ok()
+    fn successful_exploration(&self) -> Option<&CurveExploration> {
+        self.exploration.as_ref()?.as_ref().ok()
     }
 
     /// Changes the selected plan or all plans, and recomputes the responses of leads.
-    fn drag(&mut self, change: impl Fn(&mut PlanPoint)) {
-        let chosen = self.chosen;
-        let Some(Ok(opened)) = &mut self.found else { return };
+    fn adjust_plans(&mut self, change: impl Fn(&mut PlanPoint)) {
+        let chosen = self.selected_plan;
+        let Some(Ok(opened)) = &mut self.exploration else { return };
         for plan in Plan::ALL.into_iter().filter(|plan| chosen.is_none_or(|own| own == *plan)) {
             change(&mut opened.plans[plan]);
         }
         opened.outcome = opened.explorer.outcome(&opened.plans);
     }
 
-    fn drag_price(&mut self, steps: f64) {
-        let Some(most) = self.opened().map(ExploredCurve::greatest_price) else { return };
+    fn adjust_price(&mut self, steps: f64) {
+        let Some(most) = self.successful_exploration().map(CurveExploration::max_price) else { return };
         let step = price_step(most);
-        self.drag(|own| own.list = stepped(own.list, steps, step).clamp(0.0, most));
+        self.adjust_plans(|own| {
+            own.list_price = step_to_multiple(own.list_price, steps, step).clamp(0.0, most)
+        });
     }
 
-    fn drag_quality(&mut self, steps: f64) {
-        self.drag(|own| own.quality = stepped(own.quality, steps, QUALITY_STEP).clamp(0.0, MOST_QUALITY));
+    fn adjust_quality(&mut self, steps: f64) {
+        self.adjust_plans(|own| {
+            own.quality = step_to_multiple(own.quality, steps, QUALITY_STEP).clamp(0.0, MAX_QUALITY)
+        });
     }
 
     fn reset(&mut self) {
-        if let Some(Ok(opened)) = &mut self.found {
+        if let Some(Ok(opened)) = &mut self.exploration {
             opened.plans = opened.explorer.plans;
             opened.outcome = opened.explorer.outcome(&opened.plans);
         }
     }
 
     /// Selects the next of A, B, C and all plans.
-    fn choose_next(&mut self) {
-        self.chosen = match self.chosen {
+    fn select_next_plan(&mut self) {
+        self.selected_plan = match self.selected_plan {
             None => Some(Plan::A),
             Some(plan) => Plan::ALL.into_iter().skip_while(|own| *own != plan).nth(1),
         };
     }
 
     /// Requests the curve of the next or previous known group.
-    fn turn(&mut self, forward: bool, look: &Look<'_>) -> Outcome {
-        let known = &look.company.seen.known_groups;
-        let Some(at) = known.iter().position(|own| *own == self.group) else { return Outcome::stay() };
+    fn change_group(&mut self, forward: bool, look: &ScreenContext<'_>) -> DialogResponse {
+        let known = &look.company.observation.known_groups;
+        let Some(at) = known.iter().position(|own| *own == self.group) else { return DialogResponse::stay() };
         let step = if forward { 1 } else { known.len() - 1 };
         self.group = known[(at + step) % known.len()];
-        self.found = None;
-        Outcome::with(vec![Effect::Ask(self.asked.ask(CurveQuestion(self.group)))])
+        self.exploration = None;
+        DialogResponse::stay_with(vec![Effect::Ask(self.asked.ask(CurveQuestion(self.group)))])
     }
 
     /// Opens the price form with the dragged prices filled in.
-    fn to_form(&self) -> Outcome {
-        let Some(opened) = self.opened() else { return Outcome::stay() };
-        let moved = |plan: &Plan| opened.plans[*plan].list != opened.explorer.plans[*plan].list;
+    fn open_price_form(&self) -> DialogResponse {
+        let Some(opened) = self.successful_exploration() else { return DialogResponse::stay() };
+        let moved = |plan: &Plan| opened.plans[*plan].list_price != opened.explorer.plans[*plan].list_price;
         let prices: Map<String, Value> = Plan::ALL
             .into_iter()
             .filter(moved)
-            .map(|plan| (plan.id().to_owned(), json!(opened.plans[plan].list)))
+            .map(|plan| (plan.id().to_owned(), json!(opened.plans[plan].list_price)))
             .collect();
         let form = match prices.is_empty() {
             true => Effect::ShowTool(ToolId::SetPrices),
             false => Effect::Prefill { tool: ToolId::SetPrices, arguments: Value::Object(prices) },
         };
-        Outcome::close_with(vec![Effect::CloseDialogs, form])
+        DialogResponse::confirm_with(vec![Effect::CloseDialogs, form])
     }
 }
 
-impl ExploredCurve {
-    fn greatest_price(&self) -> f64 {
+impl CurveExploration {
+    fn max_price(&self) -> f64 {
         self.explorer.points.last().map_or(1.0, |point| point.price)
     }
 }
@@ -138,15 +142,15 @@ fn price_step(most: f64) -> f64 {
 }
 
 /// Moves a value by whole steps along the multiples of `step`.
-fn stepped(value: f64, steps: f64, step: f64) -> f64 {
+fn step_to_multiple(value: f64, steps: f64, step: f64) -> f64 {
     let at = value / step;
     // From between two multiples, the first step goes to the nearest one in its direction.
     let from = if steps > 0.0 { (at + 1e-9).floor() } else { (at - 1e-9).ceil() };
     (from + steps) * step
 }
 
-impl Dialog for CurvePage {
-    fn what(&self) -> String {
+impl Dialog for CurveDialog {
+    fn record_name(&self) -> String {
         format!("curve of {}", self.group)
     }
 
@@ -159,7 +163,7 @@ impl Dialog for CurvePage {
     }
 
     fn hints(&self) -> Vec<Action> {
-        match self.opened() {
+        match self.successful_exploration() {
             Some(_) => {
                 vec![Action::NextPlan, Action::NextCurve, Action::ResetCurve, Action::Open, Action::Close]
             }
@@ -167,36 +171,38 @@ impl Dialog for CurvePage {
         }
     }
 
-    fn act(&mut self, action: Action, look: &Look<'_>) -> Outcome {
+    fn handle_action(&mut self, action: Action, look: &ScreenContext<'_>) -> DialogResponse {
         match action {
-            Action::Close | Action::Cancel => return Outcome::close(),
-            Action::NextCurve | Action::PreviousCurve => return self.turn(action == Action::NextCurve, look),
-            Action::Open | Action::Confirm => return self.to_form(),
-            Action::Left => self.drag_price(-1.0),
-            Action::Right => self.drag_price(1.0),
-            Action::Up | Action::ScrollUp => self.drag_quality(1.0),
-            Action::Down | Action::ScrollDown => self.drag_quality(-1.0),
-            Action::PageUp => self.drag_quality(10.0),
-            Action::PageDown => self.drag_quality(-10.0),
-            Action::NextPlan => self.choose_next(),
+            Action::Close | Action::Cancel => return DialogResponse::close(),
+            Action::NextCurve | Action::PreviousCurve => {
+                return self.change_group(action == Action::NextCurve, look);
+            }
+            Action::Open | Action::Confirm => return self.open_price_form(),
+            Action::Left => self.adjust_price(-1.0),
+            Action::Right => self.adjust_price(1.0),
+            Action::Up | Action::ScrollUp => self.adjust_quality(1.0),
+            Action::Down | Action::ScrollDown => self.adjust_quality(-1.0),
+            Action::PageUp => self.adjust_quality(10.0),
+            Action::PageDown => self.adjust_quality(-10.0),
+            Action::NextPlan => self.select_next_plan(),
             Action::ResetCurve => self.reset(),
             _ => {}
         }
-        Outcome::stay()
+        DialogResponse::stay()
     }
 
     fn take_answers(&mut self) {
         if let Some((_, found)) = self.asked.try_take() {
-            self.found = Some(found.map(|explorer| self.take(explorer)));
+            self.exploration = Some(found.map(|explorer| self.set_result(explorer)));
         }
     }
 
-    fn click(&mut self, row: usize, _: &Look<'_>) -> Outcome {
-        self.chosen = Plan::ALL.get(row).copied();
-        Outcome::stay()
+    fn handle_click(&mut self, row: usize, _: &ScreenContext<'_>) -> DialogResponse {
+        self.selected_plan = Plan::ALL.get(row).copied();
+        DialogResponse::stay()
     }
 
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
         self.draw_page(canvas, area, look);
     }
 }

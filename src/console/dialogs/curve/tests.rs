@@ -1,74 +1,74 @@
 //! Tests of the curve explorer: keys drag plans, the responses change, and nothing is set.
 
 use super::*;
-use crate::test_kit::{asked, dialog_picture, in_dialog, played};
+use crate::test_kit::{asked, dialog_action, dialog_text, played_session};
 use novamind_insight::CurveExplorer;
-use novamind_worker::company::Company;
+use novamind_worker::company::DisplayedCompany;
 
-fn explored(group: &str) -> (CurvePage, Company) {
-    let mut session = played(1);
+fn explored_page(group: &str) -> (CurveDialog, DisplayedCompany) {
+    let mut session = played_session(1);
     let group = Group::parse(group).expect("a group");
-    let (mut page, _) = CurvePage::new(group);
-    page.asked.put(CurveExplorer::of(&mut session, group));
+    let (mut page, _) = CurveDialog::new(group);
+    page.asked.set_answer(CurveExplorer::open(&mut session, group));
     page.take_answers();
-    (page, Company::of(&session))
+    (page, DisplayedCompany::from_session(&session))
 }
 
 #[test]
-fn prices_and_qualities_are_dragged_and_the_leads_asked_again() {
-    let (mut page, company) = explored("S1");
-    let before = page.opened().expect("a curve").outcome;
-    let list = page.opened().expect("a curve").plans[Plan::A].list;
-    in_dialog(&mut page, Action::Right, &company);
-    in_dialog(&mut page, Action::Right, &company);
-    in_dialog(&mut page, Action::PageUp, &company);
-    let opened = page.opened().expect("a curve");
-    assert_eq!(opened.plans[Plan::A].list, list.floor() + 2.0);
+fn adjusting_a_plan_updates_the_outcome() {
+    let (mut page, company) = explored_page("S1");
+    let before = page.successful_exploration().expect("a curve").outcome;
+    let list = page.successful_exploration().expect("a curve").plans[Plan::A].list_price;
+    dialog_action(&mut page, Action::Right, &company);
+    dialog_action(&mut page, Action::Right, &company);
+    dialog_action(&mut page, Action::PageUp, &company);
+    let opened = page.successful_exploration().expect("a curve");
+    assert_eq!(opened.plans[Plan::A].list_price, list.floor() + 2.0);
     assert_eq!(opened.plans[Plan::B], opened.explorer.plans[Plan::B]);
     assert_ne!(opened.outcome, before);
     // Drags all plans together, then resets them.
     for _ in 0..3 {
-        in_dialog(&mut page, Action::NextPlan, &company);
+        dialog_action(&mut page, Action::NextPlan, &company);
     }
-    assert_eq!(page.chosen, None);
-    in_dialog(&mut page, Action::Down, &company);
-    let opened = page.opened().expect("a curve");
+    assert_eq!(page.selected_plan, None);
+    dialog_action(&mut page, Action::Down, &company);
+    let opened = page.successful_exploration().expect("a curve");
     assert!(Plan::ALL.iter().all(|plan| opened.plans[*plan].quality != opened.explorer.plans[*plan].quality));
-    in_dialog(&mut page, Action::ResetCurve, &company);
-    assert_eq!(page.opened().expect("a curve").outcome, before);
+    dialog_action(&mut page, Action::ResetCurve, &company);
+    assert_eq!(page.successful_exploration().expect("a curve").outcome, before);
     for _ in 0..400 {
-        in_dialog(&mut page, Action::Left, &company);
-        in_dialog(&mut page, Action::Down, &company);
+        dialog_action(&mut page, Action::Left, &company);
+        dialog_action(&mut page, Action::Down, &company);
     }
-    let lowest = page.opened().expect("a curve").plans[Plan::C];
-    assert_eq!((lowest.list, lowest.quality), (0.0, 0.0));
+    let lowest = page.successful_exploration().expect("a curve").plans[Plan::C];
+    assert_eq!((lowest.list_price, lowest.quality), (0.0, 0.0));
 }
 
 #[test]
-fn what_was_dragged_is_typed_into_the_form_and_nothing_is_set() {
-    let (mut page, company) = explored("S1");
-    let shown = in_dialog(&mut page, Action::Open, &company);
+fn adjusted_prices_fill_the_form_without_a_call() {
+    let (mut page, company) = explored_page("S1");
+    let shown = dialog_action(&mut page, Action::Open, &company);
     assert!(matches!(shown.effects[..], [Effect::CloseDialogs, Effect::ShowTool(ToolId::SetPrices)]));
-    in_dialog(&mut page, Action::Right, &company);
-    let shown = in_dialog(&mut page, Action::Open, &company);
+    dialog_action(&mut page, Action::Right, &company);
+    let shown = dialog_action(&mut page, Action::Open, &company);
     assert!(
         matches!(&shown.effects[..], [Effect::CloseDialogs, Effect::Prefill { tool: ToolId::SetPrices, arguments }]
             if arguments.as_object().is_some_and(|own| own.len() == 1 && own.contains_key("A")))
     );
-    let next = in_dialog(&mut page, Action::NextCurve, &company);
+    let next = dialog_action(&mut page, Action::NextCurve, &company);
     assert_eq!(asked::<CurveQuestion>(&next.effects).0.id(), "S2");
-    assert!(dialog_picture(&page, &company, 80, 21).contains("asking 2000 leads"));
-    let back = in_dialog(&mut page, Action::PreviousCurve, &company);
+    assert!(dialog_text(&page, &company, 80, 21).contains("asking 2000 leads"));
+    let back = dialog_action(&mut page, Action::PreviousCurve, &company);
     assert_eq!(asked::<CurveQuestion>(&back.effects).0.id(), "S1");
-    assert!(in_dialog(&mut page, Action::Close, &company).close);
+    assert!(dialog_action(&mut page, Action::Close, &company).closes);
 }
 
 #[test]
-fn every_window_has_its_page() {
+fn page_is_drawn_at_every_size() {
     for group in ["S1", "E1"] {
-        let (page, company) = explored(group);
+        let (page, company) = explored_page(group);
         for (width, height) in [(0, 0), (2, 2), (20, 5), (60, 13), (60, 16), (80, 24), (120, 40), (200, 60)] {
-            let picture = dialog_picture(&page, &company, width, height);
+            let picture = dialog_text(&page, &company, width, height);
             if width >= 60 {
                 for words in ["urve of", "estimates of day 0, ±65%", "half", "left right price"] {
                     assert!(picture.contains(words), "{words} in {picture}");
@@ -76,20 +76,24 @@ fn every_window_has_its_page() {
             }
         }
     }
-    let (mut page, _) = CurvePage::new(Group::parse("D_S05").expect("a group"));
-    let refused = Refusal::new("group_not_discovered", "group D_S05 is not known yet");
-    page.asked.put(Err(refused));
+    let (mut page, _) = CurveDialog::new(Group::parse("D_S05").expect("a group"));
+    let refused = Rejection::new("group_not_discovered", "group D_S05 is not known yet");
+    page.asked.set_answer(Err(refused));
     page.take_answers();
-    let company = explored("S1").1;
-    assert!(dialog_picture(&page, &company, 60, 16).contains("not known yet"));
+    let company = explored_page("S1").1;
+    assert!(dialog_text(&page, &company, 60, 16).contains("not known yet"));
 }
 
 #[test]
-fn steps_lead_to_round_values() {
+fn steps_reach_round_values() {
     assert_eq!(
-        (stepped(12.5, 1.0, 1.0), stepped(12.5, -1.0, 1.0), stepped(12.0, 1.0, 1.0)),
+        (
+            step_to_multiple(12.5, 1.0, 1.0),
+            step_to_multiple(12.5, -1.0, 1.0),
+            step_to_multiple(12.0, 1.0, 1.0)
+        ),
         (13.0, 12.0, 13.0)
     );
-    assert!((stepped(0.1234, 1.0, 0.01) - 0.13).abs() < 1e-12);
+    assert!((step_to_multiple(0.1234, 1.0, 0.01) - 0.13).abs() < 1e-12);
     assert_eq!((price_step(90.0), price_step(300.0), price_step(900.0)), (1.0, 2.0, 5.0));
 }

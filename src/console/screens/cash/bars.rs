@@ -4,21 +4,21 @@ use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 use ratatui::symbols::Marker;
 
-use super::model::{Amounts, Books, CATEGORIES, COUNT, money, side};
+use super::model::{Amounts, WeeklyLedger, CATEGORIES, CATEGORY_COUNT, format_money, sum_side};
 use super::{Cash, ledger_rows, week_keys};
 use crate::action::Action;
-use crate::context::{Figure, Look};
+use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
-use crate::screens::panes::{Border, Pane, Seat};
-use novamind_tui::canvas::{Align, Canvas, Click, fit};
+use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
+use novamind_tui::canvas::{Align, Canvas, Click, truncate_to_width};
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::Unit;
+use novamind_tui::widgets::AxisUnit;
 use novamind_tui::widgets::scale::ticks;
 
 /// Minimum width of a week, with the gap.
-const NARROWEST: u16 = 3;
-const WIDEST: u16 = 9;
-const SIDE: u16 = 8;
+const MIN_WEEK_WIDTH: u16 = 3;
+const MAX_WEEK_WIDTH: u16 = 9;
+const AXIS_WIDTH: u16 = 8;
 
 pub struct BarsPane;
 
@@ -27,88 +27,88 @@ impl Pane<Cash> for BarsPane {
         vec![Action::Left, Action::Right, Action::Open]
     }
 
-    fn figure(&self, cash: &Cash, _: &Look<'_>) -> Option<Figure> {
-        cash.figure_of(cash.subject_of_week())
+    fn figure(&self, cash: &Cash, _: &ScreenContext<'_>) -> Option<Figure> {
+        cash.figure_of(cash.selected_subject_in_week())
     }
 
-    fn act(&self, cash: &mut Cash, action: Action, look: &Look<'_>) -> Vec<Effect> {
+    fn handle_action(&self, cash: &mut Cash, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
         match action {
-            Action::Open => return ledger_rows(cash.subject_of_week()),
+            Action::Open => return ledger_rows(cash.selected_subject_in_week()),
             // Up and down select the category to compare.
-            action if !cash.walk_weeks(action) => {
-                cash.table.act(action, look.page);
+            action if !cash.handle_week_action(action) => {
+                cash.table.handle_action(action, look.page_rows);
             }
             _ => {}
         }
         Vec::new()
     }
 
-    fn click(&self, cash: &mut Cash, week: usize, _: &Look<'_>) -> Vec<Effect> {
+    fn handle_click(&self, cash: &mut Cash, week: usize, _: &ScreenContext<'_>) -> Vec<Effect> {
         cash.move_week(week as i64 - i64::from(cash.week()));
         Vec::new()
     }
 
-    fn border(&self, cash: &Cash, _: Rect, look: &Look<'_>) -> Border {
+    fn border(&self, cash: &Cash, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
         let week = cash.week();
         let note = cash.subject().map_or(String::new(), |subject| {
-            let amount = subject.of(&cash.books.week(week));
-            format!("week {week}: {} {}", subject.name(), money(amount))
+            let amount = subject.amount(&cash.ledger.week(week));
+            format!("week {week}: {} {}", subject.name(), format_money(amount))
         });
-        Border {
+        PaneBorder {
             title: "Income and costs by week".to_owned(),
             note,
             keys: week_keys(look),
-            ..Border::default()
+            ..PaneBorder::default()
         }
     }
 
-    fn draw(&self, cash: &Cash, canvas: &mut Canvas<'_>, seat: Seat, _: &Look<'_>) {
-        draw(canvas, seat.area, &cash.books, cash.week(), seat.number);
+    fn draw(&self, cash: &Cash, canvas: &mut Canvas<'_>, seat: PanePlacement, _: &ScreenContext<'_>) {
+        draw(canvas, seat.area, &cash.ledger, cash.week(), seat.index);
     }
 }
 
 /// Draws the bars. `pane` is the index for clicks, whose rows are the weeks.
-fn draw(canvas: &mut Canvas<'_>, area: Rect, books: &Books, selected: u32, pane: usize) {
-    if area.width < SIDE + 2 * NARROWEST || area.height < 5 {
+fn draw(canvas: &mut Canvas<'_>, area: Rect, books: &WeeklyLedger, selected: u32, pane: usize) {
+    if area.width < AXIS_WIDTH + 2 * MIN_WEEK_WIDTH || area.height < 5 {
         return;
     }
-    let room = area.width - SIDE;
-    let weeks = books.last_weeks((room / NARROWEST) as usize);
+    let room = area.width - AXIS_WIDTH;
+    let weeks = books.last_weeks((room / MIN_WEEK_WIDTH) as usize);
     if weeks.is_empty() {
-        canvas.text(area, canvas.no_data, Role::Dim);
+        canvas.draw_text(area, canvas.empty_chart_text, Role::Dim);
         return;
     }
-    let width = (room / weeks.len() as u16).clamp(NARROWEST, WIDEST);
-    let coloured = in_colours(canvas);
+    let width = (room / weeks.len() as u16).clamp(MIN_WEEK_WIDTH, MAX_WEEK_WIDTH);
+    let coloured = has_category_colors(canvas);
     let sign =
         |category: usize| if coloured { "█".to_owned() } else { CATEGORIES[category].glyph.to_string() };
-    let legend = legend(books, area.width as usize);
+    let legend = legend_lines(books, area.width as usize);
     let legend_rows = (legend.len() as u16).min(area.height.saturating_sub(6) / 2);
     let nets = u16::from(width >= 7);
     let height = area.height - legend_rows - 1 - nets;
-    let scale = BarScale::of(&weeks, height);
+    let scale = BarScale::for_weeks(&weeks, height);
     let line = area.y + scale.above;
-    draw_side(canvas, area, &scale);
+    draw_axis(canvas, area, &scale);
     for (at, (week, amounts)) in weeks.iter().enumerate() {
-        let x = area.x + SIDE + at as u16 * width;
+        let x = area.x + AXIS_WIDTH + at as u16 * width;
         let column = Rect { x, width: width - 1, ..area };
         draw_week(canvas, column, line, amounts, &scale);
         let role = if *week == selected { Role::Selection } else { Role::Dim };
         let foot = Rect { y: area.y + height, height: 1, ..column };
-        canvas.aligned(foot, &week.to_string(), role, Align::Right);
+        canvas.draw_aligned(foot, &week.to_string(), role, Align::Right);
         if nets > 0 {
-            draw_net(canvas, Rect { y: foot.y + 1, ..foot }, amounts);
+            draw_net_label(canvas, Rect { y: foot.y + 1, ..foot }, amounts);
         }
-        canvas.click(Rect { height: height + 1, ..column }, Click::Row(pane, *week as usize));
+        canvas.register_click(Rect { height: height + 1, ..column }, Click::Row(pane, *week as usize));
     }
-    canvas.text(Rect { y: area.y + height, height: 1, width: SIDE, ..area }, "week", Role::Dim);
+    canvas.draw_text(Rect { y: area.y + height, height: 1, width: AXIS_WIDTH, ..area }, "week", Role::Dim);
     for (row, pieces) in legend.iter().take(legend_rows as usize).enumerate() {
         let mut x = area.x;
         let y = area.bottom() - legend_rows + row as u16;
         for (category, text) in pieces {
             let piece = Rect { x, y, width: area.right().saturating_sub(x), height: 1 };
-            canvas.text(piece, text, Role::Text);
-            canvas.text(
+            canvas.draw_text(piece, text, Role::Text);
+            canvas.draw_text(
                 Rect { width: 1, ..piece }.intersection(piece),
                 &sign(*category),
                 Role::Series(*category),
@@ -127,9 +127,9 @@ struct BarScale {
 }
 
 impl BarScale {
-    fn of(weeks: &[(u32, Amounts)], height: u16) -> BarScale {
+    fn for_weeks(weeks: &[(u32, Amounts)], height: u16) -> BarScale {
         let most =
-            |income: bool| weeks.iter().map(|(_, amounts)| side(amounts, income).abs()).fold(0.0, f64::max);
+            |income: bool| weeks.iter().map(|(_, amounts)| sum_side(amounts, income).abs()).fold(0.0, f64::max);
         let (income, costs) = (most(true), most(false));
         let rows = height.saturating_sub(1);
         let whole = income + costs;
@@ -151,30 +151,30 @@ impl BarScale {
 }
 
 /// Draws the zero line, and round values next to the rows in which they end.
-fn draw_side(canvas: &mut Canvas<'_>, area: Rect, scale: &BarScale) {
+fn draw_axis(canvas: &mut Canvas<'_>, area: Rect, scale: &BarScale) {
     let line = Rect { y: area.y + scale.above, height: 1, ..area };
-    canvas.text(line, &"─".repeat(area.width as usize), Role::Border);
+    canvas.draw_text(line, &"─".repeat(area.width as usize), Role::Border);
     let bounds = [-f64::from(scale.below) * scale.dollars, f64::from(scale.above) * scale.dollars];
     let marks = ticks(bounds, usize::from((scale.above + scale.below) / 2).clamp(2, 7));
     let mut taken = vec![scale.above];
-    for (value, label) in marks.iter().zip(Unit::Dollars.labels(&marks)) {
+    for (value, label) in marks.iter().zip(AxisUnit::Dollars.labels(&marks)) {
         let row = scale.row(*value);
         if *value != 0.0 && taken.contains(&row) {
             continue;
         }
         taken.push(row);
-        let place = Rect { y: area.y + row, height: 1, width: SIDE - 1, ..area };
-        canvas.aligned(place, &label, Role::Dim, Align::Right);
+        let place = Rect { y: area.y + row, height: 1, width: AXIS_WIDTH - 1, ..area };
+        canvas.draw_aligned(place, &label, Role::Dim, Align::Right);
     }
 }
 
 /// A category and where it ends in a bar, in eighths of a row from the line.
-type BarEnd = (usize, u32);
+type BarSegmentEnd = (usize, u32);
 
 /// Returns the categories on one side of a bar, from the line outwards.
-fn parts(amounts: &Amounts, income: bool, scale: &BarScale, rows: u16) -> Vec<BarEnd> {
+fn bar_segments(amounts: &Amounts, income: bool, scale: &BarScale, rows: u16) -> Vec<BarSegmentEnd> {
     let mut sum = 0.0;
-    let own = CATEGORIES.iter().enumerate().filter(|(_, category)| category.income == income);
+    let own = CATEGORIES.iter().enumerate().filter(|(_, category)| category.is_income == income);
     let end = own.map(|(at, _)| {
         sum += amounts[at].abs();
         (at, ((sum / scale.dollars * 8.0).round() as u32).min(u32::from(rows) * 8))
@@ -184,7 +184,7 @@ fn parts(amounts: &Amounts, income: bool, scale: &BarScale, rows: u16) -> Vec<Ba
 
 /// Returns the two parts drawn in a row of eighths: the category next to the line, its size, and the category
 /// beyond it.
-fn in_row(parts: &[BarEnd], row: u16) -> Option<(usize, u32, Option<usize>)> {
+fn segments_in_row(parts: &[BarSegmentEnd], row: u16) -> Option<(usize, u32, Option<usize>)> {
     let (from, to) = (u32::from(row) * 8, u32::from(row) * 8 + 8);
     let mut start = 0;
     let mut shares: Vec<(usize, u32)> = Vec::new();
@@ -209,12 +209,12 @@ fn in_row(parts: &[BarEnd], row: u16) -> Option<(usize, u32, Option<usize>)> {
 /// Draws the bar of a week: eighths of rows in the color of each category, or whole rows of glyphs if colors
 /// are not available.
 fn draw_week(canvas: &mut Canvas<'_>, column: Rect, line: u16, amounts: &Amounts, scale: &BarScale) {
-    let coloured = in_colours(canvas);
+    let coloured = has_category_colors(canvas);
     for income in [true, false] {
         let rows = if income { scale.above } else { scale.below };
-        let parts = parts(amounts, income, scale, rows);
+        let parts = bar_segments(amounts, income, scale, rows);
         for step in 0..rows {
-            let Some((near, eighths, beyond)) = in_row(&parts, step) else { continue };
+            let Some((near, eighths, beyond)) = segments_in_row(&parts, step) else { continue };
             let y = if income { line - 1 - step } else { line + 1 + step };
             let cell = Rect { y, height: 1, ..column };
             if coloured {
@@ -223,14 +223,14 @@ fn draw_week(canvas: &mut Canvas<'_>, column: Rect, line: u16, amounts: &Amounts
                 let own = if eighths >= 4 { near } else { beyond.unwrap_or(near) };
                 let text: String =
                     std::iter::repeat_n(CATEGORIES[own].glyph, column.width as usize).collect();
-                canvas.text(cell, &text, Role::Series(own));
+                canvas.draw_text(cell, &text, Role::Series(own));
             }
         }
     }
 }
 
-fn in_colours(canvas: &Canvas<'_>) -> bool {
-    canvas.marker != Marker::Dot && canvas.theme.colours_apart(COUNT)
+fn has_category_colors(canvas: &Canvas<'_>) -> bool {
+    canvas.marker != Marker::Dot && canvas.theme.has_distinct_series_colors(CATEGORY_COUNT)
 }
 
 /// Draws a cell of which some eighths next to the line belong to one category, and the rest to another or
@@ -254,19 +254,19 @@ fn draw_eighths(
     };
     let block = BLOCKS[if eighths >= 8 { 8 } else { lower as usize }];
     let cell = cell.intersection(canvas.buffer.area);
-    canvas.text(cell, &block.repeat(cell.width as usize), Role::Text);
+    canvas.draw_text(cell, &block.repeat(cell.width as usize), Role::Text);
     canvas.buffer.set_style(cell, style);
 }
 
-fn draw_net(canvas: &mut Canvas<'_>, place: Rect, amounts: &Amounts) {
+fn draw_net_label(canvas: &mut Canvas<'_>, place: Rect, amounts: &Amounts) {
     let net: f64 = amounts.iter().sum();
     let (sign, role) = if net < 0.0 { ('-', Role::Bad) } else { ('+', Role::Good) };
-    let text = format!("{sign}{}", novamind_base::notation::compact(net.abs()));
-    canvas.aligned(place, &fit(&text, place.width as usize), role, Align::Right);
+    let text = format!("{sign}{}", novamind_base::formatting::compact_number(net.abs()));
+    canvas.draw_aligned(place, &truncate_to_width(&text, place.width as usize), role, Align::Right);
 }
 
 /// Returns the lines of the legend: categories with entries, and their text.
-fn legend(books: &Books, width: usize) -> Vec<Vec<(usize, String)>> {
+fn legend_lines(books: &WeeklyLedger, width: usize) -> Vec<Vec<(usize, String)>> {
     let mut lines: Vec<Vec<(usize, String)>> = Vec::new();
     let mut used = width;
     for (at, category) in CATEGORIES.iter().enumerate() {
@@ -293,34 +293,34 @@ mod tests {
     use super::*;
 
     #[test]
-    fn both_sides_of_the_line_have_the_same_scale() {
-        let mut amounts = [0.0; super::super::model::COUNT];
+    fn income_and_costs_share_a_scale() {
+        let mut amounts = [0.0; super::super::model::CATEGORY_COUNT];
         (amounts[0], amounts[3]) = (300.0, -100.0);
-        assert_eq!(BarScale::of(&[(1, amounts)], 9), BarScale { above: 6, below: 2, dollars: 50.0 });
+        assert_eq!(BarScale::for_weeks(&[(1, amounts)], 9), BarScale { above: 6, below: 2, dollars: 50.0 });
         amounts[3] = 0.0;
-        assert_eq!(BarScale::of(&[(1, amounts)], 5), BarScale { above: 4, below: 0, dollars: 75.0 });
-        assert_eq!(BarScale::of(&[], 0).above, 0);
+        assert_eq!(BarScale::for_weeks(&[(1, amounts)], 5), BarScale { above: 4, below: 0, dollars: 75.0 });
+        assert_eq!(BarScale::for_weeks(&[], 0).above, 0);
     }
 
     #[test]
-    fn a_bar_ends_at_an_eighth_of_a_row_and_a_cell_has_two_categories_at_most() {
+    fn bars_end_at_eighths_and_cells_hold_two_categories() {
         let scale = BarScale { above: 3, below: 3, dollars: 80.0 };
-        let mut amounts = [0.0; COUNT];
+        let mut amounts = [0.0; CATEGORY_COUNT];
         (amounts[0], amounts[1]) = (90.0, 40.0);
-        let income = parts(&amounts, true, &scale, 3);
-        assert_eq!(in_row(&income, 0), Some((0, 8, None)));
-        assert_eq!(in_row(&income, 1), Some((1, 5, None)), "the empty part leaves one color for the cell");
-        assert_eq!(in_row(&income, 2), None);
+        let income = bar_segments(&amounts, true, &scale, 3);
+        assert_eq!(segments_in_row(&income, 0), Some((0, 8, None)));
+        assert_eq!(segments_in_row(&income, 1), Some((1, 5, None)), "the empty part leaves one color for the cell");
+        assert_eq!(segments_in_row(&income, 2), None);
         (amounts[3], amounts[4], amounts[5], amounts[6]) = (-20.0, -10.0, -45.0, -500.0);
-        let costs = parts(&amounts, false, &scale, 3);
-        assert_eq!(in_row(&costs, 0), Some((3, 3, Some(5))));
-        assert_eq!(in_row(&costs, 1), Some((6, 8, None)));
+        let costs = bar_segments(&amounts, false, &scale, 3);
+        assert_eq!(segments_in_row(&costs, 0), Some((3, 3, Some(5))));
+        assert_eq!(segments_in_row(&costs, 1), Some((6, 8, None)));
         assert_eq!(costs.last(), Some(&(11, 24)), "no bar exceeds its area");
     }
 
-    fn painted(theme: &str, marker: Marker) -> ratatui::buffer::Buffer {
-        use crate::test_kit::played;
-        let books = Books::of(&novamind_worker::company::Company::of(&played(6)));
+    fn draw_bars_to_buffer(theme: &str, marker: Marker) -> ratatui::buffer::Buffer {
+        use crate::test_kit::played_session;
+        let books = WeeklyLedger::from_company(&novamind_worker::company::DisplayedCompany::from_session(&played_session(6)));
         let theme = novamind_tui::theme::Theme::bundled(theme);
         let theme = theme.expect("a theme");
         let area = Rect::new(0, 0, 60, 20);
@@ -332,24 +332,24 @@ mod tests {
     }
 
     #[test]
-    fn the_net_of_a_week_stands_below_it_with_its_sign() {
-        let books = Books::of(&novamind_worker::company::Company::of(&crate::test_kit::played(6)));
+    fn net_is_drawn_below_its_week_with_a_sign() {
+        let books = WeeklyLedger::from_company(&novamind_worker::company::DisplayedCompany::from_session(&crate::test_kit::played_session(6)));
         let picture: String =
-            painted("dark", Marker::Braille).content.iter().map(|cell| cell.symbol().to_owned()).collect();
+            draw_bars_to_buffer("dark", Marker::Braille).content.iter().map(|cell| cell.symbol().to_owned()).collect();
         for (week, amounts) in books.last_weeks(6) {
             let net: f64 = amounts.iter().sum();
             let sign = if net < 0.0 { "-" } else { "+" };
-            let told = format!("{sign}{}", novamind_base::notation::compact(net.abs()));
+            let told = format!("{sign}{}", novamind_base::formatting::compact_number(net.abs()));
             assert!(picture.contains(&told), "{told} of week {week} in {picture}");
         }
     }
 
     #[test]
-    fn colours_tell_the_categories_apart_and_signs_do_where_there_are_none() {
+    fn categories_differ_by_color_or_by_symbol() {
         let letters = |buffer: &ratatui::buffer::Buffer| {
             buffer.content.iter().map(|cell| cell.symbol().to_owned()).collect::<String>()
         };
-        let coloured = painted("dark", Marker::Braille);
+        let coloured = draw_bars_to_buffer("dark", Marker::Braille);
         let signs: Vec<char> = CATEGORIES.iter().skip(1).map(|own| own.glyph).collect();
         let bars = letters(&coloured);
         assert!(bars.contains('█') && !bars.contains(['≡', '▒']), "{bars}");
@@ -357,7 +357,7 @@ mod tests {
             coloured.content.iter().filter(|cell| cell.symbol() == "█").map(|cell| cell.fg).collect();
         colours.dedup();
         assert!(colours.len() > 3, "{colours:?}");
-        for buffer in [painted("mono", Marker::Braille), painted("dark", Marker::Dot)] {
+        for buffer in [draw_bars_to_buffer("mono", Marker::Braille), draw_bars_to_buffer("dark", Marker::Dot)] {
             let bars = letters(&buffer);
             assert!(signs.iter().filter(|sign| bars.contains(**sign)).count() > 2, "{bars}");
             assert!(!bars.contains(['▁', '▂', '▃']), "{bars}");

@@ -2,21 +2,21 @@
 
 use ratatui::layout::{Constraint, Layout, Rect};
 
-use super::model::{Subject, cash_around, days_of};
-use super::{Cash, Selected, ledger_rows, week_keys};
+use super::model::{LedgerSubject, cash_before_and_after, days_of_week};
+use super::{Cash, SelectedSubject, ledger_rows, week_keys};
 use crate::action::Action;
-use crate::context::{Figure, Look};
+use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
-use crate::screens::panes::{Border, Pane, Seat};
-use novamind_base::notation::{dollars, short_dollars};
+use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
+use novamind_base::formatting::{dollars, short_dollars};
 use novamind_tui::canvas::{Align, Canvas};
-use novamind_tui::text::arrow;
+use novamind_tui::text::format_change;
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::chart::{note_room, summary, zero_if_near};
-use novamind_tui::widgets::{Axis, Line, Plot, Side, Unit};
-use novamind_worker::company::Company;
+use novamind_tui::widgets::chart::{note_width, summary, zero_if_near};
+use novamind_tui::widgets::{XAxis, Curve, Plot, YAxis, AxisUnit};
+use novamind_worker::company::DisplayedCompany;
 
-const SIDE: u16 = 8;
+const AXIS_WIDTH: u16 = 8;
 
 pub struct CurvePane;
 
@@ -25,43 +25,43 @@ impl Pane<Cash> for CurvePane {
         vec![Action::Left, Action::Right, Action::Open]
     }
 
-    fn figure(&self, cash: &Cash, _: &Look<'_>) -> Option<Figure> {
-        cash.figure_of(net(cash))
+    fn figure(&self, cash: &Cash, _: &ScreenContext<'_>) -> Option<Figure> {
+        cash.figure_of(selected_week_net(cash))
     }
 
-    fn act(&self, cash: &mut Cash, action: Action, _: &Look<'_>) -> Vec<Effect> {
+    fn handle_action(&self, cash: &mut Cash, action: Action, _: &ScreenContext<'_>) -> Vec<Effect> {
         if action == Action::Open {
-            return ledger_rows(net(cash));
+            return ledger_rows(selected_week_net(cash));
         }
-        cash.walk_weeks(action);
+        cash.handle_week_action(action);
         Vec::new()
     }
 
-    fn border(&self, cash: &Cash, area: Rect, look: &Look<'_>) -> Border {
+    fn border(&self, cash: &Cash, area: Rect, look: &ScreenContext<'_>) -> PaneBorder {
         let (title, company, week) = ("Cash", look.company, cash.week());
-        let note = match cash_around(company, week) {
+        let note = match cash_before_and_after(company, week) {
             Some((before, after)) => {
                 let change = after - before;
-                format!("week {week}: {} {}", dollars(after), arrow(change, &dollars(change.abs())))
+                format!("week {week}: {} {}", dollars(after), format_change(change, &dollars(change.abs())))
             }
-            None => summary(&company.cash_by_day, &short_dollars, note_room(area, title)),
+            None => summary(&company.cash_by_day, &short_dollars, note_width(area, title)),
         };
-        Border { title: title.to_owned(), note, keys: week_keys(look), ..Border::default() }
+        PaneBorder { title: title.to_owned(), note, keys: week_keys(look), ..PaneBorder::default() }
     }
 
     /// Draws the curve, and the change of every week below it if it fits.
-    fn draw(&self, cash: &Cash, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+    fn draw(&self, cash: &Cash, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
         let (company, week) = (look.company, cash.week());
         let changes = if seat.area.height >= 11 { seat.area.height / 3 } else { 0 };
         let [above, below] =
             Layout::vertical([Constraint::Min(0), Constraint::Length(changes)]).areas(seat.area);
         let cash = &company.cash_by_day;
         let plot = Plot {
-            lines: &[Line::of(cash, Role::Series(0))],
+            curves: &[Curve::from_values(cash, Role::Series(0))],
             band: None,
-            mark: seat.focused.then(|| f64::from(days_of(week).1)),
-            x: &Axis { write: &|day| format!("day {day:.0}"), holds: &[] },
-            y: &Side { unit: Unit::Dollars, holds: zero_if_near(cash.iter().copied()) },
+            marked_x: seat.focused.then(|| f64::from(days_of_week(week).1)),
+            x: &XAxis { format: &|day| format!("day {day:.0}"), required_values: &[] },
+            y: &YAxis { unit: AxisUnit::Dollars, required_values: zero_if_near(cash.iter().copied()) },
         };
         plot.draw(canvas, above);
         draw_changes(canvas, below, company, week);
@@ -69,16 +69,16 @@ impl Pane<Cash> for CurvePane {
 }
 
 /// Returns the net result of the selected week.
-fn net(cash: &Cash) -> Option<Selected> {
-    Some((Subject::Net, (cash.week(), cash.week())))
+fn selected_week_net(cash: &Cash) -> Option<SelectedSubject> {
+    Some((LedgerSubject::Net, (cash.week(), cash.week())))
 }
 
 /// Draws the weekly changes as bars, newest at the right: gains above the line, losses below.
-fn draw_changes(canvas: &mut Canvas<'_>, area: Rect, company: &Company, selected: u32) {
-    if area.height < 3 || area.width < SIDE + 8 {
+fn draw_changes(canvas: &mut Canvas<'_>, area: Rect, company: &DisplayedCompany, selected: u32) {
+    if area.height < 3 || area.width < AXIS_WIDTH + 8 {
         return;
     }
-    let room = ((area.width - SIDE) / 2) as usize;
+    let room = ((area.width - AXIS_WIDTH) / 2) as usize;
     let weeks = &company.weeks[company.weeks.len().saturating_sub(room)..];
     let gain = weeks.iter().map(|week| week.cash_change).fold(0.0, f64::max);
     let loss = -weeks.iter().map(|week| week.cash_change).fold(0.0, f64::min);
@@ -89,8 +89,8 @@ fn draw_changes(canvas: &mut Canvas<'_>, area: Rect, company: &Company, selected
     let above = ((rows * gain / (gain + loss)).round() as u16)
         .clamp(u16::from(gain > 0.0), area.height - u16::from(loss > 0.0));
     let label = |canvas: &mut Canvas<'_>, y: u16, value: f64| {
-        let place = Rect { y, height: 1, width: SIDE - 1, ..area };
-        canvas.aligned(place, &short_dollars(value), Role::Dim, Align::Right);
+        let place = Rect { y, height: 1, width: AXIS_WIDTH - 1, ..area };
+        canvas.draw_aligned(place, &short_dollars(value), Role::Dim, Align::Right);
     };
     if gain > 0.0 {
         label(canvas, area.y, gain);
@@ -99,7 +99,7 @@ fn draw_changes(canvas: &mut Canvas<'_>, area: Rect, company: &Company, selected
         label(canvas, area.bottom() - 1, -loss);
     }
     for (at, week) in weeks.iter().enumerate() {
-        let x = area.x + SIDE + 2 * at as u16;
+        let x = area.x + AXIS_WIDTH + 2 * at as u16;
         let (rows, most, role) = match week.cash_change {
             change if change < 0.0 => (area.height - above, loss, Role::Bad),
             _ => (above, gain, Role::Good),
@@ -109,7 +109,7 @@ fn draw_changes(canvas: &mut Canvas<'_>, area: Rect, company: &Company, selected
         for step in 0..filled.max(1).min(rows) {
             let y = if week.cash_change < 0.0 { area.y + above + step } else { area.y + above - 1 - step };
             let glyph = if here { "█" } else { "▒" };
-            canvas.text(Rect { x, y, width: 1, height: 1 }, glyph, role);
+            canvas.draw_text(Rect { x, y, width: 1, height: 1 }, glyph, role);
         }
     }
 }

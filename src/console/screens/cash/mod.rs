@@ -1,7 +1,7 @@
 //! Income and costs: the ledger by category and week, the change of cash, and forecasts.
 
 mod bars;
-mod books;
+mod ledger;
 mod curve;
 mod forecasts;
 mod model;
@@ -12,25 +12,25 @@ mod waterfall;
 use ratatui::layout::{Constraint, Layout, Rect};
 use strum::VariantArray;
 
-use self::books::table_of;
-use self::forecasts::Outlook;
-use self::model::{Books, CashStep, Subject, statement, waterfall};
+use self::ledger::table_of;
+use self::forecasts::ForecastsState;
+use self::model::{WeeklyLedger, CashStep, LedgerSubject, statement, cash_steps};
 use super::ScreenState;
-use super::panes::{Pane, Paned, draw_pane};
+use super::panes::{Pane, PaneScreen, draw_pane};
 use crate::action::Action;
-use crate::context::{Figure, Look};
+use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
 use novamind_insight::WeekQuantity;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::widgets::Table;
-use novamind_worker::company::Company;
+use novamind_worker::company::DisplayedCompany;
 
 /// Panes in tab order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
 pub enum CashPane {
     /// The week by category.
     #[default]
-    Books,
+    Ledger,
     /// Bars of all weeks.
     Weeks,
     /// Forecasts and outcomes.
@@ -42,51 +42,51 @@ pub enum CashPane {
 }
 
 /// Minimum width for the waterfall and the curve next to the ledger.
-const WIDE: u16 = 176;
+const MIN_WIDE_WIDTH: u16 = 176;
 
 /// The cash screen.
 #[derive(Default)]
 pub struct Cash {
     focus: CashPane,
-    books: Books,
+    ledger: WeeklyLedger,
     /// The selected week; `None` for the last one.
-    week: Option<u32>,
+    selected_week: Option<u32>,
     table: Table,
-    subjects: Vec<Subject>,
-    outlook: Outlook,
-    step: usize,
+    subjects: Vec<LedgerSubject>,
+    forecasts: ForecastsState,
+    selected_step: usize,
 }
 
 /// Selection in the ledger panes: a subject, with its first and last week.
-type Selected = (Subject, (u32, u32));
+type SelectedSubject = (LedgerSubject, (u32, u32));
 
 impl Cash {
     fn week(&self) -> u32 {
-        let last = self.books.last();
-        self.week.unwrap_or(last).min(last)
+        let last = self.ledger.last_week();
+        self.selected_week.unwrap_or(last).min(last)
     }
 
-    fn refresh(&mut self) {
-        let (columns, subjects, rows) = table_of(&self.books, self.week());
+    fn rebuild_table(&mut self) {
+        let (columns, subjects, rows) = table_of(&self.ledger, self.week());
         if self.subjects.is_empty() {
-            self.table = Table::new(Vec::new()).by_cell();
-            self.table.set(columns, rows);
-            self.table.act(Action::Right, 1);
+            self.table = Table::new(Vec::new()).with_cell_selection();
+            self.table.set_columns_and_rows(columns, rows);
+            self.table.handle_action(Action::Right, 1);
         } else {
-            self.table.set(columns, rows);
+            self.table.set_columns_and_rows(columns, rows);
         }
         self.subjects = subjects;
     }
 
     fn move_week(&mut self, step: i64) {
-        let last = self.books.last();
+        let last = self.ledger.last_week();
         let week = (i64::from(self.week()) + step).clamp(1.min(i64::from(last)), i64::from(last)) as u32;
-        self.week = (week != last).then_some(week);
-        self.refresh();
+        self.selected_week = (week != last).then_some(week);
+        self.rebuild_table();
     }
 
     /// Handles keys that change the week; returns false for other actions.
-    fn walk_weeks(&mut self, action: Action) -> bool {
+    fn handle_week_action(&mut self, action: Action) -> bool {
         match action {
             Action::Left => self.move_week(-1),
             Action::Right => self.move_week(1),
@@ -97,60 +97,60 @@ impl Cash {
         true
     }
 
-    fn subject(&self) -> Option<Subject> {
+    fn subject(&self) -> Option<LedgerSubject> {
         self.table.selected().and_then(|row| self.subjects.get(row)).copied()
     }
 
     /// Returns the subject of the selected row in the selected week.
-    fn subject_of_week(&self) -> Option<Selected> {
+    fn selected_subject_in_week(&self) -> Option<SelectedSubject> {
         Some((self.subject()?, (self.week(), self.week())))
     }
 
     /// Returns the steps from the previous week's cash to the selected week's.
-    fn steps(&self, company: &Company) -> Vec<CashStep> {
-        waterfall(&self.books, company, self.week(), usize::MAX)
+    fn steps(&self, company: &DisplayedCompany) -> Vec<CashStep> {
+        cash_steps(&self.ledger, company, self.week(), usize::MAX)
     }
 
-    fn figure_of(&self, selected: Option<Selected>) -> Option<Figure> {
+    fn figure_of(&self, selected: Option<SelectedSubject>) -> Option<Figure> {
         let (subject, (from, to)) = selected?;
         let weeks = match (from, to) {
-            (1, to) if to == self.books.open_week() => "the whole run".to_owned(),
+            (1, to) if to == self.ledger.open_week() => "the whole run".to_owned(),
             (from, to) if from == to => format!("week {to}"),
             (from, to) => format!("weeks {from} to {to}"),
         };
         let title = format!("{} of {weeks}", subject.name());
         let figure =
-            Figure { title, term: subject.term(), sql: Some(statement(&subject, (from, to))), why: None };
-        let quantity = subject.figure().and_then(WeekQuantity::of_company);
+            Figure { title, term: subject.term(), sql: Some(statement(&subject, (from, to))), week_quantity: None };
+        let quantity = subject.figure().and_then(WeekQuantity::for_company);
         // Purchases since the last week belong to a week that has not been simulated.
-        Some(figure.of_week(quantity.filter(|_| to <= self.books.last()), to))
+        Some(figure.with_week_quantity(quantity.filter(|_| to <= self.ledger.last_week()), to))
     }
 }
 
-fn ledger_rows(selected: Option<Selected>) -> Vec<Effect> {
+fn ledger_rows(selected: Option<SelectedSubject>) -> Vec<Effect> {
     selected.map(|(subject, weeks)| Effect::RunSql(statement(&subject, weeks))).into_iter().collect()
 }
 
-fn week_keys(look: &Look<'_>) -> String {
+fn week_keys(look: &ScreenContext<'_>) -> String {
     let label = |action| look.keys.label(action).unwrap_or_default();
     let keys = format!("{} {} another week", label(Action::Left), label(Action::Right));
     format!("{keys} · {} ledger rows", label(Action::Open))
 }
 
 impl ScreenState for Cash {
-    fn opened(&self) -> usize {
-        usize::from(self.week.is_some())
+    fn own_escape_depth(&self) -> usize {
+        usize::from(self.selected_week.is_some())
     }
 
-    fn renew(&mut self, look: &Look<'_>) {
-        self.books = Books::of(look.company);
-        self.refresh();
-        self.outlook.renew(look.company);
+    fn on_company_change(&mut self, look: &ScreenContext<'_>) {
+        self.ledger = WeeklyLedger::from_company(look.company);
+        self.rebuild_table();
+        self.forecasts.update(look.company);
     }
 }
 
-impl Paned for Cash {
-    type Name = CashPane;
+impl PaneScreen for Cash {
+    type PaneId = CashPane;
 
     fn panes(&self) -> &'static [CashPane] {
         CashPane::VARIANTS
@@ -158,7 +158,7 @@ impl Paned for Cash {
 
     fn pane(name: CashPane) -> &'static dyn Pane<Cash> {
         match name {
-            CashPane::Books => &books::BooksPane,
+            CashPane::Ledger => &ledger::LedgerPane,
             CashPane::Weeks => &bars::BarsPane,
             CashPane::Forecasts => &forecasts::ForecastsPane,
             CashPane::Waterfall => &waterfall::WaterfallPane,
@@ -166,35 +166,35 @@ impl Paned for Cash {
         }
     }
 
-    fn focused(&self) -> CashPane {
+    fn focused_pane(&self) -> CashPane {
         self.focus
     }
 
-    fn focus_on(&mut self, name: CashPane) {
+    fn set_focused_pane(&mut self, name: CashPane) {
         self.focus = name;
     }
 
-    fn arrange(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+    fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
         if area.width >= 104 && area.height >= 30 {
-            return self.arrange_large(canvas, area, look);
+            return self.draw_large_layout(canvas, area, look);
         }
         // In small windows the focused pane gets the larger part.
         let rows = self.table.rows().len() as u16 + 3;
         let (upper, below) = match self.focus {
-            CashPane::Books => {
+            CashPane::Ledger => {
                 (rows.min(area.height.saturating_sub(7)).max(area.height / 3), CashPane::Waterfall)
             }
             other => (area.height / 3, other),
         };
         let [table, rest] = Layout::vertical([Constraint::Length(upper), Constraint::Min(0)]).areas(area);
-        draw_pane(self, CashPane::Books, canvas, table, look);
+        draw_pane(self, CashPane::Ledger, canvas, table, look);
         draw_pane(self, below, canvas, rest, look);
     }
 }
 
 impl Cash {
     /// Draws the ledger, waterfall and curve above the weeks and forecasts.
-    fn arrange_large(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+    fn draw_large_layout(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
         let rows = self.table.rows().len() as u16 + 3;
         let [top, below] = Layout::vertical([
             Constraint::Length(rows.clamp(10, area.height - area.height / 2)),
@@ -206,8 +206,8 @@ impl Cash {
         };
         let [table, beside] = halves(top, 82.min(area.width * 2 / 3));
         let [weeks, forecasts] = halves(below, (area.width * 11 / 20).max(60));
-        draw_pane(self, CashPane::Books, canvas, table, look);
-        if area.width >= WIDE {
+        draw_pane(self, CashPane::Ledger, canvas, table, look);
+        if area.width >= MIN_WIDE_WIDTH {
             let [steps, curve] = halves(beside, beside.width / 2);
             draw_pane(self, CashPane::Waterfall, canvas, steps, look);
             draw_pane(self, CashPane::Curve, canvas, curve, look);

@@ -2,73 +2,73 @@
 
 use std::collections::BTreeMap;
 
-use novamind_base::notation::grouped;
-use novamind_record::figures::{Booked, WeekFigure};
+use novamind_base::formatting::grouped_number;
+use novamind_record::figures::{CategoryTotals, WeekFigure};
 use novamind_report::category_name;
-use novamind_session::{Category, entries_of_weeks, week_of};
-use novamind_worker::company::Company;
+use novamind_session::{Category, entries_of_weeks_sql, week_of};
+use novamind_worker::company::DisplayedCompany;
 
 #[derive(Debug, PartialEq, Eq)]
-pub struct Shown {
+pub struct CategoryDisplay {
     pub category: Category,
     /// Glyph in bars; unique, for terminals without colors or block glyphs.
     pub glyph: char,
-    pub income: bool,
+    pub is_income: bool,
 }
 
-impl Shown {
+impl CategoryDisplay {
     pub fn name(&self) -> &'static str {
         category_name(self.category)
     }
 }
 
-const fn shown(category: Category, glyph: char, income: bool) -> Shown {
-    Shown { category, glyph, income }
+const fn category_display(category: Category, glyph: char, income: bool) -> CategoryDisplay {
+    CategoryDisplay { category, glyph, is_income: income }
 }
 
-pub const COUNT: usize = Category::ALL.len();
+pub const CATEGORY_COUNT: usize = Category::ALL.len();
 
 /// All categories, income first.
-pub static CATEGORIES: [Shown; COUNT] = [
-    shown(Category::SubscriptionPayment, '█', true),
-    shown(Category::AdRevenue, '░', true),
-    shown(Category::InitialFunding, '$', true),
-    shown(Category::Compute, '▓', false),
-    shown(Category::Capacity, '▒', false),
-    shown(Category::Advertising, '≡', false),
-    shown(Category::LeadAcquisitionCost, '×', false),
-    shown(Category::Operations, '+', false),
-    shown(Category::Development, '─', false),
-    shown(Category::ResearchProject, '▲', false),
-    shown(Category::MarketResearch, '?', false),
-    shown(Category::GroupResearch, '▼', false),
+pub static CATEGORIES: [CategoryDisplay; CATEGORY_COUNT] = [
+    category_display(Category::SubscriptionPayment, '█', true),
+    category_display(Category::AdRevenue, '░', true),
+    category_display(Category::InitialFunding, '$', true),
+    category_display(Category::Compute, '▓', false),
+    category_display(Category::Capacity, '▒', false),
+    category_display(Category::Advertising, '≡', false),
+    category_display(Category::LeadAcquisitionCost, '×', false),
+    category_display(Category::Operations, '+', false),
+    category_display(Category::Development, '─', false),
+    category_display(Category::ResearchProject, '▲', false),
+    category_display(Category::MarketResearch, '?', false),
+    category_display(Category::GroupResearch, '▼', false),
 ];
 
 /// Dollars by category; costs are negative.
-pub type Amounts = [f64; COUNT];
+pub type Amounts = [f64; CATEGORY_COUNT];
 
 /// Dollars by week and category from the first week, without the opening cash.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Books {
+pub struct WeeklyLedger {
     weeks: BTreeMap<u32, Amounts>,
     /// The last simulated week; later purchases belong to the next one.
-    last: u32,
+    last_week: u32,
 }
 
-impl Books {
-    pub fn of(company: &Company) -> Books {
-        let last = week_of(company.seen.day);
+impl WeeklyLedger {
+    pub fn from_company(company: &DisplayedCompany) -> WeeklyLedger {
+        let last = week_of(company.observation.day);
         let mut weeks = BTreeMap::new();
         for figures in &company.weeks {
-            weeks.insert(week_of(figures.day), amounts_of(&figures.booked));
+            weeks.insert(week_of(figures.day), category_amounts(&figures.booked));
         }
-        weeks.insert(company.weeks.len() as u32 + 1, amounts_of(&company.seen.booked_since));
-        Books { weeks, last }
+        weeks.insert(company.weeks.len() as u32 + 1, category_amounts(&company.observation.booked_since));
+        WeeklyLedger { weeks, last_week: last }
     }
 
     /// Returns the last simulated week.
-    pub fn last(&self) -> u32 {
-        self.last
+    pub fn last_week(&self) -> u32 {
+        self.last_week
     }
 
     /// Returns the week with the purchases since the last simulated one.
@@ -77,14 +77,14 @@ impl Books {
     }
 
     pub fn week(&self, week: u32) -> Amounts {
-        self.weeks.get(&week).copied().unwrap_or([0.0; COUNT])
+        self.weeks.get(&week).copied().unwrap_or([0.0; CATEGORY_COUNT])
     }
 
     /// Returns the mean of up to four weeks that end with the given week.
     pub fn mean_of_four(&self, week: u32) -> Amounts {
         let from = week.saturating_sub(3).max(1);
         let count = f64::from((week + 1).saturating_sub(from).max(1));
-        let mut mean = [0.0; COUNT];
+        let mut mean = [0.0; CATEGORY_COUNT];
         for amounts in self.weeks.range(from..=week.max(from)).map(|(_, amounts)| amounts) {
             mean.iter_mut().zip(amounts).for_each(|(sum, amount)| *sum += amount / count);
         }
@@ -92,7 +92,7 @@ impl Books {
     }
 
     pub fn total(&self) -> Amounts {
-        let mut total = [0.0; COUNT];
+        let mut total = [0.0; CATEGORY_COUNT];
         for amounts in self.weeks.values() {
             total.iter_mut().zip(amounts).for_each(|(sum, amount)| *sum += amount);
         }
@@ -109,7 +109,7 @@ impl Books {
             .weeks
             .iter()
             .rev()
-            .filter(|(week, _)| (1..=self.last).contains(*week))
+            .filter(|(week, _)| (1..=self.last_week).contains(*week))
             .take(count)
             .map(|(week, amounts)| (*week, *amounts))
             .collect();
@@ -118,18 +118,18 @@ impl Books {
     }
 }
 
-fn amounts_of(booked: &Booked) -> Amounts {
-    std::array::from_fn(|at| booked.of(CATEGORIES[at].category))
+fn category_amounts(booked: &CategoryTotals) -> Amounts {
+    std::array::from_fn(|at| booked.total_of(CATEGORIES[at].category))
 }
 
 /// Returns the sum of the income or of the costs.
-pub fn side(amounts: &Amounts, income: bool) -> f64 {
-    let own = amounts.iter().zip(&CATEGORIES).filter(|(_, category)| category.income == income);
+pub fn sum_side(amounts: &Amounts, income: bool) -> f64 {
+    let own = amounts.iter().zip(&CATEGORIES).filter(|(_, category)| category.is_income == income);
     own.map(|(amount, _)| amount).sum()
 }
 
 /// Returns the first and last day of a week; week 0 is the day before the first.
-pub fn days_of(week: u32) -> (u32, u32) {
+pub fn days_of_week(week: u32) -> (u32, u32) {
     match week {
         0 => (0, 0),
         week => (7 * (week - 1) + 1, 7 * week),
@@ -137,13 +137,13 @@ pub fn days_of(week: u32) -> (u32, u32) {
 }
 
 /// Returns the cash at the end of the previous week, and at the end of the week (now, if it is open).
-pub fn cash_around(company: &Company, week: u32) -> Option<(f64, f64)> {
+pub fn cash_before_and_after(company: &DisplayedCompany, week: u32) -> Option<(f64, f64)> {
     let ended = |week: u32| company.weeks.get(week.checked_sub(1)? as usize).map(|figures| figures.cash);
     let before = match week.checked_sub(1)? {
-        0 => company.seen.starting_cash,
+        0 => company.observation.starting_cash,
         before => ended(before)?,
     };
-    Some((before, ended(week).unwrap_or(company.seen.cash)))
+    Some((before, ended(week).unwrap_or(company.observation.cash)))
 }
 
 /// A step of the waterfall.
@@ -155,17 +155,17 @@ pub struct CashStep {
     pub to: f64,
     /// Whether it is the initial or final cash.
     pub is_level: bool,
-    pub subject: Subject,
+    pub subject: LedgerSubject,
 }
 
 /// Returns the steps of a week in at most `most` rows: income first, then costs by size; the smallest costs
 /// are combined.
-pub fn waterfall(books: &Books, company: &Company, week: u32, most: usize) -> Vec<CashStep> {
-    let Some((before, after)) = cash_around(company, week) else { return Vec::new() };
+pub fn cash_steps(books: &WeeklyLedger, company: &DisplayedCompany, week: u32, most: usize) -> Vec<CashStep> {
+    let Some((before, after)) = cash_before_and_after(company, week) else { return Vec::new() };
     let amounts = books.week(week);
-    let mut moved: Vec<usize> = (0..COUNT).filter(|at| amounts[*at] != 0.0).collect();
+    let mut moved: Vec<usize> = (0..CATEGORY_COUNT).filter(|at| amounts[*at] != 0.0).collect();
     moved.sort_by(|left, right| {
-        let order = |at: &usize| (!CATEGORIES[*at].income, -amounts[*at].abs());
+        let order = |at: &usize| (!CATEGORIES[*at].is_income, -amounts[*at].abs());
         let (left, right) = (order(left), order(right));
         left.0.cmp(&right.0).then(left.1.total_cmp(&right.1))
     });
@@ -174,7 +174,7 @@ pub fn waterfall(books: &Books, company: &Company, week: u32, most: usize) -> Ve
         from: cash,
         to: cash,
         is_level: true,
-        subject: Subject::Net,
+        subject: LedgerSubject::Net,
     };
     let mut steps = vec![level(format!("day {}", 7 * (week - 1)), before)];
     let mut cash = before;
@@ -182,43 +182,43 @@ pub fn waterfall(books: &Books, company: &Company, week: u32, most: usize) -> Ve
     let own = if moved.len() > room { room - 1 } else { moved.len() };
     for at in &moved[..own] {
         let to = cash + amounts[*at];
-        let (name, subject) = (CATEGORIES[*at].name().to_owned(), Subject::Category(*at));
+        let (name, subject) = (CATEGORIES[*at].name().to_owned(), LedgerSubject::Category(*at));
         steps.push(CashStep { name, from: cash, to, is_level: false, subject });
         cash = to;
     }
     if own < moved.len() {
         let rest: f64 = moved[own..].iter().map(|at| amounts[*at]).sum();
         let name = if own == 0 { "net" } else { "other costs" }.to_owned();
-        let subject = if own == 0 { Subject::Net } else { Subject::Costs };
+        let subject = if own == 0 { LedgerSubject::Net } else { LedgerSubject::Costs };
         steps.push(CashStep { name, from: cash, to: cash + rest, is_level: false, subject });
     }
-    steps.push(level(format!("day {}", (7 * week).min(company.seen.day)), after));
+    steps.push(level(format!("day {}", (7 * week).min(company.observation.day)), after));
     steps
 }
 
 /// Formats dollars with an explicit sign.
-pub fn money(value: f64) -> String {
+pub fn format_money(value: f64) -> String {
     let sign = if value <= -0.5 { "-" } else { "" };
-    format!("{sign}${}", grouped(value.abs(), 0))
+    format!("{sign}${}", grouped_number(value.abs(), 0))
 }
 
 /// Returns the query for the ledger rows of a subject in a range of weeks.
-pub fn statement(what: &Subject, (first, last): (u32, u32)) -> String {
+pub fn statement(what: &LedgerSubject, (first, last): (u32, u32)) -> String {
     let condition = match what {
-        Subject::Category(at) => format!("\n    AND category = '{}'", CATEGORIES[*at].category.id()),
-        Subject::Income => "\n    AND amount > 0".to_owned(),
-        Subject::Costs => "\n    AND amount < 0".to_owned(),
-        Subject::Net => String::new(),
+        LedgerSubject::Category(at) => format!("\n    AND category = '{}'", CATEGORIES[*at].category.id()),
+        LedgerSubject::Income => "\n    AND amount > 0".to_owned(),
+        LedgerSubject::Costs => "\n    AND amount < 0".to_owned(),
+        LedgerSubject::Net => String::new(),
     };
     let weeks = if first == last { format!("week {last}") } else { format!("weeks {first} to {last}") };
     format!(
         "-- {weeks}\nSELECT day, category, amount, note\nFROM ledger\nWHERE {}{condition}\nORDER BY id",
-        entries_of_weeks(first, last)
+        entries_of_weeks_sql(first, last)
     )
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Subject {
+pub enum LedgerSubject {
     Category(usize),
     Income,
     Costs,
@@ -226,43 +226,43 @@ pub enum Subject {
     Net,
 }
 
-impl Subject {
+impl LedgerSubject {
     pub fn name(self) -> &'static str {
         match self {
-            Subject::Category(at) => CATEGORIES[at].name(),
-            Subject::Income => "income",
-            Subject::Costs => "costs",
-            Subject::Net => "net",
+            LedgerSubject::Category(at) => CATEGORIES[at].name(),
+            LedgerSubject::Income => "income",
+            LedgerSubject::Costs => "costs",
+            LedgerSubject::Net => "net",
         }
     }
 
     pub fn term(self) -> &'static str {
         match self {
-            Subject::Category(at) => match CATEGORIES[at].category {
+            LedgerSubject::Category(at) => match CATEGORIES[at].category {
                 Category::SubscriptionPayment => "payments",
                 Category::LeadAcquisitionCost => "lead-acquisition-cost",
                 _ => "ledger",
             },
-            Subject::Income | Subject::Costs | Subject::Net => "cash-change",
+            LedgerSubject::Income | LedgerSubject::Costs | LedgerSubject::Net => "cash-change",
         }
     }
 
     /// Returns the weekly figure that it corresponds to.
     pub fn figure(self) -> Option<WeekFigure> {
         match self {
-            Subject::Category(at) => WeekFigure::of_category(CATEGORIES[at].category),
-            Subject::Income => Some(WeekFigure::Income),
-            Subject::Costs => Some(WeekFigure::Costs),
-            Subject::Net => Some(WeekFigure::CashChange),
+            LedgerSubject::Category(at) => WeekFigure::for_category(CATEGORIES[at].category),
+            LedgerSubject::Income => Some(WeekFigure::Income),
+            LedgerSubject::Costs => Some(WeekFigure::Costs),
+            LedgerSubject::Net => Some(WeekFigure::CashChange),
         }
     }
 
-    pub fn of(self, amounts: &Amounts) -> f64 {
+    pub fn amount(self, amounts: &Amounts) -> f64 {
         match self {
-            Subject::Category(at) => amounts[at],
-            Subject::Income => side(amounts, true),
-            Subject::Costs => side(amounts, false),
-            Subject::Net => amounts.iter().sum(),
+            LedgerSubject::Category(at) => amounts[at],
+            LedgerSubject::Income => sum_side(amounts, true),
+            LedgerSubject::Costs => sum_side(amounts, false),
+            LedgerSubject::Net => amounts.iter().sum(),
         }
     }
 }

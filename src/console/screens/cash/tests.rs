@@ -1,15 +1,15 @@
 use super::model::*;
 use super::*;
 use crate::screens::Screen;
-use crate::test_kit::{act, drawn, on_screen, played};
+use crate::test_kit::{handle_action, screen_text, played_screen, played_session};
 use novamind_database::Cell as Value;
-use novamind_session::{WEEK_OF_ENTRY, filed_forecasts};
+use novamind_session::{WEEK_OF_ENTRY_SQL, filed_forecasts};
 
 #[test]
-fn the_books_agree_with_the_ledger() {
-    let (mut session, company, screen) = on_screen::<Cash>(5);
-    let books = &screen.books;
-    let sql = format!("SELECT {WEEK_OF_ENTRY}, category, sum(amount) FROM ledger GROUP BY 1, 2");
+fn weekly_ledger_agrees_with_the_database() {
+    let (mut session, company, screen) = played_screen::<Cash>(5);
+    let books = &screen.ledger;
+    let sql = format!("SELECT {WEEK_OF_ENTRY_SQL}, category, sum(amount) FROM ledger GROUP BY 1, 2");
     let mut entries = 0;
     for row in session.query(&sql).expect("an answer").rows {
         let (Value::Integer(week), Value::Text(category), Value::Real(amount)) = (&row[0], &row[1], &row[2])
@@ -18,7 +18,7 @@ fn the_books_agree_with_the_ledger() {
         };
         let at = CATEGORIES.iter().position(|own| own.category.id() == category).expect("a category");
         if *week == 0 {
-            assert_eq!((category.as_str(), *amount), ("initial_funding", company.seen.starting_cash));
+            assert_eq!((category.as_str(), *amount), ("initial_funding", company.observation.starting_cash));
             continue;
         }
         let booked = books.week(*week as u32)[at];
@@ -27,107 +27,107 @@ fn the_books_agree_with_the_ledger() {
     }
     assert!(entries > 20);
     let earned: f64 = books.total().iter().sum();
-    let change = company.seen.cash - company.seen.starting_cash;
+    let change = company.observation.cash - company.observation.starting_cash;
     assert!((earned - change).abs() < 0.1, "the opening cash is not income: {earned}, {change}");
 }
 
 #[test]
-fn a_waterfall_arrives_whatever_the_room() {
-    let (_, company, screen) = on_screen::<Cash>(3);
-    let books = &screen.books;
+fn cash_steps_end_at_the_cash_for_any_row_count() {
+    let (_, company, screen) = played_screen::<Cash>(3);
+    let books = &screen.ledger;
     for room in 0..20 {
-        let steps = waterfall(books, &company, 2, room);
+        let steps = cash_steps(books, &company, 2, room);
         assert!(steps.len() <= room.max(3), "{room}: {}", steps.len());
-        let (before, after) = cash_around(&company, 2).expect("two weeks");
+        let (before, after) = cash_before_and_after(&company, 2).expect("two weeks");
         assert_eq!((steps[0].to, steps[steps.len() - 1].to), (before, after));
         let last = &steps[steps.len() - 2];
         assert!((last.to - after).abs() < 0.02, "{room}: {last:?}");
     }
-    assert!(waterfall(books, &company, 0, 9).is_empty());
+    assert!(cash_steps(books, &company, 0, 9).is_empty());
 }
 
 #[test]
-fn a_category_leads_to_its_ledger_rows() {
-    let (mut session, company, mut screen) = on_screen::<Cash>(3);
+fn opening_a_category_queries_its_ledger_rows() {
+    let (mut session, company, mut screen) = played_screen::<Cash>(3);
     for _ in 0..20 {
-        let Some(Effect::RunSql(sql)) = act(&mut screen, Action::Open, &company).pop() else {
+        let Some(Effect::RunSql(sql)) = handle_action(&mut screen, Action::Open, &company).pop() else {
             panic!("no statement");
         };
         assert!(sql.contains("day BETWEEN 14 AND 21") && sql.contains("BETWEEN 3 AND 3"), "{sql}");
         session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
-        act(&mut screen, Action::Down, &company);
+        handle_action(&mut screen, Action::Down, &company);
     }
-    screen.focus_on(CashPane::Weeks);
-    act(&mut screen, Action::Left, &company);
-    assert_eq!((screen.week(), screen.week), (2, Some(2)));
-    act(&mut screen, Action::First, &company);
+    screen.set_focused_pane(CashPane::Weeks);
+    handle_action(&mut screen, Action::Left, &company);
+    assert_eq!((screen.week(), screen.selected_week), (2, Some(2)));
+    handle_action(&mut screen, Action::First, &company);
     assert_eq!(screen.week(), 1);
-    act(&mut screen, Action::Close, &company);
-    assert_eq!((screen.week(), screen.week), (3, None));
+    handle_action(&mut screen, Action::Close, &company);
+    assert_eq!((screen.week(), screen.selected_week), (3, None));
 }
 
 #[test]
-fn every_figure_of_the_books_is_made_of_its_rows() {
-    let (mut session, company, mut screen) = on_screen::<Cash>(6);
-    let keys = crate::keys::Keys::shipped();
-    let look = Look { company: &company, keys: &keys, page: 5 };
-    let books = screen.books.clone();
+fn ledger_figures_equal_the_sum_of_their_rows() {
+    let (mut session, company, mut screen) = played_screen::<Cash>(6);
+    let keys = crate::keys::KeyBindings::bundled();
+    let look = ScreenContext { company: &company, keys: &keys, page_rows: 5 };
+    let books = screen.ledger.clone();
     for row in 0..screen.subjects.len() {
         let subject = screen.subjects[row];
         for (column, amounts) in [(1, books.week(6)), (3, books.week(5)), (5, books.total())] {
             assert_eq!((screen.table.selected(), screen.table.selected_column()), (Some(row), 1));
             for _ in 1..column {
-                act(&mut screen, Action::Right, &company);
+                handle_action(&mut screen, Action::Right, &company);
             }
             let figure = screen.figure(&look).expect("a figure");
             let sql = format!("SELECT coalesce(sum(amount), 0.0) FROM ({})", figure.sql.expect("rows"));
             let rows = session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
             let made = novamind_database::number_at(&rows.rows[0], 0);
-            let shown = subject.of(&amounts);
+            let shown = subject.amount(&amounts);
             assert!((made - shown).abs() < 0.2, "{}: {shown}, rows make {made}", figure.title);
             for _ in 1..column {
-                act(&mut screen, Action::Left, &company);
+                handle_action(&mut screen, Action::Left, &company);
             }
         }
-        act(&mut screen, Action::Down, &company);
+        handle_action(&mut screen, Action::Down, &company);
     }
 }
 
 #[test]
-fn every_pane_says_which_figure_is_selected() {
-    let (mut session, company, mut screen) = on_screen::<Cash>(5);
-    let keys = crate::keys::Keys::shipped();
-    let look = Look { company: &company, keys: &keys, page: 5 };
+fn every_pane_returns_its_selected_figure() {
+    let (mut session, company, mut screen) = played_screen::<Cash>(5);
+    let keys = crate::keys::KeyBindings::bundled();
+    let look = ScreenContext { company: &company, keys: &keys, page_rows: 5 };
     let title = |screen: &Cash| screen.figure(&look).expect("a figure").title;
-    screen.focus_on(CashPane::Waterfall);
+    screen.set_focused_pane(CashPane::Waterfall);
     assert_eq!(title(&screen), "net of week 5");
-    act(&mut screen, Action::Down, &company);
+    handle_action(&mut screen, Action::Down, &company);
     assert_eq!(title(&screen), "payments of week 5");
-    act(&mut screen, Action::Left, &company);
+    handle_action(&mut screen, Action::Left, &company);
     assert_eq!(title(&screen), "payments of week 4");
-    act(&mut screen, Action::Last, &company);
+    handle_action(&mut screen, Action::Last, &company);
     assert_eq!(title(&screen), "net of week 4");
-    screen.focus_on(CashPane::Curve);
+    screen.set_focused_pane(CashPane::Curve);
     assert_eq!(title(&screen), "net of week 4");
-    screen.focus_on(CashPane::Weeks);
-    act(&mut screen, Action::Down, &company);
+    screen.set_focused_pane(CashPane::Weeks);
+    handle_action(&mut screen, Action::Down, &company);
     assert_eq!(title(&screen), "income of week 4");
-    screen.focus_on(CashPane::Forecasts);
+    screen.set_focused_pane(CashPane::Forecasts);
     assert_eq!(title(&screen), "forecast of day 28 for day 35");
     let sql = screen.figure(&look).and_then(|figure| figure.sql).expect("rows");
     assert_eq!(session.query(&sql).expect("an answer").rows.len(), 1);
 }
 
 #[test]
-fn forecasts_are_compared_once_their_day_has_come() {
-    let company = Company::of(&played(2));
+fn forecasts_are_scored_once_due() {
+    let company = DisplayedCompany::from_session(&played_session(2));
     let all = filed_forecasts(&company.journal, &company.cash_by_day);
     assert_eq!((all.len(), all.iter().filter(|one| one.outcome.is_some()).count()), (8, 2));
 }
 
 #[test]
-fn the_mean_is_that_of_four_weeks_or_of_as_many_as_there_are() {
-    let books = Books::of(&Company::of(&played(6)));
+fn mean_covers_at_most_four_weeks() {
+    let books = WeeklyLedger::from_company(&DisplayedCompany::from_session(&played_session(6)));
     for (week, weeks) in [(6, vec![3, 4, 5, 6]), (4, vec![1, 2, 3, 4]), (2, vec![1, 2]), (1, vec![1])] {
         let mean = books.mean_of_four(week);
         for (category, mean) in mean.iter().enumerate() {
@@ -138,9 +138,9 @@ fn the_mean_is_that_of_four_weeks_or_of_as_many_as_there_are() {
 }
 
 #[test]
-fn the_small_window_shows_books_and_way() {
-    let (_, company, screen) = on_screen::<Cash>(4);
-    let text = drawn(&screen, &company, 80, 21);
+fn small_window_shows_ledger_and_waterfall() {
+    let (_, company, screen) = played_screen::<Cash>(4);
+    let text = screen_text(&screen, &company, 80, 21);
     for words in ["payments", "compute", "net", "week 4", "From week 3 to 4", "day 28"] {
         assert!(text.contains(words), "{words} in\n{text}");
     }

@@ -2,18 +2,18 @@
 
 use ratatui::layout::Rect;
 
-use super::model::{CashStep, cash_around, money, waterfall};
-use super::{Cash, Selected, ledger_rows, week_keys};
+use super::model::{CashStep, cash_before_and_after, format_money, cash_steps};
+use super::{Cash, SelectedSubject, ledger_rows, week_keys};
 use crate::action::Action;
-use crate::context::{Figure, Look};
+use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
-use crate::screens::panes::{Border, Pane, Seat};
-use novamind_base::notation::{dollars, short_dollars};
-use novamind_tui::canvas::{Align, Canvas, Click, rows_of};
-use novamind_tui::text::arrow;
+use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
+use novamind_base::formatting::{dollars, short_dollars};
+use novamind_tui::canvas::{Align, Canvas, Click, row_rects};
+use novamind_tui::text::format_change;
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::table::first_row;
-use novamind_worker::company::Company;
+use novamind_tui::widgets::table::first_visible_row;
+use novamind_worker::company::DisplayedCompany;
 
 pub struct WaterfallPane;
 
@@ -22,67 +22,67 @@ impl Pane<Cash> for WaterfallPane {
         vec![Action::Left, Action::Right, Action::Open]
     }
 
-    fn figure(&self, cash: &Cash, look: &Look<'_>) -> Option<Figure> {
+    fn figure(&self, cash: &Cash, look: &ScreenContext<'_>) -> Option<Figure> {
         cash.figure_of(selected(cash, look.company))
     }
 
-    fn act(&self, cash: &mut Cash, action: Action, look: &Look<'_>) -> Vec<Effect> {
+    fn handle_action(&self, cash: &mut Cash, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
         let last = cash.steps(look.company).len().saturating_sub(1);
         match action {
             Action::Open => return ledger_rows(selected(cash, look.company)),
             Action::Left | Action::Right => {
-                cash.walk_weeks(action);
+                cash.handle_week_action(action);
             }
-            Action::Close if cash.week.is_some() => {
-                cash.walk_weeks(action);
+            Action::Close if cash.selected_week.is_some() => {
+                cash.handle_week_action(action);
             }
-            Action::Up => cash.step = cash.step.min(last).saturating_sub(1),
-            Action::Down => cash.step = (cash.step + 1).min(last),
-            Action::First => cash.step = 0,
-            Action::Last => cash.step = last,
+            Action::Up => cash.selected_step = cash.selected_step.min(last).saturating_sub(1),
+            Action::Down => cash.selected_step = (cash.selected_step + 1).min(last),
+            Action::First => cash.selected_step = 0,
+            Action::Last => cash.selected_step = last,
             action => {
-                cash.table.act(action, look.page);
+                cash.table.handle_action(action, look.page_rows);
             }
         }
         Vec::new()
     }
 
-    fn click(&self, cash: &mut Cash, row: usize, _: &Look<'_>) -> Vec<Effect> {
-        cash.step = row;
+    fn handle_click(&self, cash: &mut Cash, row: usize, _: &ScreenContext<'_>) -> Vec<Effect> {
+        cash.selected_step = row;
         Vec::new()
     }
 
-    fn border(&self, cash: &Cash, _: Rect, look: &Look<'_>) -> Border {
+    fn border(&self, cash: &Cash, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
         let week = cash.week();
-        let change = cash_around(look.company, week).map_or(0.0, |(before, after)| after - before);
-        Border {
+        let change = cash_before_and_after(look.company, week).map_or(0.0, |(before, after)| after - before);
+        PaneBorder {
             title: format!("From week {} to {week}", week.saturating_sub(1)),
-            note: arrow(change, &dollars(change.abs())),
+            note: format_change(change, &dollars(change.abs())),
             keys: week_keys(look),
-            ..Border::default()
+            ..PaneBorder::default()
         }
     }
 
-    fn draw(&self, cash: &Cash, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+    fn draw(&self, cash: &Cash, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
         // Without the focus the pane shows the whole waterfall with small steps combined; with it, every step
         // can be selected.
         let most = if seat.focused { usize::MAX } else { seat.area.height.saturating_sub(1) as usize };
-        let steps = waterfall(&cash.books, look.company, cash.week(), most);
-        let selected = seat.focused.then(|| cash.step.min(steps.len().saturating_sub(1)));
-        draw(canvas, seat.area, &steps, selected, seat.number);
+        let steps = cash_steps(&cash.ledger, look.company, cash.week(), most);
+        let selected = seat.focused.then(|| cash.selected_step.min(steps.len().saturating_sub(1)));
+        draw(canvas, seat.area, &steps, selected, seat.index);
     }
 }
 
-fn selected(cash: &Cash, company: &Company) -> Option<Selected> {
+fn selected(cash: &Cash, company: &DisplayedCompany) -> Option<SelectedSubject> {
     let (steps, week) = (cash.steps(company), cash.week());
-    let step = steps.get(cash.step.min(steps.len().saturating_sub(1)))?;
+    let step = steps.get(cash.selected_step.min(steps.len().saturating_sub(1)))?;
     Some((step.subject, (week, week)))
 }
 
 /// Draws one step per row. Bars begin at the lowest level, because changes would be too small otherwise.
 fn draw(canvas: &mut Canvas<'_>, area: Rect, steps: &[CashStep], selected: Option<usize>, pane: usize) {
     if steps.is_empty() {
-        canvas.text(area, canvas.no_data, Role::Dim);
+        canvas.draw_text(area, canvas.empty_chart_text, Role::Dim);
         return;
     }
     let names = 12.min(area.width);
@@ -96,14 +96,14 @@ fn draw(canvas: &mut Canvas<'_>, area: Rect, steps: &[CashStep], selected: Optio
     // A row states where bars start if that is not zero.
     let told = floor != 0.0 && bars >= 24 && area.height > 1;
     let area = Rect { height: area.height - u16::from(told), ..area };
-    let from = first_row(selected.unwrap_or(0), area.height as usize, steps.len());
+    let from = first_visible_row(selected.unwrap_or(0), area.height as usize, steps.len());
     let span = (most - floor).max(1e-9);
     let room = f64::from(bars.saturating_sub(2));
     // The lowest level keeps a visible minimum width.
     let place = |level: f64| 1 + ((level - floor) / span * (room - 1.0).max(0.0)).round() as u16;
-    for (row, (at, step)) in rows_of(area).zip(steps.iter().enumerate().skip(from)) {
+    for (row, (at, step)) in row_rects(area).zip(steps.iter().enumerate().skip(from)) {
         let here = selected == Some(at);
-        canvas.click(row, Click::Row(pane, at));
+        canvas.register_click(row, Click::Row(pane, at));
         let (value, sign, role) = match (step.is_level, step.to - step.from) {
             (true, _) => (step.to, "", Role::Strong),
             (false, change) if change < 0.0 => (change, "", Role::Bad),
@@ -113,9 +113,9 @@ fn draw(canvas: &mut Canvas<'_>, area: Rect, steps: &[CashStep], selected: Optio
             canvas.clear(Rect { width: names + figures, ..row }, Role::Selection);
         }
         let shown = |role: Role| if here { Role::Selection } else { role };
-        canvas.text(Rect { width: names, ..row }, &step.name, shown(Role::Text));
+        canvas.draw_text(Rect { width: names, ..row }, &step.name, shown(Role::Text));
         let figure = Rect { x: row.x + names, width: figures, ..row };
-        canvas.aligned(figure, &format!("{sign}{}", money(value)), shown(role), Align::Right);
+        canvas.draw_aligned(figure, &format!("{sign}{}", format_money(value)), shown(role), Align::Right);
         if bars < 4 {
             continue;
         }
@@ -127,11 +127,11 @@ fn draw(canvas: &mut Canvas<'_>, area: Rect, steps: &[CashStep], selected: Optio
         };
         let width = (to - from).max(1);
         let bar = Rect { x: x + from, width, height: 1, ..row }.intersection(area);
-        canvas.text(bar, &glyph.repeat(bar.width as usize), role);
+        canvas.draw_text(bar, &glyph.repeat(bar.width as usize), role);
     }
     if told {
         let below = area.bottom().min(area.y.saturating_add((steps.len() - from) as u16));
         let row = Rect { x: area.x + names + figures + 1, y: below, width: bars - 1, height: 1 };
-        canvas.text(row, &format!("bars start at {}", short_dollars(floor)), Role::Dim);
+        canvas.draw_text(row, &format!("bars start at {}", short_dollars(floor)), Role::Dim);
     }
 }

@@ -5,21 +5,21 @@ use std::collections::BTreeMap;
 use ratatui::layout::Rect;
 
 use super::Customers;
-use super::steps::show_rows;
+use super::selection::show_rows_effect;
 use crate::action::Action;
-use crate::context::{Figure, Look};
+use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
-use crate::screens::panes::{Border, Pane, Seat};
-use novamind_base::notation::{compact, percent};
-use novamind_database::{Rows, number_at, text_at};
+use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
+use novamind_base::formatting::{compact_number, percent};
+use novamind_database::{QueryResult, number_at, text_at};
 use novamind_session::identifiers::Group;
 use novamind_tui::canvas::{Align, Canvas, Click};
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::chart::note_room;
-use novamind_tui::widgets::table::first_row;
+use novamind_tui::widgets::chart::note_width;
+use novamind_tui::widgets::table::first_visible_row;
 
-const NAMES: u16 = 14;
-const CELL: u16 = 5;
+const NAME_WIDTH: u16 = 14;
+const CELL_WIDTH: u16 = 5;
 
 pub struct CohortsPane;
 
@@ -28,37 +28,37 @@ impl Pane<Customers> for CohortsPane {
         vec![Action::Open, Action::FocusNext, Action::Close]
     }
 
-    fn figure(&self, customers: &Customers, look: &Look<'_>) -> Option<Figure> {
-        customers.opened.cohort.figure(&customers.cohorts, customers.group(look.company)?)
+    fn figure(&self, customers: &Customers, look: &ScreenContext<'_>) -> Option<Figure> {
+        customers.group_state.cohort.figure(&customers.cohorts, customers.group(look.company)?)
     }
 
-    fn act(&self, customers: &mut Customers, action: Action, look: &Look<'_>) -> Vec<Effect> {
+    fn handle_action(&self, customers: &mut Customers, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
         let Some(group) = customers.group(look.company) else { return Vec::new() };
         if action == Action::Open {
-            return show_rows(self.figure(customers, look));
+            return show_rows_effect(self.figure(customers, look));
         }
-        customers.opened.cohort.act(action, &customers.cohorts, group, look.company.seen.week);
+        customers.group_state.cohort.handle_action(action, &customers.cohorts, group, look.company.observation.week);
         Vec::new()
     }
 
-    fn click(&self, customers: &mut Customers, row: usize, _: &Look<'_>) -> Vec<Effect> {
-        customers.opened.cohort = CohortPlace { cohort: row / 1000, since: row % 1000 };
+    fn handle_click(&self, customers: &mut Customers, row: usize, _: &ScreenContext<'_>) -> Vec<Effect> {
+        customers.group_state.cohort = CohortCell { cohort: row / 1000, weeks_since: row % 1000 };
         Vec::new()
     }
 
-    fn border(&self, customers: &Customers, area: Rect, look: &Look<'_>) -> Border {
+    fn border(&self, customers: &Customers, area: Rect, look: &ScreenContext<'_>) -> PaneBorder {
         let title = "Retention, %";
-        let week = look.company.seen.week;
+        let week = look.company.observation.week;
         let note = customers
             .group(look.company)
-            .map_or(String::new(), |group| customers.cohorts.summary(group, week, note_room(area, title)));
-        Border { title: title.to_owned(), note, ..Border::default() }
+            .map_or(String::new(), |group| customers.cohorts.summary(group, week, note_width(area, title)));
+        PaneBorder { title: title.to_owned(), note, ..PaneBorder::default() }
     }
 
-    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
         let Some(group) = customers.group(look.company) else { return };
-        let place = seat.focused.then_some(customers.opened.cohort);
-        draw(canvas, seat.area, &customers.cohorts, (group, look.company.seen.week), place, seat.number);
+        let place = seat.focused.then_some(customers.group_state.cohort);
+        draw(canvas, seat.area, &customers.cohorts, (group, look.company.observation.week), place, seat.index);
     }
 }
 
@@ -66,13 +66,13 @@ impl Pane<Customers> for CohortsPane {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Cohort {
     pub size: f64,
-    left: BTreeMap<u32, f64>,
+    cancelled_by_week: BTreeMap<u32, f64>,
 }
 
 impl Cohort {
     /// Returns the share still subscribed at the end of a week.
-    pub fn kept(&self, week: u32) -> f64 {
-        let gone: f64 = self.left.range(..=week).map(|(_, left)| left).sum();
+    pub fn retention(&self, week: u32) -> f64 {
+        let gone: f64 = self.cancelled_by_week.range(..=week).map(|(_, left)| left).sum();
         if self.size > 0.0 { 1.0 - gone / self.size } else { 0.0 }
     }
 }
@@ -82,7 +82,7 @@ impl Cohort {
 pub struct Cohorts(BTreeMap<Group, BTreeMap<u32, Cohort>>);
 
 impl Cohorts {
-    pub fn of(rows: &Rows) -> Cohorts {
+    pub fn from_rows(rows: &QueryResult) -> Cohorts {
         let mut all = Cohorts::default();
         for row in &rows.rows {
             let Some(group) = Group::parse(text_at(row, 0)) else { continue };
@@ -91,7 +91,7 @@ impl Cohorts {
             cohort.size += count;
             if left > 0 {
                 // A cancellation cannot precede the sign-up.
-                *cohort.left.entry(left.max(week)).or_default() += count;
+                *cohort.cancelled_by_week.entry(left.max(week)).or_default() += count;
             }
         }
         all
@@ -106,17 +106,17 @@ impl Cohorts {
     }
 
     /// Returns the mean share kept after `since` weeks, over the cohorts that are at least that old.
-    fn mean(&self, group: Group, since: u32, now: u32) -> Option<f64> {
+    fn mean_retention(&self, group: Group, since: u32, now: u32) -> Option<f64> {
         let old = self.weeks(group).into_iter().filter(|(week, _)| week + since <= now);
         let (kept, size) = old.fold((0.0, 0.0), |(kept, size), (week, cohort)| {
-            (kept + cohort.kept(week + since) * cohort.size, size + cohort.size)
+            (kept + cohort.retention(week + since) * cohort.size, size + cohort.size)
         });
         (size > 0.0).then(|| kept / size)
     }
 
     /// Summarizes the triangle in at most `room` columns.
     pub fn summary(&self, group: Group, now: u32, room: usize) -> String {
-        let mean = |since| self.mean(group, since, now).map(|kept| (since, kept));
+        let mean = |since| self.mean_retention(group, since, now).map(|kept| (since, kept));
         let told: Vec<String> = [4, 8, 12]
             .into_iter()
             .filter_map(mean)
@@ -131,35 +131,35 @@ impl Cohorts {
 }
 
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct CohortPlace {
+pub struct CohortCell {
     /// Index of the cohort, newest first.
     pub cohort: usize,
-    pub since: usize,
+    pub weeks_since: usize,
 }
 
-impl CohortPlace {
-    pub fn act(&mut self, action: Action, cohorts: &Cohorts, group: Group, now: u32) {
+impl CohortCell {
+    pub fn handle_action(&mut self, action: Action, cohorts: &Cohorts, group: Group, now: u32) {
         let weeks = cohorts.weeks(group);
         match action {
             Action::Up => self.cohort = self.cohort.saturating_sub(1),
             Action::Down => self.cohort += 1,
-            Action::Left => self.since = self.since.saturating_sub(1),
-            Action::Right => self.since += 1,
-            Action::First => (self.cohort, self.since) = (0, 0),
+            Action::Left => self.weeks_since = self.weeks_since.saturating_sub(1),
+            Action::Right => self.weeks_since += 1,
+            Action::First => (self.cohort, self.weeks_since) = (0, 0),
             Action::Last => self.cohort = usize::MAX,
             _ => {}
         }
         self.cohort = self.cohort.min(weeks.len().saturating_sub(1));
         let most = weeks.get(self.cohort).map_or(0, |(week, _)| now.saturating_sub(*week));
-        self.since = self.since.min(most as usize);
+        self.weeks_since = self.weeks_since.min(most as usize);
     }
 
     /// Returns the selected share, with a query for the customers who were still subscribed at the end of the
     /// week.
     pub fn figure(self, cohorts: &Cohorts, group: Group) -> Option<Figure> {
         let (week, cohort) = *cohorts.weeks(group).get(self.cohort)?;
-        let until = week + self.since as u32;
-        let kept = percent(cohort.kept(until), 1);
+        let until = week + self.weeks_since as u32;
+        let kept = percent(cohort.retention(until), 1);
         let (first, last) = ((7 * week).saturating_sub(6), 7 * week);
         let sql = format!(
             "-- {group}: signed up in week {week}, subscribed at the end of week {until}\n\
@@ -172,12 +172,12 @@ impl CohortPlace {
         let title = format!(
             "{kept} of the {group} customers of week {week} were subscribed at the end of week {until}"
         );
-        Some(Figure { title, term: "cohort", sql: Some(sql), why: None })
+        Some(Figure { title, term: "cohort", sql: Some(sql), week_quantity: None })
     }
 }
 
 /// Returns the glyph of a share; fuller glyphs mean higher retention.
-fn shade(share: f64) -> &'static str {
+fn shade_symbol(share: f64) -> &'static str {
     match share {
         share if share >= 0.9 => "█",
         share if share >= 0.7 => "▓",
@@ -193,55 +193,55 @@ fn draw(
     area: Rect,
     cohorts: &Cohorts,
     (group, now): (Group, u32),
-    place: Option<CohortPlace>,
+    place: Option<CohortCell>,
     pane: usize,
 ) {
     let weeks = cohorts.weeks(group);
     if weeks.is_empty() {
-        canvas.text(area, "No sign-ups in the last 16 weeks", Role::Dim);
+        canvas.draw_text(area, "No sign-ups in the last 16 weeks", Role::Dim);
         return;
     }
-    if area.width < NAMES + CELL || area.height < 3 {
+    if area.width < NAME_WIDTH + CELL_WIDTH || area.height < 3 {
         return;
     }
-    let columns = ((area.width - NAMES) / CELL) as usize;
+    let columns = ((area.width - NAME_WIDTH) / CELL_WIDTH) as usize;
     let oldest = weeks.last().map_or(now, |(week, _)| *week);
     let all = (now.saturating_sub(oldest) + 1) as usize;
-    let left = first_row(place.map_or(0, |place| place.since), columns, all);
+    let left = first_visible_row(place.map_or(0, |place| place.weeks_since), columns, all);
     let head = Rect { height: 1, ..area };
-    canvas.text(Rect { width: NAMES, ..head }, "week   signed", Role::Header);
+    canvas.draw_text(Rect { width: NAME_WIDTH, ..head }, "week   signed", Role::Header);
     let cell_at =
-        |row: Rect, at: usize| Rect { x: row.x + NAMES + (at - left) as u16 * CELL, width: CELL, ..row };
+        |row: Rect, at: usize| Rect { x: row.x + NAME_WIDTH + (at - left) as u16 * CELL_WIDTH, width: CELL_WIDTH, ..row };
     for since in left..all.min(left + columns) {
         let cell = cell_at(head, since);
-        canvas.aligned(Rect { width: CELL - 1, ..cell }, &format!("+{since}"), Role::Header, Align::Right);
+        canvas.draw_aligned(Rect { width: CELL_WIDTH - 1, ..cell }, &format!("+{since}"), Role::Header, Align::Right);
     }
     // The last row shows the mean of all cohorts.
     let room = (area.height - 2) as usize;
-    let from = first_row(place.map_or(0, |place| place.cohort), room, weeks.len());
+    let from = first_visible_row(place.map_or(0, |place| place.cohort), room, weeks.len());
     let shown = weeks.iter().enumerate().skip(from).take(room);
     let mut y = area.y + 1;
     for (at, (week, cohort)) in shown {
         let row = Rect { y, height: 1, ..area };
-        canvas.text(Rect { width: 5, ..row }, &format!("{week:>4}"), Role::Strong);
-        let size = Rect { x: row.x + 5, width: NAMES - 6, ..row };
-        canvas.aligned(size, &compact(cohort.size), Role::Dim, Align::Right);
+        canvas.draw_text(Rect { width: 5, ..row }, &format!("{week:>4}"), Role::Strong);
+        let size = Rect { x: row.x + 5, width: NAME_WIDTH - 6, ..row };
+        canvas.draw_aligned(size, &compact_number(cohort.size), Role::Dim, Align::Right);
         let most = now.saturating_sub(*week) as usize;
         for since in left..(most + 1).min(left + columns) {
-            let share = cohort.kept(week + since as u32);
-            let here = place == Some(CohortPlace { cohort: at, since });
+            let share = cohort.retention(week + since as u32);
+            let here = place == Some(CohortCell { cohort: at, weeks_since: since });
             let cell = cell_at(row, since);
             draw_cell(canvas, cell, share, here);
-            canvas.click(cell, Click::Row(pane, at * 1000 + since));
+            canvas.register_click(cell, Click::Row(pane, at * 1000 + since));
         }
         y += 1;
     }
     let row = Rect { y, height: 1, ..area };
-    canvas.text(Rect { width: NAMES, ..row }, "all", Role::Header);
+    canvas.draw_text(Rect { width: NAME_WIDTH, ..row }, "all", Role::Header);
     for since in left..all.min(left + columns) {
-        if let Some(share) = cohorts.mean(group, since as u32, now) {
-            let cell = Rect { width: CELL - 1, ..cell_at(row, since) };
-            canvas.aligned(cell, &format!("{:.0}", share * 100.0), Role::Strong, Align::Right);
+        if let Some(share) = cohorts.mean_retention(group, since as u32, now) {
+            let cell = Rect { width: CELL_WIDTH - 1, ..cell_at(row, since) };
+            canvas.draw_aligned(cell, &format!("{:.0}", share * 100.0), Role::Strong, Align::Right);
         }
     }
 }
@@ -252,10 +252,10 @@ fn draw_cell(canvas: &mut Canvas<'_>, cell: Rect, share: f64, here: bool) {
         share if share >= 0.4 => Role::Text,
         _ => Role::Bad,
     };
-    let figures = Rect { width: CELL - 1, ..cell };
+    let figures = Rect { width: CELL_WIDTH - 1, ..cell };
     let shown = if here { Role::Selection } else { role };
-    canvas.aligned(figures, &format!("{:.0}", share * 100.0), shown, Align::Right);
-    canvas.text(Rect { x: cell.x + CELL - 1, width: 1, ..cell }, shade(share), role);
+    canvas.draw_aligned(figures, &format!("{:.0}", share * 100.0), shown, Align::Right);
+    canvas.draw_text(Rect { x: cell.x + CELL_WIDTH - 1, width: 1, ..cell }, shade_symbol(share), role);
 }
 
 #[cfg(test)]
@@ -264,29 +264,29 @@ mod tests {
     use novamind_database::Cell;
 
     #[test]
-    fn a_cohort_only_shrinks() {
+    fn retention_never_increases() {
         let row = |week: i64, left: i64, count: i64| {
             vec![Cell::Text("S1".into()), Cell::Integer(week), Cell::Integer(left), Cell::Integer(count)]
         };
-        let rows = Rows {
+        let rows = QueryResult {
             rows: vec![row(3, 0, 50), row(3, 5, 30), row(3, 7, 20), row(4, 0, 100)],
-            ..Rows::default()
+            ..QueryResult::default()
         };
-        let cohorts = Cohorts::of(&rows);
+        let cohorts = Cohorts::from_rows(&rows);
         let group = Group::parse("S1").expect("a group");
         let weeks = cohorts.weeks(group);
         assert_eq!(weeks.iter().map(|(week, _)| *week).collect::<Vec<_>>(), [4, 3]);
         let old = weeks[1].1;
-        assert_eq!([3, 4, 5, 6, 7, 90].map(|week| old.kept(week)), [1.0, 1.0, 0.7, 0.7, 0.5, 0.5]);
-        assert_eq!(cohorts.mean(group, 4, 7), Some(0.5), "only cohorts that are old enough count");
-        assert_eq!(cohorts.mean(group, 2, 7), Some(0.85));
-        assert_eq!(cohorts.mean(group, 9, 7), None);
-        let mut place = CohortPlace::default();
+        assert_eq!([3, 4, 5, 6, 7, 90].map(|week| old.retention(week)), [1.0, 1.0, 0.7, 0.7, 0.5, 0.5]);
+        assert_eq!(cohorts.mean_retention(group, 4, 7), Some(0.5), "only cohorts that are old enough count");
+        assert_eq!(cohorts.mean_retention(group, 2, 7), Some(0.85));
+        assert_eq!(cohorts.mean_retention(group, 9, 7), None);
+        let mut place = CohortCell::default();
         for _ in 0..9 {
-            place.act(Action::Right, &cohorts, group, 7);
+            place.handle_action(Action::Right, &cohorts, group, 7);
         }
-        assert_eq!(place, CohortPlace { cohort: 0, since: 3 });
-        place.act(Action::Last, &cohorts, group, 7);
+        assert_eq!(place, CohortCell { cohort: 0, weeks_since: 3 });
+        place.handle_action(Action::Last, &cohorts, group, 7);
         assert_eq!(place.cohort, 1);
     }
 }

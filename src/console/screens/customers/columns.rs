@@ -1,216 +1,216 @@
 //! Columns of the table of groups, and the rows behind each figure.
 
-use super::hidden::TrueValue;
-use super::model::{CustomerFacts, MarketRows, ad_budgets, development_budget};
+use super::true_values::TrueValue;
+use super::model::{GroupFacts, CustomerData, total_ad_budget, development_budget};
 use crate::context::Figure;
 use crate::screens::market::model::{level_of, name_of};
-use novamind_base::notation::{cents, compact, dollars, grouped, percent};
+use novamind_base::formatting::{cents, compact_number, dollars, grouped_number, percent};
 use novamind_insight::WeekQuantity;
 use novamind_record::figures::WeekFigure;
 use novamind_session::identifiers::Group;
-use novamind_session::truth_behind;
+use novamind_session::true_value_range;
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::{Cell, Column, spark};
-use novamind_worker::company::Company;
+use novamind_tui::widgets::{TableCell, TableColumn, sparkline};
+use novamind_worker::company::DisplayedCompany;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum What {
+enum GroupColumn {
     Group,
-    Segment,
-    True(TrueValue),
-    Level,
+    GroupKind,
+    TrueValue(TrueValue),
+    StudyLevel,
     Customers,
     Seats,
-    Market,
+    MarketShare,
     Leads,
-    New,
+    NewCustomers,
     Conversion,
-    Left,
+    Cancellations,
     Churn,
-    Monthly,
-    PerSeat,
+    MonthlyRevenue,
+    RevenuePerSeat,
     Usage,
-    Ads,
-    CostOfNew,
-    Development,
+    AdBudget,
+    AcquisitionCost,
+    DevelopmentBudget,
     Trend,
     Name,
 }
 
 /// Columns with headings and glossary terms, most used first.
-static COLUMNS: [(What, &str, &str); 23] = [
-    (What::Group, "group", "customer-group"),
-    (What::Segment, "kind", "customer-group"),
-    (What::True(TrueValue::Satisfaction), "true sat.", "satisfaction"),
-    (What::True(TrueValue::Reputation), "true rep.", "reputation"),
-    (What::True(TrueValue::Leads), "true λ/day", "lead"),
-    (What::True(TrueValue::Market), "true market", "market-cap"),
-    (What::Customers, "subs", "subscribers"),
-    (What::Seats, "billed seats", "billed-seats"),
-    (What::Leads, "leads", "lead"),
-    (What::New, "new", "conversion"),
-    (What::Conversion, "conv.", "conversion"),
-    (What::Left, "left", "churn"),
-    (What::Churn, "churn 30d", "churn"),
-    (What::Monthly, "billed/mo", "billed-seats"),
-    (What::PerSeat, "per seat", "arpu"),
-    (What::Usage, "use/day", "usage"),
-    (What::Ads, "ads/day", "set_targeted_ad_spend"),
-    (What::CostOfNew, "ad $/new", "cost-per-new-customer"),
-    (What::Development, "dev/day", "set_targeted_dev_spend"),
-    (What::Level, "level", "info-level"),
-    (What::Market, "of market", "market-cap"),
-    (What::Trend, "new by week", "conversion"),
-    (What::Name, "name", "customer-group"),
+static COLUMNS: [(GroupColumn, &str, &str); 23] = [
+    (GroupColumn::Group, "group", "customer-group"),
+    (GroupColumn::GroupKind, "kind", "customer-group"),
+    (GroupColumn::TrueValue(TrueValue::Satisfaction), "true sat.", "satisfaction"),
+    (GroupColumn::TrueValue(TrueValue::Reputation), "true rep.", "reputation"),
+    (GroupColumn::TrueValue(TrueValue::Leads), "true λ/day", "lead"),
+    (GroupColumn::TrueValue(TrueValue::Market), "true market", "market-cap"),
+    (GroupColumn::Customers, "subs", "subscribers"),
+    (GroupColumn::Seats, "billed seats", "billed-seats"),
+    (GroupColumn::Leads, "leads", "lead"),
+    (GroupColumn::NewCustomers, "new", "conversion"),
+    (GroupColumn::Conversion, "conv.", "conversion"),
+    (GroupColumn::Cancellations, "left", "churn"),
+    (GroupColumn::Churn, "churn 30d", "churn"),
+    (GroupColumn::MonthlyRevenue, "billed/mo", "billed-seats"),
+    (GroupColumn::RevenuePerSeat, "per seat", "arpu"),
+    (GroupColumn::Usage, "use/day", "usage"),
+    (GroupColumn::AdBudget, "ads/day", "set_targeted_ad_spend"),
+    (GroupColumn::AcquisitionCost, "ad $/new", "cost-per-new-customer"),
+    (GroupColumn::DevelopmentBudget, "dev/day", "set_targeted_dev_spend"),
+    (GroupColumn::StudyLevel, "level", "info-level"),
+    (GroupColumn::MarketShare, "of market", "market-cap"),
+    (GroupColumn::Trend, "new by week", "conversion"),
+    (GroupColumn::Name, "name", "customer-group"),
 ];
 
 /// Returns the visible columns; those with true values need an open x-ray.
-fn shown(company: &Company) -> impl Iterator<Item = &'static (What, &'static str, &'static str)> {
-    let has_hidden = company.hidden.is_some();
-    COLUMNS.iter().filter(move |(what, ..)| has_hidden || !matches!(what, What::True(_)))
+fn visible_columns(company: &DisplayedCompany) -> impl Iterator<Item = &'static (GroupColumn, &'static str, &'static str)> {
+    let has_hidden = company.hidden_values.is_some();
+    COLUMNS.iter().filter(move |(what, ..)| has_hidden || !matches!(what, GroupColumn::TrueValue(_)))
 }
 
-pub fn columns(company: &Company) -> Vec<Column> {
-    let column = |(what, head, _): &(What, &str, &str)| match what {
-        What::Group | What::Segment | What::Trend => Column::words(*head),
-        What::Name => Column::words(*head).at_most(28),
-        _ => Column::numbers(*head),
+pub fn columns(company: &DisplayedCompany) -> Vec<TableColumn> {
+    let column = |(what, head, _): &(GroupColumn, &str, &str)| match what {
+        GroupColumn::Group | GroupColumn::GroupKind | GroupColumn::Trend => TableColumn::text(*head),
+        GroupColumn::Name => TableColumn::text(*head).with_max_width(28),
+        _ => TableColumn::numeric(*head),
     };
-    shown(company).map(column).collect()
+    visible_columns(company).map(column).collect()
 }
 
 /// Returns the lowest and highest market share by the group's market study: individuals for individual
 /// groups, enterprises otherwise.
-fn of_market(group: Group, facts: &CustomerFacts, company: &Company) -> Option<(f64, f64)> {
-    let (market, noise) = (company.insights.get(&group)?.estimates.market_cap, company.fit(group)?.noise);
-    let (least, most) = truth_behind(market as f64, noise);
+fn market_share(group: Group, facts: &GroupFacts, company: &DisplayedCompany) -> Option<(f64, f64)> {
+    let (market, noise) = (company.insights.get(&group)?.estimates.market_cap, company.fit(group)?.max_relative_error);
+    let (least, most) = true_value_range(market as f64, noise);
     let customers = facts.sum(|held| held.customers);
     (market > 0).then(|| (customers / most, customers / least))
 }
 
-pub fn row_of(group: Group, facts: &CustomerFacts, company: &Company, market: &MarketRows) -> Vec<Cell> {
-    shown(company).map(|(what, ..)| cell_of(*what, group, facts, company, market)).collect()
+pub fn row_of(group: Group, facts: &GroupFacts, company: &DisplayedCompany, market: &CustomerData) -> Vec<TableCell> {
+    visible_columns(company).map(|(what, ..)| group_cell(*what, group, facts, company, market)).collect()
 }
 
-fn count(value: f64) -> Cell {
+fn count_cell(value: f64) -> TableCell {
     match value {
-        0.0 => Cell::number(0.0, "–").role(Role::Dim),
-        value => Cell::number(value, grouped(value, 0)),
+        0.0 => TableCell::from_number(0.0, "–").with_role(Role::Dim),
+        value => TableCell::from_number(value, grouped_number(value, 0)),
     }
 }
 
-fn optional(value: Option<f64>, write: &dyn Fn(f64) -> String) -> Cell {
+fn optional_cell(value: Option<f64>, write: &dyn Fn(f64) -> String) -> TableCell {
     match value {
-        Some(value) => Cell::number(value, write(value)),
-        None => Cell::words("–").role(Role::Dim),
+        Some(value) => TableCell::from_number(value, write(value)),
+        None => TableCell::from_text("–").with_role(Role::Dim),
     }
 }
 
-fn cell_of(what: What, group: Group, facts: &CustomerFacts, company: &Company, market: &MarketRows) -> Cell {
-    let week = company.seen.week;
+fn group_cell(what: GroupColumn, group: Group, facts: &GroupFacts, company: &DisplayedCompany, market: &CustomerData) -> TableCell {
+    let week = company.observation.week;
     let flow = facts.week(week);
-    let budget = |value: f64| optional((value > 0.0).then_some(value), &dollars);
+    let budget = |value: f64| optional_cell((value > 0.0).then_some(value), &dollars);
     let large = group.is_enterprise();
     match what {
-        What::Group => Cell::words(group.id()).role(Role::Strong),
-        What::True(value) => value.cell(group, company),
-        What::Segment => Cell::words(if large { "comp." } else { "indiv." }).role(Role::Dim),
-        What::Level => {
+        GroupColumn::Group => TableCell::from_text(group.id()).with_role(Role::Strong),
+        GroupColumn::TrueValue(value) => value.cell(group, company),
+        GroupColumn::GroupKind => TableCell::from_text(if large { "comp." } else { "indiv." }).with_role(Role::Dim),
+        GroupColumn::StudyLevel => {
             let level = level_of(company, group);
-            let noise = company.terms.level(level).map_or(0.0, |level| level.noise);
-            Cell::number(f64::from(level), format!("{level} ±{}", percent(noise, 0)))
+            let noise = company.tool_limits.study_level(level).map_or(0.0, |level| level.noise);
+            TableCell::from_number(f64::from(level), format!("{level} ±{}", percent(noise, 0)))
         }
-        What::Customers => count(facts.sum(|held| held.customers)),
-        What::Seats => optional(large.then(|| facts.sum(|held| held.seats)), &|seats| grouped(seats, 0)),
-        What::Market => match of_market(group, facts, company) {
+        GroupColumn::Customers => count_cell(facts.sum(|held| held.customers)),
+        GroupColumn::Seats => optional_cell(large.then(|| facts.sum(|held| held.seats)), &|seats| grouped_number(seats, 0)),
+        GroupColumn::MarketShare => match market_share(group, facts, company) {
             Some((least, most)) => {
-                Cell::number(most, format!("{:.1} to {}", least * 100.0, percent(most.min(1.0), 1)))
+                TableCell::from_number(most, format!("{:.1} to {}", least * 100.0, percent(most.min(1.0), 1)))
             }
-            None => Cell::words("–").role(Role::Dim),
+            None => TableCell::from_text("–").with_role(Role::Dim),
         },
-        What::Leads => count(flow.leads),
-        What::New => new_cell(facts, week),
+        GroupColumn::Leads => count_cell(flow.leads),
+        GroupColumn::NewCustomers => new_customers_cell(facts, week),
         // Enterprises sign weeks after they arrive, so a conversion of this week's leads is meaningless.
-        What::Conversion => {
-            let converted = (flow.leads > 0.0 && !large).then(|| flow.signed / flow.leads);
-            optional(converted, &|share| percent(share, 1))
+        GroupColumn::Conversion => {
+            let converted = (flow.leads > 0.0 && !large).then(|| flow.signups / flow.leads);
+            optional_cell(converted, &|share| percent(share, 1))
         }
-        What::Left => count(flow.cancelled),
-        What::Churn => optional(facts.churn(), &|share| percent(share, 1)),
-        What::Monthly => {
-            let monthly = facts.sum(|held| held.monthly);
-            optional((monthly > 0.0).then_some(monthly), &dollars)
+        GroupColumn::Cancellations => count_cell(flow.cancellations),
+        GroupColumn::Churn => optional_cell(facts.churn(), &|share| percent(share, 1)),
+        GroupColumn::MonthlyRevenue => {
+            let monthly = facts.sum(|held| held.monthly_revenue);
+            optional_cell((monthly > 0.0).then_some(monthly), &dollars)
         }
-        What::PerSeat => optional(facts.revenue_per_seat(), &cents),
-        What::Usage => optional(facts.usage(), &compact),
-        What::Ads => budget(ad_budgets(company, group)),
-        What::CostOfNew => {
-            let (spend, signed) = (market.ad_spend(group), facts.last(week, 4, |flow| flow.signed));
-            optional((spend > 0.0 && signed > 0.0).then(|| spend / signed), &cents)
+        GroupColumn::RevenuePerSeat => optional_cell(facts.revenue_per_seat(), &cents),
+        GroupColumn::Usage => optional_cell(facts.usage(), &compact_number),
+        GroupColumn::AdBudget => budget(total_ad_budget(company, group)),
+        GroupColumn::AcquisitionCost => {
+            let (spend, signed) = (market.ad_spend(group), facts.sum_of_last_weeks(week, 4, |flow| flow.signups));
+            optional_cell((spend > 0.0 && signed > 0.0).then(|| spend / signed), &cents)
         }
-        What::Development => budget(development_budget(company, group)),
-        What::Trend => {
+        GroupColumn::DevelopmentBudget => budget(development_budget(company, group)),
+        GroupColumn::Trend => {
             let trend: Vec<f64> =
-                facts.trend(week, |flow| flow.signed).into_iter().map(|(_, new)| new).collect();
+                facts.weekly_values(week, |flow| flow.signups).into_iter().map(|(_, new)| new).collect();
             let some = trend.iter().any(|new| *new > 0.0);
-            Cell::words(if some { spark(&trend, 12) } else { String::new() }).role(Role::Series(0))
+            TableCell::from_text(if some { sparkline(&trend, 12) } else { String::new() }).with_role(Role::Series(0))
         }
-        What::Name => Cell::words(name_of(company, group)).role(Role::Dim),
+        GroupColumn::Name => TableCell::from_text(name_of(company, group)).with_role(Role::Dim),
     }
 }
 
-fn new_cell(facts: &CustomerFacts, week: u32) -> Cell {
-    let now = facts.week(week).signed;
-    let change = now - facts.week(week.saturating_sub(1)).signed;
+fn new_customers_cell(facts: &GroupFacts, week: u32) -> TableCell {
+    let now = facts.week(week).signups;
+    let change = now - facts.week(week.saturating_sub(1)).signups;
     let (glyph, role) = match change {
         change if change > 0.0 => ("▲ ", Role::Good),
         change if change < 0.0 => ("▼ ", Role::Bad),
         _ => ("", Role::Text),
     };
-    Cell::number(now, format!("{glyph}{}", grouped(now, 0))).role(role)
+    TableCell::from_number(now, format!("{glyph}{}", grouped_number(now, 0))).with_role(role)
 }
 
 /// Returns the figure of a group in a column, with a query for its rows.
-pub fn figure(group: Group, column: usize, company: &Company) -> Option<Figure> {
-    let (what, head, term) = *shown(company).nth(column)?;
-    let week = company.seen.week;
+pub fn figure(group: Group, column: usize, company: &DisplayedCompany) -> Option<Figure> {
+    let (what, head, term) = *visible_columns(company).nth(column)?;
+    let week = company.observation.week;
     let name = match what {
-        What::Group | What::Segment | What::Name => "customers",
-        What::Customers if group.is_enterprise() => "enterprises",
-        What::Customers => "subscribers",
-        What::New | What::Trend => "new customers",
-        What::Left => "cancellations",
-        What::Leads => "leads",
-        What::True(value) => value.title(),
+        GroupColumn::Group | GroupColumn::GroupKind | GroupColumn::Name => "customers",
+        GroupColumn::Customers if group.is_enterprise() => "enterprises",
+        GroupColumn::Customers => "subscribers",
+        GroupColumn::NewCustomers | GroupColumn::Trend => "new customers",
+        GroupColumn::Cancellations => "cancellations",
+        GroupColumn::Leads => "leads",
+        GroupColumn::TrueValue(value) => value.title(),
         _ => head,
     };
     let title = match what {
-        What::Leads | What::New | What::Left | What::Conversion => {
+        GroupColumn::Leads | GroupColumn::NewCustomers | GroupColumn::Cancellations | GroupColumn::Conversion => {
             format!("{name} of {group} in week {week}")
         }
         _ => format!("{name} of {group}"),
     };
-    let figure = Figure { title, term, sql: statement(what, group, week, company.seen.day), why: None };
-    Some(figure.of_week(quantity(what, group), week))
+    let figure = Figure { title, term, sql: statement(what, group, week, company.observation.day), week_quantity: None };
+    Some(figure.with_week_quantity(week_quantity(what, group), week))
 }
 
 /// Returns the weekly figure that a column shows for a group; for the name columns, the number of customers.
-fn quantity(what: What, group: Group) -> Option<WeekQuantity> {
+fn week_quantity(what: GroupColumn, group: Group) -> Option<WeekQuantity> {
     let figure = match what {
-        What::Group | What::Segment | What::Name | What::Customers => WeekFigure::Subscribers,
-        What::Leads => WeekFigure::Leads,
-        What::New | What::Trend => WeekFigure::NewSubscribers,
-        What::Conversion if !group.is_enterprise() => WeekFigure::Conversion,
-        What::Left => WeekFigure::Cancellations,
-        What::Churn => WeekFigure::Churn,
-        What::Usage => WeekFigure::Usage,
+        GroupColumn::Group | GroupColumn::GroupKind | GroupColumn::Name | GroupColumn::Customers => WeekFigure::Subscribers,
+        GroupColumn::Leads => WeekFigure::Leads,
+        GroupColumn::NewCustomers | GroupColumn::Trend => WeekFigure::NewSubscribers,
+        GroupColumn::Conversion if !group.is_enterprise() => WeekFigure::Conversion,
+        GroupColumn::Cancellations => WeekFigure::Cancellations,
+        GroupColumn::Churn => WeekFigure::Churn,
+        GroupColumn::Usage => WeekFigure::Usage,
         _ => return None,
     };
-    WeekQuantity::of_group(figure, group)
+    WeekQuantity::for_group(figure, group)
 }
 
 /// Selects customers with their subscriptions by a condition.
-fn customers(group: Group, condition: &str) -> String {
+fn customers_statement(group: Group, condition: &str) -> String {
     format!(
         "SELECT c.customer_id, c.acquisition_source, c.created_day, s.plan, s.status, s.seat_count, s.effective_price,\n    \
          s.effective_price * s.seat_count AS amount, s.start_day, s.end_day\nFROM customers c\n\
@@ -219,9 +219,9 @@ fn customers(group: Group, condition: &str) -> String {
 }
 
 /// Selects sign-ups in a range of days: individuals by arrival, enterprises by the day of their deal.
-fn signed(group: Group, (from, to): (u32, u32)) -> String {
+fn signups_statement(group: Group, (from, to): (u32, u32)) -> String {
     let day = if group.is_enterprise() { "s.start_day" } else { "c.created_day" };
-    customers(
+    customers_statement(
         group,
         &format!("{day} BETWEEN {from} AND {to}\n    AND s.status IN ('subscribed', 'cancelled')"),
     )
@@ -231,9 +231,9 @@ fn signed(group: Group, (from, to): (u32, u32)) -> String {
 pub fn flow_statement(flow: usize, group: Group, week: u32) -> String {
     let days = ((7 * week).saturating_sub(6), 7 * week);
     match flow {
-        0 => customers(group, &format!("c.created_day BETWEEN {} AND {}", days.0, days.1)),
-        1 => signed(group, days),
-        _ => customers(
+        0 => customers_statement(group, &format!("c.created_day BETWEEN {} AND {}", days.0, days.1)),
+        1 => signups_statement(group, days),
+        _ => customers_statement(
             group,
             &format!(
                 "s.status = 'cancelled'\n    AND min(s.end_day, (SELECT max(day) FROM service_day)) BETWEEN {} AND {}",
@@ -243,19 +243,19 @@ pub fn flow_statement(flow: usize, group: Group, week: u32) -> String {
     }
 }
 
-fn statement(what: What, group: Group, week: u32, day: u32) -> Option<String> {
+fn statement(what: GroupColumn, group: Group, week: u32, day: u32) -> Option<String> {
     let month = day.saturating_sub(27);
     Some(match what {
-        What::True(_) => return None,
-        What::Group | What::Segment | What::Name => customers(group, "TRUE"),
-        What::Customers | What::Seats | What::Monthly | What::PerSeat => {
-            customers(group, "s.status = 'subscribed'")
+        GroupColumn::TrueValue(_) => return None,
+        GroupColumn::Group | GroupColumn::GroupKind | GroupColumn::Name => customers_statement(group, "TRUE"),
+        GroupColumn::Customers | GroupColumn::Seats | GroupColumn::MonthlyRevenue | GroupColumn::RevenuePerSeat => {
+            customers_statement(group, "s.status = 'subscribed'")
         }
-        What::Leads | What::Conversion => flow_statement(0, group, week),
-        What::New => flow_statement(1, group, week),
-        What::Trend => signed(group, ((7 * week).saturating_sub(83), 7 * week)),
-        What::Left => flow_statement(2, group, week),
-        What::Churn => customers(
+        GroupColumn::Leads | GroupColumn::Conversion => flow_statement(0, group, week),
+        GroupColumn::NewCustomers => flow_statement(1, group, week),
+        GroupColumn::Trend => signups_statement(group, ((7 * week).saturating_sub(83), 7 * week)),
+        GroupColumn::Cancellations => flow_statement(2, group, week),
+        GroupColumn::Churn => customers_statement(
             group,
             &format!(
                 "s.start_day <= {}\n    AND (s.status = 'subscribed' OR s.status = 'cancelled' AND s.end_day > {})",
@@ -263,25 +263,25 @@ fn statement(what: What, group: Group, week: u32, day: u32) -> Option<String> {
                 day.saturating_sub(30)
             ),
         ),
-        What::Usage => format!(
+        GroupColumn::Usage => format!(
             "SELECT u.customer_id, s.plan, s.seat_count, u.usage_units\nFROM daily_usage u\nCROSS JOIN subscriptions s\n\
              CROSS JOIN customers c\nWHERE u.day = {day} AND s.customer_id = u.customer_id AND s.status = 'subscribed'\n    \
              AND c.customer_id = u.customer_id AND c.group_id = '{group}'"
         ),
-        What::Ads | What::CostOfNew => format!(
+        GroupColumn::AdBudget | GroupColumn::AcquisitionCost => format!(
             "SELECT day, channel_id, leads_generated, spend\nFROM ad_channel_leads\n\
              WHERE group_id = '{group}' AND day BETWEEN {month} AND {day}\nORDER BY day DESC"
         ),
-        What::Level | What::Market => {
+        GroupColumn::StudyLevel | GroupColumn::MarketShare => {
             format!("SELECT *\nFROM group_info_levels\nWHERE group_id = '{group}'")
         }
-        What::Development => "SELECT day, tool_name, settings_json\nFROM config_overrides\n\
+        GroupColumn::DevelopmentBudget => "SELECT day, tool_name, settings_json\nFROM config_overrides\n\
                               WHERE tool_name = 'set_targeted_dev_spend'\nORDER BY day DESC"
             .to_owned(),
     })
 }
 
-pub fn figure_named(head: &str, group: Group, company: &Company) -> Option<Figure> {
-    let column = shown(company).position(|(_, own, _)| *own == head)?;
+pub fn figure_named(head: &str, group: Group, company: &DisplayedCompany) -> Option<Figure> {
+    let column = visible_columns(company).position(|(_, own, _)| *own == head)?;
     figure(group, column, company)
 }

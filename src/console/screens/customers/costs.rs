@@ -5,17 +5,17 @@ use ratatui::layout::Rect;
 
 use super::Customers;
 use crate::action::Action;
-use crate::context::{Figure, Look};
+use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
-use crate::screens::panes::{Border, Pane, Seat};
-use novamind_base::notation::{cents, dollars, grouped};
-use novamind_report::lead_costs::{AdSpell, PairCost};
+use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
+use novamind_base::formatting::{cents, dollars, grouped_number};
+use novamind_report::lead_costs::{AdWindow, LeadCost};
 use novamind_session::identifiers::{Channel, Group};
 use novamind_tools::ToolId;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::{Cell, Column, Table};
-use novamind_worker::company::Company;
+use novamind_tui::widgets::{TableCell, TableColumn, Table};
+use novamind_worker::company::DisplayedCompany;
 
 /// Pairs of channel and group with advertising.
 pub struct CostsPane;
@@ -33,67 +33,67 @@ impl Pane<Customers> for CostsPane {
         vec![Action::Open, Action::Sort, Action::Filter]
     }
 
-    fn figure(&self, customers: &Customers, look: &Look<'_>) -> Option<Figure> {
+    fn figure(&self, customers: &Customers, look: &ScreenContext<'_>) -> Option<Figure> {
         let pair = selected(customers, look.company)?;
         let (channel, group) = (pair.channel, pair.group);
         let title = format!("cost of leads of {group} through {}", channel.id());
-        Some(Figure { title, term: "cost-per-lead", sql: Some(statement(channel, group)), why: None })
+        Some(Figure { title, term: "cost-per-lead", sql: Some(statement(channel, group)), week_quantity: None })
     }
 
-    fn act(&self, customers: &mut Customers, action: Action, look: &Look<'_>) -> Vec<Effect> {
+    fn handle_action(&self, customers: &mut Customers, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
         if action == Action::Open {
             return vec![Effect::ShowTool(ToolId::SetTargetedAdSpend)];
         }
-        customers.costs.act(action, look.page);
+        customers.costs.handle_action(action, look.page_rows);
         Vec::new()
     }
 
-    fn border(&self, customers: &Customers, _: Rect, look: &Look<'_>) -> Border {
-        let note = match customers.costs.note() {
+    fn border(&self, customers: &Customers, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
+        let note = match customers.costs.summary() {
             note if note.is_empty() => "last 4 weeks · cheapest 4 weeks before".to_owned(),
             note => note,
         };
         let keys = look.hints(&[Action::Open, Action::Sort, Action::Filter]);
-        Border { title: "Cost per lead".to_owned(), note, keys, ..Border::default() }
+        PaneBorder { title: "Cost per lead".to_owned(), note, keys, ..PaneBorder::default() }
     }
 
-    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: Seat, _: &Look<'_>) {
+    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: PanePlacement, _: &ScreenContext<'_>) {
         if customers.costs.rows().is_empty() {
-            canvas.text(seat.area, "No ads in the last 4 weeks", Role::Dim);
+            canvas.draw_text(seat.area, "No ads in the last 4 weeks", Role::Dim);
             return;
         }
-        customers.costs.draw(canvas, seat.area, seat.focused, seat.number);
+        customers.costs.draw(canvas, seat.area, seat.focused, seat.index);
     }
 }
 
-fn selected<'a>(customers: &Customers, company: &'a Company) -> Option<&'a PairCost> {
+fn selected<'a>(customers: &Customers, company: &'a DisplayedCompany) -> Option<&'a LeadCost> {
     company.lead_costs.get(customers.costs.selected()?)
 }
 
 /// Returns the columns of the table.
-pub fn columns() -> Vec<Column> {
-    let words = ["channel", "group"].map(Column::words);
-    let numbers = ["leads", "spend", "$/lead", "was", "$/first bill", "was"].map(Column::numbers);
+pub fn columns() -> Vec<TableColumn> {
+    let words = ["channel", "group"].map(TableColumn::text);
+    let numbers = ["leads", "spend", "$/lead", "was", "$/first bill", "was"].map(TableColumn::numeric);
     words.into_iter().chain(numbers).collect()
 }
 
 /// Returns the row of a pair.
-pub fn row_of(pair: &PairCost) -> Vec<Cell> {
+pub fn row_of(pair: &LeadCost) -> Vec<TableCell> {
     let each = |value: Option<f64>| match value {
-        Some(value) => Cell::number(value, cents(value)),
-        None => Cell::words("–").role(Role::Dim),
+        Some(value) => TableCell::from_number(value, cents(value)),
+        None => TableCell::from_text("–").with_role(Role::Dim),
     };
-    let before = |figure: fn(&AdSpell) -> Option<f64>| each(pair.cheapest.as_ref().and_then(figure));
-    let now = each(pair.recent.per_lead());
+    let before = |figure: fn(&AdWindow) -> Option<f64>| each(pair.cheapest.as_ref().and_then(figure));
+    let now = each(pair.recent.cost_per_lead());
     vec![
-        Cell::words(pair.channel.id()),
-        Cell::words(pair.group.id()).role(Role::Strong),
-        Cell::number(f64::from(pair.recent.leads), grouped(f64::from(pair.recent.leads), 0)),
-        Cell::number(pair.recent.spend, dollars(pair.recent.spend)),
-        if pair.rise().is_some() { now.role(Role::Bad) } else { now },
-        before(AdSpell::per_lead),
-        each(pair.recent.per_bill()),
-        before(AdSpell::per_bill),
+        TableCell::from_text(pair.channel.id()),
+        TableCell::from_text(pair.group.id()).with_role(Role::Strong),
+        TableCell::from_number(f64::from(pair.recent.leads), grouped_number(f64::from(pair.recent.leads), 0)),
+        TableCell::from_number(pair.recent.spend, dollars(pair.recent.spend)),
+        if pair.cost_rise().is_some() { now.with_role(Role::Bad) } else { now },
+        before(AdWindow::cost_per_lead),
+        each(pair.recent.cost_per_bill()),
+        before(AdWindow::cost_per_bill),
     ]
 }
 

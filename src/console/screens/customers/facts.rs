@@ -3,27 +3,27 @@
 use ratatui::layout::Rect;
 
 use super::Customers;
-use super::model::{CustomerFacts, MarketRows, ad_budgets, development_budget};
-use super::steps::show_rows;
+use super::model::{GroupFacts, CustomerData, total_ad_budget, development_budget};
+use super::selection::show_rows_effect;
 use crate::action::Action;
-use crate::context::{Figure, Look};
+use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
 use crate::screens::market::model::name_of;
-use crate::screens::panes::{Border, Pane, Seat};
-use novamind_base::notation::{cents, compact, dollars, grouped, percent};
+use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
+use novamind_base::formatting::{cents, compact_number, dollars, grouped_number, percent};
 use novamind_session::identifiers::{Group, Plan};
-use novamind_tui::canvas::{Align, Canvas, Click, rows_of};
+use novamind_tui::canvas::{Align, Canvas, Click, row_rects};
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::spark::bar;
-use novamind_tui::widgets::table::first_row;
-use novamind_worker::company::Company;
+use novamind_tui::widgets::sparkline::bar;
+use novamind_tui::widgets::table::first_visible_row;
+use novamind_worker::company::DisplayedCompany;
 
 pub struct FactsPane;
 
 impl FactsPane {
-    fn lines(&self, customers: &Customers, look: &Look<'_>, bars: usize) -> Vec<Fact> {
+    fn lines(&self, customers: &Customers, look: &ScreenContext<'_>, bars: usize) -> Vec<FactLine> {
         customers.group(look.company).map_or(Vec::new(), |group| {
-            facts(look.company, &customers.market, &customers.market.of(group), group, bars)
+            facts(look.company, &customers.data, &customers.data.facts_of_group(group), group, bars)
         })
     }
 }
@@ -33,18 +33,18 @@ impl Pane<Customers> for FactsPane {
         vec![Action::Open, Action::FocusNext, Action::Close]
     }
 
-    fn figure(&self, customers: &Customers, look: &Look<'_>) -> Option<Figure> {
-        self.lines(customers, look, 0).into_iter().nth(customers.opened.fact)?.figure
+    fn figure(&self, customers: &Customers, look: &ScreenContext<'_>) -> Option<Figure> {
+        self.lines(customers, look, 0).into_iter().nth(customers.group_state.fact_line)?.figure
     }
 
     /// Moves to the next line with a figure.
-    fn act(&self, customers: &mut Customers, action: Action, look: &Look<'_>) -> Vec<Effect> {
+    fn handle_action(&self, customers: &mut Customers, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
         if action == Action::Open {
-            return show_rows(self.figure(customers, look));
+            return show_rows_effect(self.figure(customers, look));
         }
         let lines = self.lines(customers, look, 0);
         let held: Vec<usize> = (0..lines.len()).filter(|at| lines[*at].figure.is_some()).collect();
-        let fact = &mut customers.opened.fact;
+        let fact = &mut customers.group_state.fact_line;
         let place = held.iter().position(|at| *at >= *fact).unwrap_or(0);
         let place = match action {
             Action::Up => place.saturating_sub(1),
@@ -57,71 +57,71 @@ impl Pane<Customers> for FactsPane {
         Vec::new()
     }
 
-    fn click(&self, customers: &mut Customers, row: usize, _: &Look<'_>) -> Vec<Effect> {
-        customers.opened.fact = row;
+    fn handle_click(&self, customers: &mut Customers, row: usize, _: &ScreenContext<'_>) -> Vec<Effect> {
+        customers.group_state.fact_line = row;
         Vec::new()
     }
 
-    fn border(&self, customers: &Customers, _: Rect, look: &Look<'_>) -> Border {
-        customers.group(look.company).map_or_else(Border::default, |group| {
+    fn border(&self, customers: &Customers, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
+        customers.group(look.company).map_or_else(PaneBorder::default, |group| {
             let segment = if group.is_enterprise() { "enterprise" } else { "individual" };
             let note = name_of(look.company, group).to_owned();
-            Border { title: format!("{group} · {segment}"), note, ..Border::default() }
+            PaneBorder { title: format!("{group} · {segment}"), note, ..PaneBorder::default() }
         })
     }
 
-    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
-        let selected = seat.focused.then_some(customers.opened.fact);
+    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
+        let selected = seat.focused.then_some(customers.group_state.fact_line);
         let bars = (seat.area.width as usize).saturating_sub(32).min(16);
         let lines = self.lines(customers, look, bars);
-        let from = first_row(selected.unwrap_or(0), seat.area.height as usize, lines.len());
-        for (row, (at, fact)) in rows_of(seat.area).zip(lines.iter().enumerate().skip(from)) {
+        let from = first_visible_row(selected.unwrap_or(0), seat.area.height as usize, lines.len());
+        for (row, (at, fact)) in row_rects(seat.area).zip(lines.iter().enumerate().skip(from)) {
             let here = selected == Some(at) && fact.figure.is_some();
             let role = if here { Role::Selection } else { fact.role };
             if here {
                 canvas.clear(row, role);
             }
-            canvas.text(row, &fact.words, role);
-            canvas.aligned(row, &fact.figures, role, Align::Right);
-            canvas.click(row, Click::Row(seat.number, at));
+            canvas.draw_text(row, &fact.label, role);
+            canvas.draw_aligned(row, &fact.value, role, Align::Right);
+            canvas.register_click(row, Click::Row(seat.index, at));
         }
     }
 }
 
-struct Fact {
-    words: String,
-    figures: String,
+struct FactLine {
+    label: String,
+    value: String,
     role: Role,
     /// The figure on the line; `None` for a heading.
     figure: Option<Figure>,
 }
 
-fn head(words: &str, figures: String) -> Fact {
-    Fact { words: words.to_owned(), figures, role: Role::Header, figure: None }
+fn heading_line(words: &str, figures: String) -> FactLine {
+    FactLine { label: words.to_owned(), value: figures, role: Role::Header, figure: None }
 }
 
-fn fact(words: String, figures: String, title: String, term: &'static str, sql: Option<String>) -> Fact {
-    Fact { words, figures, role: Role::Text, figure: Some(Figure { title, term, sql, why: None }) }
+fn figure_line(words: String, figures: String, title: String, term: &'static str, sql: Option<String>) -> FactLine {
+    FactLine { label: words, value: figures, role: Role::Text, figure: Some(Figure { title, term, sql, week_quantity: None }) }
 }
 
 /// Returns the lines of a group; bars are `bars` cells wide.
 fn facts(
-    company: &Company,
-    market: &MarketRows,
-    facts: &CustomerFacts,
+    company: &DisplayedCompany,
+    market: &CustomerData,
+    facts: &GroupFacts,
     group: Group,
     bars: usize,
-) -> Vec<Fact> {
+) -> Vec<FactLine> {
     // Money comes last: small windows cut the end, and it changes least.
-    let mut lines = companies(company, group);
+    let mut lines = enterprise_lines(company, group);
     lines.extend(plans(facts, group, bars));
     lines.extend(sources(company, facts, group));
-    lines.extend(money(company, market, facts, group));
+    lines.extend(money_lines(company, market, facts, group));
     lines
 }
 
 /// Returns the funnel of enterprises from lead to deal.
-fn companies(company: &Company, group: Group) -> Vec<Fact> {
+fn enterprise_lines(company: &DisplayedCompany, group: Group) -> Vec<FactLine> {
     let Some(funnel) = company.funnels.iter().find(|funnel| funnel.group == group) else { return Vec::new() };
     let asked = "SELECT DISTINCT c.customer_id, c.created_day, t.day AS asked_day, t.seat_count\nFROM customers c\n\
                  JOIN enterprise_turns t ON t.customer_id = c.customer_id AND t.turn_number = 0 AND t.thread_type = 'new_lead'";
@@ -130,14 +130,14 @@ fn companies(company: &Company, group: Group) -> Vec<Fact> {
          'large'\nORDER BY customer_id DESC"
     );
     let of_group = format!("\nWHERE c.group_id = '{group}'");
-    let mut lines = vec![head("enterprises, whole run", String::new())];
+    let mut lines = vec![heading_line("enterprises, whole run", String::new())];
     for (name, count, sql) in [
-        ("came", funnel.came, came.clone()),
-        ("no plan good enough", funnel.turned_away(), came),
-        ("asked for an offer", funnel.asked, format!("{asked}{of_group}")),
+        ("came", funnel.enterprises, came.clone()),
+        ("no plan good enough", funnel.lost_before_request(), came),
+        ("asked for an offer", funnel.requests, format!("{asked}{of_group}")),
         (
             "signed",
-            funnel.signed,
+            funnel.deals,
             format!(
                 "SELECT c.customer_id, t.day, t.offer_json, t.seat_count\nFROM customers c\nJOIN enterprise_turns t ON \
                  t.customer_id = c.customer_id AND t.thread_type = 'new_lead' AND t.close_reason = 'accepted' AND t.sender = \
@@ -146,72 +146,72 @@ fn companies(company: &Company, group: Group) -> Vec<Fact> {
         ),
     ] {
         let title = format!("enterprises of {group}: {name}");
-        lines.push(fact(format!("  {name}"), grouped(f64::from(count), 0), title, "lead", Some(sql)));
+        lines.push(figure_line(format!("  {name}"), grouped_number(f64::from(count), 0), title, "lead", Some(sql)));
     }
     lines
 }
 
-fn plans(facts: &CustomerFacts, group: Group, bars: usize) -> Vec<Fact> {
+fn plans(facts: &GroupFacts, group: Group, bars: usize) -> Vec<FactLine> {
     let customers = facts.sum(|held| held.customers).max(1.0);
-    let line = |(plan, held): (&Plan, &super::model::Held)| {
+    let line = |(plan, held): (&Plan, &super::model::PlanSubscribers)| {
         let share = held.customers / customers;
-        let figures = format!("{:>9} {:>6}", grouped(held.customers, 0), percent(share, 0));
+        let figures = format!("{:>9} {:>6}", grouped_number(held.customers, 0), percent(share, 0));
         let sql = format!(
             "SELECT s.customer_id, s.plan, s.seat_count, s.effective_price, s.start_day\nFROM subscriptions s\n\
              JOIN customers c ON c.customer_id = s.customer_id\nWHERE c.group_id = '{group}'\n    \
              AND s.status = 'subscribed' AND s.plan = '{plan}'"
         );
         let title = format!("customers of {group} on plan {plan}");
-        fact(format!("  {plan} {}", bar(share, bars)), figures, title, "plan", Some(sql))
+        figure_line(format!("  {plan} {}", bar(share, bars)), figures, title, "plan", Some(sql))
     };
-    let mut lines = vec![head("plans now", String::new())];
+    let mut lines = vec![heading_line("plans now", String::new())];
     lines.extend(Plan::ALL.iter().zip(&facts.plans).map(line));
     lines
 }
 
-fn sources(company: &Company, facts: &CustomerFacts, group: Group) -> Vec<Fact> {
+fn sources(company: &DisplayedCompany, facts: &GroupFacts, group: Group) -> Vec<FactLine> {
     let heads = format!("{:>6}{:>6}{:>6}", "leads", "share", "conv.");
-    let mut lines = vec![head("sources, 12 weeks", heads)];
+    let mut lines = vec![heading_line("sources, 12 weeks", heads)];
     let mut sources: Vec<_> = facts.sources.iter().collect();
     sources.sort_by(|left, right| right.1.0.total_cmp(&left.1.0));
     let leads = sources.iter().map(|(_, (leads, _))| leads).sum::<f64>().max(1.0);
     for (source, (own, signed)) in sources {
         let conversion = if *own > 0.0 { percent(signed / own, 0) } else { "–".to_owned() };
         let share = percent(own / leads, 0);
-        let figures = format!("{:>6}{share:>6}{conversion:>6}", compact(*own));
+        let figures = format!("{:>6}{share:>6}{conversion:>6}", compact_number(*own));
         let sql = format!(
             "SELECT c.customer_id, c.created_day, s.plan, s.status, s.start_day, s.end_day\nFROM customers c\n\
              JOIN subscriptions s ON s.customer_id = c.customer_id\nWHERE c.group_id = '{group}'\n    \
              AND c.acquisition_source = '{source}' AND c.created_day > {}",
-            i64::from(company.seen.day) - 84
+            i64::from(company.observation.day) - 84
         );
         let source = if source == "network" { "word of mouth" } else { source };
         let title = format!("leads of {group} from {source} in 12 weeks");
-        lines.push(fact(format!("  {source}"), figures, title, "acquisition-source", Some(sql)));
+        lines.push(figure_line(format!("  {source}"), figures, title, "acquisition-source", Some(sql)));
     }
     lines
 }
 
-fn money(company: &Company, market: &MarketRows, facts: &CustomerFacts, group: Group) -> Vec<Fact> {
+fn money_lines(company: &DisplayedCompany, market: &CustomerData, facts: &GroupFacts, group: Group) -> Vec<FactLine> {
     let or_none = |value: Option<f64>, write: fn(f64) -> String| value.map_or("–".to_owned(), write);
-    let mut lines = vec![head("money", String::new())];
+    let mut lines = vec![heading_line("money", String::new())];
     if let Some(quality) = company.quality.iter().find(|quality| quality.group == group) {
         let [a, b, c] = quality.by_plan.0;
         let title = format!("delivered quality of {group}");
         let figures = format!("{a:.2} {b:.2} {c:.2}");
-        lines.push(fact("  quality A B C".to_owned(), figures, title, "delivered-quality", None));
+        lines.push(figure_line("  quality A B C".to_owned(), figures, title, "delivered-quality", None));
     }
     let spend = format!(
         "SELECT day, channel_id, leads_generated, spend\nFROM ad_channel_leads\nWHERE group_id = '{group}' AND day > {}\n\
          ORDER BY day DESC",
-        i64::from(company.seen.day) - 28
+        i64::from(company.observation.day) - 28
     );
     let revenue = super::columns::figure_named("billed/mo", group, company);
     let churn = super::columns::figure_named("churn 30d", group, company);
-    let explained = churn.as_ref().and_then(|figure| figure.why);
+    let explained = churn.as_ref().and_then(|figure| figure.week_quantity);
     let rows = |figure: &Option<Figure>| figure.as_ref().and_then(|figure| figure.sql.clone());
     for (name, value, term, sql) in [
-        ("revenue a month", dollars(facts.sum(|held| held.monthly)), "mrr", rows(&revenue)),
+        ("revenue a month", dollars(facts.sum(|held| held.monthly_revenue)), "mrr", rows(&revenue)),
         (
             if group.is_enterprise() { "per seat" } else { "per subscriber" },
             or_none(facts.revenue_per_seat(), cents),
@@ -219,14 +219,14 @@ fn money(company: &Company, market: &MarketRows, facts: &CustomerFacts, group: G
             rows(&revenue),
         ),
         ("30-day churn", or_none(facts.churn(), |share| percent(share, 1)), "churn", rows(&churn)),
-        ("ads per day", dollars(ad_budgets(company, group)), "set_targeted_ad_spend", None),
+        ("ads per day", dollars(total_ad_budget(company, group)), "set_targeted_ad_spend", None),
         ("ads, 28 days", dollars(market.ad_spend(group)), "ad_channel_leads.spend", Some(spend)),
         ("development per day", dollars(development_budget(company, group)), "set_targeted_dev_spend", None),
     ] {
-        lines.push(fact(format!("  {name}"), value, format!("{name} of {group}"), term, sql));
+        lines.push(figure_line(format!("  {name}"), value, format!("{name} of {group}"), term, sql));
         // Uses the query of the churn column.
-        if let Some(Fact { figure: Some(figure), .. }) = lines.last_mut().filter(|_| term == "churn") {
-            figure.why = explained;
+        if let Some(FactLine { figure: Some(figure), .. }) = lines.last_mut().filter(|_| term == "churn") {
+            figure.week_quantity = explained;
         }
     }
     lines

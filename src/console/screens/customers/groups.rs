@@ -2,14 +2,14 @@
 
 use ratatui::layout::Rect;
 
-use super::opened::Opened;
+use super::open_group::OpenGroupState;
 use super::{Customers, columns};
 use crate::action::Action;
-use crate::context::{Figure, Look};
+use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
-use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
 use novamind_tui::canvas::Canvas;
-use novamind_tui::text::count;
+use novamind_tui::text::format_count;
 use novamind_tui::widgets::Table;
 
 pub struct CustomerGroupsPane;
@@ -27,44 +27,44 @@ impl Pane<Customers> for CustomerGroupsPane {
         vec![Action::Open, Action::Sort, Action::Filter]
     }
 
-    fn figure(&self, customers: &Customers, look: &Look<'_>) -> Option<Figure> {
+    fn figure(&self, customers: &Customers, look: &ScreenContext<'_>) -> Option<Figure> {
         let group = customers.group(look.company)?;
         columns::figure(group, customers.table.selected_column(), look.company)
     }
 
-    fn act(&self, customers: &mut Customers, action: Action, look: &Look<'_>) -> Vec<Effect> {
+    fn handle_action(&self, customers: &mut Customers, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
         if action == Action::Open {
-            customers.open = customers.table.selected();
-            customers.opened = Opened::default();
+            customers.open_group = customers.table.selected();
+            customers.group_state = OpenGroupState::default();
         } else {
-            customers.table.act(action, look.page);
+            customers.table.handle_action(action, look.page_rows);
         }
         Vec::new()
     }
 
-    fn border(&self, customers: &Customers, _: Rect, look: &Look<'_>) -> Border {
-        let seen = &look.company.seen;
-        let note = match customers.table.note() {
+    fn border(&self, customers: &Customers, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
+        let seen = &look.company.observation;
+        let note = match customers.table.summary() {
             note if note.is_empty() => format!(
                 "{} · {} · week {}",
-                count(f64::from(seen.subscribers), "subscriber"),
-                count(f64::from(seen.seats), "seat"),
+                format_count(f64::from(seen.subscribers), "subscriber"),
+                format_count(f64::from(seen.seats), "seat"),
                 seen.week
             ),
             note => note,
         };
-        let note = match &look.company.hidden {
+        let note = match &look.company.hidden_values {
             Some(hidden) => format!("x-ray: true values of day {} · {note}", hidden.day),
             None => note,
         };
         let mut keys = look.hints(&[Action::Open, Action::Sort, Action::Filter]);
-        if look.company.may_look_inside {
+        if look.company.can_inspect {
             keys = format!("{} · {keys}", look.hint(Action::HiddenValues));
         }
-        Border { title: "Groups".to_owned(), note, keys, ..Border::default() }
+        PaneBorder { title: "Groups".to_owned(), note, keys, ..PaneBorder::default() }
     }
 
-    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: Seat, _: &Look<'_>) {
-        customers.table.draw(canvas, seat.area, seat.focused, seat.number);
+    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: PanePlacement, _: &ScreenContext<'_>) {
+        customers.table.draw(canvas, seat.area, seat.focused, seat.index);
     }
 }

@@ -6,34 +6,34 @@ pub mod costs;
 mod facts;
 mod fit;
 mod groups;
-mod heat;
-mod hidden;
+mod channel_map;
+mod true_values;
 mod model;
-mod opened;
+mod open_group;
 mod quality;
-mod steps;
+mod selection;
 mod study;
 #[cfg(test)]
 mod tests;
-mod ways;
+mod group_actions;
 mod weeks;
 
 use ratatui::layout::{Constraint, Layout, Rect};
 
 use self::cohorts::Cohorts;
 use self::columns::{columns, row_of};
-use self::model::MarketRows;
-use self::opened::Opened;
+use self::model::CustomerData;
+use self::open_group::OpenGroupState;
 use super::ScreenState;
-use super::panes::{Pane, Paned, draw_pane};
+use super::panes::{Pane, PaneScreen, draw_pane};
 use crate::action::Action;
-use crate::context::Look;
+use crate::context::ScreenContext;
 use crate::effect::Effect;
-use novamind_database::Rows;
+use novamind_database::QueryResult;
 use novamind_session::identifiers::Group;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::widgets::Table;
-use novamind_worker::company::Company;
+use novamind_worker::company::DisplayedCompany;
 use novamind_worker::readings::Reading;
 
 /// Panes of the screen.
@@ -47,7 +47,7 @@ pub enum CustomersPane {
     /// Cost of leads and first bills by channel and group.
     Costs,
     /// Links from the open group to tools, its study and its customers.
-    Ways,
+    Actions,
     /// Estimated requirements next to the plans.
     Fit,
     /// Delivered and required quality by week.
@@ -63,9 +63,9 @@ pub enum CustomersPane {
 }
 
 /// Panes without an open group, then panes of an open group.
-const LISTED: [CustomersPane; 3] = [CustomersPane::Groups, CustomersPane::Channels, CustomersPane::Costs];
-const OPENED: [CustomersPane; 7] = [
-    CustomersPane::Ways,
+const LIST_PANES: [CustomersPane; 3] = [CustomersPane::Groups, CustomersPane::Channels, CustomersPane::Costs];
+const GROUP_PANES: [CustomersPane; 7] = [
+    CustomersPane::Actions,
     CustomersPane::Fit,
     CustomersPane::Quality,
     CustomersPane::Facts,
@@ -79,58 +79,58 @@ const OPENED: [CustomersPane; 7] = [
 pub struct Customers {
     /// Focused pane while no group is open.
     focus: CustomersPane,
-    market: MarketRows,
+    data: CustomerData,
     table: Table,
     costs: Table,
-    place: heat::HeatPlace,
+    map_cell: channel_map::ChannelMapCell,
     cohorts: Cohorts,
     /// Index of the open group among the known ones.
-    open: Option<usize>,
-    opened: Opened,
+    open_group: Option<usize>,
+    group_state: OpenGroupState,
 }
 
 impl Customers {
     /// Opens a group if it is known.
-    pub fn show(&mut self, group: Group, company: &Company) {
+    pub fn show_group(&mut self, group: Group, company: &DisplayedCompany) {
         self.focus = CustomersPane::Groups;
-        self.open = company.seen.known_groups.iter().position(|own| *own == group);
-        self.opened = Opened::default();
+        self.open_group = company.observation.known_groups.iter().position(|own| *own == group);
+        self.group_state = OpenGroupState::default();
         self.select_open();
     }
 
     /// Returns the open group, or the group selected in the list.
-    fn group(&self, company: &Company) -> Option<Group> {
-        company.seen.known_groups.get(self.open.or(self.table.selected())?).copied()
+    fn group(&self, company: &DisplayedCompany) -> Option<Group> {
+        company.observation.known_groups.get(self.open_group.or(self.table.selected())?).copied()
     }
 
-    fn turn_to(&mut self, other: impl Fn(usize) -> usize, company: &Company) {
-        let last = company.seen.known_groups.len().saturating_sub(1);
-        self.open = self.open.map(|open| other(open).min(last));
+    fn change_group(&mut self, other: impl Fn(usize) -> usize, company: &DisplayedCompany) {
+        let last = company.observation.known_groups.len().saturating_sub(1);
+        self.open_group = self.open_group.map(|open| other(open).min(last));
         self.select_open();
     }
 
     fn select_open(&mut self) {
-        if let Some(open) = self.open {
+        if let Some(open) = self.open_group {
             self.table.select(open);
         }
     }
 
-    fn is_on(&self, pane: CustomersPane) -> bool {
-        self.focused() == pane
+    fn has_focus(&self, pane: CustomersPane) -> bool {
+        self.focused_pane() == pane
     }
 
-    fn refresh(&mut self, company: &Company) {
-        let groups = &company.seen.known_groups;
-        let row = |group: &Group| row_of(*group, &self.market.of(*group), company, &self.market);
+    fn rebuild_tables(&mut self, company: &DisplayedCompany) {
+        let groups = &company.observation.known_groups;
+        let row = |group: &Group| row_of(*group, &self.data.facts_of_group(*group), company, &self.data);
         let rows: Vec<_> = groups.iter().map(row).collect();
         if self.table.rows().is_empty() {
-            self.table = Table::new(Vec::new()).by_cell();
+            self.table = Table::new(Vec::new()).with_cell_selection();
         }
-        self.table.set(columns(company), rows);
-        self.costs.set(costs::columns(), company.lead_costs.iter().map(costs::row_of).collect());
+        self.table.set_columns_and_rows(columns(company), rows);
+        self.costs.set_columns_and_rows(costs::columns(), company.lead_costs.iter().map(costs::row_of).collect());
         let last = groups.len().saturating_sub(1);
-        self.open = self.open.map(|open| open.min(last)).filter(|_| !groups.is_empty());
-        self.place.group = self.place.group.min(last);
+        self.open_group = self.open_group.map(|open| open.min(last)).filter(|_| !groups.is_empty());
+        self.map_cell.group = self.map_cell.group.min(last);
     }
 }
 
@@ -146,51 +146,51 @@ impl ScreenState for Customers {
         ]
     }
 
-    fn take(&mut self, reading: Reading, rows: &Rows, look: &Look<'_>) {
+    fn apply_rows(&mut self, reading: Reading, rows: &QueryResult, look: &ScreenContext<'_>) {
         match reading {
-            Reading::Cohorts => self.cohorts = Cohorts::of(rows),
-            reading => self.market.take(reading, rows),
+            Reading::Cohorts => self.cohorts = Cohorts::from_rows(rows),
+            reading => self.data.apply_rows(reading, rows),
         }
-        self.refresh(look.company);
+        self.rebuild_tables(look.company);
     }
 
-    fn renew(&mut self, look: &Look<'_>) {
-        self.refresh(look.company);
+    fn on_company_change(&mut self, look: &ScreenContext<'_>) {
+        self.rebuild_tables(look.company);
     }
 
-    fn open_here(&self, look: &Look<'_>) -> Option<String> {
-        self.open.and_then(|_| self.group(look.company)).map(|group| group.to_string())
+    fn open_item_title(&self, look: &ScreenContext<'_>) -> Option<String> {
+        self.open_group.and_then(|_| self.group(look.company)).map(|group| group.to_string())
     }
 
     fn covers_list(&self) -> bool {
-        self.open.is_some()
+        self.open_group.is_some()
     }
 
-    fn opened(&self) -> usize {
-        usize::from(self.open.is_some())
+    fn own_escape_depth(&self) -> usize {
+        usize::from(self.open_group.is_some())
     }
 
-    fn open_object(&self, look: &Look<'_>) -> Option<(&'static str, String)> {
-        let group = look.company.seen.known_groups.get(self.open?)?;
+    fn open_object(&self, look: &ScreenContext<'_>) -> Option<(&'static str, String)> {
+        let group = look.company.observation.known_groups.get(self.open_group?)?;
         Some(("group", group.id().to_owned()))
     }
 }
 
-impl Paned for Customers {
-    type Name = CustomersPane;
+impl PaneScreen for Customers {
+    type PaneId = CustomersPane;
 
     fn panes(&self) -> &'static [CustomersPane] {
-        if self.open.is_some() { &OPENED } else { &LISTED }
+        if self.open_group.is_some() { &GROUP_PANES } else { &LIST_PANES }
     }
 
     fn pane(name: CustomersPane) -> &'static dyn Pane<Customers> {
         match name {
             CustomersPane::Groups => &groups::CustomerGroupsPane,
-            CustomersPane::Channels => &heat::ChannelsPane,
+            CustomersPane::Channels => &channel_map::ChannelMapPane,
             CustomersPane::Costs => &costs::CostsPane,
             CustomersPane::Fit => &fit::FitPane,
             CustomersPane::Quality => &quality::QualityByWeekPane,
-            CustomersPane::Ways => &ways::WaysPane,
+            CustomersPane::Actions => &group_actions::GroupActionsPane,
             CustomersPane::Facts => &facts::FactsPane,
             CustomersPane::Weeks => &weeks::WeeksPane,
             CustomersPane::Cohorts => &cohorts::CohortsPane,
@@ -198,27 +198,27 @@ impl Paned for Customers {
         }
     }
 
-    fn focused(&self) -> CustomersPane {
-        if self.open.is_some() { self.opened.focus } else { self.focus }
+    fn focused_pane(&self) -> CustomersPane {
+        if self.open_group.is_some() { self.group_state.focus } else { self.focus }
     }
 
-    fn focus_on(&mut self, name: CustomersPane) {
-        match self.open {
-            Some(_) => self.opened.focus = name,
+    fn set_focused_pane(&mut self, name: CustomersPane) {
+        match self.open_group {
+            Some(_) => self.group_state.focus = name,
             None => self.focus = name,
         }
     }
 
-    fn act_anywhere(&mut self, action: Action, _: &Look<'_>) -> Option<Vec<Effect>> {
-        (action == Action::Close && self.open.take().is_some()).then(Vec::new)
+    fn handle_screen_action(&mut self, action: Action, _: &ScreenContext<'_>) -> Option<Vec<Effect>> {
+        (action == Action::Close && self.open_group.take().is_some()).then(Vec::new)
     }
 
-    fn arrange(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
-        if self.open.is_some() {
-            return opened::arrange(self, canvas, area, look);
+    fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+        if self.open_group.is_some() {
+            return open_group::draw_open_group(self, canvas, area, look);
         }
-        let map = (heat::HEIGHT + 2).min(area.height / 2);
-        let list = (look.company.seen.known_groups.len() as u16 + 3).min(area.height - map);
+        let map = (channel_map::MAP_HEIGHT + 2).min(area.height / 2);
+        let list = (look.company.observation.known_groups.len() as u16 + 3).min(area.height - map);
         let rest = area.height - map - list;
         // A preview of the selected group takes the remaining rows if it fits.
         let (list, rest) = if rest >= 14 { (list, rest) } else { (list + rest, 0) };
@@ -238,7 +238,7 @@ impl Paned for Customers {
             draw_pane(self, CustomersPane::Channels, canvas, channels, look);
         }
         if rest > 0 && self.table.selected().is_some() {
-            opened::draw_preview(self, canvas, preview, look);
+            open_group::draw_preview(self, canvas, preview, look);
         }
     }
 }

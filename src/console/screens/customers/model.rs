@@ -4,76 +4,76 @@ use std::collections::BTreeMap;
 
 use serde_json::Value;
 
-use novamind_database::{Rows, number_at, text_at};
+use novamind_database::{QueryResult, number_at, text_at};
 use novamind_session::identifiers::{Channel, Group, Plan};
 use novamind_tools::ToolId;
-use novamind_worker::company::Company;
+use novamind_worker::company::DisplayedCompany;
 use novamind_worker::readings::Reading;
 
-pub const WEEKS: u32 = 12;
+pub const CURVE_WEEKS: u32 = 12;
 
 /// Subscriptions of a group to a plan.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Held {
+pub struct PlanSubscribers {
     pub customers: f64,
     pub seats: f64,
     /// Dollars a month.
-    pub monthly: f64,
+    pub monthly_revenue: f64,
     /// Units used on the last day.
     pub units: f64,
     /// Seats whose usage is counted in `units`.
     pub users: f64,
     /// Subscriptions that were active 30 days ago.
-    pub since_30_days: f64,
+    pub active_30_days_ago: f64,
 }
 
 /// Changes in one week of a group.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Flow {
+pub struct WeekFlow {
     pub leads: f64,
-    pub signed: f64,
-    pub cancelled: f64,
+    pub signups: f64,
+    pub cancellations: f64,
 }
 
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct CustomerFacts {
-    pub plans: [Held; 3],
-    pub weeks: BTreeMap<u32, Flow>,
+pub struct GroupFacts {
+    pub plans: [PlanSubscribers; 3],
+    pub weeks: BTreeMap<u32, WeekFlow>,
     /// Leads and sign-ups of the last weeks by acquisition source.
     pub sources: BTreeMap<String, (f64, f64)>,
     /// Subscriptions active 30 days ago that have ended since.
     pub lost_in_30_days: f64,
 }
 
-impl CustomerFacts {
-    pub fn sum(&self, figure: impl Fn(&Held) -> f64) -> f64 {
+impl GroupFacts {
+    pub fn sum(&self, figure: impl Fn(&PlanSubscribers) -> f64) -> f64 {
         self.plans.iter().map(figure).sum()
     }
 
-    pub fn week(&self, week: u32) -> Flow {
+    pub fn week(&self, week: u32) -> WeekFlow {
         self.weeks.get(&week).copied().unwrap_or_default()
     }
 
     /// Returns the sum over the last `count` weeks.
-    pub fn last(&self, week: u32, count: u32, figure: impl Fn(&Flow) -> f64) -> f64 {
+    pub fn sum_of_last_weeks(&self, week: u32, count: u32, figure: impl Fn(&WeekFlow) -> f64) -> f64 {
         let from = (week + 1).saturating_sub(count);
         self.weeks.range(from..=week.max(from)).map(|(_, flow)| figure(flow)).sum()
     }
 
     /// Returns a figure of the last weeks, oldest first, without weeks before the start.
-    pub fn trend(&self, week: u32, figure: impl Fn(&Flow) -> f64) -> Vec<(u32, f64)> {
-        let from = (week + 1).saturating_sub(WEEKS).max(1);
+    pub fn weekly_values(&self, week: u32, figure: impl Fn(&WeekFlow) -> f64) -> Vec<(u32, f64)> {
+        let from = (week + 1).saturating_sub(CURVE_WEEKS).max(1);
         (from..=week).map(|week| (week, figure(&self.week(week)))).collect()
     }
 
     /// Returns the subscriptions at the end of each of the last weeks, computed backwards from today's.
-    pub fn stock(&self, week: u32) -> Vec<(u32, f64)> {
+    pub fn subscriptions_by_week(&self, week: u32) -> Vec<(u32, f64)> {
         let mut stock = self.sum(|held| held.customers);
         let mut all = Vec::new();
-        for (week, _) in self.trend(week, |_| 0.0).into_iter().rev() {
+        for (week, _) in self.weekly_values(week, |_| 0.0).into_iter().rev() {
             all.push((week, stock));
             let flow = self.week(week);
-            stock = (stock - flow.signed + flow.cancelled).max(0.0);
+            stock = (stock - flow.signups + flow.cancellations).max(0.0);
         }
         all.reverse();
         all
@@ -81,14 +81,14 @@ impl CustomerFacts {
 
     /// Returns the 30-day churn as a share.
     pub fn churn(&self) -> Option<f64> {
-        let before = self.sum(|held| held.since_30_days) + self.lost_in_30_days;
+        let before = self.sum(|held| held.active_30_days_ago) + self.lost_in_30_days;
         (before > 0.0).then(|| self.lost_in_30_days / before)
     }
 
     /// Returns the dollars per month and seat.
     pub fn revenue_per_seat(&self) -> Option<f64> {
         let seats = self.sum(|held| held.seats);
-        (seats > 0.0).then(|| self.sum(|held| held.monthly) / seats)
+        (seats > 0.0).then(|| self.sum(|held| held.monthly_revenue) / seats)
     }
 
     /// Returns the units per seat on the last day.
@@ -100,65 +100,65 @@ impl CustomerFacts {
 
 /// Leads and spend of a channel in a group.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct MeasuredGroup {
+pub struct ChannelMeasurement {
     pub leads: f64,
     pub spend: f64,
 }
 
-impl MeasuredGroup {
+impl ChannelMeasurement {
     /// Returns the leads per $1,000; `None` if nothing was spent.
-    pub fn per_thousand(&self) -> Option<f64> {
+    pub fn leads_per_thousand(&self) -> Option<f64> {
         (self.spend > 0.0).then(|| self.leads / self.spend * 1000.0)
     }
 }
 
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct MarketRows {
-    groups: BTreeMap<Group, CustomerFacts>,
-    channels: BTreeMap<(usize, Group), MeasuredGroup>,
+pub struct CustomerData {
+    groups: BTreeMap<Group, GroupFacts>,
+    channels: BTreeMap<(usize, Group), ChannelMeasurement>,
 }
 
-impl MarketRows {
-    pub fn of(&self, group: Group) -> CustomerFacts {
+impl CustomerData {
+    pub fn facts_of_group(&self, group: Group) -> GroupFacts {
         self.groups.get(&group).cloned().unwrap_or_default()
     }
 
     /// Returns the results of a channel in a group over the last four weeks.
-    pub fn measured(&self, channel: Channel, group: Group) -> MeasuredGroup {
+    pub fn channel_measurement(&self, channel: Channel, group: Group) -> ChannelMeasurement {
         self.channels.get(&(channel.index(), group)).copied().unwrap_or_default()
     }
 
     /// Returns the dollars spent on ads for a group in the last four weeks.
     pub fn ad_spend(&self, group: Group) -> f64 {
-        Channel::ALL.iter().map(|channel| self.measured(*channel, group).spend).sum()
+        Channel::ALL.iter().map(|channel| self.channel_measurement(*channel, group).spend).sum()
     }
 
-    pub fn take(&mut self, reading: Reading, rows: &Rows) {
-        self.forget(reading);
+    pub fn apply_rows(&mut self, reading: Reading, rows: &QueryResult) {
+        self.clear_reading(reading);
         for row in &rows.rows {
             match reading {
-                Reading::Subscribers => self.take_held(row, |held, row| {
+                Reading::Subscribers => self.update_plan(row, |held, row| {
                     held.customers = number_at(row, 2);
                     held.seats = number_at(row, 3);
-                    held.monthly = number_at(row, 4);
-                    held.since_30_days = number_at(row, 5);
+                    held.monthly_revenue = number_at(row, 4);
+                    held.active_30_days_ago = number_at(row, 5);
                 }),
-                Reading::Usage => self.take_held(row, |held, row| {
+                Reading::Usage => self.update_plan(row, |held, row| {
                     held.users = number_at(row, 2);
                     held.units = number_at(row, 4);
                 }),
-                Reading::Arrivals => self.take_arrivals(row),
+                Reading::Arrivals => self.add_leads(row),
                 Reading::Departures => {
                     let Some(group) = Group::parse(text_at(row, 1)) else { continue };
                     let facts = self.groups.entry(group).or_default();
                     let flow = facts.weeks.entry(number_at(row, 0) as u32).or_default();
-                    flow.cancelled += number_at(row, 2);
+                    flow.cancellations += number_at(row, 2);
                     facts.lost_in_30_days += number_at(row, 3);
                 }
                 Reading::LeadsByChannel => {
                     let (channel, group) = (Channel::parse(text_at(row, 0)), Group::parse(text_at(row, 1)));
                     if let (Some(channel), Some(group)) = (channel, group) {
-                        let measured = MeasuredGroup { leads: number_at(row, 2), spend: number_at(row, 3) };
+                        let measured = ChannelMeasurement { leads: number_at(row, 2), spend: number_at(row, 3) };
                         self.channels.insert((channel.index(), group), measured);
                     }
                 }
@@ -167,36 +167,36 @@ impl MarketRows {
         }
     }
 
-    fn forget(&mut self, reading: Reading) {
+    fn clear_reading(&mut self, reading: Reading) {
         if reading == Reading::LeadsByChannel {
             self.channels.clear();
         }
         for facts in self.groups.values_mut() {
             match reading {
                 Reading::Subscribers => facts.plans.iter_mut().for_each(|held| {
-                    *held = Held { users: held.users, units: held.units, ..Held::default() };
+                    *held = PlanSubscribers { users: held.users, units: held.units, ..PlanSubscribers::default() };
                 }),
                 Reading::Usage => facts.plans.iter_mut().for_each(|held| {
-                    *held = Held { users: 0.0, units: 0.0, ..*held };
+                    *held = PlanSubscribers { users: 0.0, units: 0.0, ..*held };
                 }),
                 Reading::Arrivals => {
                     facts.sources.clear();
                     let flows = facts.weeks.values_mut();
-                    flows.for_each(|flow| *flow = Flow { cancelled: flow.cancelled, ..Flow::default() });
+                    flows.for_each(|flow| *flow = WeekFlow { cancellations: flow.cancellations, ..WeekFlow::default() });
                 }
                 Reading::Departures => {
                     facts.lost_in_30_days = 0.0;
-                    facts.weeks.values_mut().for_each(|flow| flow.cancelled = 0.0);
+                    facts.weeks.values_mut().for_each(|flow| flow.cancellations = 0.0);
                 }
                 _ => {}
             }
         }
     }
 
-    fn take_held(
+    fn update_plan(
         &mut self,
         row: &[novamind_database::Cell],
-        take: impl Fn(&mut Held, &[novamind_database::Cell]),
+        take: impl Fn(&mut PlanSubscribers, &[novamind_database::Cell]),
     ) {
         let (group, plan) = (Group::parse(text_at(row, 0)), Plan::parse(text_at(row, 1)));
         if let (Some(group), Some(plan)) = (group, plan) {
@@ -205,32 +205,32 @@ impl MarketRows {
         }
     }
 
-    fn take_arrivals(&mut self, row: &[novamind_database::Cell]) {
+    fn add_leads(&mut self, row: &[novamind_database::Cell]) {
         let Some(group) = Group::parse(text_at(row, 1)) else { return };
         let (leads, signed) = (number_at(row, 3), number_at(row, 4));
         let facts = self.groups.entry(group).or_default();
         let flow = facts.weeks.entry(number_at(row, 0) as u32).or_default();
         flow.leads += leads;
-        flow.signed += signed;
+        flow.signups += signed;
         let source = facts.sources.entry(text_at(row, 2).to_owned()).or_default();
         *source = (source.0 + leads, source.1 + signed);
     }
 }
 
 /// Returns the advertising budget of a group in a channel, $ per day.
-pub fn ad_budget(company: &Company, channel: Channel, group: Group) -> f64 {
+pub fn ad_budget(company: &DisplayedCompany, channel: Channel, group: Group) -> f64 {
     let spend = company.settings.get(&ToolId::SetTargetedAdSpend).and_then(|all| all.get("targeted_spend"));
     let own = spend.and_then(|all| all.get(channel.id())).and_then(|groups| groups.get(group.id()));
     own.and_then(Value::as_f64).unwrap_or(0.0)
 }
 
 /// Returns the advertising budget of a group in all channels, $ per day.
-pub fn ad_budgets(company: &Company, group: Group) -> f64 {
+pub fn total_ad_budget(company: &DisplayedCompany, group: Group) -> f64 {
     Channel::ALL.iter().map(|channel| ad_budget(company, *channel, group)).sum()
 }
 
 /// Returns the development budget of a group, $ per day.
-pub fn development_budget(company: &Company, group: Group) -> f64 {
+pub fn development_budget(company: &DisplayedCompany, group: Group) -> f64 {
     let spend = company.settings.get(&ToolId::SetTargetedDevSpend).and_then(|all| all.get("targeted_spend"));
     spend.and_then(|all| all.get(group.id())).and_then(Value::as_f64).unwrap_or(0.0)
 }

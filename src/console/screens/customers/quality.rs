@@ -4,14 +4,14 @@ use ratatui::layout::Rect;
 
 use super::Customers;
 use crate::action::Action;
-use crate::context::{Figure, Look};
-use crate::screens::panes::{Border, Pane, Seat};
+use crate::context::{Figure, ScreenContext};
+use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
 use novamind_session::identifiers::{Group, Plan};
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::chart::Band;
-use novamind_tui::widgets::{Axis, Line, Plot, Side, Unit};
-use novamind_worker::company::Company;
+use novamind_tui::widgets::{XAxis, Curve, Plot, YAxis, AxisUnit};
+use novamind_worker::company::DisplayedCompany;
 
 pub struct QualityByWeekPane;
 
@@ -20,44 +20,44 @@ impl Pane<Customers> for QualityByWeekPane {
         vec![Action::FocusNext, Action::Close]
     }
 
-    fn figure(&self, customers: &Customers, look: &Look<'_>) -> Option<Figure> {
+    fn figure(&self, customers: &Customers, look: &ScreenContext<'_>) -> Option<Figure> {
         let title = format!("quality delivered to {} by week", customers.group(look.company)?);
-        Some(Figure { title, term: "delivered-quality", sql: None, why: None })
+        Some(Figure { title, term: "delivered-quality", sql: None, week_quantity: None })
     }
 
-    fn border(&self, customers: &Customers, _: Rect, look: &Look<'_>) -> Border {
+    fn border(&self, customers: &Customers, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
         let fit = customers.group(look.company).and_then(|group| look.company.fit(group));
-        fit.map_or_else(Border::default, |fit| Border {
+        fit.map_or_else(PaneBorder::default, |fit| PaneBorder {
             title: "Delivered and required quality".to_owned(),
-            note: format!("░ required, now {}", fit.floor.quality()),
-            ..Border::default()
+            note: format!("░ required, now {}", fit.floor.format_quality()),
+            ..PaneBorder::default()
         })
     }
 
-    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
         let Some(group) = customers.group(look.company) else { return };
         let names = ["A", "B", "C"];
         let line = |plan: Plan| {
             let points = quality_by_week(look.company, group, plan);
-            Line::through(points, Role::Series(plan.index())).named(names[plan.index()])
+            Curve::from_points(points, Role::Series(plan.index())).with_name(names[plan.index()])
         };
         let lines = Plan::ALL.map(line);
-        let band = Band { ends: floor_by_week(look.company, group), name: "required" };
-        let x = Axis { write: &|week| format!("wk {week:.0}"), holds: &[] };
-        let y = Side { unit: Unit::Number, holds: &[0.0] };
-        Plot { lines: &lines, band: Some(&band), mark: None, x: &x, y: &y }.draw(canvas, seat.area);
+        let band = Band { bounds: required_quality_by_week(look.company, group), name: "required" };
+        let x = XAxis { format: &|week| format!("wk {week:.0}"), required_values: &[] };
+        let y = YAxis { unit: AxisUnit::Number, required_values: &[0.0] };
+        Plot { curves: &lines, band: Some(&band), marked_x: None, x: &x, y: &y }.draw(canvas, seat.area);
     }
 }
 
 /// Returns the delivered quality at the end of each week since the group was found.
-pub fn quality_by_week(company: &Company, group: Group, plan: Plan) -> Vec<(f64, f64)> {
+pub fn quality_by_week(company: &DisplayedCompany, group: Group, plan: Plan) -> Vec<(f64, f64)> {
     let weeks = company.group_weeks.iter().enumerate();
     weeks.filter_map(|(at, week)| Some(((at + 1) as f64, week[group].quality?[plan]))).collect()
 }
 
 /// Returns the lowest and highest required quality, as estimated at the end of each week since the group was
 /// found.
-pub fn floor_by_week(company: &Company, group: Group) -> Vec<(f64, f64, f64)> {
+pub fn required_quality_by_week(company: &DisplayedCompany, group: Group) -> Vec<(f64, f64, f64)> {
     let weeks = company.group_weeks.iter().enumerate();
     let end = |(at, week): (usize, &novamind_session::identifiers::ByGroup<novamind_session::GroupWeek>)| {
         let (least, most) = week[group].floor?;

@@ -3,14 +3,14 @@
 use ratatui::layout::Rect;
 
 use super::Customers;
-use super::steps::{moved, show_rows};
+use super::selection::{move_index, show_rows_effect};
 use crate::action::Action;
-use crate::context::{Figure, Look};
+use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
 use crate::screens::market::model::level_of;
 use crate::screens::market::report;
-use crate::screens::panes::{Border, Pane, Seat};
-use novamind_base::notation::percent;
+use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
+use novamind_base::formatting::percent;
 use novamind_tui::canvas::Canvas;
 
 pub struct StudyPane;
@@ -20,37 +20,37 @@ impl Pane<Customers> for StudyPane {
         vec![Action::Open, Action::FocusNext, Action::Close]
     }
 
-    fn figure(&self, customers: &Customers, look: &Look<'_>) -> Option<Figure> {
+    fn figure(&self, customers: &Customers, look: &ScreenContext<'_>) -> Option<Figure> {
         let title = format!("market study of {}", customers.group(look.company)?);
-        Some(Figure { title, term: "info-level", sql: None, why: None })
+        Some(Figure { title, term: "info-level", sql: None, week_quantity: None })
     }
 
-    fn act(&self, customers: &mut Customers, action: Action, look: &Look<'_>) -> Vec<Effect> {
+    fn handle_action(&self, customers: &mut Customers, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
         let Some(group) = customers.group(look.company) else { return Vec::new() };
         if action == Action::Open {
-            return show_rows(self.figure(customers, look));
+            return show_rows_effect(self.figure(customers, look));
         }
         let last = report::lines(look.company, group).len().saturating_sub(1);
-        customers.opened.line = moved(customers.opened.line, last, action);
+        customers.group_state.study_line = move_index(customers.group_state.study_line, last, action);
         Vec::new()
     }
 
-    fn border(&self, customers: &Customers, _: Rect, look: &Look<'_>) -> Border {
-        customers.group(look.company).map_or_else(Border::default, |group| {
+    fn border(&self, customers: &Customers, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
+        customers.group(look.company).map_or_else(PaneBorder::default, |group| {
             let level = level_of(look.company, group);
-            let noise = look.company.terms.level(level).map_or(0.0, |level| level.noise);
+            let noise = look.company.tool_limits.study_level(level).map_or(0.0, |level| level.noise);
             let note = format!(
                 "study level {level} · ±{} · {}",
                 percent(noise, 0),
-                report::studied(look.company, group)
+                report::study_date_text(look.company, group)
             );
-            Border { title: format!("Study of {group}"), note, ..Border::default() }
+            PaneBorder { title: format!("Study of {group}"), note, ..PaneBorder::default() }
         })
     }
 
-    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
         if let Some(group) = customers.group(look.company) {
-            report::draw_estimates(canvas, seat.area, look.company, group, customers.opened.line);
+            report::draw_estimates(canvas, seat.area, look.company, group, customers.group_state.study_line);
         }
     }
 }

@@ -3,21 +3,21 @@
 use ratatui::layout::{Constraint, Layout, Rect};
 
 use super::columns::flow_statement;
-use super::model::{self, CustomerFacts, Flow};
-use super::steps::{moved, show_rows};
+use super::model::{self, GroupFacts, WeekFlow};
+use super::selection::{move_index, show_rows_effect};
 use super::{Customers, CustomersPane};
 use crate::action::Action;
-use crate::context::{Figure, Look};
+use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
-use crate::screens::panes::{Border, Pane, Seat, draw_framed};
-use novamind_base::notation::{compact, grouped};
+use crate::screens::panes::{PaneBorder, Pane, PanePlacement, draw_framed};
+use novamind_base::formatting::{compact_number, grouped_number};
 use novamind_insight::WeekQuantity;
 use novamind_record::figures::WeekFigure;
 use novamind_tui::canvas::Canvas;
-use novamind_tui::text::{arrow, count};
+use novamind_tui::text::{format_change, format_count};
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::chart::{note_room, summary, zero_if_near};
-use novamind_tui::widgets::{Axis, Line, Plot, Side, Unit};
+use novamind_tui::widgets::chart::{note_width, summary, zero_if_near};
+use novamind_tui::widgets::{XAxis, Curve, Plot, YAxis, AxisUnit};
 
 /// Selectable flows with their terms and figures.
 const FLOWS: [(&str, &str, WeekFigure); 3] = [
@@ -29,8 +29,8 @@ const FLOWS: [(&str, &str, WeekFigure); 3] = [
 pub struct WeeksPane;
 
 impl WeeksPane {
-    fn week(&self, customers: &Customers, look: &Look<'_>) -> u32 {
-        look.company.seen.week.saturating_sub(customers.opened.back)
+    fn week(&self, customers: &Customers, look: &ScreenContext<'_>) -> u32 {
+        look.company.observation.week.saturating_sub(customers.group_state.weeks_back)
     }
 }
 
@@ -39,81 +39,81 @@ impl Pane<Customers> for WeeksPane {
         vec![Action::Open, Action::FocusNext, Action::Close]
     }
 
-    fn figure(&self, customers: &Customers, look: &Look<'_>) -> Option<Figure> {
+    fn figure(&self, customers: &Customers, look: &ScreenContext<'_>) -> Option<Figure> {
         let (group, week) = (customers.group(look.company)?, self.week(customers, look));
-        let flow = customers.opened.flow;
+        let flow = customers.group_state.flow;
         let (name, term, figure) = FLOWS[flow];
         let sql = Some(flow_statement(flow, group, week));
-        let own = Figure { title: format!("{name} of {group} in week {week}"), term, sql, why: None };
-        Some(own.of_week(WeekQuantity::of_group(figure, group), week))
+        let own = Figure { title: format!("{name} of {group} in week {week}"), term, sql, week_quantity: None };
+        Some(own.with_week_quantity(WeekQuantity::for_group(figure, group), week))
     }
 
-    fn act(&self, customers: &mut Customers, action: Action, look: &Look<'_>) -> Vec<Effect> {
-        let most = model::WEEKS.min(look.company.seen.week).saturating_sub(1);
-        let opened = &mut customers.opened;
+    fn handle_action(&self, customers: &mut Customers, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+        let most = model::CURVE_WEEKS.min(look.company.observation.week).saturating_sub(1);
+        let opened = &mut customers.group_state;
         match action {
-            Action::Open => return show_rows(self.figure(customers, look)),
-            Action::Left => opened.back = (opened.back + 1).min(most),
-            Action::Right => opened.back = opened.back.saturating_sub(1),
-            action => opened.flow = moved(opened.flow, FLOWS.len() - 1, action),
+            Action::Open => return show_rows_effect(self.figure(customers, look)),
+            Action::Left => opened.weeks_back = (opened.weeks_back + 1).min(most),
+            Action::Right => opened.weeks_back = opened.weeks_back.saturating_sub(1),
+            action => opened.flow = move_index(opened.flow, FLOWS.len() - 1, action),
         }
         Vec::new()
     }
 
-    fn border(&self, customers: &Customers, area: Rect, look: &Look<'_>) -> Border {
+    fn border(&self, customers: &Customers, area: Rect, look: &ScreenContext<'_>) -> PaneBorder {
         let title = "By week";
         let label = |action| look.keys.label(action).unwrap_or_default();
         let [left, right] = [Action::Left, Action::Right].map(label);
         let [up, down] = [Action::Up, Action::Down].map(label);
         let note = customers.group(look.company).map_or(String::new(), |group| {
             // Without the focus the pane summarizes all flows of the last week.
-            let focused = customers.is_on(CustomersPane::Weeks);
+            let focused = customers.has_focus(CustomersPane::Weeks);
             let (week, flow) = match focused {
-                true => (self.week(customers, look), customers.opened.flow),
-                false => (look.company.seen.week, usize::MAX),
+                true => (self.week(customers, look), customers.group_state.flow),
+                false => (look.company.observation.week, usize::MAX),
             };
-            flow_words(&customers.market.of(group), week, flow, note_room(area, title))
+            flow_summary(&customers.data.facts_of_group(group), week, flow, note_width(area, title))
         });
         let keys = format!("{left} {right} another week · {up} {down} another figure");
-        Border { title: title.to_owned(), note, keys, ..Border::default() }
+        PaneBorder { title: title.to_owned(), note, keys, ..PaneBorder::default() }
     }
 
-    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
         let Some(group) = customers.group(look.company) else { return };
-        let own = customers.market.of(group);
-        let week = look.company.seen.week;
-        let trend = |figure: fn(&Flow) -> f64| points(own.trend(week, figure));
+        let own = customers.data.facts_of_group(group);
+        let week = look.company.observation.week;
+        let trend = |figure: fn(&WeekFlow) -> f64| points(own.weekly_values(week, figure));
         let lines = [
-            Line::through(trend(|flow| flow.leads), Role::Series(2)).named("leads"),
-            Line::through(trend(|flow| flow.signed), Role::Good).named("new"),
-            Line {
-                scattered: true,
-                ..Line::through(trend(|flow| flow.cancelled), Role::Bad).named("cancelled")
+            Curve::from_points(trend(|flow| flow.leads), Role::Series(2)).with_name("leads"),
+            Curve::from_points(trend(|flow| flow.signups), Role::Good).with_name("new"),
+            Curve {
+                is_scatter: true,
+                ..Curve::from_points(trend(|flow| flow.cancellations), Role::Bad).with_name("cancelled")
             },
         ];
         let mark = seat.focused.then(|| f64::from(self.week(customers, look)));
-        plot(canvas, seat.area, &lines, mark, &[0.0]);
+        draw_plot(canvas, seat.area, &lines, mark, &[0.0]);
     }
 
-    fn show(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+    fn draw_with_border(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
         let [stock, flows] =
             Layout::vertical([Constraint::Percentage(50), Constraint::Min(0)]).areas(seat.area);
-        self.draw_stock(customers, canvas, Seat { area: stock, ..seat }, look);
-        draw_framed(self, customers, canvas, Seat { area: flows, ..seat }, look);
+        self.draw_stock(customers, canvas, PanePlacement { area: stock, ..seat }, look);
+        draw_framed(self, customers, canvas, PanePlacement { area: flows, ..seat }, look);
     }
 }
 
 impl WeeksPane {
-    fn draw_stock(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+    fn draw_stock(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
         let Some(group) = customers.group(look.company) else { return };
-        let held = points(customers.market.of(group).stock(look.company.seen.week));
+        let held = points(customers.data.facts_of_group(group).subscriptions_by_week(look.company.observation.week));
         let values: Vec<f64> = held.iter().map(|point| point.1).collect();
         let title = format!("{group} {}", if group.is_enterprise() { "companies" } else { "subscribers" });
-        let words = summary(&values, &|value| grouped(value, 0), note_room(seat.area, &title));
-        let inside = canvas.pane(seat.area, &title, &words, false);
+        let words = summary(&values, &|value| grouped_number(value, 0), note_width(seat.area, &title));
+        let inside = canvas.draw_pane_frame(seat.area, &title, &words, false);
         let mark = seat.focused.then(|| f64::from(self.week(customers, look)));
-        let lines = [Line::through(held, Role::Series(0))];
-        plot(canvas, inside, &lines, mark, zero_if_near(values.iter().copied()));
+        let lines = [Curve::from_points(held, Role::Series(0))];
+        draw_plot(canvas, inside, &lines, mark, zero_if_near(values.iter().copied()));
     }
 }
 
@@ -121,30 +121,30 @@ fn points(values: Vec<(u32, f64)>) -> Vec<(f64, f64)> {
     values.iter().map(|(at, value)| (f64::from(*at), *value)).collect()
 }
 
-fn plot(canvas: &mut Canvas<'_>, area: Rect, lines: &[Line], mark: Option<f64>, holds: &[f64]) {
-    let x = Axis { write: &|week| format!("wk {week:.0}"), holds: &[] };
-    let y = Side { unit: Unit::Number, holds };
-    Plot { lines, band: None, mark, x: &x, y: &y }.draw(canvas, area);
+fn draw_plot(canvas: &mut Canvas<'_>, area: Rect, lines: &[Curve], mark: Option<f64>, holds: &[f64]) {
+    let x = XAxis { format: &|week| format!("wk {week:.0}"), required_values: &[] };
+    let y = YAxis { unit: AxisUnit::Number, required_values: holds };
+    Plot { curves: lines, band: None, marked_x: mark, x: &x, y: &y }.draw(canvas, area);
 }
 
 /// Describes a week: the selected flow with its change, or all flows.
-fn flow_words(facts: &CustomerFacts, week: u32, flow: usize, room: usize) -> String {
+fn flow_summary(facts: &GroupFacts, week: u32, flow: usize, room: usize) -> String {
     let (now, before) = (facts.week(week), facts.week(week.saturating_sub(1)));
-    let of = |own: &Flow| [own.leads, own.signed, own.cancelled];
-    let whole = |value: f64| grouped(value, 0);
+    let of = |own: &WeekFlow| [own.leads, own.signups, own.cancellations];
+    let whole = |value: f64| grouped_number(value, 0);
     if let Some((name, ..)) = FLOWS.get(flow) {
         let (now, before) = (of(&now)[flow], of(&before)[flow]);
         return format!(
             "week {week}: {} {name} {}",
             whole(now),
-            arrow(now - before, &whole((now - before).abs()))
+            format_change(now - before, &whole((now - before).abs()))
         );
     }
     let full = format!(
         "{} · {} new · {} cancelled",
-        count(now.leads, "lead"),
-        whole(now.signed),
-        whole(now.cancelled)
+        format_count(now.leads, "lead"),
+        whole(now.signups),
+        whole(now.cancellations)
     );
-    if full.len() <= room { full } else { format!("+{} -{}", compact(now.signed), compact(now.cancelled)) }
+    if full.len() <= room { full } else { format!("+{} -{}", compact_number(now.signups), compact_number(now.cancellations)) }
 }

@@ -2,14 +2,14 @@
 //! many.
 
 mod estimate;
-mod list;
+mod thread_list;
 mod model;
 mod offer;
 mod offer_pane;
 mod outcomes;
-mod post;
+mod sending;
 mod preview;
-mod ruling;
+mod rules_form;
 #[cfg(test)]
 mod tests;
 mod thread;
@@ -18,27 +18,27 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use ratatui::layout::{Constraint, Layout, Rect};
 
-use self::estimate::market_of;
-use self::list::{columns, row_of};
-use self::model::{Letters, State, Thread};
-use self::offer::{Offer, TERMS, TermChoice};
-use self::outcomes::Outcomes;
-use self::ruling::Ruling;
+use self::estimate::rules_market;
+use self::thread_list::{columns, row_of};
+use self::model::{ThreadStore, ThreadState, Thread};
+use self::offer::{OfferDraft, MAX_TERMS, PlanChoice};
+use self::outcomes::FirstOfferOutcomes;
+use self::rules_form::RulesForm;
 use super::ScreenState;
-use super::panes::{Pane, Paned, draw_pane};
+use super::panes::{Pane, PaneScreen, draw_pane};
 use crate::action::Action;
-use crate::context::{Look, ScreenId};
+use crate::context::{ScreenContext, ScreenId};
 use crate::effect::Effect;
-use novamind_base::notation::parse_number;
-use novamind_database::Rows;
-use novamind_rules::{AskingThread, SeatUsage};
+use novamind_base::formatting::parse_number;
+use novamind_database::QueryResult;
+use novamind_rules::{ThreadContext, SeatUsage};
 use novamind_session::identifiers::Group;
 use novamind_tools::ToolId;
 use novamind_tui::canvas::{Canvas, Click};
 use novamind_tui::widgets::Table;
-use novamind_tui::widgets::field::{Field, ONLY_NUMBERS};
-use novamind_worker::company::Company;
-use novamind_worker::message::News;
+use novamind_tui::widgets::field::{TextField, NUMBER_HINT};
+use novamind_worker::company::DisplayedCompany;
+use novamind_worker::message::Response;
 use novamind_worker::readings::Reading;
 
 /// Panes of the screen.
@@ -56,8 +56,8 @@ pub enum InboxPane {
 }
 
 /// Panes in tab order: with the list of threads, and with the outcomes.
-const LISTED: [InboxPane; 3] = [InboxPane::List, InboxPane::Thread, InboxPane::Offer];
-const COUNTED: [InboxPane; 3] = [InboxPane::Outcomes, InboxPane::Thread, InboxPane::Offer];
+const LIST_PANES: [InboxPane; 3] = [InboxPane::List, InboxPane::Thread, InboxPane::Offer];
+const OUTCOME_PANES: [InboxPane; 3] = [InboxPane::Outcomes, InboxPane::Thread, InboxPane::Offer];
 
 /// Footer actions for a single thread.
 const OFFER_HINTS: [Action; 6] = [
@@ -65,22 +65,22 @@ const OFFER_HINTS: [Action; 6] = [
     Action::OfferPlan,
     Action::OfferBasis,
     Action::OfferPrice,
-    Action::TakeAsk,
+    Action::MatchAskedPrice,
     Action::Close,
 ];
 
 /// Actions that need a thread.
-const NEEDS_A_THREAD: [Action; 8] = [
+const THREAD_ACTIONS: [Action; 8] = [
     Action::Mark,
     Action::MarkAll,
-    Action::TakeAsk,
+    Action::MatchAskedPrice,
     Action::OfferPlan,
     Action::OfferBasis,
     Action::OfferPrice,
     Action::InboxGroup,
     Action::InboxSql,
 ];
-const NO_THREAD: &str = "No thread is selected";
+const NO_THREAD_ERROR: &str = "No thread is selected";
 
 const OFFER_HEIGHT: u16 = 10;
 
@@ -88,26 +88,26 @@ const OFFER_HEIGHT: u16 = 10;
 enum InboxView {
     /// The player must answer.
     #[default]
-    Waiting,
+    WaitingForPlayer,
     /// The enterprise must answer.
-    Theirs,
-    Over,
+    WaitingForCustomer,
+    Closed,
 }
 
 impl InboxView {
-    fn holds(self, state: State) -> bool {
+    fn includes(self, state: ThreadState) -> bool {
         match self {
-            InboxView::Waiting => matches!(state, State::Waiting(_)),
-            InboxView::Theirs => state == State::Theirs,
-            InboxView::Over => !state.is_open(),
+            InboxView::WaitingForPlayer => matches!(state, ThreadState::WaitingForPlayer(_)),
+            InboxView::WaitingForCustomer => state == ThreadState::WaitingForCustomer,
+            InboxView::Closed => !state.is_open(),
         }
     }
 
     fn next(self) -> InboxView {
         match self {
-            InboxView::Waiting => InboxView::Theirs,
-            InboxView::Theirs => InboxView::Over,
-            InboxView::Over => InboxView::Waiting,
+            InboxView::WaitingForPlayer => InboxView::WaitingForCustomer,
+            InboxView::WaitingForCustomer => InboxView::Closed,
+            InboxView::Closed => InboxView::WaitingForPlayer,
         }
     }
 }
@@ -117,56 +117,56 @@ impl InboxView {
 pub struct Inbox {
     focus: InboxPane,
     view: InboxView,
-    letters: Letters,
+    threads: ThreadStore,
     usage: SeatUsage,
     /// Plans that enterprises named with their prices.
-    named: novamind_rules::Letters,
-    ruling: Option<Ruling>,
+    asked_plans: novamind_rules::RequestedPlans,
+    rules_form: Option<RulesForm>,
     /// Outcomes of first offers, while they replace the list.
-    outcomes: Option<Outcomes>,
+    outcomes: Option<FirstOfferOutcomes>,
     last_rules: Option<String>,
     table: Table,
     /// Indexes of the listed threads among all threads.
     rows: Vec<usize>,
     marked: BTreeSet<u32>,
-    drafts: BTreeMap<u32, Offer>,
+    drafts: BTreeMap<u32, OfferDraft>,
     /// Offer to the marked threads.
-    rule: Option<Offer>,
+    rule: Option<OfferDraft>,
     /// Last sent offer that can be reused for other enterprises.
-    last: Option<Offer>,
-    term: usize,
+    last_offer: Option<OfferDraft>,
+    selected_term: usize,
     /// Its value while the user types.
-    typing: Option<Field>,
+    value_field: Option<TextField>,
     /// Rows scrolled: backwards in a thread, forwards in a preview.
     scroll: u16,
 }
 
 impl Inbox {
-    fn refresh(&mut self, company: &Company) {
-        let place = self.place();
-        self.letters.settle(self.asking(company), &company.names);
-        let threads = self.letters.threads.iter();
+    fn update_threads(&mut self, company: &DisplayedCompany) {
+        let place = self.list_position();
+        self.threads.merge_waiting(self.waiting_threads(company), &company.company_names);
+        let threads = self.threads.threads.iter();
         let open: BTreeSet<u32> =
             threads.filter(|thread| thread.state.is_open()).map(|thread| thread.number).collect();
         self.marked.retain(|number| open.contains(number));
-        self.list(place);
+        self.rebuild_table(place);
     }
 
     /// Returns the numbers of the listed threads, and of the selected one.
-    fn place(&self) -> (Vec<u32>, Option<u32>) {
-        let shown = self.table.shown().iter().filter_map(|row| self.number_of(*row)).collect();
-        (shown, self.here().map(|thread| thread.number))
+    fn list_position(&self) -> (Vec<u32>, Option<u32>) {
+        let shown = self.table.visible_rows().iter().filter_map(|row| self.thread_in_row(*row)).collect();
+        (shown, self.selected_thread().map(|thread| thread.number))
     }
 
     /// Rebuilds the table. The selection stays on its thread or moves to the next one.
-    fn list(&mut self, (shown, here): (Vec<u32>, Option<u32>)) {
-        let threads = &self.letters.threads;
-        self.rows = (0..threads.len()).filter(|at| self.view.holds(threads[*at].state)).collect();
+    fn rebuild_table(&mut self, (shown, here): (Vec<u32>, Option<u32>)) {
+        let threads = &self.threads.threads;
+        self.rows = (0..threads.len()).filter(|at| self.view.includes(threads[*at].state)).collect();
         let row = |at: &usize| row_of(&threads[*at], self.marked.contains(&threads[*at].number));
         let rows = self.rows.iter().map(row).collect();
-        self.table.set(columns(self.view), rows);
+        self.table.set_columns_and_rows(columns(self.view), rows);
         let from = here.and_then(|here| shown.iter().position(|number| *number == here)).unwrap_or(0);
-        let rows = self.rows.iter().enumerate().map(|(row, at)| (self.letters.threads[*at].number, row));
+        let rows = self.rows.iter().enumerate().map(|(row, at)| (self.threads.threads[*at].number, row));
         let rows: BTreeMap<u32, usize> = rows.collect();
         if let Some(row) = shown.iter().skip(from).find_map(|number| rows.get(number)) {
             self.table.select(*row);
@@ -174,56 +174,56 @@ impl Inbox {
     }
 
     /// Returns the waiting threads with all fields that rules use.
-    fn asking(&self, company: &Company) -> Vec<AskingThread> {
-        let market = market_of(company, &self.usage);
-        let waiting = company.seen.waiting.iter();
-        waiting.map(|own| AskingThread::of(own, &self.named, &market)).collect()
+    fn waiting_threads(&self, company: &DisplayedCompany) -> Vec<ThreadContext> {
+        let market = rules_market(company, &self.usage);
+        let waiting = company.observation.waiting.iter();
+        waiting.map(|own| ThreadContext::new(own, &self.asked_plans, &market)).collect()
     }
 
     /// Selects a waiting thread.
-    pub fn show(&mut self, number: u32, company: &Company) {
-        self.view = InboxView::Waiting;
+    pub fn show_thread(&mut self, number: u32, company: &DisplayedCompany) {
+        self.view = InboxView::WaitingForPlayer;
         self.close_outcomes();
-        self.typing = None;
-        self.table.act(Action::Close, 0);
-        self.refresh(company);
-        if let Some(row) = self.row_of_number(number) {
+        self.value_field = None;
+        self.table.handle_action(Action::Close, 0);
+        self.update_threads(company);
+        if let Some(row) = self.row_of_thread(number) {
             self.table.select(row);
         }
     }
 
-    fn number_of(&self, row: usize) -> Option<u32> {
-        self.letters.threads.get(*self.rows.get(row)?).map(|thread| thread.number)
+    fn thread_in_row(&self, row: usize) -> Option<u32> {
+        self.threads.threads.get(*self.rows.get(row)?).map(|thread| thread.number)
     }
 
-    fn row_of_number(&self, number: u32) -> Option<usize> {
-        (0..self.rows.len()).find(|row| self.number_of(*row) == Some(number))
+    fn row_of_thread(&self, number: u32) -> Option<usize> {
+        (0..self.rows.len()).find(|row| self.thread_in_row(*row) == Some(number))
     }
 
-    fn here(&self) -> Option<&Thread> {
-        self.letters.threads.get(*self.rows.get(self.table.selected()?)?)
+    fn selected_thread(&self) -> Option<&Thread> {
+        self.threads.threads.get(*self.rows.get(self.table.selected()?)?)
     }
 
     /// Returns the recipients of an offer: the marked threads, otherwise the selected one.
     fn targets(&self) -> Vec<&Thread> {
         if self.marked.is_empty() {
-            return self.here().into_iter().collect();
+            return self.selected_thread().into_iter().collect();
         }
         let marked = |thread: &&Thread| self.marked.contains(&thread.number);
-        self.letters.threads.iter().filter(marked).collect()
+        self.threads.threads.iter().filter(marked).collect()
     }
 
-    fn offer(&self) -> Offer {
+    fn current_offer(&self) -> OfferDraft {
         if !self.marked.is_empty() {
-            return self.rule.clone().unwrap_or_else(Offer::at_list);
+            return self.rule.clone().unwrap_or_else(OfferDraft::at_list_price);
         }
-        let Some(thread) = self.here() else { return Offer::at_list() };
-        let own = self.drafts.get(&thread.number).or(self.last.as_ref()).cloned();
-        own.unwrap_or_else(|| Offer::first_for(thread))
+        let Some(thread) = self.selected_thread() else { return OfferDraft::at_list_price() };
+        let own = self.drafts.get(&thread.number).or(self.last_offer.as_ref()).cloned();
+        own.unwrap_or_else(|| OfferDraft::initial_for(thread))
     }
 
-    fn set_offer(&mut self, offer: Offer) {
-        match self.here().map(|thread| thread.number) {
+    fn set_offer(&mut self, offer: OfferDraft) {
+        match self.selected_thread().map(|thread| thread.number) {
             _ if !self.marked.is_empty() => self.rule = Some(offer),
             Some(number) => {
                 self.drafts.insert(number, offer);
@@ -232,44 +232,44 @@ impl Inbox {
         }
     }
 
-    fn edit(&mut self, change: impl FnOnce(&mut offer::Term)) {
-        let mut offer = self.offer();
-        change(&mut offer.0[self.term.min(TERMS - 1)]);
+    fn edit_term(&mut self, change: impl FnOnce(&mut offer::OfferTerm)) {
+        let mut offer = self.current_offer();
+        change(&mut offer.0[self.selected_term.min(MAX_TERMS - 1)]);
         self.set_offer(offer);
     }
 
-    fn commit(&mut self) -> Vec<Effect> {
-        let Some(field) = self.typing.take() else { return Vec::new() };
+    fn commit_value(&mut self) -> Vec<Effect> {
+        let Some(field) = self.value_field.take() else { return Vec::new() };
         match parse_number(field.text()) {
             Some(value) => {
-                self.edit(|term| {
+                self.edit_term(|term| {
                     term.value = value;
-                    if term.plan == TermChoice::Nothing {
-                        term.plan = TermChoice::Fixed(novamind_session::identifiers::Plan::B);
+                    if term.plan == PlanChoice::Unused {
+                        term.plan = PlanChoice::Fixed(novamind_session::identifiers::Plan::B);
                     }
                 });
                 Vec::new()
             }
             None if field.is_empty() => Vec::new(),
-            None => vec![Effect::Complain(ONLY_NUMBERS.to_owned())],
+            None => vec![Effect::Complain(NUMBER_HINT.to_owned())],
         }
     }
 
-    fn type_value(&mut self) {
-        if self.here().is_some() {
-            let value = self.offer().0[self.term.min(TERMS - 1)].value_in_words();
-            self.typing = Some(Field::to_replace(value));
+    fn start_typing(&mut self) {
+        if self.selected_thread().is_some() {
+            let value = self.current_offer().0[self.selected_term.min(MAX_TERMS - 1)].value_text();
+            self.value_field = Some(TextField::with_selected_text(value));
             self.focus = InboxPane::Offer;
         }
     }
 
-    fn mark(&mut self, all: bool) {
+    fn toggle_marks(&mut self, all: bool) {
         let open = |row: &usize| {
-            let thread = self.letters.threads.get(*self.rows.get(*row)?)?;
+            let thread = self.threads.threads.get(*self.rows.get(*row)?)?;
             thread.state.is_open().then_some(thread.number)
         };
         let rows: Vec<usize> =
-            if all { self.table.shown().to_vec() } else { self.table.selected().into_iter().collect() };
+            if all { self.table.visible_rows().to_vec() } else { self.table.selected().into_iter().collect() };
         let numbers: Vec<u32> = rows.iter().filter_map(open).collect();
         let unmark = numbers.iter().all(|number| self.marked.contains(number));
         for number in numbers {
@@ -282,180 +282,180 @@ impl Inbox {
         self.scroll = 0;
     }
 
-    fn turn_plan(&mut self) {
-        self.edit(offer::Term::turn_plan);
+    fn cycle_plan(&mut self) {
+        self.edit_term(offer::OfferTerm::cycle_plan);
     }
 
-    fn turn_basis(&mut self, lists: [f64; 3]) {
-        let term = self.offer().0[self.term.min(TERMS - 1)];
-        let price = self.here().and_then(|thread| term.price(thread, lists)).map(|(_, price)| price);
-        self.edit(|term| term.turn_basis(price));
+    fn cycle_basis(&mut self, lists: [f64; 3]) {
+        let term = self.current_offer().0[self.selected_term.min(MAX_TERMS - 1)];
+        let price = self.selected_thread().and_then(|thread| term.price(thread, lists)).map(|(_, price)| price);
+        self.edit_term(|term| term.cycle_basis(price));
     }
 }
 
 /// Returns the list prices of the plans, $ per month and seat.
-fn list_prices(company: &Company) -> [f64; 3] {
+fn list_prices(company: &DisplayedCompany) -> [f64; 3] {
     ["A", "B", "C"].map(|plan| company.setting(ToolId::SetPrices, plan))
 }
 
 impl ScreenState for Inbox {
-    fn open_here(&self, _: &Look<'_>) -> Option<String> {
+    fn open_item_title(&self, _: &ScreenContext<'_>) -> Option<String> {
         match self.focus {
             InboxPane::Outcomes => Some("outcomes".to_owned()),
-            _ => self.here().map(|thread| format!("#{}", thread.customer)),
+            _ => self.selected_thread().map(|thread| format!("#{}", thread.customer)),
         }
     }
 
-    fn opened(&self) -> usize {
-        usize::from(self.outcomes.is_some()) + usize::from(self.focus != self.first_pane())
+    fn own_escape_depth(&self) -> usize {
+        usize::from(self.outcomes.is_some()) + usize::from(self.focus != self.left_pane())
     }
 
     fn readings(&self) -> &'static [Reading] {
         match self.outcomes {
-            Some(_) => &outcomes::READINGS,
+            Some(_) => &outcomes::OUTCOME_READINGS,
             None => &[Reading::EnterpriseTurns, Reading::Companies, Reading::Usage, Reading::LastLetters],
         }
     }
 
-    fn take(&mut self, reading: Reading, rows: &Rows, look: &Look<'_>) {
+    fn apply_rows(&mut self, reading: Reading, rows: &QueryResult, look: &ScreenContext<'_>) {
         match reading {
             Reading::FirstOffers => {
-                self.outcomes.iter_mut().for_each(|own| own.take(rows));
+                self.outcomes.iter_mut().for_each(|own| own.set_rows(rows));
                 return;
             }
-            Reading::Usage => self.usage = SeatUsage::read(rows),
-            Reading::LastLetters => self.named = novamind_rules::Letters::read(rows),
-            _ => self.letters.take(reading, rows),
+            Reading::Usage => self.usage = SeatUsage::from_rows(rows),
+            Reading::LastLetters => self.asked_plans = novamind_rules::RequestedPlans::from_rows(rows),
+            _ => self.threads.apply_rows(reading, rows),
         }
-        self.refresh(look.company);
+        self.update_threads(look.company);
     }
 
-    fn renew(&mut self, look: &Look<'_>) {
-        self.refresh(look.company);
+    fn on_company_change(&mut self, look: &ScreenContext<'_>) {
+        self.update_threads(look.company);
     }
 
-    fn hear(&mut self, news: &News, look: &Look<'_>) -> Vec<Effect> {
+    fn handle_response(&mut self, news: &Response, look: &ScreenContext<'_>) -> Vec<Effect> {
         match news {
-            News::Called(_, Ok(answer), _) => {
-                let effects = self.sent(answer);
-                self.ruling = None;
-                self.refresh(look.company);
+            Response::ToolCalled(_, Ok(answer), _) => {
+                let effects = self.handle_sent(answer);
+                self.rules_form = None;
+                self.update_threads(look.company);
                 effects
             }
             _ => Vec::new(),
         }
     }
 
-    fn open_object(&self, _: &Look<'_>) -> Option<(&'static str, String)> {
-        Some(("thread", self.here()?.number.to_string()))
+    fn open_object(&self, _: &ScreenContext<'_>) -> Option<(&'static str, String)> {
+        Some(("thread", self.selected_thread()?.number.to_string()))
     }
 
-    fn holds_unsent_text(&self) -> bool {
+    fn has_unsent_text(&self) -> bool {
         !self.drafts.is_empty() || (self.rule.is_some() && !self.marked.is_empty())
     }
 }
 
-impl Paned for Inbox {
-    type Name = InboxPane;
+impl PaneScreen for Inbox {
+    type PaneId = InboxPane;
 
     fn panes(&self) -> &'static [InboxPane] {
-        if self.outcomes.is_some() { &COUNTED } else { &LISTED }
+        if self.outcomes.is_some() { &OUTCOME_PANES } else { &LIST_PANES }
     }
 
     fn pane(name: InboxPane) -> &'static dyn Pane<Inbox> {
         match name {
-            InboxPane::List => &list::ThreadListPane,
+            InboxPane::List => &thread_list::ThreadListPane,
             InboxPane::Thread => &thread::ThreadPane,
             InboxPane::Offer => &offer_pane::OfferPane,
             InboxPane::Outcomes => &outcomes::OutcomesPane,
         }
     }
 
-    fn focused(&self) -> InboxPane {
+    fn focused_pane(&self) -> InboxPane {
         self.focus
     }
 
-    fn focus_on(&mut self, name: InboxPane) {
+    fn set_focused_pane(&mut self, name: InboxPane) {
         self.focus = name;
-        self.typing = None;
-        if let Some(ruling) = &mut self.ruling {
-            ruling.typing = name == InboxPane::Offer;
+        self.value_field = None;
+        if let Some(ruling) = &mut self.rules_form {
+            ruling.is_typing = name == InboxPane::Offer;
         }
     }
 
-    fn act_anywhere(&mut self, action: Action, look: &Look<'_>) -> Option<Vec<Effect>> {
-        if let Some(effects) = self.turn_outcomes(action) {
+    fn handle_screen_action(&mut self, action: Action, look: &ScreenContext<'_>) -> Option<Vec<Effect>> {
+        if let Some(effects) = self.handle_outcomes_action(action) {
             return Some(effects);
         }
         let lists = list_prices(look.company);
-        if let Some(ruling) = &mut self.ruling {
+        if let Some(ruling) = &mut self.rules_form {
             match action {
-                Action::SendOffer => return Some(self.send_by_rules(look.company)),
-                Action::Discard | Action::Close => self.ruling = None,
-                Action::Commit => ruling.typing = false,
-                Action::InboxRules | Action::Open => self.focus_on(InboxPane::Offer),
-                Action::CommitNext | Action::CommitPrevious => self.focus_on(InboxPane::Thread),
+                Action::SendOffer => return Some(self.send_rule_answers(look.company)),
+                Action::Discard | Action::Close => self.rules_form = None,
+                Action::Commit => ruling.is_typing = false,
+                Action::InboxRules | Action::Open => self.set_focused_pane(InboxPane::Offer),
+                Action::CommitNext | Action::CommitPrevious => self.set_focused_pane(InboxPane::Thread),
                 _ => return None,
             }
             return Some(Vec::new());
         }
-        if self.typing.is_some() {
+        if self.value_field.is_some() {
             if action == Action::Discard {
-                self.typing = None;
+                self.value_field = None;
                 return Some(Vec::new());
             }
-            let problem = self.commit();
+            let problem = self.commit_value();
             if !problem.is_empty() || action == Action::Commit {
                 return Some(problem);
             }
         }
-        if self.here().is_none() && NEEDS_A_THREAD.contains(&action) {
-            return Some(vec![Effect::Complain(NO_THREAD.to_owned())]);
+        if self.selected_thread().is_none() && THREAD_ACTIONS.contains(&action) {
+            return Some(vec![Effect::Complain(NO_THREAD_ERROR.to_owned())]);
         }
         match action {
             Action::Mark | Action::MarkAll => {
-                self.mark(action == Action::MarkAll);
-                self.list(self.place());
+                self.toggle_marks(action == Action::MarkAll);
+                self.rebuild_table(self.list_position());
                 if action == Action::Mark {
-                    self.table.act(Action::Down, look.page);
+                    self.table.handle_action(Action::Down, look.page_rows);
                 }
             }
-            Action::OtherThreads => {
-                let place = self.place();
+            Action::NextThreadView => {
+                let place = self.list_position();
                 self.view = self.view.next();
-                self.list(place);
-                self.table.act(Action::First, look.page);
+                self.rebuild_table(place);
+                self.table.handle_action(Action::First, look.page_rows);
                 self.scroll = 0;
             }
-            Action::TakeAsk => {
+            Action::MatchAskedPrice => {
                 let targets = self.targets();
-                if !targets.is_empty() && targets.iter().all(|thread| thread.asked().is_none()) {
+                if !targets.is_empty() && targets.iter().all(|thread| thread.asked_price().is_none()) {
                     return Some(vec![Effect::Complain("No asking price yet. Type a price.".to_owned())]);
                 }
-                self.set_offer(Offer::as_asked());
+                self.set_offer(OfferDraft::at_asked_price());
             }
-            Action::OfferPlan => self.turn_plan(),
-            Action::OfferBasis => self.turn_basis(lists),
-            Action::OfferPrice => self.type_value(),
-            Action::InboxRules => return Some(self.start_ruling(look.company)),
-            Action::SendOffer => return Some(self.send(look.company)),
-            Action::RejectOffer => return Some(self.reject(look.company)),
+            Action::OfferPlan => self.cycle_plan(),
+            Action::OfferBasis => self.cycle_basis(lists),
+            Action::OfferPrice => self.start_typing(),
+            Action::InboxRules => return Some(self.open_rules(look.company)),
+            Action::SendOffer => return Some(self.send_offers(look.company)),
+            Action::RejectOffer => return Some(self.confirm_rejection(look.company)),
             Action::InboxGroup => {
-                let group = self.here().and_then(|thread| Group::parse(&thread.group));
+                let group = self.selected_thread().and_then(|thread| Group::parse(&thread.group));
                 let shown = group.map(|group| Effect::ShowGroup(ScreenId::Customers, group));
                 return Some(shown.into_iter().collect());
             }
-            Action::InboxSql => return Some(self.here().map(post::statement).into_iter().collect()),
+            Action::InboxSql => return Some(self.selected_thread().map(sending::statement).into_iter().collect()),
             _ => return None,
         }
         Some(Vec::new())
     }
 
-    fn arrange(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+    fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
         use InboxPane::{Offer, Thread};
-        let first = self.first_pane();
-        if area.width < 104 && self.ruling.is_some() {
-            return ruling::arrange_small(self, canvas, area, look);
+        let first = self.left_pane();
+        if area.width < 104 && self.rules_form.is_some() {
+            return rules_form::draw_small_layout(self, canvas, area, look);
         }
         if area.width < 104 {
             let below = (OFFER_HEIGHT + 1).min(area.height.div_ceil(2));
@@ -468,7 +468,7 @@ impl Paned for Inbox {
             return;
         }
         // The offer needs all its columns; the list can drop its last ones.
-        let right = (area.width * 43 / 100).max(offer_pane::WORTH + 2);
+        let right = (area.width * 43 / 100).max(offer_pane::MIN_FULL_WIDTH + 2);
         let [list, right] = Layout::horizontal([Constraint::Min(0), Constraint::Length(right)]).areas(area);
         let [above, offer] =
             Layout::vertical([Constraint::Min(0), Constraint::Length(OFFER_HEIGHT)]).areas(right);
@@ -480,8 +480,8 @@ impl Paned for Inbox {
         };
         let [said, own] = Layout::vertical([beside, Constraint::Min(0)]).areas(above);
         if !said.is_empty() {
-            canvas.click(said, Click::Pane(Thread as usize));
-            thread::draw_beside(self, canvas, said, look);
+            canvas.register_click(said, Click::Pane(Thread as usize));
+            thread::draw_side_thread(self, canvas, said, look);
         }
         draw_pane(self, Thread, canvas, own, look);
         draw_pane(self, Offer, canvas, offer, look);

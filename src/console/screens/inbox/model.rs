@@ -2,14 +2,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use novamind_database::{Rows, number_at, text_at};
-use novamind_rules::{AskingThread, offer_of, plan_in};
-use novamind_session::CompanyNames;
+use novamind_database::{QueryResult, number_at, text_at};
+use novamind_rules::{ThreadContext, parse_offer, first_plan_in};
+use novamind_session::EnterpriseNames;
 use novamind_session::identifiers::Plan;
 use novamind_worker::readings::Reading;
 
 #[derive(Debug, Clone, PartialEq)]
-pub struct Turn {
+pub struct ThreadMessage {
     pub number: u32,
     /// `customer`, `agent` or `system`.
     pub sender: String,
@@ -20,15 +20,15 @@ pub struct Turn {
     pub price: Option<f64>,
     pub day: u32,
     /// Reason for closing the thread; empty if it stays open.
-    pub closes: String,
+    pub closing_reason: String,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum State {
+pub enum ThreadState {
     /// The enterprise waits for the player, for this number of days.
-    Waiting(u32),
+    WaitingForPlayer(u32),
     /// The player waits for the enterprise.
-    Theirs,
+    WaitingForCustomer,
     Accepted,
     /// The player ended it.
     Rejected,
@@ -37,19 +37,19 @@ pub enum State {
     Lost,
 }
 
-impl State {
+impl ThreadState {
     /// Returns whether it accepts offers.
     pub fn is_open(self) -> bool {
-        matches!(self, State::Waiting(_) | State::Theirs)
+        matches!(self, ThreadState::WaitingForPlayer(_) | ThreadState::WaitingForCustomer)
     }
 
-    pub fn words(self) -> &'static str {
+    pub fn label(self) -> &'static str {
         match self {
-            State::Waiting(_) => "waiting for you",
-            State::Theirs => "waiting for them",
-            State::Accepted => "agreed",
-            State::Rejected => "ended by you",
-            State::Lost => "lost",
+            ThreadState::WaitingForPlayer(_) => "waiting for you",
+            ThreadState::WaitingForCustomer => "waiting for them",
+            ThreadState::Accepted => "agreed",
+            ThreadState::Rejected => "ended by you",
+            ThreadState::Lost => "lost",
         }
     }
 }
@@ -64,20 +64,20 @@ pub struct Thread {
     /// Kind as in the table.
     pub kind: String,
     pub seats: f64,
-    pub state: State,
+    pub state: ThreadState,
     /// Its rows, oldest first.
-    pub turns: Vec<Turn>,
+    pub messages: Vec<ThreadMessage>,
     /// Fields for rules, while it waits for the player.
-    pub asking: Option<AskingThread>,
+    pub waiting_thread: Option<ThreadContext>,
 }
 
 impl Thread {
     /// Returns the name and number of the enterprise.
-    pub fn company(&self) -> String {
+    pub fn customer_label(&self) -> String {
         format!("{} #{}", self.name, self.customer)
     }
 
-    pub fn kind_in_words(&self) -> &str {
+    pub fn kind_label(&self) -> &str {
         match self.kind.as_str() {
             "new_lead" => "new lead",
             "churn_prevention" => "retention",
@@ -88,116 +88,116 @@ impl Thread {
     }
 
     /// Returns the last price that the enterprise named, with the plan if its message names one.
-    pub fn asked(&self) -> Option<(Option<Plan>, f64)> {
-        if let Some(own) = &self.asking {
+    pub fn asked_price(&self) -> Option<(Option<Plan>, f64)> {
+        if let Some(own) = &self.waiting_thread {
             return Some((own.asked_plan, own.waiting.asked?));
         }
-        let turn = self.turns.iter().rev().find(|turn| turn.price.is_some())?;
-        Some((plan_in(&turn.text).or_else(|| self.only_offer()), turn.price?))
+        let turn = self.messages.iter().rev().find(|turn| turn.price.is_some())?;
+        Some((first_plan_in(&turn.text).or_else(|| self.single_offered_plan()), turn.price?))
     }
 
     /// Returns the plan for its price, or the plan whose price it asks about.
     pub fn asked_plan(&self) -> Option<Plan> {
-        match &self.asking {
+        match &self.waiting_thread {
             Some(own) => own.asked_plan,
-            None => self.asked()?.0,
+            None => self.asked_price()?.0,
         }
     }
 
-    fn only_offer(&self) -> Option<Plan> {
-        match self.offered() {
+    fn single_offered_plan(&self) -> Option<Plan> {
+        match self.last_offer() {
             [(plan, _)] => Some(*plan),
             _ => None,
         }
     }
 
     /// Describes how a failed thread ended; `None` if it is open or one of its rows says so.
-    pub fn end_in_words(&self) -> Option<String> {
-        if self.state != State::Lost {
+    pub fn lost_reason(&self) -> Option<String> {
+        if self.state != ThreadState::Lost {
             return None;
         }
-        let last = self.turns.last()?;
+        let last = self.messages.last()?;
         Some(match last.sender.as_str() {
             "agent" => {
-                let offers = super::offer::in_words(&last.offers);
-                format!("{} declined {offers} of day {} without giving a reason.", self.company(), last.day)
+                let offers = super::offer::format_offers(&last.offers);
+                format!("{} declined {offers} of day {} without giving a reason.", self.customer_label(), last.day)
             }
-            _ => format!("{} got no answer to its message of day {}.", self.company(), last.day),
+            _ => format!("{} got no answer to its message of day {}.", self.customer_label(), last.day),
         })
     }
 
     /// Returns the player's last offer.
-    pub fn offered(&self) -> &[(Plan, f64)] {
-        if let Some(own) = &self.asking {
+    pub fn last_offer(&self) -> &[(Plan, f64)] {
+        if let Some(own) = &self.waiting_thread {
             return &own.waiting.last_offer;
         }
-        let own = self.turns.iter().rev().find(|turn| !turn.offers.is_empty());
+        let own = self.messages.iter().rev().find(|turn| !turn.offers.is_empty());
         own.map_or(&[], |turn| &turn.offers)
     }
 }
 
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Firm {
+pub struct Enterprise {
     pub group: String,
     /// Size and industry.
-    pub trade: String,
+    pub industry: String,
     /// Culture, decision process and main concern.
-    pub manner: [String; 3],
+    pub traits: [String; 3],
     pub status: String,
     pub plan: String,
     /// Price per seat and month.
     pub price: f64,
     /// Day on which it subscribed or asked.
-    pub since: u32,
+    pub since_day: u32,
 }
 
 #[derive(Debug, Clone, Default)]
-pub struct Letters {
-    read: BTreeMap<u32, Thread>,
-    firms: BTreeMap<u32, Firm>,
+pub struct ThreadStore {
+    recorded: BTreeMap<u32, Thread>,
+    enterprises: BTreeMap<u32, Enterprise>,
     /// Waiting threads first, by deadline, then the others, newest first.
     pub threads: Vec<Thread>,
 }
 
-impl Letters {
-    pub fn take(&mut self, reading: Reading, rows: &Rows) {
+impl ThreadStore {
+    pub fn apply_rows(&mut self, reading: Reading, rows: &QueryResult) {
         match reading {
-            Reading::EnterpriseTurns => self.read = threads_of(rows),
-            Reading::Companies => self.firms = firms_of(rows),
+            Reading::EnterpriseTurns => self.recorded = parse_threads(rows),
+            Reading::Companies => self.enterprises = parse_enterprises(rows),
             _ => {}
         }
     }
 
-    pub fn firm(&self, customer: u32) -> Option<&Firm> {
-        self.firms.get(&customer)
+    pub fn enterprise(&self, customer: u32) -> Option<&Enterprise> {
+        self.enterprises.get(&customer)
     }
 
     /// Combines the threads with the waiting ones and sorts them.
-    pub fn settle(&mut self, waiting: Vec<AskingThread>, names: &CompanyNames) {
-        let mut left = self.read.clone();
-        let mut threads: Vec<Thread> = waiting.into_iter().map(|own| of_waiting(own, &mut left)).collect();
+    pub fn merge_waiting(&mut self, waiting: Vec<ThreadContext>, names: &EnterpriseNames) {
+        let mut left = self.recorded.clone();
+        let mut threads: Vec<Thread> = waiting.into_iter().map(|own| thread_from_waiting(own, &mut left)).collect();
         // An enterprise has at most one open thread, its newest.
         let mut newest: BTreeSet<u32> = threads.iter().map(|thread| thread.customer).collect();
         for (_, mut thread) in left.into_iter().rev() {
-            let firm = self.firms.get(&thread.customer);
+            let firm = self.enterprises.get(&thread.customer);
             thread.group = firm.map_or(String::new(), |firm| firm.group.clone());
             thread.state = state_of(&thread, firm);
-            if !newest.insert(thread.customer) && thread.state == State::Theirs {
-                thread.state = State::Lost;
+            if !newest.insert(thread.customer) && thread.state == ThreadState::WaitingForCustomer {
+                thread.state = ThreadState::Lost;
             }
             threads.push(thread);
         }
         for thread in &mut threads {
-            thread.name = names.of(thread.customer);
-            for turn in &mut thread.turns {
-                turn.text = names.put_into(&turn.text);
+            thread.name = names.name(thread.customer);
+            for turn in &mut thread.messages {
+                turn.text = names.insert_names(&turn.text);
             }
         }
         self.threads = threads;
     }
 }
 
-fn of_waiting(asking: AskingThread, read: &mut BTreeMap<u32, Thread>) -> Thread {
+fn thread_from_waiting(asking: ThreadContext, read: &mut BTreeMap<u32, Thread>) -> Thread {
     let waiting = &asking.waiting;
     let known = read.remove(&waiting.thread).unwrap_or_default();
     Thread {
@@ -207,61 +207,61 @@ fn of_waiting(asking: AskingThread, read: &mut BTreeMap<u32, Thread>) -> Thread 
         group: waiting.group.to_owned(),
         kind: waiting.kind.to_owned(),
         seats: f64::from(waiting.seats),
-        state: State::Waiting(waiting.days_left),
-        turns: known.turns,
-        asking: Some(asking),
+        state: ThreadState::WaitingForPlayer(waiting.days_left),
+        messages: known.messages,
+        waiting_thread: Some(asking),
     }
 }
 
 /// Returns the state of a thread that does not wait for the player.
-fn state_of(thread: &Thread, firm: Option<&Firm>) -> State {
-    let Some(last) = thread.turns.last() else { return State::Lost };
+fn state_of(thread: &Thread, firm: Option<&Enterprise>) -> ThreadState {
+    let Some(last) = thread.messages.last() else { return ThreadState::Lost };
     let there = firm.is_none_or(|firm| matches!(firm.status.as_str(), "lead" | "subscribed"));
-    match (last.closes.as_str(), last.sender.as_str()) {
-        ("accepted", _) => State::Accepted,
-        ("agent_rejected", _) => State::Rejected,
-        (_, "agent") if there => State::Theirs,
-        _ => State::Lost,
+    match (last.closing_reason.as_str(), last.sender.as_str()) {
+        ("accepted", _) => ThreadState::Accepted,
+        ("agent_rejected", _) => ThreadState::Rejected,
+        (_, "agent") if there => ThreadState::WaitingForCustomer,
+        _ => ThreadState::Lost,
     }
 }
 
-fn threads_of(rows: &Rows) -> BTreeMap<u32, Thread> {
+fn parse_threads(rows: &QueryResult) -> BTreeMap<u32, Thread> {
     let mut threads: BTreeMap<u32, Thread> = BTreeMap::new();
     // The reading is sorted newest first.
     for row in rows.rows.iter().rev() {
         let number = number_at(row, 0) as u32;
         let thread = threads.entry(number).or_default();
-        let (offers, price) = offer_of(text_at(row, 6));
+        let (offers, price) = parse_offer(text_at(row, 6));
         thread.number = number;
         thread.customer = number_at(row, 1) as u32;
         thread.kind = text_at(row, 2).to_owned();
         // The player's rows have a seat count of 1.
         thread.seats = thread.seats.max(if text_at(row, 4) == "agent" { 1.0 } else { number_at(row, 8) });
-        thread.turns.push(Turn {
+        thread.messages.push(ThreadMessage {
             number: number_at(row, 3) as u32,
             sender: text_at(row, 4).to_owned(),
             text: text_at(row, 5).to_owned(),
             offers,
             price,
             day: number_at(row, 7) as u32,
-            closes: text_at(row, 9).to_owned(),
+            closing_reason: text_at(row, 9).to_owned(),
         });
     }
     threads
 }
 
-fn firms_of(rows: &Rows) -> BTreeMap<u32, Firm> {
+fn parse_enterprises(rows: &QueryResult) -> BTreeMap<u32, Enterprise> {
     let firm = |row: &Vec<novamind_database::Cell>| {
         let text = |at: usize| text_at(row, at).to_owned();
         let trade = format!("{} {}", text_at(row, 3), text_at(row, 2)).trim().to_owned();
-        let firm = Firm {
+        let firm = Enterprise {
             group: text(1),
-            trade,
-            manner: [text(4), text(5), text(6)],
+            industry: trade,
+            traits: [text(4), text(5), text(6)],
             status: text(7),
             plan: text(8),
             price: number_at(row, 9),
-            since: number_at(row, 10) as u32,
+            since_day: number_at(row, 10) as u32,
         };
         (number_at(row, 0) as u32, firm)
     };

@@ -2,99 +2,99 @@
 //! price.
 
 use super::model::Thread;
-use novamind_base::notation::grouped;
+use novamind_base::formatting::grouped_number;
 use novamind_session::identifiers::Plan;
 
 /// Terms per offer; the maximum for one message.
-pub const TERMS: usize = 3;
+pub const MAX_TERMS: usize = 3;
 
 /// The plan of a term.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum TermChoice {
-    Nothing,
+pub enum PlanChoice {
+    Unused,
     Fixed(Plan),
     /// The plan that the enterprise named with its price.
-    Theirs,
+    NamedByCustomer,
 }
 
 /// Basis of the value of a term.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Basis {
+pub enum PriceBasis {
     /// Dollars per month and seat.
     Dollars,
     /// Percent of the plan's list price.
-    List,
+    ListPrice,
     /// Percent of the asking price.
-    Asked,
+    AskedPrice,
 }
 
-impl Basis {
-    pub fn words(self) -> &'static str {
+impl PriceBasis {
+    pub fn label(self) -> &'static str {
         match self {
-            Basis::Dollars => "$",
-            Basis::List => "% list",
-            Basis::Asked => "% ask",
+            PriceBasis::Dollars => "$",
+            PriceBasis::ListPrice => "% list",
+            PriceBasis::AskedPrice => "% ask",
         }
     }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Term {
-    pub plan: TermChoice,
-    pub basis: Basis,
+pub struct OfferTerm {
+    pub plan: PlanChoice,
+    pub basis: PriceBasis,
     /// Dollars or percent.
     pub value: f64,
 }
 
-const UNUSED: Term = Term { plan: TermChoice::Nothing, basis: Basis::List, value: 100.0 };
+const UNUSED_TERM: OfferTerm = OfferTerm { plan: PlanChoice::Unused, basis: PriceBasis::ListPrice, value: 100.0 };
 
-impl Term {
-    pub fn plan_in_words(&self) -> &'static str {
+impl OfferTerm {
+    pub fn plan_label(&self) -> &'static str {
         match self.plan {
-            TermChoice::Nothing => "–",
-            TermChoice::Fixed(plan) => plan.id(),
-            TermChoice::Theirs => "theirs",
+            PlanChoice::Unused => "–",
+            PlanChoice::Fixed(plan) => plan.id(),
+            PlanChoice::NamedByCustomer => "theirs",
         }
     }
 
     /// Returns its value as text for the input field.
-    pub fn value_in_words(&self) -> String {
-        let decimals = if self.value.fract() == 0.0 && self.basis != Basis::Dollars { 0 } else { 2 };
-        grouped(self.value, decimals)
+    pub fn value_text(&self) -> String {
+        let decimals = if self.value.fract() == 0.0 && self.basis != PriceBasis::Dollars { 0 } else { 2 };
+        grouped_number(self.value, decimals)
     }
 
-    pub fn turn_plan(&mut self) {
+    pub fn cycle_plan(&mut self) {
         self.plan = match self.plan {
-            TermChoice::Nothing => TermChoice::Fixed(Plan::A),
-            TermChoice::Fixed(Plan::A) => TermChoice::Fixed(Plan::B),
-            TermChoice::Fixed(Plan::B) => TermChoice::Fixed(Plan::C),
-            TermChoice::Fixed(Plan::C) => TermChoice::Theirs,
-            TermChoice::Theirs => TermChoice::Nothing,
+            PlanChoice::Unused => PlanChoice::Fixed(Plan::A),
+            PlanChoice::Fixed(Plan::A) => PlanChoice::Fixed(Plan::B),
+            PlanChoice::Fixed(Plan::B) => PlanChoice::Fixed(Plan::C),
+            PlanChoice::Fixed(Plan::C) => PlanChoice::NamedByCustomer,
+            PlanChoice::NamedByCustomer => PlanChoice::Unused,
         };
     }
 
     /// Selects the next basis and resets the value, because dollars and percent are not interchangeable.
-    pub fn turn_basis(&mut self, price: Option<f64>) {
+    pub fn cycle_basis(&mut self, price: Option<f64>) {
         (self.basis, self.value) = match self.basis {
-            Basis::List => (Basis::Asked, self.value),
-            Basis::Asked => (Basis::Dollars, price.unwrap_or(0.0)),
-            Basis::Dollars => (Basis::List, 100.0),
+            PriceBasis::ListPrice => (PriceBasis::AskedPrice, self.value),
+            PriceBasis::AskedPrice => (PriceBasis::Dollars, price.unwrap_or(0.0)),
+            PriceBasis::Dollars => (PriceBasis::ListPrice, 100.0),
         };
     }
 
     /// Returns the plan and price for a thread; `None` if the term is unused or its reference price is
     /// missing.
     pub fn price(&self, thread: &Thread, lists: [f64; 3]) -> Option<(Plan, f64)> {
-        let asked = thread.asked();
+        let asked = thread.asked_price();
         let plan = match self.plan {
-            TermChoice::Nothing => return None,
-            TermChoice::Fixed(plan) => plan,
-            TermChoice::Theirs => thread.asked_plan()?,
+            PlanChoice::Unused => return None,
+            PlanChoice::Fixed(plan) => plan,
+            PlanChoice::NamedByCustomer => thread.asked_plan()?,
         };
         let price = match self.basis {
-            Basis::Dollars => self.value,
-            Basis::List => lists[plan as usize] * self.value / 100.0,
-            Basis::Asked => asked?.1 * self.value / 100.0,
+            PriceBasis::Dollars => self.value,
+            PriceBasis::ListPrice => lists[plan as usize] * self.value / 100.0,
+            PriceBasis::AskedPrice => asked?.1 * self.value / 100.0,
         };
         Some((plan, (price * 100.0).round() / 100.0))
     }
@@ -102,42 +102,42 @@ impl Term {
 
 /// An offer to one enterprise, or a rule for many.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Offer(pub [Term; TERMS]);
+pub struct OfferDraft(pub [OfferTerm; MAX_TERMS]);
 
-impl Offer {
-    pub fn at_list() -> Offer {
-        Offer([Term { plan: TermChoice::Fixed(Plan::B), ..UNUSED }, UNUSED, UNUSED])
+impl OfferDraft {
+    pub fn at_list_price() -> OfferDraft {
+        OfferDraft([OfferTerm { plan: PlanChoice::Fixed(Plan::B), ..UNUSED_TERM }, UNUSED_TERM, UNUSED_TERM])
     }
 
     /// Returns the asking price, for the plan that the enterprise named.
-    pub fn as_asked() -> Offer {
-        Offer([Term { plan: TermChoice::Theirs, basis: Basis::Asked, value: 100.0 }, UNUSED, UNUSED])
+    pub fn at_asked_price() -> OfferDraft {
+        OfferDraft([OfferTerm { plan: PlanChoice::NamedByCustomer, basis: PriceBasis::AskedPrice, value: 100.0 }, UNUSED_TERM, UNUSED_TERM])
     }
 
     /// Returns the initial offer to an enterprise: its asking price, otherwise the list price of the plan
     /// that it asks about.
-    pub fn first_for(thread: &Thread) -> Offer {
-        match (thread.asked_plan(), thread.asked()) {
-            (Some(_), Some(_)) => Offer::as_asked(),
-            (Some(plan), None) => Offer([Term { plan: TermChoice::Fixed(plan), ..UNUSED }, UNUSED, UNUSED]),
-            (None, _) => Offer::at_list(),
+    pub fn initial_for(thread: &Thread) -> OfferDraft {
+        match (thread.asked_plan(), thread.asked_price()) {
+            (Some(_), Some(_)) => OfferDraft::at_asked_price(),
+            (Some(plan), None) => OfferDraft([OfferTerm { plan: PlanChoice::Fixed(plan), ..UNUSED_TERM }, UNUSED_TERM, UNUSED_TERM]),
+            (None, _) => OfferDraft::at_list_price(),
         }
     }
 
     /// Returns whether it can be reused for other enterprises.
-    pub fn is_rule(&self) -> bool {
-        self.0.iter().all(|term| term.plan == TermChoice::Nothing || term.basis != Basis::Dollars)
+    pub fn is_reusable(&self) -> bool {
+        self.0.iter().all(|term| term.plan == PlanChoice::Unused || term.basis != PriceBasis::Dollars)
     }
 
     /// Returns the plans and prices for a thread.
     ///
     /// # Errors
     /// The reason why nothing can be sent.
-    pub fn to(&self, thread: &Thread, lists: [f64; 3]) -> Result<Vec<(Plan, f64)>, String> {
+    pub fn resolve(&self, thread: &Thread, lists: [f64; 3]) -> Result<Vec<(Plan, f64)>, String> {
         let terms: Vec<(Plan, f64)> = self.0.iter().filter_map(|term| term.price(thread, lists)).collect();
         match terms.iter().find(|(_, price)| *price <= 0.0) {
             Some((plan, _)) => Err(format!("plan {plan} would be free. Type a price above 0.")),
-            None if terms.is_empty() && self.0.iter().all(|term| term.plan == TermChoice::Nothing) => {
+            None if terms.is_empty() && self.0.iter().all(|term| term.plan == PlanChoice::Unused) => {
                 Err("no plan is chosen".to_owned())
             }
             None if terms.is_empty() => Err("they named no price".to_owned()),
@@ -147,62 +147,62 @@ impl Offer {
 }
 
 /// Returns an offer in short form: `B $38.00 · C $61.00`.
-pub fn in_words(offers: &[(Plan, f64)]) -> String {
-    let one = |(plan, price): &(Plan, f64)| format!("{plan} ${}", grouped(*price, 2));
+pub fn format_offers(offers: &[(Plan, f64)]) -> String {
+    let one = |(plan, price): &(Plan, f64)| format!("{plan} ${}", grouped_number(*price, 2));
     offers.iter().map(one).collect::<Vec<_>>().join(" · ")
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::model::Turn;
+    use super::super::model::ThreadMessage;
     use super::*;
 
-    const LISTS: [f64; 3] = [14.0, 32.0, 0.0];
+    const LIST_PRICES: [f64; 3] = [14.0, 32.0, 0.0];
 
-    fn asking() -> Thread {
-        let turn = Turn {
+    fn waiting_thread() -> Thread {
+        let turn = ThreadMessage {
             number: 2,
             sender: "customer".to_owned(),
             text: "At $20.01 for plan A".to_owned(),
             offers: Vec::new(),
             price: Some(20.01),
             day: 3,
-            closes: String::new(),
+            closing_reason: String::new(),
         };
-        Thread { turns: vec![turn], ..Thread::default() }
+        Thread { messages: vec![turn], ..Thread::default() }
     }
 
     #[test]
-    fn rules_are_relative_to_the_list_or_to_the_ask() {
-        let (asking, silent) = (asking(), Thread::default());
-        assert_eq!(Offer::as_asked().to(&asking, LISTS), Ok(vec![(Plan::A, 20.01)]));
-        assert!(Offer::as_asked().to(&silent, LISTS).is_err());
-        assert_eq!(Offer::at_list().to(&silent, LISTS), Ok(vec![(Plan::B, 32.0)]));
-        let mut offer = Offer::at_list();
+    fn reusable_offers_are_relative_to_list_or_asked_price() {
+        let (asking, silent) = (waiting_thread(), Thread::default());
+        assert_eq!(OfferDraft::at_asked_price().resolve(&asking, LIST_PRICES), Ok(vec![(Plan::A, 20.01)]));
+        assert!(OfferDraft::at_asked_price().resolve(&silent, LIST_PRICES).is_err());
+        assert_eq!(OfferDraft::at_list_price().resolve(&silent, LIST_PRICES), Ok(vec![(Plan::B, 32.0)]));
+        let mut offer = OfferDraft::at_list_price();
         offer.0[0].value = 90.0;
-        offer.0[1] = Term { plan: TermChoice::Fixed(Plan::C), basis: Basis::Asked, value: 150.0 };
-        assert_eq!(offer.to(&asking, LISTS), Ok(vec![(Plan::B, 28.8), (Plan::C, 30.02)]));
+        offer.0[1] = OfferTerm { plan: PlanChoice::Fixed(Plan::C), basis: PriceBasis::AskedPrice, value: 150.0 };
+        assert_eq!(offer.resolve(&asking, LIST_PRICES), Ok(vec![(Plan::B, 28.8), (Plan::C, 30.02)]));
         assert_eq!(
-            offer.to(&silent, LISTS),
+            offer.resolve(&silent, LIST_PRICES),
             Ok(vec![(Plan::B, 28.8)]),
             "a term without a reference price is left out"
         );
-        offer.0[2] = Term { plan: TermChoice::Fixed(Plan::C), ..UNUSED };
-        assert!(offer.to(&asking, LISTS).is_err_and(|why| why.contains("plan C would be free")));
-        assert!(Offer([UNUSED; 3]).to(&asking, LISTS).is_err_and(|why| why.contains("no plan")));
+        offer.0[2] = OfferTerm { plan: PlanChoice::Fixed(Plan::C), ..UNUSED_TERM };
+        assert!(offer.resolve(&asking, LIST_PRICES).is_err_and(|why| why.contains("plan C would be free")));
+        assert!(OfferDraft([UNUSED_TERM; 3]).resolve(&asking, LIST_PRICES).is_err_and(|why| why.contains("no plan")));
     }
 
     #[test]
-    fn plans_and_bases_turn_round() {
-        let mut term = UNUSED;
+    fn plans_and_bases_cycle() {
+        let mut term = UNUSED_TERM;
         for words in ["A", "B", "C", "theirs", "–"] {
-            term.turn_plan();
-            assert_eq!(term.plan_in_words(), words);
+            term.cycle_plan();
+            assert_eq!(term.plan_label(), words);
         }
         for (words, value) in [("% ask", 100.0), ("$", 28.5), ("% list", 100.0)] {
-            term.turn_basis(Some(28.5));
-            assert_eq!((term.basis.words(), term.value), (words, value));
+            term.cycle_basis(Some(28.5));
+            assert_eq!((term.basis.label(), term.value), (words, value));
         }
-        assert!(Offer::at_list().is_rule());
+        assert!(OfferDraft::at_list_price().is_reusable());
     }
 }

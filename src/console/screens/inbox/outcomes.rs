@@ -4,19 +4,19 @@ use ratatui::layout::Rect;
 
 use super::{Inbox, InboxPane};
 use crate::action::{Action, Scope};
-use crate::context::{Figure, Look};
+use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
-use crate::screens::panes::{Border, Pane, Seat};
-use novamind_base::notation::grouped;
-use novamind_database::{Rows, number_at, text_at};
+use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
+use novamind_base::formatting::grouped_number;
+use novamind_database::{QueryResult, number_at, text_at};
 use novamind_tui::canvas::Canvas;
-use novamind_tui::text::wrapped;
+use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::{Cell, Column, Table};
+use novamind_tui::widgets::{TableCell, TableColumn, Table};
 use novamind_worker::readings::Reading;
 
 /// Readings that the screen needs while outcomes are shown.
-pub const READINGS: [Reading; 5] = [
+pub const OUTCOME_READINGS: [Reading; 5] = [
     Reading::EnterpriseTurns,
     Reading::Companies,
     Reading::Usage,
@@ -27,7 +27,7 @@ pub const READINGS: [Reading; 5] = [
 /// A row of the query: first offers of one week to a group, with the same plans and a first price in the same
 /// band.
 #[derive(Debug, Clone, PartialEq)]
-struct FirstOffers {
+struct FirstOfferOutcome {
     group: String,
     plan: String,
     /// Lower bound in whole $ per seat and month, inclusive.
@@ -36,74 +36,74 @@ struct FirstOffers {
     price_below: f64,
     week: f64,
     threads: f64,
-    signed: f64,
+    deals: f64,
     lost: f64,
     waiting: f64,
-    signed_percent: f64,
+    deal_percent: f64,
 }
 
 #[derive(Debug, Clone, Default)]
-pub struct Outcomes {
+pub struct FirstOfferOutcomes {
     /// `None` until the result arrives.
-    found: Option<Vec<FirstOffers>>,
+    rows: Option<Vec<FirstOfferOutcome>>,
     table: Table,
 }
 
-impl Outcomes {
-    pub fn take(&mut self, rows: &Rows) {
-        let found: Vec<FirstOffers> = rows.rows.iter().map(|row| outcome_of(row)).collect();
-        self.table.set(columns(), found.iter().map(row_of).collect());
-        self.found = Some(found);
+impl FirstOfferOutcomes {
+    pub fn set_rows(&mut self, rows: &QueryResult) {
+        let found: Vec<FirstOfferOutcome> = rows.rows.iter().map(|row| parse_outcome(row)).collect();
+        self.table.set_columns_and_rows(columns(), found.iter().map(row_of).collect());
+        self.rows = Some(found);
     }
 
-    fn here(&self) -> Option<&FirstOffers> {
-        self.found.as_ref()?.get(self.table.selected()?)
+    fn selected(&self) -> Option<&FirstOfferOutcome> {
+        self.rows.as_ref()?.get(self.table.selected()?)
     }
 }
 
-fn outcome_of(row: &[novamind_database::Cell]) -> FirstOffers {
+fn parse_outcome(row: &[novamind_database::Cell]) -> FirstOfferOutcome {
     let number = |at| number_at(row, at);
-    FirstOffers {
+    FirstOfferOutcome {
         group: text_at(row, 0).to_owned(),
         plan: text_at(row, 1).to_owned(),
         price_from: number(2),
         price_below: number(3),
         week: number(4),
         threads: number(5),
-        signed: number(6),
+        deals: number(6),
         lost: number(7),
         waiting: number(8),
-        signed_percent: number(9),
+        deal_percent: number(9),
     }
 }
 
 /// Returns the columns; narrow windows drop the last ones.
-fn columns() -> Vec<Column> {
-    let mut columns = vec![Column::numbers("week"), Column::words("group"), Column::words("plan")];
+fn columns() -> Vec<TableColumn> {
+    let mut columns = vec![TableColumn::numeric("week"), TableColumn::text("group"), TableColumn::text("plan")];
     let numbers = ["$/seat", "threads", "signed", "share", "lost", "waiting"];
-    columns.extend(numbers.map(Column::numbers));
+    columns.extend(numbers.map(TableColumn::numeric));
     columns
 }
 
-fn row_of(own: &FirstOffers) -> Vec<Cell> {
-    let count = |value: f64| Cell::number(value, grouped(value, 0));
-    let prices = format!("{}–{}", grouped(own.price_from, 0), grouped(own.price_below - 0.01, 2));
+fn row_of(own: &FirstOfferOutcome) -> Vec<TableCell> {
+    let count = |value: f64| TableCell::from_number(value, grouped_number(value, 0));
+    let prices = format!("{}–{}", grouped_number(own.price_from, 0), grouped_number(own.price_below - 0.01, 2));
     vec![
         count(own.week),
-        Cell::words(&own.group).role(Role::Strong),
-        Cell::words(&own.plan),
-        Cell::number(own.price_from, prices),
+        TableCell::from_text(&own.group).with_role(Role::Strong),
+        TableCell::from_text(&own.plan),
+        TableCell::from_number(own.price_from, prices),
         count(own.threads),
-        count(own.signed),
-        Cell::number(own.signed_percent, format!("{} %", grouped(own.signed_percent, 1))),
+        count(own.deals),
+        TableCell::from_number(own.deal_percent, format!("{} %", grouped_number(own.deal_percent, 1))),
         count(own.lost),
         count(own.waiting),
     ]
 }
 
 /// Selects the threads of a row, oldest first.
-fn statement(own: &FirstOffers) -> String {
-    let FirstOffers { group, plan, price_from, price_below, week, .. } = own;
+fn statement(own: &FirstOfferOutcome) -> String {
+    let FirstOfferOutcome { group, plan, price_from, price_below, week, .. } = own;
     format!(
         "SELECT t.thread_id, t.customer_id, t.day, t.offer_json, s.status,\n    EXISTS (\n        SELECT 1 FROM \
          enterprise_turns e WHERE e.thread_id = t.thread_id AND e.close_reason = 'accepted'\n    ) AS is_signed\n\
@@ -120,7 +120,7 @@ fn statement(own: &FirstOffers) -> String {
 
 impl Inbox {
     /// Returns the pane in place of the list.
-    pub(super) fn first_pane(&self) -> InboxPane {
+    pub(super) fn left_pane(&self) -> InboxPane {
         if self.outcomes.is_some() { InboxPane::Outcomes } else { InboxPane::List }
     }
 
@@ -130,14 +130,14 @@ impl Inbox {
     }
 
     /// Opens or closes the outcomes; returns `None` for unrelated actions.
-    pub(super) fn turn_outcomes(&mut self, action: Action) -> Option<Vec<Effect>> {
+    pub(super) fn handle_outcomes_action(&mut self, action: Action) -> Option<Vec<Effect>> {
         match (action, &self.outcomes) {
             (Action::InboxOutcomes, None) => {
-                self.outcomes = Some(Outcomes::default());
+                self.outcomes = Some(FirstOfferOutcomes::default());
                 self.focus = InboxPane::Outcomes;
                 return Some(vec![Effect::Read(Reading::FirstOffers)]);
             }
-            (Action::InboxOutcomes | Action::OtherThreads, Some(_)) => self.close_outcomes(),
+            (Action::InboxOutcomes | Action::NextThreadView, Some(_)) => self.close_outcomes(),
             // Marking needs the visible list.
             (Action::Mark | Action::MarkAll, Some(_)) => {
                 return Some(vec![Effect::Complain("Close the outcomes (esc) to mark threads".to_owned())]);
@@ -160,53 +160,53 @@ impl Pane<Inbox> for OutcomesPane {
     }
 
     fn scopes(&self, inbox: &Inbox) -> Vec<Scope> {
-        match self.table(inbox).is_some_and(Table::is_typing) {
+        match self.table(inbox).is_some_and(Table::is_filter_open) {
             true => vec![Scope::Field, Scope::List],
             false => vec![Scope::Inbox, Scope::List],
         }
     }
 
     fn hints(&self, inbox: &Inbox) -> Vec<Action> {
-        if self.table(inbox).is_some_and(Table::is_typing) {
+        if self.table(inbox).is_some_and(Table::is_filter_open) {
             return vec![Action::Commit, Action::Discard];
         }
         vec![Action::Open, Action::Rows, Action::Filter, Action::Sort, Action::Close]
     }
 
-    fn figure(&self, inbox: &Inbox, _: &Look<'_>) -> Option<Figure> {
-        let own = inbox.outcomes.as_ref()?.here()?;
+    fn figure(&self, inbox: &Inbox, _: &ScreenContext<'_>) -> Option<Figure> {
+        let own = inbox.outcomes.as_ref()?.selected()?;
         let title =
             format!("threads of {} with a first offer of {} in week {}", own.group, own.plan, own.week);
-        Some(Figure { title, term: "offer", sql: Some(statement(own)), why: None })
+        Some(Figure { title, term: "offer", sql: Some(statement(own)), week_quantity: None })
     }
 
-    fn act(&self, inbox: &mut Inbox, action: Action, look: &Look<'_>) -> Vec<Effect> {
+    fn handle_action(&self, inbox: &mut Inbox, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
         if action == Action::Open {
             return vec![Effect::RunSql(Reading::FirstOffers.sql().to_owned())];
         }
-        let done = self.table_mut(inbox).is_some_and(|table| table.act(action, look.page));
+        let done = self.table_mut(inbox).is_some_and(|table| table.handle_action(action, look.page_rows));
         if action == Action::Close && !done {
             inbox.close_outcomes();
         }
         Vec::new()
     }
 
-    fn border(&self, inbox: &Inbox, area: Rect, look: &Look<'_>) -> Border {
+    fn border(&self, inbox: &Inbox, area: Rect, look: &ScreenContext<'_>) -> PaneBorder {
         let title = match area.width {
             ..72 => "By first offer and week",
             _ => "Outcome by first offer and week",
         };
-        let note = match inbox.outcomes.as_ref().map(|own| own.table.note()) {
+        let note = match inbox.outcomes.as_ref().map(|own| own.table.summary()) {
             Some(note) if !note.is_empty() => note,
             _ => "new leads".to_owned(),
         };
         let keys = look.hints(&[Action::Open, Action::Rows, Action::Filter, Action::Close]);
-        Border { title: title.to_owned(), note, keys, ..Border::default() }
+        PaneBorder { title: title.to_owned(), note, keys, ..PaneBorder::default() }
     }
 
-    fn draw(&self, inbox: &Inbox, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+    fn draw(&self, inbox: &Inbox, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
         let Some(own) = &inbox.outcomes else { return };
-        let text = match own.found.as_deref() {
+        let text = match own.rows.as_deref() {
             None => "reading …".to_owned(),
             Some([]) => {
                 let send = look.keys.label(Action::SendOffer).unwrap_or_default();
@@ -214,11 +214,11 @@ impl Pane<Inbox> for OutcomesPane {
                     "No new lead has been sent an offer yet. Send one with {send} in the list of threads."
                 )
             }
-            Some(_) => return own.table.draw(canvas, seat.area, seat.focused, seat.number),
+            Some(_) => return own.table.draw(canvas, seat.area, seat.focused, seat.index),
         };
-        let lines = wrapped(&text, seat.area.width as usize);
-        for (row, line) in novamind_tui::canvas::rows_of(seat.area).zip(lines) {
-            canvas.text(row, &line, Role::Dim);
+        let lines = wrap(&text, seat.area.width as usize);
+        for (row, line) in novamind_tui::canvas::row_rects(seat.area).zip(lines) {
+            canvas.draw_text(row, &line, Role::Dim);
         }
     }
 }

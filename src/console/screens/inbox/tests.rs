@@ -1,11 +1,11 @@
 use serde_json::{Value, json};
 
-use super::model::Turn;
+use super::model::ThreadMessage;
 use super::outcomes::OutcomesPane;
 use super::*;
-use crate::keys::Keys;
+use crate::keys::KeyBindings;
 use crate::screens::Screen;
-use crate::test_kit::{act, company, courted, drawn, shown, sweep};
+use crate::test_kit::{handle_action, new_company, session_with_negotiations, screen_text, loaded_screen, draw_at_all_sizes};
 use novamind_database::{Cell as Datum, number_at};
 use novamind_record::trajectory::record::Via;
 use novamind_session::WaitingThread;
@@ -15,9 +15,9 @@ use novamind_tui::chord::Chord;
 use novamind_worker::request::Request;
 
 /// Returns a company with waiting threads; every third enterprise is a subscriber with its own price.
-fn crowded_by(threads: u32) -> (Company, Rows, Rows) {
-    let mut company = company();
-    company.seen.day = 70;
+fn crowded_company(threads: u32) -> (DisplayedCompany, QueryResult, QueryResult) {
+    let mut company = new_company();
+    company.observation.day = 70;
     company.settings.insert(
         ToolId::SetPrices,
         json!({"A": 14.0, "B": 32.0, "C": 55.0}).as_object().cloned().expect("an object"),
@@ -25,7 +25,7 @@ fn crowded_by(threads: u32) -> (Company, Rows, Rows) {
     let (mut turns, mut firms) = (Vec::new(), Vec::new());
     for number in 1..=threads {
         let asks = number % 3 == 0;
-        company.seen.waiting.push(WaitingThread {
+        company.observation.waiting.push(WaitingThread {
             thread: number,
             customer: 1000 + number,
             group: ["E1", "E2", "E3"][number as usize % 3],
@@ -65,28 +65,28 @@ fn crowded_by(threads: u32) -> (Company, Rows, Rows) {
         firms.push(firm);
     }
     turns.reverse();
-    (company, Rows { rows: turns, ..Rows::default() }, Rows { rows: firms, ..Rows::default() })
+    (company, QueryResult { rows: turns, ..QueryResult::default() }, QueryResult { rows: firms, ..QueryResult::default() })
 }
 
-fn crowded_screen() -> (Inbox, Company) {
-    crowded_screen_by(200)
+fn crowded_screen() -> (Inbox, DisplayedCompany) {
+    crowded_screen_with(200)
 }
 
-fn crowded_screen_by(threads: u32) -> (Inbox, Company) {
-    let (company, turns, firms) = crowded_by(threads);
+fn crowded_screen_with(threads: u32) -> (Inbox, DisplayedCompany) {
+    let (company, turns, firms) = crowded_company(threads);
     let mut screen = Inbox::default();
-    let keys = Keys::shipped();
-    let look = Look { company: &company, keys: &keys, page: 20 };
-    screen.take(Reading::EnterpriseTurns, &turns, &look);
-    screen.take(Reading::Companies, &firms, &look);
+    let keys = KeyBindings::bundled();
+    let look = ScreenContext { company: &company, keys: &keys, page_rows: 20 };
+    screen.apply_rows(Reading::EnterpriseTurns, &turns, &look);
+    screen.apply_rows(Reading::Companies, &firms, &look);
     (screen, company)
 }
 
 /// Presses keys as the console does; quoted words are typed. Returns the effects of the last key and the
 /// number of keys.
-fn press(screen: &mut Inbox, company: &Company, keys: &str) -> (Vec<Effect>, usize) {
-    let known = Keys::shipped();
-    let look = Look { company, keys: &known, page: 20 };
+fn press(screen: &mut Inbox, company: &DisplayedCompany, keys: &str) -> (Vec<Effect>, usize) {
+    let known = KeyBindings::bundled();
+    let look = ScreenContext { company, keys: &known, page_rows: 20 };
     let (mut effects, mut count) = (Vec::new(), 0);
     for word in keys.split(' ') {
         let typed = word.strip_prefix('\'').and_then(|rest| rest.strip_suffix('\''));
@@ -99,8 +99,8 @@ fn press(screen: &mut Inbox, company: &Company, keys: &str) -> (Vec<Effect>, usi
             let scopes = screen.scopes();
             let text = scopes[0].is_text() && chord.is_printable();
             effects = match known.action(&scopes, chord).filter(|_| !text) {
-                Some(action) => screen.act(action, &look),
-                None => screen.key(&chord.event(), &look),
+                Some(action) => screen.handle_action(action, &look),
+                None => screen.handle_key(&chord.to_event(), &look),
             };
             count += 1;
         }
@@ -108,7 +108,7 @@ fn press(screen: &mut Inbox, company: &Company, keys: &str) -> (Vec<Effect>, usi
     (effects, count)
 }
 
-fn deals(effects: &[Effect]) -> Vec<Value> {
+fn sent_deals(effects: &[Effect]) -> Vec<Value> {
     match effects {
         [Effect::ConfirmCall { arguments, .. } | Effect::Request(Request::Call { arguments, .. })] => {
             arguments["deals"].as_array().expect("deals").clone()
@@ -118,31 +118,31 @@ fn deals(effects: &[Effect]) -> Vec<Value> {
 }
 
 /// Returns the company and the screen after an answer to all deals.
-fn answered(screen: &mut Inbox, company: &mut Company, deals: &[Value]) {
+fn apply_answers(screen: &mut Inbox, company: &mut DisplayedCompany, deals: &[Value]) {
     let customers: Vec<u32> = deals.iter().map(|deal| deal[0].as_u64().expect("a number") as u32).collect();
-    company.seen.waiting.retain(|thread| !customers.contains(&thread.customer));
+    company.observation.waiting.retain(|thread| !customers.contains(&thread.customer));
     let done = |customer_id: u32| DealResult::Done { customer_id, success: true };
     let results = DealResults { results: customers.into_iter().map(done).collect() };
-    let keys = Keys::shipped();
-    let look = Look { company, keys: &keys, page: 20 };
-    screen.renew(&look);
-    let news = News::Called(
+    let keys = KeyBindings::bundled();
+    let look = ScreenContext { company, keys: &keys, page_rows: 20 };
+    screen.on_company_change(&look);
+    let news = Response::ToolCalled(
         ToolId::SendEnterpriseDeal,
         Ok(Box::new(Answer::SendEnterpriseDeal(results))),
         std::sync::Arc::new(company.clone()),
     );
-    screen.hear(&news, &look);
+    screen.handle_response(&news, &look);
 }
 
 #[test]
-fn two_hundred_threads_are_worked_with_rules_in_under_forty_keys() {
+fn two_hundred_threads_are_answered_in_under_forty_keys() {
     let (mut screen, mut company) = crowded_screen();
     // Offer subscribers 3 % more than they ask, and leads plan B at 90 % of the list price or C at 85 %.
     let (effects, mut keys) = press(&mut screen, &company, "/ 'reten' enter a t e '103' ctrl-s");
-    let sent = deals(&effects);
+    let sent = sent_deals(&effects);
     assert_eq!((sent.len(), &sent[0][1]), (66, &json!([["B", 20.6]])));
     assert!(matches!(&effects[0], Effect::ConfirmCall { text, .. } if text.starts_with("66 enterprises, ")));
-    answered(&mut screen, &mut company, &sent);
+    apply_answers(&mut screen, &mut company, &sent);
     keys += 1;
     assert_eq!(screen.marked.len(), 0);
     let (_, more) = press(&mut screen, &company, "esc esc a");
@@ -150,9 +150,9 @@ fn two_hundred_threads_are_worked_with_rules_in_under_forty_keys() {
     assert_eq!(screen.marked.len(), 134);
     let (effects, more) = press(&mut screen, &company, "e p p p '90' b b down p p p '85' ctrl-s");
     keys += more + 1;
-    let sent = deals(&effects);
+    let sent = sent_deals(&effects);
     assert_eq!(sent.len(), 134, "{:?}", screen.rule);
-    answered(&mut screen, &mut company, &sent);
+    apply_answers(&mut screen, &mut company, &sent);
     assert!(screen.rows.is_empty());
     assert!(keys < 40, "{keys} keys");
 }
@@ -162,7 +162,7 @@ fn rules_answer_every_thread_after_one_confirmation() {
     let (mut screen, company) = crowded_screen();
     let rules = "'accept\u{a0}asked>=20;\u{a0}offer\u{a0}where\u{a0}group=E1:\u{a0}B\u{a0}85,C\u{a0}list*0.9;\u{a0}reject\u{a0}seats<60'";
     press(&mut screen, &company, &format!("R ctrl-n {rules}"));
-    let text = drawn(&screen, &company, 120, 37);
+    let text = screen_text(&screen, &company, 120, 37);
     for words in ["Rules", "accept asked>=20: 66 enterprises", "Preview for 72", "$20.00 → B $20.00"] {
         assert!(text.replace('\u{a0}', " ").contains(words), "{words} in\n{text}");
     }
@@ -174,13 +174,13 @@ fn rules_answer_every_thread_after_one_confirmation() {
     assert_eq!(sizes, [(ToolId::SendEnterpriseDeal, 66), (ToolId::RejectEnterpriseDeal, 6)]);
     assert!(text.contains("128 unanswered"), "{text}");
     assert_eq!(
-        screen.answers_of_before(&company).as_ref(),
+        screen.last_rule_answers(&company).as_ref(),
         Some(&(calls.clone(), text.clone())),
         "the rules are kept"
     );
     press(&mut screen, &company, "esc R");
     for (width, height) in [(60, 13), (80, 21), (120, 37), (200, 57)] {
-        let text = drawn(&screen, &company, width, height);
+        let text = screen_text(&screen, &company, width, height);
         assert!(
             text.contains("seats<60"),
             "rules that were sent are shown again: {width}x{height} in\n{text}"
@@ -197,22 +197,22 @@ fn rules_answer_every_thread_after_one_confirmation() {
     assert_eq!((screen.focus, screen.scopes()[0].is_text()), (InboxPane::Offer, true), "R focuses the rules");
     let (effects, _) = press(&mut screen, &company, "ctrl-n 'ofer' ctrl-s");
     assert!(matches!(&effects[..], [Effect::Complain(text)] if text.contains("did you mean offer")));
-    sweep(&mut screen, &company);
+    draw_at_all_sizes(&mut screen, &company);
 }
 
 #[test]
-fn one_by_one_the_list_goes_on_to_the_next_thread() {
+fn answering_a_thread_selects_the_next_one() {
     let (mut screen, mut company) = crowded_screen();
     let mut seen = BTreeSet::new();
     for _ in 0..200 {
-        let customer = screen.here().expect("a thread").customer;
+        let customer = screen.selected_thread().expect("a thread").customer;
         assert!(seen.insert(customer));
         let (effects, _) = press(&mut screen, &company, "ctrl-s");
-        let sent = deals(&effects);
+        let sent = sent_deals(&effects);
         assert_eq!(sent[0][0], json!(customer));
         let price = if customer % 1000 % 3 == 0 { json!([["B", 20.0]]) } else { json!([["B", 32.0]]) };
         assert_eq!(sent[0][1], price);
-        answered(&mut screen, &mut company, &sent);
+        apply_answers(&mut screen, &mut company, &sent);
     }
     let (effects, _) = press(&mut screen, &company, "ctrl-s");
     assert!(matches!(&effects[..], [Effect::Complain(_)]), "{effects:?}");
@@ -222,20 +222,20 @@ fn one_by_one_the_list_goes_on_to_the_next_thread() {
 fn a_draft_survives_and_belongs_to_its_thread() {
     let (mut screen, company) = crowded_screen();
     press(&mut screen, &company, "e '95' down");
-    assert_eq!(screen.offer().0[0].value, 95.0);
+    assert_eq!(screen.current_offer().0[0].value, 95.0);
     press(&mut screen, &company, "esc down");
-    assert_ne!(screen.offer().0[0].value, 95.0);
+    assert_ne!(screen.current_offer().0[0].value, 95.0);
     press(&mut screen, &company, "up");
-    assert_eq!(screen.offer().0[0].value, 95.0);
-    assert!(screen.holds_unsent_text());
+    assert_eq!(screen.current_offer().0[0].value, 95.0);
+    assert!(screen.has_unsent_text());
     press(&mut screen, &company, "e '7' esc");
-    assert_eq!(screen.offer().0[0].value, 95.0, "cancelled input is discarded");
+    assert_eq!(screen.current_offer().0[0].value, 95.0, "cancelled input is discarded");
     let (effects, _) = press(&mut screen, &company, "enter 'x'");
-    assert!(matches!(&effects[..], [Effect::Complain(_)]) && screen.typing.is_some());
+    assert!(matches!(&effects[..], [Effect::Complain(_)]) && screen.value_field.is_some());
 }
 
 #[test]
-fn rejecting_names_what_is_lost() {
+fn rejection_names_the_lost_revenue() {
     let (mut screen, company) = crowded_screen();
     press(&mut screen, &company, "a");
     let (effects, _) = press(&mut screen, &company, "x");
@@ -244,14 +244,14 @@ fn rejecting_names_what_is_lost() {
     };
     assert!(text.contains("134 new leads") && text.contains("lost for good"), "{text}");
     assert!(text.contains("66 subscribers stay"), "{text}");
-    assert_eq!(deals(&effects).len(), 200);
+    assert_eq!(sent_deals(&effects).len(), 200);
 }
 
 #[test]
-fn pictures_hold_list_thread_offer_and_preview() {
+fn screen_shows_list_thread_offer_and_preview() {
     let (mut screen, company) = crowded_screen();
     for (width, height) in [(80, 21), (120, 37), (200, 57)] {
-        let text = drawn(&screen, &company, width, height);
+        let text = screen_text(&screen, &company, width, height);
         for words in
             ["200 waiting for you", "left", "enterprise", "no.", "new lead", "Your offer", "per seat"]
         {
@@ -260,30 +260,30 @@ fn pictures_hold_list_thread_offer_and_preview() {
     }
     press(&mut screen, &company, "a");
     for (width, height) in [(80, 21), (120, 37), (200, 57)] {
-        let text = drawn(&screen, &company, width, height);
+        let text = screen_text(&screen, &company, width, height);
         for words in ["Bulk offer for 200", "Preview for 200", "200 marked", "→ B $32.00", "200 enterprises"]
         {
             assert!(text.contains(words), "{words} at {width}x{height} in\n{text}");
         }
     }
-    sweep(&mut screen, &company);
-    screen.focus_on(InboxPane::List);
+    draw_at_all_sizes(&mut screen, &company);
+    screen.set_focused_pane(InboxPane::List);
     press(&mut screen, &company, "a / '1003' enter");
-    let text = drawn(&screen, &company, 120, 37);
+    let text = screen_text(&screen, &company, 120, 37);
     for words in
         ["#1003", "offered B $30.00", "At $20.00 for plan B", "formal", "asking price $20.00", "theirs"]
     {
         assert!(text.contains(words), "{words} in\n{text}");
     }
-    sweep(&mut screen, &company);
+    draw_at_all_sizes(&mut screen, &company);
 }
 
 #[test]
-fn without_threads_it_says_what_brings_companies() {
-    let company = company();
+fn empty_inbox_explains_how_leads_arrive() {
+    let company = new_company();
     let mut screen = Inbox::default();
     for width in [80, 120, 200] {
-        let text = drawn(&screen, &company, width, 37);
+        let text = screen_text(&screen, &company, width, 37);
         assert!(
             text.contains("No enterprise has asked for an offer yet")
                 && text.contains("set_targeted_ad_spend"),
@@ -291,76 +291,76 @@ fn without_threads_it_says_what_brings_companies() {
         );
     }
     for action in
-        [Action::SendOffer, Action::RejectOffer, Action::InboxRules].into_iter().chain(NEEDS_A_THREAD)
+        [Action::SendOffer, Action::RejectOffer, Action::InboxRules].into_iter().chain(THREAD_ACTIONS)
     {
-        assert!(matches!(&act(&mut screen, action, &company)[..], [Effect::Complain(_)]), "{action:?}");
+        assert!(matches!(&handle_action(&mut screen, action, &company)[..], [Effect::Complain(_)]), "{action:?}");
     }
-    sweep(&mut screen, &company);
+    draw_at_all_sizes(&mut screen, &company);
 }
 
 #[test]
-fn a_real_company_is_answered_and_found_again() {
-    let mut session = courted();
-    let before = Company::of(&session);
-    let mut screen: Inbox = shown(&mut session, &before);
-    assert_eq!(screen.rows.len(), before.seen.waiting.len());
-    let first = screen.here().expect("a thread").clone();
-    assert_eq!(first.turns.first().map(|turn: &Turn| turn.sender.as_str()), Some("system"));
-    assert!(screen.letters.firm(first.customer).is_some_and(|firm| firm.group == first.group));
-    let [Effect::EditSql(sql)] = &act(&mut screen, Action::InboxSql, &before)[..] else { panic!("no query") };
-    assert_eq!(session.query(sql).expect("rows").rows.len(), first.turns.len());
+fn answered_enterprise_stays_in_the_list() {
+    let mut session = session_with_negotiations();
+    let before = DisplayedCompany::from_session(&session);
+    let mut screen: Inbox = loaded_screen(&mut session, &before);
+    assert_eq!(screen.rows.len(), before.observation.waiting.len());
+    let first = screen.selected_thread().expect("a thread").clone();
+    assert_eq!(first.messages.first().map(|turn: &ThreadMessage| turn.sender.as_str()), Some("system"));
+    assert!(screen.threads.enterprise(first.customer).is_some_and(|firm| firm.group == first.group));
+    let [Effect::EditSql(sql)] = &handle_action(&mut screen, Action::InboxSql, &before)[..] else { panic!("no query") };
+    assert_eq!(session.query(sql).expect("rows").rows.len(), first.messages.len());
     let [Effect::Request(Request::Call { tool, arguments })] =
-        &act(&mut screen, Action::SendOffer, &before)[..]
+        &handle_action(&mut screen, Action::SendOffer, &before)[..]
     else {
         panic!("no call")
     };
     session.call(tool, arguments, Via::Form).expect("sent");
-    let after = Company::of(&session);
-    let mut screen: Inbox = shown(&mut session, &after);
-    assert_eq!(screen.rows.len(), before.seen.waiting.len() - 1);
-    act(&mut screen, Action::OtherThreads, &after);
-    let thread = screen.here().expect("the answered thread");
-    assert_eq!((thread.customer, thread.state), (first.customer, State::Theirs));
-    assert_eq!(thread.offered(), [(Plan::B, 32.0)]);
+    let after = DisplayedCompany::from_session(&session);
+    let mut screen: Inbox = loaded_screen(&mut session, &after);
+    assert_eq!(screen.rows.len(), before.observation.waiting.len() - 1);
+    handle_action(&mut screen, Action::NextThreadView, &after);
+    let thread = screen.selected_thread().expect("the answered thread");
+    assert_eq!((thread.customer, thread.state), (first.customer, ThreadState::WaitingForCustomer));
+    assert_eq!(thread.last_offer(), [(Plan::B, 32.0)]);
     assert_eq!(thread.seats, first.seats);
-    let again = act(&mut screen, Action::SendOffer, &after);
+    let again = handle_action(&mut screen, Action::SendOffer, &after);
     assert!(matches!(&again[..], [Effect::ConfirmCall { text, .. }] if text.contains("uses another turn")));
 }
 
 #[test]
-fn an_offer_shows_what_it_earns_after_compute_and_where_the_figures_come_from() {
-    let mut session = courted();
-    let company = Company::of(&session);
-    let mut screen: Inbox = shown(&mut session, &company);
-    let thread = screen.here().expect("a thread").clone();
-    let money = estimate::Money::of(&screen.usage, &company, &thread, (Plan::B, 32.0));
-    let margin = novamind_base::notation::percent(money.margin().expect("a margin"), 0);
-    let compute = novamind_base::notation::dollars(money.compute.expect("compute"));
-    let text = drawn(&screen, &company, 120, 37);
+fn offer_shows_margin_and_source_of_usage() {
+    let mut session = session_with_negotiations();
+    let company = DisplayedCompany::from_session(&session);
+    let mut screen: Inbox = loaded_screen(&mut session, &company);
+    let thread = screen.selected_thread().expect("a thread").clone();
+    let money = estimate::OfferEconomics::for_offer(&screen.usage, &company, &thread, (Plan::B, 32.0));
+    let margin = novamind_base::formatting::percent(money.margin().expect("a margin"), 0);
+    let compute = novamind_base::formatting::dollars(money.compute_cost.expect("compute"));
+    let text = screen_text(&screen, &company, 120, 37);
     for words in ["compute", "margin", &margin, &compute, "units/seat/day", " left "] {
         assert!(text.contains(words), "{words} in\n{text}");
     }
-    assert!(drawn(&screen, &company, 200, 57).contains("vs. ask"));
-    let small = drawn(&screen, &company, 80, 21);
+    assert!(screen_text(&screen, &company, 200, 57).contains("vs. ask"));
+    let small = screen_text(&screen, &company, 80, 21);
     assert!(small.contains(&format!("B est. compute {compute}/mo, margin {margin}")), "{small}");
-    let keys = Keys::shipped();
-    let look = Look { company: &company, keys: &keys, page: 20 };
-    for focus in 0..Screen::panes(&screen) {
+    let keys = KeyBindings::bundled();
+    let look = ScreenContext { company: &company, keys: &keys, page_rows: 20 };
+    for focus in 0..Screen::pane_count(&screen) {
         screen.set_focus(focus);
         let figure = screen.figure(&look).expect("a figure");
         session
             .query(&figure.sql.expect("rows"))
             .unwrap_or_else(|refusal| panic!("{}: {refusal}", figure.title));
     }
-    screen.focus_on(InboxPane::List);
+    screen.set_focused_pane(InboxPane::List);
     let turns = screen.figure(&look).and_then(|figure| figure.sql).expect("rows");
-    assert_eq!(session.query(&turns).expect("rows").rows.len(), thread.turns.len());
+    assert_eq!(session.query(&turns).expect("rows").rows.len(), thread.messages.len());
 }
 
 /// Returns a run whose leads got first offers with several plans and prices over three weeks, some of them
 /// twice.
-fn offered() -> novamind_session::Session {
-    let mut session = courted();
+fn run_with_first_offers() -> novamind_session::Session {
+    let mut session = session_with_negotiations();
     for week in 0..3 {
         for (at, thread) in session.company().observe().waiting.into_iter().enumerate() {
             let offer = [json!([["C", 16.5]]), json!([["B", 12.0], ["C", 16.5]]), json!([["C", 129.99]])];
@@ -374,17 +374,17 @@ fn offered() -> novamind_session::Session {
 }
 
 #[test]
-fn outcomes_of_first_offers_are_those_that_the_turns_and_subscriptions_tell() {
-    let mut session = offered();
-    let company = Company::of(&session);
-    let mut screen: Inbox = shown(&mut session, &company);
-    let asked = act(&mut screen, Action::InboxOutcomes, &company);
+fn first_offer_outcomes_agree_with_turns_and_subscriptions() {
+    let mut session = run_with_first_offers();
+    let company = DisplayedCompany::from_session(&session);
+    let mut screen: Inbox = loaded_screen(&mut session, &company);
+    let asked = handle_action(&mut screen, Action::InboxOutcomes, &company);
     assert!(matches!(&asked[..], [Effect::Read(Reading::FirstOffers)]), "{asked:?}");
-    assert!(drawn(&screen, &company, 80, 21).contains("reading …"));
-    let keys = Keys::shipped();
-    let look = Look { company: &company, keys: &keys, page: 20 };
+    assert!(screen_text(&screen, &company, 80, 21).contains("reading …"));
+    let keys = KeyBindings::bundled();
+    let look = ScreenContext { company: &company, keys: &keys, page_rows: 20 };
     let rows = session.query(Reading::FirstOffers.sql()).expect("rows");
-    screen.take(Reading::FirstOffers, &rows, &look);
+    screen.apply_rows(Reading::FirstOffers, &rows, &look);
     let cells: Vec<Vec<String>> = {
         let table = OutcomesPane.table(&screen).expect("a table");
         table.rows().iter().map(|row| row.iter().map(|cell| cell.text.clone()).collect()).collect()
@@ -432,27 +432,27 @@ fn outcomes_of_first_offers_are_those_that_the_turns_and_subscriptions_tell() {
     }
     let first = "SELECT count(DISTINCT thread_id) FROM enterprise_turns WHERE sender = 'agent' AND thread_type = 'new_lead'";
     assert_eq!(threads, number_at(&session.query(first).expect("a count").rows[0], 0));
-    let led = act(&mut screen, Action::Open, &company);
+    let led = handle_action(&mut screen, Action::Open, &company);
     assert!(
         matches!(&led[..], [Effect::RunSql(sql)] if sql == include_str!("../../../../assets/queries/first-offers.sql"))
     );
     for (width, height) in [(60, 13), (80, 21), (120, 37), (200, 57)] {
-        let text = drawn(&screen, &company, width, height);
+        let text = screen_text(&screen, &company, width, height);
         for words in
             ["y first offer and week", "$/seat", "threads", "signed", "share", &cells[0][6], "Your offer"]
         {
             assert!(text.contains(words), "{words} at {width}x{height} in\n{text}");
         }
     }
-    sweep(&mut screen, &company);
+    draw_at_all_sizes(&mut screen, &company);
 }
 
 #[test]
-fn outcomes_stand_in_the_place_of_the_list_until_they_are_closed() {
+fn outcomes_replace_the_list_until_closed() {
     let (mut screen, company) = crowded_screen();
     press(&mut screen, &company, "O");
-    assert_eq!((screen.focus, Screen::depth(&screen)), (InboxPane::Outcomes, 1));
-    screen.focus_on(InboxPane::Offer);
+    assert_eq!((screen.focus, Screen::escape_depth(&screen)), (InboxPane::Outcomes, 1));
+    screen.set_focused_pane(InboxPane::Offer);
     press(&mut screen, &company, "esc");
     assert_eq!(screen.focus, InboxPane::Outcomes, "esc returns from the offer to the outcomes");
     for marks in ["space", "a"] {
@@ -461,22 +461,22 @@ fn outcomes_stand_in_the_place_of_the_list_until_they_are_closed() {
     assert_eq!(screen.marked.len(), 0);
     for closes in ["esc", "O", "o"] {
         press(&mut screen, &company, closes);
-        assert_eq!((screen.focus, Screen::depth(&screen)), (InboxPane::List, 0), "{closes}");
+        assert_eq!((screen.focus, Screen::escape_depth(&screen)), (InboxPane::List, 0), "{closes}");
         press(&mut screen, &company, "O");
     }
-    screen.take(
+    screen.apply_rows(
         Reading::FirstOffers,
-        &Rows::default(),
-        &Look { company: &company, keys: &Keys::shipped(), page: 20 },
+        &QueryResult::default(),
+        &ScreenContext { company: &company, keys: &KeyBindings::bundled(), page_rows: 20 },
     );
-    assert!(drawn(&screen, &company, 60, 13).contains("No new lead has been sent an offer yet"));
-    screen.show(7, &company);
+    assert!(screen_text(&screen, &company, 60, 13).contains("No new lead has been sent an offer yet"));
+    screen.show_thread(7, &company);
     assert_eq!(screen.focus, InboxPane::List);
 }
 
 #[test]
-fn thousands_of_threads_are_marked_sent_and_followed_by_the_next_one() {
-    let (mut screen, mut company) = crowded_screen_by(3_500);
+fn thousands_of_marked_threads_are_answered_at_once() {
+    let (mut screen, mut company) = crowded_screen_with(3_500);
     press(&mut screen, &company, "a");
     assert_eq!(screen.marked.len(), 3_500);
     press(&mut screen, &company, "a");
@@ -486,7 +486,7 @@ fn thousands_of_threads_are_marked_sent_and_followed_by_the_next_one() {
     let [Effect::ConfirmCalls { calls, .. }] = &effects[..] else { panic!("{effects:?}") };
     let sent = calls[0].1["deals"].as_array().expect("deals").clone();
     assert_eq!(sent.len(), 1_749);
-    let next = screen.table.shown().iter().filter_map(|row| screen.number_of(*row)).nth(1_749);
-    answered(&mut screen, &mut company, &sent);
-    assert_eq!((screen.rows.len(), screen.here().map(|thread| thread.number)), (1_751, next));
+    let next = screen.table.visible_rows().iter().filter_map(|row| screen.thread_in_row(*row)).nth(1_749);
+    apply_answers(&mut screen, &mut company, &sent);
+    assert_eq!((screen.rows.len(), screen.selected_thread().map(|thread| thread.number)), (1_751, next));
 }

@@ -4,16 +4,16 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::Value;
 
-use novamind_base::notation::{compact, dollars, grouped, short_dollars, signed_dollars};
+use novamind_base::formatting::{compact_number, dollars, grouped_number, short_dollars, signed_dollars};
 use novamind_record::figures::WeekFigures;
 use novamind_record::trajectory::record::Reversal;
-use novamind_report::deals::deals_in_words;
-use novamind_report::parameters::{entry_in_words, since_in_words};
-use novamind_session::{CompanyNames, JournalEntry, ScoredForecast, naively, undone_calls};
-use novamind_tools::{Forecast, Kind, Spec};
-use novamind_tui::text::number;
+use novamind_report::deals::describe_deals;
+use novamind_report::parameters::{describe_parameter_entry, describe_start_day};
+use novamind_session::{EnterpriseNames, JournalEntry, ScoredForecast, describe_naive_share, undone_call_lines};
+use novamind_tools::{Forecast, ToolKind, ToolSpec};
+use novamind_tui::text::format_number;
 use novamind_tui::theme::Role;
-use novamind_worker::company::Company;
+use novamind_worker::company::DisplayedCompany;
 
 /// A line of the journal.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,7 +27,7 @@ pub struct JournalLine {
     /// Title of the complete entry.
     pub title: String,
     /// The complete entry.
-    pub whole: String,
+    pub full_text: String,
     /// Glossary term.
     pub term: &'static str,
     /// Query for the rows behind it.
@@ -44,52 +44,52 @@ struct FiledWeek<'a> {
 
 /// A week: actions before it, forecasts, result.
 #[derive(Default)]
-struct Group<'a> {
+struct JournalWeek<'a> {
     calls: Vec<JournalLine>,
     filed: Option<FiledWeek<'a>>,
     figures: Option<&'a WeekFigures>,
 }
 
 /// Returns all lines.
-pub fn lines(company: &Company) -> Vec<JournalLine> {
-    let mut groups = vec![Group::default()];
+pub fn lines(company: &DisplayedCompany) -> Vec<JournalLine> {
+    let mut groups = vec![JournalWeek::default()];
     let mut settings = KnownSettings::default();
-    let undone = undone_calls(&company.journal);
+    let undone = undone_call_lines(&company.journal);
     for entry in &company.journal {
         let Some(last) = groups.last_mut() else { continue };
         match entry {
             JournalEntry::Call { .. } => {
-                last.calls.extend(of_call(entry, &mut settings, &undone, &company.names))
+                last.calls.extend(call_line(entry, &mut settings, &undone, &company.company_names))
             }
             JournalEntry::Parameter { day, key, old, new, from_day, .. } => {
-                last.calls.push(of_parameter(*day, key, [old, new], *from_day));
+                last.calls.push(parameter_line(*day, key, [old, new], *from_day));
             }
             JournalEntry::Advance { day, rationale, forecasts, filled_naively } => {
                 last.filed = Some(FiledWeek { day: *day, rationale, forecasts, filled_naively });
             }
             JournalEntry::Week { figures } => {
                 last.figures = Some(figures);
-                groups.push(Group::default());
+                groups.push(JournalWeek::default());
             }
         }
     }
     groups.iter().rev().flat_map(|group| group.lines(company)).collect()
 }
 
-impl Group<'_> {
-    fn lines(&self, company: &Company) -> Vec<JournalLine> {
-        let Some(head) = self.head(company) else { return Vec::new() };
-        let whole = self.whole(company, &head);
+impl JournalWeek<'_> {
+    fn lines(&self, company: &DisplayedCompany) -> Vec<JournalLine> {
+        let Some(head) = self.heading(company) else { return Vec::new() };
+        let whole = self.full_text(company, &head);
         let line = |day: u32, text: String, role: Role| JournalLine {
             day,
             text,
             role,
             title: head.clone(),
-            whole: whole.clone(),
+            full_text: whole.clone(),
             term: "decision-day",
             sql: None,
         };
-        let day = self.figures.map_or(company.seen.day, |week| week.day);
+        let day = self.figures.map_or(company.observation.day, |week| week.day);
         let mut lines = vec![line(day, head.clone(), Role::Strong)];
         if let Some(week) = self.figures {
             lines[0].term = "cash-change";
@@ -107,7 +107,7 @@ impl Group<'_> {
             let why = line(filed.day, format!("  why  {}", words.join(" ")), Role::Text);
             lines.push(JournalLine { term: "rationale", ..why });
             if !filed.forecasts.is_empty() {
-                let said = line(filed.day, format!("  filed {}", filed.in_a_line(company)), Role::Dim);
+                let said = line(filed.day, format!("  filed {}", filed.summary(company)), Role::Dim);
                 let sql = format!("SELECT * FROM predictions WHERE submit_day = {}", filed.day);
                 lines.push(JournalLine { term: "forecast", sql: Some(sql), ..said });
             }
@@ -117,7 +117,7 @@ impl Group<'_> {
     }
 
     /// Returns the heading of a week; `None` for an empty week of a finished run.
-    fn head(&self, company: &Company) -> Option<String> {
+    fn heading(&self, company: &DisplayedCompany) -> Option<String> {
         match self.figures {
             Some(week) => {
                 let sign = if week.cash_change < 0.0 { '-' } else { '+' };
@@ -126,7 +126,7 @@ impl Group<'_> {
                     week.day.div_ceil(7),
                     week.day,
                     short_dollars(week.cash),
-                    compact(week.cash_change.abs())
+                    compact_number(week.cash_change.abs())
                 ))
             }
             None if self.calls.is_empty() && !company.is_running() => None,
@@ -136,16 +136,16 @@ impl Group<'_> {
                     1 => "1 action".to_owned(),
                     count => format!("{count} actions"),
                 };
-                Some(format!("week {} · now · {done}", company.seen.day / 7 + 1))
+                Some(format!("week {} · now · {done}", company.observation.day / 7 + 1))
             }
         }
     }
 
-    fn whole(&self, company: &Company, head: &str) -> String {
+    fn full_text(&self, company: &DisplayedCompany, head: &str) -> String {
         let mut parts = vec![head.to_owned()];
         if let Some(filed) = &self.filed {
             parts.push(format!("Why, on day {}:\n{}", filed.day, filed.rationale));
-            parts.push(filed.in_full(company));
+            parts.push(filed.full_description(company));
         }
         let calls: Vec<&str> = self.calls.iter().map(|line| line.text.as_str()).collect();
         if !calls.is_empty() {
@@ -156,10 +156,10 @@ impl Group<'_> {
                 "Result:\n  cash {} ({})\n  subscribers {} (new {}, cancelled {})\n  seats {}\n  payments {} · running costs {}",
                 dollars(week.cash),
                 signed_dollars(week.cash_change),
-                grouped(f64::from(week.individual_subscribers), 0),
-                grouped(f64::from(week.new_individual_subscribers), 0),
-                grouped(f64::from(week.cancellations), 0),
-                grouped(f64::from(week.enterprise_seats), 0),
+                grouped_number(f64::from(week.individual_subscribers), 0),
+                grouped_number(f64::from(week.new_individual_subscribers), 0),
+                grouped_number(f64::from(week.cancellations), 0),
+                grouped_number(f64::from(week.enterprise_seats), 0),
                 dollars(week.payments),
                 dollars(week.costs),
             ));
@@ -169,30 +169,30 @@ impl Group<'_> {
 }
 
 impl FiledWeek<'_> {
-    fn in_a_line(&self, company: &Company) -> String {
+    fn summary(&self, company: &DisplayedCompany) -> String {
         let one = |forecast: &Forecast| {
-            let filed = ScoredForecast::of(self.day, forecast, &company.cash_by_day);
+            let filed = ScoredForecast::new(self.day, forecast, &company.cash_by_day);
             let came = match filed.outcome {
-                Some(_) if filed.is_inside() => " inside",
+                Some(_) if filed.is_covered() => " inside",
                 Some(_) => " OUTSIDE",
                 None => "",
             };
             format!("{} wk {}{came}", forecast.horizon_days / 7, short_dollars(forecast.point))
         };
         let all: Vec<String> = self.forecasts.iter().map(one).collect();
-        let naively = naively(self.filled_naively).map_or(String::new(), |naively| format!("{naively}: "));
+        let naively = describe_naive_share(self.filled_naively).map_or(String::new(), |naively| format!("{naively}: "));
         format!("{naively}{}", all.join(" · "))
     }
 
-    fn in_full(&self, company: &Company) -> String {
+    fn full_description(&self, company: &DisplayedCompany) -> String {
         let head = format!("{:>8} {:>14} {:>14} {:>14}   {}", "", "low", "point", "high", "outcome");
         let one = |forecast: &Forecast| {
-            let filed = ScoredForecast::of(self.day, forecast, &company.cash_by_day);
+            let filed = ScoredForecast::new(self.day, forecast, &company.cash_by_day);
             let outcome = match filed.outcome {
                 Some(cash) => {
-                    format!("{} {}", dollars(cash), if filed.is_inside() { "inside" } else { "OUTSIDE" })
+                    format!("{} {}", dollars(cash), if filed.is_covered() { "inside" } else { "OUTSIDE" })
                 }
-                None => format!("on day {}", filed.due()),
+                None => format!("on day {}", filed.due_day()),
             };
             format!(
                 "{:>5} wk {:>14} {:>14} {:>14}   {outcome}",
@@ -204,23 +204,23 @@ impl FiledWeek<'_> {
         };
         let lines: Vec<String> = std::iter::once(head).chain(self.forecasts.iter().map(one)).collect();
         let naively =
-            naively(self.filled_naively).map_or(String::new(), |naively| format!(", filled {naively}"));
+            describe_naive_share(self.filled_naively).map_or(String::new(), |naively| format!(", filled {naively}"));
         format!("Forecasts of cash{naively}:\n{}", lines.join("\n"))
     }
 }
 
 /// Returns a tool call as a line. Undone calls are marked, as are undo and redo.
-fn of_call(
+fn call_line(
     entry: &JournalEntry,
     settings: &mut KnownSettings,
     undone: &BTreeSet<u64>,
-    names: &CompanyNames,
+    names: &EnterpriseNames,
 ) -> Option<JournalLine> {
     let JournalEntry::Call { seq, day, tool, args, reversal } = entry else { return None };
     let spec = tool.spec();
     let words = match spec.kind {
-        Kind::Setting => settings.change(spec, args),
-        _ => deals_in_words(*tool, args, names).unwrap_or_else(|| in_words(args)),
+        ToolKind::Setting => settings.describe_change(spec, args),
+        _ => describe_deals(*tool, args, names).unwrap_or_else(|| format_arguments(args)),
     };
     let is_undone = undone.contains(seq);
     let (sign, remark) = match reversal {
@@ -236,28 +236,28 @@ fn of_call(
         text: format!("  {sign}{tool} {words}").trim_end().to_owned(),
         role: if gone { Role::Dim } else { Role::Text },
         title: format!("{tool} · day {day}"),
-        whole: format!("{tool}\n\n{pretty}{remark}"),
+        full_text: format!("{tool}\n\n{pretty}{remark}"),
         term: spec.name(),
-        sql: kept_in(spec, *day),
+        sql: history_query(spec, *day),
     })
 }
 
 /// Returns a parameter change as a line.
-fn of_parameter(day: u32, key: &str, [old, new]: [&Value; 2], from_day: Option<u32>) -> JournalLine {
+fn parameter_line(day: u32, key: &str, [old, new]: [&Value; 2], from_day: Option<u32>) -> JournalLine {
     JournalLine {
         day,
-        text: format!("  {}", entry_in_words(key, [old, new], from_day)),
+        text: format!("  {}", describe_parameter_entry(key, [old, new], from_day)),
         role: Role::Text,
         title: format!("{key} · day {day}"),
-        whole: format!("set {key}{}\n\nbefore: {old}\nafter: {new}", since_in_words(from_day)),
+        full_text: format!("set {key}{}\n\nbefore: {old}\nafter: {new}", describe_start_day(from_day)),
         term: "",
         sql: None,
     }
 }
 
 /// Returns the query for the stored settings of a call.
-fn kept_in(spec: &Spec, day: u32) -> Option<String> {
-    let table = spec.writes.iter().find(|table| table.starts_with("config_"))?;
+fn history_query(spec: &ToolSpec, day: u32) -> Option<String> {
+    let table = spec.written_tables.iter().find(|table| table.starts_with("config_"))?;
     let tool = match *table {
         "config_overrides" => format!(" AND tool_name = '{}'", spec.name()),
         _ => String::new(),
@@ -271,20 +271,20 @@ struct KnownSettings(BTreeMap<String, f64>);
 
 impl KnownSettings {
     /// Describes a call: changes as old → new, and values that were not set before.
-    fn change(&mut self, spec: &Spec, args: &Value) -> String {
+    fn describe_change(&mut self, spec: &ToolSpec, args: &Value) -> String {
         let mut leaves = Vec::new();
-        collect(args, "", &mut leaves);
+        collect_numbers(args, "", &mut leaves);
         let key = |path: &str| format!("{}/{path}", spec.name());
         if leaves.is_empty() || leaves.iter().all(|(path, _)| !self.0.contains_key(&key(path))) {
             self.0.extend(leaves.into_iter().map(|(path, value)| (key(&path), value)));
-            return in_words(args);
+            return format_arguments(args);
         }
         let mut changes = Vec::new();
         for (path, value) in &leaves {
             match self.0.insert(key(path), *value) {
                 Some(old) if old == *value => {}
-                Some(old) => changes.push(format!("{path} {} → {}", plain(old), plain(*value))),
-                None => changes.push(format!("{path} {}", plain(*value))),
+                Some(old) => changes.push(format!("{path} {} → {}", format_plain(old), format_plain(*value))),
+                None => changes.push(format!("{path} {}", format_plain(*value))),
             }
         }
         // A map is replaced completely; entries that it no longer contains are removed.
@@ -297,7 +297,7 @@ impl KnownSettings {
             for path in lost {
                 let old = self.0.remove(&path).unwrap_or(0.0);
                 let short = path.split_once('/').map_or("", |(_, rest)| rest).to_owned();
-                changes.push(format!("{short} {} → –", plain(old)));
+                changes.push(format!("{short} {} → –", format_plain(old)));
             }
         }
         if changes.is_empty() { "unchanged".to_owned() } else { changes.join(" · ") }
@@ -305,12 +305,12 @@ impl KnownSettings {
 }
 
 /// Returns the numbers of a call with their paths: `targeted_spend linkedin E1`.
-fn collect(value: &Value, path: &str, leaves: &mut Vec<(String, f64)>) {
+fn collect_numbers(value: &Value, path: &str, leaves: &mut Vec<(String, f64)>) {
     match value {
         Value::Object(fields) => {
             for (name, inner) in fields {
                 let path = if path.is_empty() { name.clone() } else { format!("{path} {name}") };
-                collect(inner, &path, leaves);
+                collect_numbers(inner, &path, leaves);
             }
         }
         Value::Number(own) => leaves.extend(own.as_f64().map(|number| (path.to_owned(), number))),
@@ -319,21 +319,21 @@ fn collect(value: &Value, path: &str, leaves: &mut Vec<(String, f64)>) {
 }
 
 /// Describes arguments in short form: `A 16 B 34`, `search_ads(S3 40)`.
-pub fn in_words(value: &Value) -> String {
+pub fn format_arguments(value: &Value) -> String {
     match value {
         Value::Null => "–".to_owned(),
         Value::Bool(truth) => truth.to_string(),
-        Value::Number(own) => own.as_f64().map_or_else(|| own.to_string(), plain),
+        Value::Number(own) => own.as_f64().map_or_else(|| own.to_string(), format_plain),
         Value::String(text) => text.split_whitespace().collect::<Vec<_>>().join(" "),
         Value::Array(values) => {
             // Whole numbers in a list are customer and thread numbers.
-            let item = |value: &Value| if value.is_u64() { value.to_string() } else { in_words(value) };
+            let item = |value: &Value| if value.is_u64() { value.to_string() } else { format_arguments(value) };
             format!("[{}]", values.iter().map(item).collect::<Vec<_>>().join(" "))
         }
         Value::Object(fields) => {
             let field = |(name, value): (&String, &Value)| match value {
-                Value::Object(_) => format!("{name}({})", in_words(value)),
-                _ => format!("{name} {}", in_words(value)),
+                Value::Object(_) => format!("{name}({})", format_arguments(value)),
+                _ => format!("{name} {}", format_arguments(value)),
             };
             fields.iter().map(field).collect::<Vec<_>>().join(" ")
         }
@@ -341,9 +341,9 @@ pub fn in_words(value: &Value) -> String {
 }
 
 /// Returns a rounded number; the complete entry has all digits.
-fn plain(value: f64) -> String {
+fn format_plain(value: f64) -> String {
     let short = if value.abs() >= 0.01 { (value * 1e4).round() / 1e4 } else { value };
-    if short.fract() == 0.0 { number(short) } else { short.to_string() }
+    if short.fract() == 0.0 { format_number(short) } else { short.to_string() }
 }
 
 #[cfg(test)]
@@ -352,7 +352,7 @@ mod tests {
     use serde_json::json;
 
     #[test]
-    fn arguments_are_written_in_few_characters() {
+    fn format_arguments_is_short() {
         for (args, words) in [
             (json!({"A": 12.0, "B": 25.5, "C": 1200}), "A 12 B 25.5 C 1,200"),
             (json!({"targeted_spend": {"search_ads": {"S3": 40}}}), "targeted_spend(search_ads(S3 40))"),
@@ -361,15 +361,15 @@ mod tests {
             (json!({}), ""),
             (json!({"rate": 0.0125, "spend": 172.35000000000002}), "rate 0.0125 spend 172.35"),
         ] {
-            assert_eq!(in_words(&args), words);
+            assert_eq!(format_arguments(&args), words);
         }
     }
 
     #[test]
-    fn a_later_call_says_what_was_before() {
+    fn later_calls_show_the_previous_value() {
         let mut settings = KnownSettings::default();
         let mut said = |tool: &str, args: Value| {
-            settings.change(novamind_tools::find(tool).expect("a tool").spec(), &args)
+            settings.describe_change(novamind_tools::find(tool).expect("a tool").spec(), &args)
         };
         assert_eq!(said("set_prices", json!({"A": 12})), "A 12");
         assert_eq!(said("set_prices", json!({"A": 14, "B": 25})), "A 12 → 14 · B 25");

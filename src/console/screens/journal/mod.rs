@@ -2,7 +2,7 @@
 
 mod branches;
 pub mod entries;
-mod list;
+mod entries_pane;
 mod notes;
 mod scores;
 #[cfg(test)]
@@ -12,16 +12,16 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use strum::VariantArray;
 
 use super::ScreenState;
-use super::panes::{Pane, Paned, draw_pane};
+use super::panes::{Pane, PaneScreen, draw_pane};
 use crate::action::Action;
-use crate::context::{Figure, Look};
+use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
-use novamind_insight::Kin;
+use novamind_insight::RelatedRun;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::{Cell, Column, Editor, Table};
-use novamind_worker::asking::Pending;
-use novamind_worker::questions::RelatedRunsQuestion;
+use novamind_tui::widgets::{TableCell, TableColumn, TextEditor, Table};
+use novamind_worker::question::Pending;
+use novamind_worker::page_questions::RelatedRunsQuestion;
 use novamind_worker::request::Request;
 
 /// Panes in tab order.
@@ -42,14 +42,14 @@ pub struct Journal {
     focus: JournalPane,
     table: Table,
     /// Title and text of the complete entry of each row.
-    wholes: Vec<(String, String)>,
+    full_texts: Vec<(String, String)>,
     figures: Vec<Figure>,
     horizon: usize,
-    notes: Editor,
-    kept: String,
+    notes: TextEditor,
+    saved_notes: String,
     editing: bool,
     /// The tree, with a row for each of its runs.
-    tree: Vec<Kin>,
+    tree: Vec<RelatedRun>,
     branches: Table,
     is_tree_read: bool,
     asked: Pending<RelatedRunsQuestion>,
@@ -57,18 +57,18 @@ pub struct Journal {
 
 impl Default for Journal {
     fn default() -> Self {
-        let columns = vec![Column::numbers("day"), Column::words("what").at_most(u16::MAX)];
+        let columns = vec![TableColumn::numeric("day"), TableColumn::text("what").with_max_width(u16::MAX)];
         Journal {
             focus: JournalPane::List,
             table: Table::new(columns),
-            wholes: Vec::new(),
+            full_texts: Vec::new(),
             figures: Vec::new(),
             horizon: 0,
-            notes: Editor::default(),
-            kept: String::new(),
+            notes: TextEditor::default(),
+            saved_notes: String::new(),
             editing: false,
             tree: Vec::new(),
-            branches: branches::table(),
+            branches: branches::empty_table(),
             is_tree_read: false,
             asked: Pending::default(),
         }
@@ -76,24 +76,24 @@ impl Default for Journal {
 }
 
 impl Journal {
-    fn is_draft(&self) -> bool {
-        self.notes.text() != self.kept
+    fn has_unsaved_notes(&self) -> bool {
+        self.notes.text() != self.saved_notes
     }
 
     /// Returns the unsaved notes, if they differ from the saved ones.
-    pub fn unsaved(&self) -> Option<String> {
-        self.is_draft().then(|| self.notes.text())
+    pub fn unsaved_notes(&self) -> Option<String> {
+        self.has_unsaved_notes().then(|| self.notes.text())
     }
 
     /// Restores unsaved notes.
-    pub fn restore(&mut self, notes: &str) {
-        self.notes = Editor::of(notes);
+    pub fn restore_notes(&mut self, notes: &str) {
+        self.notes = TextEditor::with_text(notes);
     }
 
-    fn save(&mut self) -> Vec<Effect> {
+    fn save_notes(&mut self) -> Vec<Effect> {
         self.editing = false;
-        if self.is_draft() {
-            vec![Effect::Request(Request::SetMemo(self.notes.text()))]
+        if self.has_unsaved_notes() {
+            vec![Effect::Request(Request::SetNotes(self.notes.text()))]
         } else {
             vec![Effect::Say("Notes already saved".to_owned())]
         }
@@ -101,60 +101,60 @@ impl Journal {
 }
 
 impl ScreenState for Journal {
-    fn opened(&self) -> usize {
+    fn own_escape_depth(&self) -> usize {
         usize::from(self.focus != JournalPane::List)
     }
 
-    fn renew(&mut self, look: &Look<'_>) {
+    fn on_company_change(&mut self, look: &ScreenContext<'_>) {
         let mut rows = Vec::new();
-        self.wholes.clear();
+        self.full_texts.clear();
         self.figures.clear();
         for line in entries::lines(look.company) {
             rows.push(vec![
-                Cell::number(f64::from(line.day), line.day.to_string()).role(Role::Dim),
-                Cell::words(line.text).role(line.role),
+                TableCell::from_number(f64::from(line.day), line.day.to_string()).with_role(Role::Dim),
+                TableCell::from_text(line.text).with_role(line.role),
             ]);
             self.figures.push(Figure {
                 title: line.title.clone(),
                 term: line.term,
                 sql: line.sql,
-                why: None,
+                week_quantity: None,
             });
-            self.wholes.push((line.title, line.whole));
+            self.full_texts.push((line.title, line.full_text));
         }
         self.table.set_rows(rows);
         // The editor normalizes line ends, so both sides must be normalized.
-        let kept = Editor::of(&look.company.memo);
-        if !self.is_draft() && kept.text() != self.kept {
+        let kept = TextEditor::with_text(&look.company.notes);
+        if !self.has_unsaved_notes() && kept.text() != self.saved_notes {
             self.notes = kept.clone();
         }
-        self.kept = kept.text();
+        self.saved_notes = kept.text();
     }
 
-    fn ask_run(&mut self, look: &Look<'_>) -> Vec<Effect> {
-        self.ask_tree(look.company)
+    fn request_data(&mut self, look: &ScreenContext<'_>) -> Vec<Effect> {
+        self.request_tree(look.company)
     }
 
-    fn take_answers(&mut self, look: &Look<'_>) -> Vec<Effect> {
+    fn take_answers(&mut self, look: &ScreenContext<'_>) -> Vec<Effect> {
         match self.asked.try_take() {
-            Some((_, Ok(tree))) => self.take_tree(tree, look.company),
+            Some((_, Ok(tree))) => self.set_tree(tree, look.company),
             Some((_, Err(refusal))) => return vec![Effect::Complain(refusal.message)],
             None => {}
         }
         Vec::new()
     }
 
-    fn edited(&self) -> Option<(String, String)> {
+    fn edited_text(&self) -> Option<(String, String)> {
         self.editing.then(|| ("notes".to_owned(), self.notes.text()))
     }
 
-    fn holds_unsent_text(&self) -> bool {
-        self.is_draft()
+    fn has_unsent_text(&self) -> bool {
+        self.has_unsaved_notes()
     }
 }
 
-impl Paned for Journal {
-    type Name = JournalPane;
+impl PaneScreen for Journal {
+    type PaneId = JournalPane;
 
     fn panes(&self) -> &'static [JournalPane] {
         match self.has_tree() {
@@ -165,41 +165,41 @@ impl Paned for Journal {
 
     fn pane(name: JournalPane) -> &'static dyn Pane<Journal> {
         match name {
-            JournalPane::List => &list::EntriesPane,
+            JournalPane::List => &entries_pane::EntriesPane,
             JournalPane::Notes => &notes::NotesPane,
             JournalPane::Scores => &scores::ScoresPane,
             JournalPane::Branches => &branches::BranchesPane,
         }
     }
 
-    fn focused(&self) -> JournalPane {
+    fn focused_pane(&self) -> JournalPane {
         self.focus
     }
 
-    fn focus_on(&mut self, name: JournalPane) {
+    fn set_focused_pane(&mut self, name: JournalPane) {
         self.focus = name;
         self.editing = false;
     }
 
-    fn act_anywhere(&mut self, action: Action, _: &Look<'_>) -> Option<Vec<Effect>> {
+    fn handle_screen_action(&mut self, action: Action, _: &ScreenContext<'_>) -> Option<Vec<Effect>> {
         match action {
-            Action::EditMemo => (self.focus, self.editing) = (JournalPane::Notes, true),
-            Action::ShowTree if self.has_tree() => self.focus_on(JournalPane::Branches),
+            Action::EditNotes => (self.focus, self.editing) = (JournalPane::Notes, true),
+            Action::ShowTree if self.has_tree() => self.set_focused_pane(JournalPane::Branches),
             Action::ShowTree => {
                 return Some(vec![Effect::Complain("This run has no related runs".to_owned())]);
             }
-            Action::SaveMemo => return Some(self.save()),
+            Action::SaveNotes => return Some(self.save_notes()),
             Action::LeaveEditor => self.editing = false,
             _ => return None,
         }
         Some(Vec::new())
     }
 
-    fn arrange(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+    fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
         if area.width < 60 || area.height < 14 {
             return draw_pane(self, self.focus, canvas, area, look);
         }
-        let few = look.company.scores.len() as u16 + 4;
+        let few = look.company.forecast_scores.len() as u16 + 4;
         let wide = area.width >= 104;
         let [list, below] = if wide {
             let right = (area.width / 3).clamp(48, 64);
@@ -207,7 +207,7 @@ impl Paned for Journal {
         } else {
             Layout::vertical([Constraint::Min(0), Constraint::Length(few)]).areas(area)
         };
-        let (list, below) = self.arrange_tree(canvas, (list, below), area, look);
+        let (list, below) = self.draw_tree(canvas, (list, below), area, look);
         draw_pane(self, JournalPane::List, canvas, list, look);
         let [scores, notes] = if wide {
             // Individual forecasts below the scores, if some of them fit.
@@ -222,23 +222,23 @@ impl Paned for Journal {
 }
 
 /// Minimum height for the tree next to all other panes.
-const ROOM_FOR_TREE: u16 = 26;
+const MIN_HEIGHT_FOR_TREE: u16 = 26;
 
 impl Journal {
     /// Draws the tree, if there is one: below the list, or in low windows in place of the lower panes while
     /// it has the focus. Returns the areas for the list and the other panes.
-    fn arrange_tree(
+    fn draw_tree(
         &self,
         canvas: &mut Canvas<'_>,
         (list, below): (Rect, Rect),
         area: Rect,
-        look: &Look<'_>,
+        look: &ScreenContext<'_>,
     ) -> (Rect, Rect) {
         let has_focus = self.focus == JournalPane::Branches;
         if !self.has_tree() {
             return (list, below);
         }
-        if area.height < ROOM_FOR_TREE {
+        if area.height < MIN_HEIGHT_FOR_TREE {
             return match has_focus {
                 true => {
                     let [list, tree] =
@@ -250,7 +250,7 @@ impl Journal {
                 false => (list, below),
             };
         }
-        let wanted = self.tree.len() as u16 + branches::AROUND + 3;
+        let wanted = self.tree.len() as u16 + branches::CHROME_ROWS + 3;
         let tall = wanted.min(list.height / 2);
         let [list, tree] = Layout::vertical([Constraint::Min(0), Constraint::Length(tall)]).areas(list);
         draw_pane(self, JournalPane::Branches, canvas, tree, look);

@@ -3,16 +3,16 @@
 use ratatui::layout::Rect;
 
 use super::Market;
-use super::model::{Attempt, name_of};
+use super::model::{ResearchAttempt, name_of};
 use crate::action::{Action, Scope};
-use crate::context::{Figure, Look};
+use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
-use crate::screens::panes::{Border, Pane, Seat};
-use novamind_base::notation::dollars;
+use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
+use novamind_base::formatting::dollars;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::{Cell, Column, Table};
-use novamind_worker::company::Company;
+use novamind_tui::widgets::{TableCell, TableColumn, Table};
+use novamind_worker::company::DisplayedCompany;
 
 /// Past attempts, and the cost of the next one.
 pub struct AttemptsPane;
@@ -27,60 +27,60 @@ impl Pane<Market> for AttemptsPane {
     }
 
     fn scopes(&self, market: &Market) -> Vec<Scope> {
-        super::scopes(&market.attempts)
+        super::table_scopes(&market.attempts)
     }
 
     fn hints(&self, _: &Market) -> Vec<Action> {
         vec![Action::FindGroup, Action::Sort, Action::Filter]
     }
 
-    fn figure(&self, _: &Market, _: &Look<'_>) -> Option<Figure> {
+    fn figure(&self, _: &Market, _: &ScreenContext<'_>) -> Option<Figure> {
         let sql = "SELECT day, cost, success, discovered_group_id FROM segment_discovery ORDER BY id DESC";
         let title = "market research attempts".to_owned();
-        Some(Figure { title, term: "market-research", sql: Some(sql.to_owned()), why: None })
+        Some(Figure { title, term: "market-research", sql: Some(sql.to_owned()), week_quantity: None })
     }
 
-    fn act(&self, market: &mut Market, action: Action, look: &Look<'_>) -> Vec<Effect> {
-        super::walk(&mut market.attempts, action, look);
+    fn handle_action(&self, market: &mut Market, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+        super::move_in_table(&mut market.attempts, action, look);
         Vec::new()
     }
 
-    fn border(&self, market: &Market, _: Rect, look: &Look<'_>) -> Border {
-        let next = dollars(look.company.terms.attempt_cost);
+    fn border(&self, market: &Market, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
+        let next = dollars(look.company.tool_limits.attempt_cost);
         let note = match market.facts.attempts.len() {
             0 => format!("next {next}"),
             count => format!(
                 "{} of {count} found · {} · next {next}",
-                market.facts.found(),
-                dollars(market.facts.spent())
+                market.facts.found_count(),
+                dollars(market.facts.research_cost())
             ),
         };
         let keys = look.hint(Action::FindGroup);
-        Border { title: "Attempts".to_owned(), note, keys, keys_always: true }
+        PaneBorder { title: "Attempts".to_owned(), note, keys, shows_keys_always: true }
     }
 
-    fn draw(&self, market: &Market, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+    fn draw(&self, market: &Market, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
         if market.facts.attempts.is_empty() {
             let key = look.keys.label(Action::FindGroup).unwrap_or_default();
-            canvas.text(seat.area, &format!("No attempts yet. Pay for one with {key}."), Role::Dim);
+            canvas.draw_text(seat.area, &format!("No attempts yet. Pay for one with {key}."), Role::Dim);
         } else {
-            market.attempts.draw(canvas, seat.area, seat.focused, seat.number);
+            market.attempts.draw(canvas, seat.area, seat.focused, seat.index);
         }
     }
 }
 
-pub fn columns() -> Vec<Column> {
-    vec![Column::numbers("day"), Column::numbers("cost"), Column::words("found")]
+pub fn columns() -> Vec<TableColumn> {
+    vec![TableColumn::numeric("day"), TableColumn::numeric("cost"), TableColumn::text("found")]
 }
 
-pub fn row_of(attempt: &Attempt, company: &Company) -> Vec<Cell> {
+pub fn row_of(attempt: &ResearchAttempt, company: &DisplayedCompany) -> Vec<TableCell> {
     let found = match attempt.group {
-        Some(group) => Cell::words(format!("{group} {}", name_of(company, group))).role(Role::Good),
-        None => Cell::words("nothing").role(Role::Dim),
+        Some(group) => TableCell::from_text(format!("{group} {}", name_of(company, group))).with_role(Role::Good),
+        None => TableCell::from_text("nothing").with_role(Role::Dim),
     };
     vec![
-        Cell::number(f64::from(attempt.day), attempt.day.to_string()),
-        Cell::number(attempt.cost, dollars(attempt.cost)),
+        TableCell::from_number(f64::from(attempt.day), attempt.day.to_string()),
+        TableCell::from_number(attempt.cost, dollars(attempt.cost)),
         found,
     ]
 }

@@ -2,18 +2,18 @@
 
 use ratatui::layout::Rect;
 
-use super::model::{Known, level_of, name_of, study_of, target_of, undiscovered};
-use super::{Market, knowledge_of};
+use super::model::{GroupKnowledge, level_of, name_of, running_study, target_level, undiscovered_count};
+use super::{Market, knowledge_figure};
 use crate::action::Action;
-use crate::context::{Figure, Look};
+use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
-use crate::screens::panes::{Border, Pane, Seat};
-use novamind_base::notation::{compact, percent};
+use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
+use novamind_base::formatting::{compact_number, percent};
 use novamind_session::identifiers::Group;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::{Cell, Column, Field, Table};
-use novamind_worker::company::Company;
+use novamind_tui::widgets::{TableCell, TableColumn, TextField, Table};
+use novamind_worker::company::DisplayedCompany;
 
 pub struct KnownGroupsPane;
 
@@ -27,14 +27,14 @@ impl Pane<Market> for KnownGroupsPane {
     }
 
     fn scopes(&self, market: &Market) -> Vec<super::Scope> {
-        super::scopes(&market.table)
+        super::table_scopes(&market.table)
     }
 
     fn hints(&self, _: &Market) -> Vec<Action> {
         super::GROUP_HINTS.to_vec()
     }
 
-    fn figure(&self, market: &Market, look: &Look<'_>) -> Option<Figure> {
+    fn figure(&self, market: &Market, look: &ScreenContext<'_>) -> Option<Figure> {
         let (term, what) = match market.table.selected_column() {
             2 | 3 => ("group_info_levels.info_level", "study level of"),
             4 => ("research_group.target_level", "the next study of"),
@@ -42,99 +42,99 @@ impl Pane<Market> for KnownGroupsPane {
             6 => ("group_info_levels.last_research_day", "last study of"),
             _ => ("group_info_levels.group_id", "facts about"),
         };
-        knowledge_of(market.group()?, look.company, term, what)
+        knowledge_figure(market.group()?, look.company, term, what)
     }
 
-    fn act(&self, market: &mut Market, action: Action, look: &Look<'_>) -> Vec<Effect> {
+    fn handle_action(&self, market: &mut Market, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
         if action == Action::Open {
-            return market.show_customers(look.company);
+            return market.show_customers_effect(look.company);
         }
         let before = market.group();
-        super::walk(&mut market.table, action, look);
-        market.turn_from(before);
+        super::move_in_table(&mut market.table, action, look);
+        market.reset_report_if_changed(before);
         Vec::new()
     }
 
-    fn filter(&self, market: &mut Market, edit: &mut dyn FnMut(&mut Field)) {
+    fn edit_filter(&self, market: &mut Market, edit: &mut dyn FnMut(&mut TextField)) {
         let before = market.group();
         market.table.edit_filter(edit);
-        market.turn_from(before);
+        market.reset_report_if_changed(before);
     }
 
-    fn click(&self, market: &mut Market, row: usize, look: &Look<'_>) -> Vec<Effect> {
+    fn handle_click(&self, market: &mut Market, row: usize, look: &ScreenContext<'_>) -> Vec<Effect> {
         let before = market.group();
-        market.table.select_place(row);
+        market.table.select_visible_row(row);
         let again = before == market.group();
-        market.turn_from(before);
-        if again { market.show_customers(look.company) } else { Vec::new() }
+        market.reset_report_if_changed(before);
+        if again { market.show_customers_effect(look.company) } else { Vec::new() }
     }
 
-    fn border(&self, market: &Market, _: Rect, look: &Look<'_>) -> Border {
-        let known = look.company.seen.known_groups.len();
-        let note = match market.table.note() {
-            note if note.is_empty() => format!("{known} known · {} to find", undiscovered(look.company)),
+    fn border(&self, market: &Market, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
+        let known = look.company.observation.known_groups.len();
+        let note = match market.table.summary() {
+            note if note.is_empty() => format!("{known} known · {} to find", undiscovered_count(look.company)),
             note => note,
         };
         let open = look.keys.label(Action::Open).unwrap_or_default();
         let keys = look.hints(&[Action::FindGroup, Action::StudyGroup, Action::Filter]);
         let mut keys = format!("{open} customers of the group · {keys}");
-        if look.company.may_look_inside {
+        if look.company.can_inspect {
             keys = format!("{} · {keys}", look.hint(Action::HiddenValues));
         }
-        Border { title: "Groups".to_owned(), note, keys, ..Border::default() }
+        PaneBorder { title: "Groups".to_owned(), note, keys, ..PaneBorder::default() }
     }
 
-    fn draw(&self, market: &Market, canvas: &mut Canvas<'_>, seat: Seat, _: &Look<'_>) {
-        market.table.draw(canvas, seat.area, seat.focused, seat.number);
+    fn draw(&self, market: &Market, canvas: &mut Canvas<'_>, seat: PanePlacement, _: &ScreenContext<'_>) {
+        market.table.draw(canvas, seat.area, seat.focused, seat.index);
     }
 }
 
-pub fn columns() -> Vec<Column> {
-    let mut columns = vec![Column::words("group"), Column::words("name").at_most(28).at_least(20)];
-    columns.extend(["level", "error"].map(Column::numbers));
-    columns.push(Column::words("next study"));
-    columns.extend(["found", "as of"].map(Column::numbers));
+pub fn columns() -> Vec<TableColumn> {
+    let mut columns = vec![TableColumn::text("group"), TableColumn::text("name").with_max_width(28).with_min_width(20)];
+    columns.extend(["level", "error"].map(TableColumn::numeric));
+    columns.push(TableColumn::text("next study"));
+    columns.extend(["found", "as of"].map(TableColumn::numeric));
     columns
 }
 
-pub fn row_of(group: Group, known: Known, company: &Company) -> Vec<Cell> {
+pub fn row_of(group: Group, known: GroupKnowledge, company: &DisplayedCompany) -> Vec<TableCell> {
     let level = level_of(company, group);
-    let none = || Cell::words("–").role(Role::Dim);
+    let none = || TableCell::from_text("–").with_role(Role::Dim);
     if level == 0 {
-        let not_found = Cell::words("not found yet").role(Role::Dim);
-        let id = Cell::words(group.id()).role(Role::Dim);
+        let not_found = TableCell::from_text("not found yet").with_role(Role::Dim);
+        let id = TableCell::from_text(group.id()).with_role(Role::Dim);
         return vec![id, not_found, none(), none(), none(), none(), none()];
     }
     let day = |day: Option<u32>| match day {
-        Some(day) => Cell::number(f64::from(day), format!("day {day}")),
+        Some(day) => TableCell::from_number(f64::from(day), format!("day {day}")),
         None => none(),
     };
-    let found = match known.found {
-        Some(0) if known.studied.is_none() => Cell::number(0.0, "start").role(Role::Dim),
+    let found = match known.found_day {
+        Some(0) if known.studied_day.is_none() => TableCell::from_number(0.0, "start").with_role(Role::Dim),
         found => day(found),
     };
     let figures = match company.fit(group) {
-        Some(fit) => Cell::number(f64::from(fit.as_of), format!("day {} · {}d old", fit.as_of, fit.age)),
+        Some(fit) => TableCell::from_number(f64::from(fit.study_day), format!("day {} · {}d old", fit.study_day, fit.age_days)),
         None => none(),
     };
-    let noise = company.terms.level(level).map_or(0.0, |level| level.noise);
-    let next = match study_of(company, group) {
+    let noise = company.tool_limits.study_level(level).map_or(0.0, |level| level.noise);
+    let next = match running_study(company, group) {
         Some(study) => {
-            Cell::words(format!("→{} due day {}", study.target, study.due_day)).role(Role::Warning)
+            TableCell::from_text(format!("→{} due day {}", study.target, study.due_day)).with_role(Role::Warning)
         }
         None => {
-            let target = target_of(company, group, None);
-            let terms = company.terms.level(target).map_or(String::new(), |level| {
-                format!(" ${} {}d ±{}", compact(level.cost), level.days, percent(level.noise, 0))
+            let target = target_level(company, group, None);
+            let terms = company.tool_limits.study_level(target).map_or(String::new(), |level| {
+                format!(" ${} {}d ±{}", compact_number(level.cost), level.days, percent(level.noise, 0))
             });
-            Cell::words(format!("→{target}{terms}")).role(Role::Dim)
+            TableCell::from_text(format!("→{target}{terms}")).with_role(Role::Dim)
         }
     };
     vec![
-        Cell::words(group.id()).role(Role::Strong),
-        Cell::words(name_of(company, group)),
-        Cell::number(f64::from(level), level.to_string()),
-        Cell::number(noise, format!("±{}", percent(noise, 0))),
+        TableCell::from_text(group.id()).with_role(Role::Strong),
+        TableCell::from_text(name_of(company, group)),
+        TableCell::from_number(f64::from(level), level.to_string()),
+        TableCell::from_number(noise, format!("±{}", percent(noise, 0))),
         next,
         found,
         figures,

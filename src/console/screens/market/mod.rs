@@ -3,7 +3,7 @@
 mod attempts;
 mod economy;
 mod groups;
-mod hidden;
+mod true_values;
 pub mod model;
 mod news;
 pub mod report;
@@ -14,25 +14,25 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use serde_json::{Value, json};
 use strum::VariantArray;
 
-use self::model::{MarketFacts, level_of, name_of, target_of, undiscovered};
-use self::news::RivalNews;
+use self::model::{MarketFacts, level_of, name_of, target_level, undiscovered_count};
+use self::news::CompetitorNews;
 use super::ScreenState;
-use super::panes::{Pane, Paned, draw_pane};
+use super::panes::{Pane, PaneScreen, draw_pane};
 use crate::action::{Action, Scope};
-use crate::context::{Figure, Look, ScreenId};
+use crate::context::{Figure, ScreenContext, ScreenId};
 use crate::effect::Effect;
-use novamind_base::notation::{dollars, grouped};
-use novamind_database::Rows;
+use novamind_base::formatting::{dollars, grouped_number};
+use novamind_database::QueryResult;
 use novamind_session::Preview;
 use novamind_session::identifiers::Group;
 use novamind_tools::{Answer, DiscoveryAttempt, ToolId};
 use novamind_tui::canvas::Canvas;
 use novamind_tui::widgets::Table;
-use novamind_worker::asking::Pending;
-use novamind_worker::company::Company;
-use novamind_worker::message::News;
+use novamind_worker::question::Pending;
+use novamind_worker::company::DisplayedCompany;
+use novamind_worker::message::Response;
 use novamind_worker::posts::Posts;
-use novamind_worker::questions::CallCheck;
+use novamind_worker::page_questions::CallCheck;
 use novamind_worker::readings::Reading;
 
 /// Panes in tab order.
@@ -51,8 +51,8 @@ pub enum MarketPane {
     Economy,
 }
 
-const FIND: ToolId = ToolId::ResearchMarket;
-const STUDY: ToolId = ToolId::ResearchGroup;
+const FIND_TOOL: ToolId = ToolId::ResearchMarket;
+const STUDY_TOOL: ToolId = ToolId::ResearchGroup;
 
 /// Footer actions for a selected group.
 const GROUP_HINTS: [Action; 5] =
@@ -67,41 +67,41 @@ pub struct Market {
     groups: Vec<Group>,
     table: Table,
     attempts: Table,
-    news: Vec<RivalNews>,
+    news: Vec<CompetitorNews>,
     posts: Posts,
     headlines: Table,
     /// Index of the selected measurement of the economy; `None` for the last one.
-    point: Option<usize>,
+    selected_measurement: Option<usize>,
     /// Chosen level of the next study.
-    target: Option<u8>,
-    from: usize,
+    target_level: Option<u8>,
+    first_line: usize,
     /// Check of the tool call before the user confirms it.
-    asking: Pending<CallCheck>,
+    pending_call: Pending<CallCheck>,
 }
 
 impl Market {
     /// Selects a group and shows its report.
-    pub fn show(&mut self, group: Group) {
+    pub fn show_group(&mut self, group: Group) {
         self.focus = MarketPane::Groups;
         // A filter could hide the group.
-        self.table.act(Action::Close, 1);
+        self.table.handle_action(Action::Close, 1);
         if let Some(row) = self.groups.iter().position(|own| *own == group) {
             self.table.select(row);
         }
-        self.turn();
+        self.reset_report();
     }
 
-    fn answered(&mut self, answer: &Answer, company: &Company) -> Vec<Effect> {
+    fn handle_answer(&mut self, answer: &Answer, company: &DisplayedCompany) -> Vec<Effect> {
         match answer {
             Answer::ResearchMarket(DiscoveryAttempt::Found { discovered_group_id: group }) => {
-                self.show(*group);
+                self.show_group(*group);
                 vec![Effect::Say(format!("Found {group}: {}", name_of(company, *group)))]
             }
             Answer::ResearchMarket(DiscoveryAttempt::Nothing { .. }) => {
                 vec![Effect::Say("No group found this time".to_owned())]
             }
             Answer::ResearchGroup(study) => {
-                self.target = None;
+                self.target_level = None;
                 vec![Effect::Say(format!("The study is due on day {}", study.expected_completion_day))]
             }
             _ => Vec::new(),
@@ -109,19 +109,19 @@ impl Market {
     }
 
     /// Resets the report after a change of the selected group.
-    fn turn(&mut self) {
-        (self.target, self.from) = (None, 0);
+    fn reset_report(&mut self) {
+        (self.target_level, self.first_line) = (None, 0);
     }
 
     /// Resets the report if the selected group has changed.
-    fn turn_from(&mut self, before: Option<Group>) {
+    fn reset_report_if_changed(&mut self, before: Option<Group>) {
         if before != self.group() {
-            self.turn();
+            self.reset_report();
         }
     }
 
     /// Opens the customers screen with the selected group.
-    fn show_customers(&self, company: &Company) -> Vec<Effect> {
+    fn show_customers_effect(&self, company: &DisplayedCompany) -> Vec<Effect> {
         let effect = self.group().map(|group| match level_of(company, group) {
             0 => Effect::Complain(format!("{group} has not been found yet")),
             _ => Effect::ShowGroup(ScreenId::Customers, group),
@@ -130,7 +130,7 @@ impl Market {
     }
 
     /// Opens the participation curve of the selected group.
-    fn show_curve(&self, company: &Company) -> Vec<Effect> {
+    fn show_curve_effect(&self, company: &DisplayedCompany) -> Vec<Effect> {
         let effect = self.group().map(|group| match level_of(company, group) {
             0 => Effect::Complain(format!("{group} has not been found yet")),
             _ => Effect::ShowCurve(Some(group)),
@@ -142,49 +142,49 @@ impl Market {
         self.table.selected().and_then(|row| self.groups.get(row)).copied()
     }
 
-    fn refresh(&mut self, company: &Company) {
+    fn rebuild_tables(&mut self, company: &DisplayedCompany) {
         let kept = self.group();
         let known = |group: &Group| level_of(company, *group) > 0;
-        self.groups = company.seen.known_groups.clone();
+        self.groups = company.observation.known_groups.clone();
         self.groups.extend(Group::all().filter(|group| !known(group)));
         let known = |group: &Group| self.facts.known.get(group).copied().unwrap_or_default();
         let rows = self.groups.iter().map(|group| groups::row_of(*group, known(group), company)).collect();
-        self.table.set(groups::columns(), rows);
+        self.table.set_columns_and_rows(groups::columns(), rows);
         if let Some(row) = self.groups.iter().position(|own| Some(*own) == kept) {
             self.table.select(row);
         }
         let tried = self.facts.attempts.iter().map(|attempt| attempts::row_of(attempt, company)).collect();
-        self.attempts.set(attempts::columns(), tried);
+        self.attempts.set_columns_and_rows(attempts::columns(), tried);
         if std::sync::Arc::ptr_eq(&self.posts, &company.posts) {
             return;
         }
         self.posts = company.posts.clone();
-        self.news = news::of(company);
-        self.headlines.set(news::columns(), self.news.iter().map(news::row_of).collect());
+        self.news = news::competitor_news(company);
+        self.headlines.set_columns_and_rows(news::columns(), self.news.iter().map(news::row_of).collect());
     }
 
-    fn check(&mut self, tool: ToolId, arguments: Value) -> Vec<Effect> {
-        vec![Effect::Ask(self.asking.ask(CallCheck { tool, arguments }))]
+    fn check_call(&mut self, tool: ToolId, arguments: Value) -> Vec<Effect> {
+        vec![Effect::Ask(self.pending_call.ask(CallCheck { tool, arguments }))]
     }
 
-    fn study(&mut self, company: &Company) -> Vec<Effect> {
+    fn order_study(&mut self, company: &DisplayedCompany) -> Vec<Effect> {
         match self.group().filter(|group| level_of(company, *group) > 0) {
             Some(group) => {
-                let level = target_of(company, group, self.target);
-                self.check(STUDY, json!({ "group_id": group.id(), "target_level": level }))
+                let level = target_level(company, group, self.target_level);
+                self.check_call(STUDY_TOOL, json!({ "group_id": group.id(), "target_level": level }))
             }
             None => vec![Effect::Complain("Only known groups can be studied".to_owned())],
         }
     }
 
     /// Returns the confirmation of a tool call that costs money.
-    fn ask(&self, tool: ToolId, arguments: Value, preview: &Preview, company: &Company) -> Effect {
-        let rest = company.seen.cash - preview.cost_now;
+    fn confirm_effect(&self, tool: ToolId, arguments: Value, preview: &Preview, company: &DisplayedCompany) -> Effect {
+        let rest = company.observation.cash - preview.cost_now;
         let what = match tool {
-            FIND => format!(
+            FIND_TOOL => format!(
                 "A market research attempt has a {} % chance to find one of the {} groups not found yet.",
-                grouped(company.terms.attempt_chance * 100.0, 0),
-                undiscovered(company)
+                grouped_number(company.tool_limits.attempt_chance * 100.0, 0),
+                undiscovered_count(company)
             ),
             _ => {
                 let text = |name: &str| arguments.get(name).map_or(String::new(), Value::to_string);
@@ -203,19 +203,19 @@ impl Market {
     }
 
     fn economy(&self) -> economy::EconomyView<'_> {
-        economy::EconomyView { economy: &self.facts.economy, point: self.point, news: &self.news }
+        economy::EconomyView { economy: &self.facts.economy, selected_index: self.selected_measurement, news: &self.news }
     }
 
-    fn choose_level(&mut self, company: &Company, up: bool) {
+    fn choose_level(&mut self, company: &DisplayedCompany, up: bool) {
         let Some(group) = self.group() else { return };
-        let now = target_of(company, group, self.target);
+        let now = target_level(company, group, self.target_level);
         let chosen = if up { now.saturating_add(1) } else { now.saturating_sub(1) };
-        self.target = Some(target_of(company, group, Some(chosen)));
+        self.target_level = Some(target_level(company, group, Some(chosen)));
     }
 }
 
 impl ScreenState for Market {
-    fn opened(&self) -> usize {
+    fn own_escape_depth(&self) -> usize {
         usize::from(self.focus == MarketPane::Report)
     }
 
@@ -223,38 +223,38 @@ impl ScreenState for Market {
         &[Reading::Knowledge, Reading::Attempts, Reading::Economy]
     }
 
-    fn take(&mut self, reading: Reading, rows: &Rows, look: &Look<'_>) {
-        self.facts.take(reading, rows);
-        self.refresh(look.company);
+    fn apply_rows(&mut self, reading: Reading, rows: &QueryResult, look: &ScreenContext<'_>) {
+        self.facts.apply_rows(reading, rows);
+        self.rebuild_tables(look.company);
     }
 
-    fn renew(&mut self, look: &Look<'_>) {
-        self.refresh(look.company);
+    fn on_company_change(&mut self, look: &ScreenContext<'_>) {
+        self.rebuild_tables(look.company);
     }
 
-    fn open_object(&self, look: &Look<'_>) -> Option<(&'static str, String)> {
+    fn open_object(&self, look: &ScreenContext<'_>) -> Option<(&'static str, String)> {
         let group = self.group().filter(|group| level_of(look.company, *group) > 0)?;
         Some(("study", group.id().to_owned()))
     }
 
-    fn take_answers(&mut self, look: &Look<'_>) -> Vec<Effect> {
-        match self.asking.try_take() {
-            Some((call, Ok(preview))) => vec![self.ask(call.tool, call.arguments, &preview, look.company)],
+    fn take_answers(&mut self, look: &ScreenContext<'_>) -> Vec<Effect> {
+        match self.pending_call.try_take() {
+            Some((call, Ok(preview))) => vec![self.confirm_effect(call.tool, call.arguments, &preview, look.company)],
             Some((_, Err(refusal))) => vec![Effect::Complain(refusal.to_string())],
             None => Vec::new(),
         }
     }
 
-    fn hear(&mut self, news: &News, look: &Look<'_>) -> Vec<Effect> {
+    fn handle_response(&mut self, news: &Response, look: &ScreenContext<'_>) -> Vec<Effect> {
         match news {
-            News::Called(_, Ok(answer), _) => self.answered(answer, look.company),
+            Response::ToolCalled(_, Ok(answer), _) => self.handle_answer(answer, look.company),
             _ => Vec::new(),
         }
     }
 }
 
-impl Paned for Market {
-    type Name = MarketPane;
+impl PaneScreen for Market {
+    type PaneId = MarketPane;
 
     fn panes(&self) -> &'static [MarketPane] {
         MarketPane::VARIANTS
@@ -265,28 +265,28 @@ impl Paned for Market {
             MarketPane::Groups => &groups::KnownGroupsPane,
             MarketPane::Report => &report::ReportPane,
             MarketPane::Attempts => &attempts::AttemptsPane,
-            MarketPane::News => &news::RivalNewsPane,
+            MarketPane::News => &news::CompetitorNewsPane,
             MarketPane::Economy => &economy::EconomyPane,
         }
     }
 
-    fn focused(&self) -> MarketPane {
+    fn focused_pane(&self) -> MarketPane {
         self.focus
     }
 
-    fn focus_on(&mut self, name: MarketPane) {
+    fn set_focused_pane(&mut self, name: MarketPane) {
         self.focus = name;
     }
 
-    fn act_anywhere(&mut self, action: Action, look: &Look<'_>) -> Option<Vec<Effect>> {
+    fn handle_screen_action(&mut self, action: Action, look: &ScreenContext<'_>) -> Option<Vec<Effect>> {
         match action {
-            Action::FindGroup => Some(self.check(FIND, json!({}))),
+            Action::FindGroup => Some(self.check_call(FIND_TOOL, json!({}))),
             // The user must see which group is selected.
             Action::StudyGroup if !matches!(self.focus, MarketPane::Groups | MarketPane::Report) => {
                 Some(vec![Effect::Complain("First select the group in the groups pane".to_owned())])
             }
-            Action::StudyGroup => Some(self.study(look.company)),
-            Action::GroupCurve => Some(self.show_curve(look.company)),
+            Action::StudyGroup => Some(self.order_study(look.company)),
+            Action::GroupCurve => Some(self.show_curve_effect(look.company)),
             Action::LevelUp | Action::LevelDown => {
                 self.choose_level(look.company, action == Action::LevelUp);
                 Some(Vec::new())
@@ -295,10 +295,10 @@ impl Paned for Market {
         }
     }
 
-    fn arrange(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+    fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
         use MarketPane::{Attempts, Economy, Groups, Report};
         if area.width >= 104 && area.height >= 24 {
-            return self.arrange_all(canvas, area, look);
+            return self.draw_wide_layout(canvas, area, look);
         }
         // The focused pane takes the window. Groups and report share it, as do attempts and economy.
         let halves = [Constraint::Percentage(50), Constraint::Min(0)];
@@ -314,7 +314,7 @@ impl Paned for Market {
 }
 
 impl Market {
-    fn arrange_all(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+    fn draw_wide_layout(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
         let [left, right] = Layout::horizontal([Constraint::Percentage(52), Constraint::Min(0)]).areas(area);
         let rows = (self.groups.len() as u16 + 3).min(area.height / 20 * 11);
         let [groups, economy] = Layout::vertical([Constraint::Length(rows), Constraint::Min(0)]).areas(left);
@@ -337,26 +337,26 @@ impl Market {
     }
 }
 
-fn scopes(table: &Table) -> Vec<Scope> {
-    if table.is_typing() { vec![Scope::Field] } else { vec![Scope::Market, Scope::List] }
+fn table_scopes(table: &Table) -> Vec<Scope> {
+    if table.is_filter_open() { vec![Scope::Field] } else { vec![Scope::Market, Scope::List] }
 }
 
 /// Moves in a table; tab ends typing.
-fn walk(table: &mut Table, action: Action, look: &Look<'_>) {
+fn move_in_table(table: &mut Table, action: Action, look: &ScreenContext<'_>) {
     let action = match action {
         Action::CommitNext | Action::CommitPrevious => Action::Commit,
         other => other,
     };
-    table.act(action, look.page);
+    table.handle_action(action, look.page_rows);
 }
 
 /// Returns the figure of a study value of a group.
-fn knowledge_of(group: Group, company: &Company, term: &'static str, what: &str) -> Option<Figure> {
+fn knowledge_figure(group: Group, company: &DisplayedCompany, term: &'static str, what: &str) -> Option<Figure> {
     let what = if level_of(company, group) == 0 { "facts about" } else { what };
     Some(Figure {
         title: format!("{what} {group}"),
         term,
         sql: Some(format!("SELECT * FROM group_info_levels WHERE group_id = '{group}'")),
-        why: None,
+        week_quantity: None,
     })
 }

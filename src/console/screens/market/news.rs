@@ -4,36 +4,36 @@ use std::sync::Arc;
 
 use ratatui::layout::Rect;
 
-use super::{Market, hidden};
+use super::{Market, true_values};
 use crate::action::{Action, Scope};
-use crate::context::{Figure, Look};
+use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
-use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::{Cell, Column, Table};
-use novamind_worker::company::Company;
+use novamind_tui::widgets::{TableCell, TableColumn, Table};
+use novamind_worker::company::DisplayedCompany;
 use novamind_worker::posts::{Post, PostKind};
 
 #[derive(Debug, Clone, PartialEq)]
-pub struct RivalNews {
+pub struct CompetitorNews {
     pub post: Arc<Post>,
-    pub rival: Option<String>,
+    pub competitor: Option<String>,
 }
 
 /// Returns the news of the press, newest first.
-pub fn of(company: &Company) -> Vec<RivalNews> {
+pub fn competitor_news(company: &DisplayedCompany) -> Vec<CompetitorNews> {
     let press = company.posts.iter().filter(|post| post.kind == PostKind::Press);
     let item = |post: &Arc<Post>| {
-        let rival = company.terms.rivals.iter().find(|name| post.text.contains(name.as_str()));
-        RivalNews { post: post.clone(), rival: rival.cloned() }
+        let rival = company.tool_limits.competitors.iter().find(|name| post.text.contains(name.as_str()));
+        CompetitorNews { post: post.clone(), competitor: rival.cloned() }
     };
     press.map(item).collect()
 }
 
-pub struct RivalNewsPane;
+pub struct CompetitorNewsPane;
 
-impl Pane<Market> for RivalNewsPane {
+impl Pane<Market> for CompetitorNewsPane {
     fn table<'a>(&self, market: &'a Market) -> Option<&'a Table> {
         Some(&market.headlines)
     }
@@ -43,37 +43,37 @@ impl Pane<Market> for RivalNewsPane {
     }
 
     fn scopes(&self, market: &Market) -> Vec<Scope> {
-        super::scopes(&market.headlines)
+        super::table_scopes(&market.headlines)
     }
 
     fn hints(&self, _: &Market) -> Vec<Action> {
         vec![Action::Open, Action::Filter, Action::FindGroup]
     }
 
-    fn figure(&self, market: &Market, _: &Look<'_>) -> Option<Figure> {
+    fn figure(&self, market: &Market, _: &ScreenContext<'_>) -> Option<Figure> {
         let item = selected(market)?;
         let number = item.post.number;
         Some(Figure {
             title: format!("news #{number}"),
-            term: if item.rival.is_some() { "competitor" } else { "press" },
+            term: if item.competitor.is_some() { "competitor" } else { "press" },
             sql: Some(format!("SELECT * FROM social_media_posts WHERE post_id = {number}")),
-            why: None,
+            week_quantity: None,
         })
     }
 
-    fn act(&self, market: &mut Market, action: Action, look: &Look<'_>) -> Vec<Effect> {
+    fn handle_action(&self, market: &mut Market, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
         if action == Action::Open {
-            let read = |item: &RivalNews| {
+            let read = |item: &CompetitorNews| {
                 Effect::ShowText(format!("day {} · press", item.post.day), item.post.text.clone())
             };
             return selected(market).map(read).into_iter().collect();
         }
-        super::walk(&mut market.headlines, action, look);
+        super::move_in_table(&mut market.headlines, action, look);
         Vec::new()
     }
 
-    fn border(&self, market: &Market, _: Rect, look: &Look<'_>) -> Border {
-        let note = match market.headlines.note() {
+    fn border(&self, market: &Market, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
+        let note = match market.headlines.summary() {
             note if note.is_empty() => format!("{} in the press", market.news.len()),
             note => note,
         };
@@ -81,37 +81,37 @@ impl Pane<Market> for RivalNewsPane {
             true => String::new(),
             false => look.hints(&[Action::Open, Action::Filter]),
         };
-        Border { title: "Competitors and economy in the news".to_owned(), note, keys, ..Border::default() }
+        PaneBorder { title: "Competitors and economy in the news".to_owned(), note, keys, ..PaneBorder::default() }
     }
 
-    fn draw(&self, market: &Market, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
-        let area = match &look.company.hidden {
-            Some(hidden) => hidden::draw_above(canvas, seat.area, &hidden::of_rivals(hidden)),
+    fn draw(&self, market: &Market, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
+        let area = match &look.company.hidden_values {
+            Some(hidden) => true_values::draw_lines_above(canvas, seat.area, &true_values::competitor_lines(hidden)),
             None => seat.area,
         };
         if market.news.is_empty() {
-            canvas.text(area, "No news yet", Role::Dim);
+            canvas.draw_text(area, "No news yet", Role::Dim);
             return;
         }
-        market.headlines.draw(canvas, area, seat.focused, seat.number);
+        market.headlines.draw(canvas, area, seat.focused, seat.index);
     }
 }
 
-fn selected(market: &Market) -> Option<&RivalNews> {
+fn selected(market: &Market) -> Option<&CompetitorNews> {
     market.headlines.selected().and_then(|row| market.news.get(row))
 }
 
-pub fn columns() -> Vec<Column> {
-    vec![Column::numbers("day"), Column::words("about"), Column::words("news").at_most(u16::MAX)]
+pub fn columns() -> Vec<TableColumn> {
+    vec![TableColumn::numeric("day"), TableColumn::text("about"), TableColumn::text("news").with_max_width(u16::MAX)]
 }
 
-pub fn row_of(item: &RivalNews) -> Vec<Cell> {
+pub fn row_of(item: &CompetitorNews) -> Vec<TableCell> {
     vec![
-        Cell::number(f64::from(item.post.day), item.post.day.to_string()).role(Role::Dim),
-        Cell::words(item.rival.as_deref().unwrap_or("economy")).role(match item.rival {
+        TableCell::from_number(f64::from(item.post.day), item.post.day.to_string()).with_role(Role::Dim),
+        TableCell::from_text(item.competitor.as_deref().unwrap_or("economy")).with_role(match item.competitor {
             Some(_) => Role::Strong,
             None => Role::Dim,
         }),
-        Cell::words(item.post.text.replace('\n', " ")),
+        TableCell::from_text(item.post.text.replace('\n', " ")),
     ]
 }

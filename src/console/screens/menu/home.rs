@@ -2,12 +2,12 @@
 
 use ratatui::layout::Rect;
 
-use super::runs::{draw_preview, facts, state};
-use super::{Menu, Previews};
-use novamind_base::notation::dollars;
+use super::runs::{draw_preview, facts, progress_label};
+use super::{RunPreviews, StartMenu};
+use novamind_base::formatting::dollars;
 use novamind_record::folder::runs::RunSummary;
-use novamind_tui::canvas::{Canvas, Click, rows_of};
-use novamind_tui::text::wrapped;
+use novamind_tui::canvas::{Canvas, Click, row_rects};
+use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -20,25 +20,25 @@ pub(super) enum HomeEntry {
     Class,
     Runs,
     Compare,
-    Paper,
+    PublishedResults,
     Quit,
 }
 
 /// Minimum width for the last run next to the choices.
-const WIDE: u16 = 76;
+const MIN_WIDTH_FOR_LAST_RUN: u16 = 76;
 
-impl Menu {
+impl StartMenu {
     /// Returns the choices of the page; empty while runs are listed, because they determine the first choice.
-    pub(super) fn choices(&self) -> Vec<(HomeEntry, &'static str, String)> {
+    pub(super) fn entries(&self) -> Vec<(HomeEntry, &'static str, String)> {
         let mut choices = Vec::new();
         if self.runs.is_none() {
             return choices;
         }
-        let count = self.list().len();
+        let count = self.runs().len();
         if let Some(run) = self.latest() {
-            choices.push((HomeEntry::Continue, "Continue", short(run)));
+            choices.push((HomeEntry::Continue, "Continue", run_summary(run)));
         }
-        let words = match self.practice() {
+        let words = match self.practice_run() {
             Some(_) => "Continues the practice run",
             None => "New here? A practice company",
         };
@@ -57,7 +57,7 @@ impl Menu {
         if count > 1 {
             choices.push((HomeEntry::Compare, "Compare runs", "Two or more side by side".to_owned()));
         }
-        choices.push((HomeEntry::Paper, "Paper table", "Published results and yours".to_owned()));
+        choices.push((HomeEntry::PublishedResults, "Paper table", "Published results and yours".to_owned()));
         if !newcomer {
             choices.push(tour);
         }
@@ -69,9 +69,13 @@ impl Menu {
     }
 
     pub(super) fn draw_home(&self, canvas: &mut Canvas<'_>, area: Rect) {
-        let left = if area.width >= WIDE { (area.width * 2 / 5).clamp(36, 48) } else { area.width };
-        let used = self.draw_choices(canvas, Rect { width: left, ..area });
-        if area.width >= WIDE {
+        let left = if area.width >= MIN_WIDTH_FOR_LAST_RUN {
+            (area.width * 2 / 5).clamp(36, 48)
+        } else {
+            area.width
+        };
+        let used = self.draw_entries(canvas, Rect { width: left, ..area });
+        if area.width >= MIN_WIDTH_FOR_LAST_RUN {
             let right = Rect { x: area.x + left + 1, width: area.width - left - 1, ..area };
             self.draw_last_run(canvas, right);
         } else {
@@ -83,8 +87,8 @@ impl Menu {
     }
 
     /// Draws the choices; returns the number of rows.
-    fn draw_choices(&self, canvas: &mut Canvas<'_>, area: Rect) -> u16 {
-        let choices = self.choices();
+    fn draw_entries(&self, canvas: &mut Canvas<'_>, area: Rect) -> u16 {
+        let choices = self.entries();
         let count = choices.len() as u16;
         let each = [3, 2].into_iter().find(|each| count * each <= area.height).unwrap_or(1);
         for (at, (_, title, detail)) in choices.iter().enumerate() {
@@ -98,14 +102,18 @@ impl Menu {
                 canvas.clear(row, Role::Selection);
             }
             let mark = if here { "›" } else { " " };
-            canvas.text(row, &format!("{mark} {title}"), if here { Role::Selection } else { Role::Strong });
+            canvas.draw_text(
+                row,
+                &format!("{mark} {title}"),
+                if here { Role::Selection } else { Role::Strong },
+            );
             let place = match each {
                 1 => Rect { x: row.x + 16, width: row.width.saturating_sub(16), ..row },
                 _ => Rect { x: row.x + 2, y: row.y + 1, width: row.width.saturating_sub(2), ..row },
             };
             let role = if here && each == 1 { Role::Selection } else { Role::Dim };
-            canvas.text(place, detail, role);
-            canvas.click(Rect { height: each.min(area.bottom() - y), ..row }, Click::Row(0, at));
+            canvas.draw_text(place, detail, role);
+            canvas.register_click(Rect { height: each.min(area.bottom() - y), ..row }, Click::Row(0, at));
         }
         count * each
     }
@@ -113,15 +121,14 @@ impl Menu {
     fn draw_last_run(&self, canvas: &mut Canvas<'_>, area: Rect) {
         match &self.runs {
             None => {
-                let inside = canvas.pane(area, "Last run", "", false);
-                canvas.text(inside, " looking for runs …", Role::Dim);
+                let inside = canvas.draw_pane_frame(area, "Last run", "", false);
+                canvas.draw_text(inside, " looking for runs …", Role::Dim);
             }
             Some(Err(problem)) => {
-                let inside = canvas.pane(area, "Runs", "", false);
-                for (row, line) in
-                    rows_of(inside).zip(wrapped(&format!("! {problem}"), inside.width as usize))
+                let inside = canvas.draw_pane_frame(area, "Runs", "", false);
+                for (row, line) in row_rects(inside).zip(wrap(&format!("! {problem}"), inside.width as usize))
                 {
-                    canvas.text(row, &line, Role::Bad);
+                    canvas.draw_text(row, &line, Role::Bad);
                 }
             }
             Some(Ok(list)) => match list.first() {
@@ -137,9 +144,9 @@ pub(super) fn draw_run(
     area: Rect,
     title: &str,
     run: &RunSummary,
-    previews: &Previews,
+    previews: &RunPreviews,
 ) {
-    let inside = canvas.pane(area, title, &state(run), false);
+    let inside = canvas.draw_pane_frame(area, title, &progress_label(run), false);
     let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
     let known = previews.get(&run.id).and_then(Option::as_ref);
     let facts = facts(run, known);
@@ -151,16 +158,16 @@ pub(super) fn draw_run(
         let used = (facts.len() as u16 + 1).min(inside.height);
         (inside, Rect { y: inside.y + used, height: inside.height - used, ..inside })
     };
-    for (row, (name, value)) in rows_of(above).zip(&facts) {
-        canvas.text(Rect { width: 13.min(row.width), ..row }, name, Role::Dim);
+    for (row, (name, value)) in row_rects(above).zip(&facts) {
+        canvas.draw_text(Rect { width: 13.min(row.width), ..row }, name, Role::Dim);
         let place = Rect { x: row.x + 13, width: row.width.saturating_sub(13), ..row };
-        canvas.text(place, value, Role::Text);
+        canvas.draw_text(place, value, Role::Text);
     }
     draw_preview(canvas, below, known, run.problem.is_some());
 }
 
 fn draw_welcome(canvas: &mut Canvas<'_>, area: Rect) {
-    let inside = canvas.pane(area, "About", "", false);
+    let inside = canvas.draw_pane_frame(area, "About", "", false);
     let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
     let parts = [
         "You run a company that sells an AI subscription. It starts with a million dollars and no customers.",
@@ -171,11 +178,11 @@ fn draw_welcome(canvas: &mut Canvas<'_>, area: Rect) {
         "Nothing you confirm is lost: quit at any time.",
     ];
     let text = parts.join("\n\n");
-    for (row, line) in rows_of(inside).zip(wrapped(&text, inside.width as usize)) {
-        canvas.text(row, &line, Role::Text);
+    for (row, line) in row_rects(inside).zip(wrap(&text, inside.width as usize)) {
+        canvas.draw_text(row, &line, Role::Text);
     }
 }
 
-fn short(run: &RunSummary) -> String {
+fn run_summary(run: &RunSummary) -> String {
     format!("day {} of {} · {}", run.day, run.days, dollars(run.cash))
 }

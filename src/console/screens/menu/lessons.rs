@@ -8,15 +8,15 @@ use crate::effect::Effect;
 use novamind_course::Lesson;
 use novamind_record::folder::configuration::Configuration;
 use novamind_record::mode::Mode;
-use novamind_report::count;
+use novamind_report::pluralize;
 use novamind_session::{LessonEntry, NewRun};
-use novamind_tui::canvas::{Canvas, Click, rows_of};
-use novamind_tui::text::wrapped;
+use novamind_tui::canvas::{Canvas, Click, row_rects};
+use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::table::first_row;
+use novamind_tui::widgets::table::first_visible_row;
 use novamind_worker::request::Request;
 
-const WIDE: u16 = 76;
+const MIN_WIDTH_FOR_DETAILS: u16 = 76;
 
 #[derive(Default)]
 pub(super) struct LessonList {
@@ -30,19 +30,19 @@ struct ListedLesson {
 }
 
 impl LessonList {
-    pub(super) fn of(configuration: &Configuration) -> LessonList {
+    pub(super) fn load(configuration: &Configuration) -> LessonList {
         let read = |name: String| {
-            let lesson = Lesson::named(&name, configuration).map(Arc::new).map_err(|error| error.to_string());
+            let lesson = Lesson::load(&name, configuration).map(Arc::new).map_err(|error| error.to_string());
             ListedLesson { name, lesson }
         };
-        LessonList { lessons: configuration.lessons().into_iter().map(read).collect() }
+        LessonList { lessons: configuration.lesson_names().into_iter().map(read).collect() }
     }
 
-    pub(super) fn count(&self) -> usize {
+    pub(super) fn len(&self) -> usize {
         self.lessons.len()
     }
 
-    pub(super) fn begin(&self, selected: usize) -> Vec<Effect> {
+    pub(super) fn start_lesson(&self, selected: usize) -> Vec<Effect> {
         match self.lessons.get(selected).map(|own| &own.lesson) {
             Some(Ok(lesson)) => {
                 let entry = LessonEntry { lesson: lesson.clone(), part: 0, is_judged: true };
@@ -56,7 +56,7 @@ impl LessonList {
 
     /// Draws the list and the learning goal of the selected lesson.
     pub(super) fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, selected: usize) {
-        let beside = area.width >= WIDE;
+        let beside = area.width >= MIN_WIDTH_FOR_DETAILS;
         let (above, below) = if beside {
             let left = Rect { width: area.width / 2, ..area };
             (left, Rect { x: left.right() + 1, width: area.width - left.width - 1, ..area })
@@ -65,9 +65,10 @@ impl LessonList {
             let left = Rect { height: rows, ..area };
             (left, Rect { y: left.bottom(), height: area.height - rows, ..area })
         };
-        let inside = canvas.pane(above, "Lessons", &count(self.lessons.len() as u32, "lesson"), true);
-        let from = first_row(selected, inside.height as usize, self.lessons.len());
-        for (row, (at, own)) in rows_of(inside).zip(self.lessons.iter().enumerate().skip(from)) {
+        let inside =
+            canvas.draw_pane_frame(above, "Lessons", &pluralize(self.lessons.len() as u32, "lesson"), true);
+        let from = first_visible_row(selected, inside.height as usize, self.lessons.len());
+        for (row, (at, own)) in row_rects(inside).zip(self.lessons.iter().enumerate().skip(from)) {
             let here = at == selected;
             if here {
                 canvas.clear(row, Role::Selection);
@@ -77,12 +78,12 @@ impl LessonList {
                 Err(_) => ("  –".to_owned(), own.name.as_str()),
             };
             let mark = if here { "›" } else { " " };
-            canvas.text(
+            canvas.draw_text(
                 row,
                 &format!("{mark} {minutes:<6}  {title}"),
                 if here { Role::Selection } else { Role::Text },
             );
-            canvas.click(row, Click::Row(0, at));
+            canvas.register_click(row, Click::Row(0, at));
         }
         if let Some(own) = self.lessons.get(selected) {
             draw_lesson(canvas, below, own);
@@ -94,14 +95,14 @@ fn draw_lesson(canvas: &mut Canvas<'_>, area: Rect, own: &ListedLesson) {
     if area.height < 3 {
         return;
     }
-    let inside = canvas.pane(area, &own.name, "", false);
+    let inside = canvas.draw_pane_frame(area, &own.name, "", false);
     let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
     let (text, role) = match &own.lesson {
         Ok(lesson) => {
             let plan = &lesson.plan;
             let parts = match plan.parts.len() {
-                1 => count(plan.parts[0].steps.len() as u32, "step"),
-                parts => count(parts as u32, "part"),
+                1 => pluralize(plan.parts[0].steps.len() as u32, "step"),
+                parts => pluralize(parts as u32, "part"),
             };
             (
                 format!("{}\n\n{}\n\n{} minutes, {parts}.", plan.title, plan.learning_goal, plan.minutes),
@@ -110,7 +111,7 @@ fn draw_lesson(canvas: &mut Canvas<'_>, area: Rect, own: &ListedLesson) {
         }
         Err(problem) => (format!("! {problem}"), Role::Bad),
     };
-    for (row, line) in rows_of(inside).zip(wrapped(&text, inside.width as usize)) {
-        canvas.text(row, &line, role);
+    for (row, line) in row_rects(inside).zip(wrap(&text, inside.width as usize)) {
+        canvas.draw_text(row, &line, role);
     }
 }

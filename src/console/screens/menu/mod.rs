@@ -2,11 +2,11 @@
 
 mod class;
 mod compare;
-mod form;
 mod home;
 mod lessons;
-mod paper;
+mod new_run_form;
 mod path_form;
+mod published_results;
 mod runs;
 #[cfg(test)]
 pub(crate) mod tests;
@@ -17,53 +17,53 @@ use crossterm::event::{KeyCode, KeyEvent};
 use ratatui::layout::Rect;
 
 use crate::action::{Action, Scope};
-use crate::agreement::Agreement;
+use crate::consent::ConsentText;
 use crate::effect::Effect;
 use crate::tour;
 use class::ClassPage;
-use form::{ROWS, RunForm};
 use home::HomeEntry;
 use lessons::LessonList;
+use new_run_form::{FORM_ROWS, NewRunForm};
 use novamind_course::CollectedClass;
 use novamind_record::folder::configuration::Configuration;
 use novamind_record::folder::preview::RunPreview;
 use novamind_record::folder::runs::RunSummary;
 use novamind_record::mode::Mode;
-use novamind_report::class::Shown;
+use novamind_report::class::ClassDisplayOptions;
 use novamind_session::Access;
 use novamind_tui::canvas::{Align, Canvas};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::Table;
-use novamind_worker::asking::Pending;
-use novamind_worker::folder::PreviewQuestion;
-use novamind_worker::message::Instead;
+use novamind_worker::message::OpenFallback;
+use novamind_worker::question::Pending;
 use novamind_worker::request::Request;
-use path_form::{PathForm, PathWanted};
-use runs::Asked;
+use novamind_worker::run_folders::PreviewQuestion;
+use path_form::{PathForm, PathPurpose};
+use runs::MenuQuestion;
 
 /// Window height below which the page has no blank row above it.
-const LOW: u16 = 26;
+const MIN_HEIGHT_FOR_MARGIN: u16 = 26;
 
-const PAGE: u16 = 10;
+const PAGE_ROWS: u16 = 10;
 
 /// Previews of runs by name; `None` while a preview is read.
-type Previews = BTreeMap<String, Option<Result<RunPreview, String>>>;
+type RunPreviews = BTreeMap<String, Option<Result<RunPreview, String>>>;
 
 /// The start menu.
-pub struct Menu {
+pub struct StartMenu {
     page: MenuPage,
     runs: Option<Result<Vec<RunSummary>, String>>,
     /// Index of the selection on list pages.
     selected: usize,
-    form: RunForm,
+    form: NewRunForm,
     table: Table,
     /// Runs marked for comparison, in order of marking.
     marked: Vec<String>,
-    previews: Previews,
+    previews: RunPreviews,
     reading: Vec<Pending<PreviewQuestion>>,
-    asked: Option<Asked>,
+    question: Option<MenuQuestion>,
     /// Actions received before the runs were listed. The choices of the start page depend on the runs.
-    early: Vec<Action>,
+    deferred_actions: Vec<Action>,
     /// Lessons, read when their page was opened.
     lessons: LessonList,
     path: PathForm,
@@ -78,61 +78,61 @@ enum MenuPage {
     Lessons,
     Runs,
     Compare,
-    Paper,
-    Path,
+    PublishedResults,
+    PathForm,
     Class,
 }
 
-impl Menu {
+impl StartMenu {
     /// Creates the menu before the runs are known.
-    pub fn new(configuration: &Configuration) -> Menu {
-        Menu {
+    pub fn new(configuration: &Configuration) -> StartMenu {
+        StartMenu {
             page: MenuPage::Home,
             runs: None,
             selected: 0,
-            form: RunForm::new(configuration),
+            form: NewRunForm::new(configuration),
             table: Table::new(runs::columns()),
             marked: Vec::new(),
-            previews: Previews::new(),
+            previews: RunPreviews::new(),
             reading: Vec::new(),
-            asked: None,
-            early: Vec::new(),
+            question: None,
+            deferred_actions: Vec::new(),
             lessons: LessonList::default(),
-            path: PathForm::new(PathWanted::Class),
+            path: PathForm::new(PathPurpose::Class),
             class: None,
             configuration: configuration.clone(),
         }
     }
 
     /// Stores the list of runs, requests the preview of the last one, and runs the delayed actions.
-    pub fn take(&mut self, runs: Result<Vec<RunSummary>, String>) -> Vec<Effect> {
-        let choice = self.chosen_choice();
+    pub fn set_runs(&mut self, runs: Result<Vec<RunSummary>, String>) -> Vec<Effect> {
+        let choice = self.selected_entry();
         self.runs = Some(runs);
         if self.page == MenuPage::Home {
             // Select the same choice at its new position.
-            let same = self.choices().iter().position(|(own, ..)| Some(*own) == choice);
+            let same = self.entries().iter().position(|(own, ..)| Some(*own) == choice);
             self.selected = same.unwrap_or(0);
         }
-        let known: Vec<String> = self.list().iter().map(|run| run.id.clone()).collect();
+        let known: Vec<String> = self.runs().iter().map(|run| run.id.clone()).collect();
         self.marked.retain(|id| known.contains(id));
         // Runs may have progressed since.
         self.previews.clear();
         self.reading.clear();
-        self.asked = None;
-        self.renew_table();
-        let last = self.list().first().filter(|run| run.problem.is_none()).map(|run| run.id.clone());
-        let mut effects: Vec<Effect> = last.and_then(|id| self.read(&id)).into_iter().collect();
+        self.question = None;
+        self.rebuild_table();
+        let last = self.runs().first().filter(|run| run.problem.is_none()).map(|run| run.id.clone());
+        let mut effects: Vec<Effect> = last.and_then(|id| self.request_preview(&id)).into_iter().collect();
         if self.page == MenuPage::Runs {
-            effects.extend(self.read_chosen());
+            effects.extend(self.request_selected_preview());
         }
-        for action in std::mem::take(&mut self.early) {
-            effects.extend(self.act(action));
+        for action in std::mem::take(&mut self.deferred_actions) {
+            effects.extend(self.handle_action(action));
         }
         effects
     }
 
-    fn chosen_choice(&self) -> Option<HomeEntry> {
-        self.choices().get(self.selected).map(|choice| choice.0)
+    fn selected_entry(&self) -> Option<HomeEntry> {
+        self.entries().get(self.selected).map(|choice| choice.0)
     }
 
     /// Collects previews that have arrived.
@@ -144,36 +144,36 @@ impl Menu {
     }
 
     /// Reports that a run could not be started or opened, and asks what to do instead.
-    pub fn refused(&mut self, problem: String, instead: Option<Instead>) {
+    pub fn show_open_error(&mut self, problem: String, instead: Option<OpenFallback>) {
         // A request for consent is not an error.
-        let refused = (!matches!(instead, Some(Instead::Agree(..)))).then(|| problem.clone());
-        self.asked = instead.map(|instead| match instead {
-            Instead::Agree(new) => Asked::Agree(new, Agreement::new(problem)),
-            instead => Asked::Instead(instead, problem),
+        let refused = (!matches!(instead, Some(OpenFallback::AskConsent(..)))).then(|| problem.clone());
+        self.question = instead.map(|instead| match instead {
+            OpenFallback::AskConsent(new) => MenuQuestion::Consent(new, ConsentText::new(problem)),
+            instead => MenuQuestion::OpenError(instead, problem),
         });
-        self.path.refused = refused.clone();
-        self.form.refused = refused;
+        self.path.rejection = refused.clone();
+        self.form.rejection = refused;
     }
 
     /// Shows the results of a class.
-    pub fn show_class(&mut self, class: CollectedClass, shown: Shown) {
-        self.early.clear();
+    pub fn show_class(&mut self, class: CollectedClass, shown: ClassDisplayOptions) {
+        self.deferred_actions.clear();
         self.class = Some(Box::new(ClassPage::new(class, shown)));
         self.page = MenuPage::Class;
     }
 
     /// Requests the preview of a run, unless it is known or requested.
-    fn read(&mut self, id: &str) -> Option<Effect> {
+    fn request_preview(&mut self, id: &str) -> Option<Effect> {
         if self.previews.contains_key(id) {
             return None;
         }
         self.previews.insert(id.to_owned(), None);
-        let (pending, ask) = Pending::asking(PreviewQuestion { id: id.to_owned() });
+        let (pending, ask) = Pending::with_question(PreviewQuestion { id: id.to_owned() });
         self.reading.push(pending);
         Some(Effect::Ask(ask))
     }
 
-    fn list(&self) -> &[RunSummary] {
+    fn runs(&self) -> &[RunSummary] {
         match &self.runs {
             Some(Ok(list)) => list,
             _ => &[],
@@ -181,28 +181,28 @@ impl Menu {
     }
 
     fn latest(&self) -> Option<&RunSummary> {
-        self.list().iter().find(|run| run.ended.is_none() && run.problem.is_none())
+        self.runs().iter().find(|run| run.ended.is_none() && run.problem.is_none())
     }
 
     /// Returns the unfinished run of the tour, if there is one.
-    pub fn practice(&self) -> Option<&str> {
+    pub fn practice_run(&self) -> Option<&str> {
         let begun = |run: &&RunSummary| {
             run.scenario == tour::scenario()
                 && run.ended.is_none()
                 && run.problem.is_none()
                 && run.mode != Some(Mode::Baseline)
         };
-        self.list().iter().find(begun).map(|run| run.id.as_str())
+        self.runs().iter().find(begun).map(|run| run.id.as_str())
     }
 
     /// Returns the last index on list pages.
-    fn last(&self) -> usize {
+    fn last_index(&self) -> usize {
         let rows = match self.page {
-            MenuPage::Home => self.choices().len(),
-            MenuPage::NewRun => ROWS.len(),
-            MenuPage::Paper => paper::ranked(self.list()).len(),
-            MenuPage::Lessons => self.lessons.count(),
-            MenuPage::Runs | MenuPage::Compare | MenuPage::Path | MenuPage::Class => 1,
+            MenuPage::Home => self.entries().len(),
+            MenuPage::NewRun => FORM_ROWS.len(),
+            MenuPage::PublishedResults => published_results::ranked(self.runs()).len(),
+            MenuPage::Lessons => self.lessons.len(),
+            MenuPage::Runs | MenuPage::Compare | MenuPage::PathForm | MenuPage::Class => 1,
         };
         rows.saturating_sub(1)
     }
@@ -210,13 +210,15 @@ impl Menu {
     /// Returns the scopes of the page.
     pub fn scopes(&self) -> Vec<Scope> {
         match self.page {
-            _ if matches!(self.asked, Some(Asked::Agree(..))) => vec![Scope::Visit, Scope::List],
-            _ if self.asked.is_some() => vec![Scope::Dialog],
-            MenuPage::Runs if self.table.is_typing() => vec![Scope::Field],
+            _ if matches!(self.question, Some(MenuQuestion::Consent(..))) => vec![Scope::Study, Scope::List],
+            _ if self.question.is_some() => vec![Scope::Dialog],
+            MenuPage::Runs if self.table.is_filter_open() => vec![Scope::Field],
             MenuPage::NewRun if self.form.is_typing() => vec![Scope::Field],
-            MenuPage::Path => vec![Scope::Field],
+            MenuPage::PathForm => vec![Scope::Field],
             MenuPage::Class => vec![Scope::Class, Scope::List],
-            MenuPage::NewRun | MenuPage::Lessons | MenuPage::Compare | MenuPage::Paper => vec![Scope::List],
+            MenuPage::NewRun | MenuPage::Lessons | MenuPage::Compare | MenuPage::PublishedResults => {
+                vec![Scope::List]
+            }
             MenuPage::Home | MenuPage::Runs => vec![Scope::Menu, Scope::List],
         }
     }
@@ -224,15 +226,17 @@ impl Menu {
     /// Returns the footer actions.
     pub fn hints(&self) -> Vec<Action> {
         match self.page {
-            _ if matches!(self.asked, Some(Asked::Agree(..))) => vec![Action::Agree, Action::Decline],
-            _ if self.asked.is_some() => vec![Action::Confirm, Action::Cancel],
+            _ if matches!(self.question, Some(MenuQuestion::Consent(..))) => {
+                vec![Action::Agree, Action::Decline]
+            }
+            _ if self.question.is_some() => vec![Action::Confirm, Action::Cancel],
             MenuPage::Home if self.latest().is_none() => vec![Action::Open, Action::NewRun, Action::Quit],
             MenuPage::Home => vec![Action::Open, Action::NewRun, Action::ContinueRun, Action::Quit],
             MenuPage::NewRun if self.form.is_typing() => vec![Action::Commit, Action::Discard],
-            MenuPage::Path => vec![Action::Commit, Action::Discard],
+            MenuPage::PathForm => vec![Action::Commit, Action::Discard],
             MenuPage::Class => self.class.as_ref().map(|page| page.hints()).unwrap_or_default(),
             MenuPage::NewRun => vec![Action::Open, Action::Left, Action::Right, Action::Close],
-            MenuPage::Runs if self.table.is_typing() => vec![Action::Commit, Action::Discard],
+            MenuPage::Runs if self.table.is_filter_open() => vec![Action::Commit, Action::Discard],
             MenuPage::Runs => vec![
                 Action::Open,
                 Action::ReplayRun,
@@ -245,13 +249,13 @@ impl Menu {
                 Action::Sort,
             ],
             MenuPage::Lessons => vec![Action::Open, Action::Up, Action::Down, Action::Close],
-            MenuPage::Compare | MenuPage::Paper => vec![Action::Close, Action::Quit],
+            MenuPage::Compare | MenuPage::PublishedResults => vec![Action::Close, Action::Quit],
         }
     }
 
-    fn place(&mut self) -> &mut usize {
+    fn selection_mut(&mut self) -> &mut usize {
         match self.page {
-            MenuPage::NewRun => &mut self.form.at,
+            MenuPage::NewRun => &mut self.form.selected_row,
             _ => &mut self.selected,
         }
     }
@@ -261,39 +265,39 @@ impl Menu {
     }
 
     /// Runs an action.
-    pub fn act(&mut self, action: Action) -> Vec<Effect> {
-        if self.asked.is_some() {
-            return self.answer(action);
+    pub fn handle_action(&mut self, action: Action) -> Vec<Effect> {
+        if self.question.is_some() {
+            return self.answer_question(action);
         }
         match (action, self.page) {
             (Action::NewRun, _) => self.open_form(),
-            (_, MenuPage::Home) if self.runs.is_none() => self.early.push(action),
+            (_, MenuPage::Home) if self.runs.is_none() => self.deferred_actions.push(action),
             (Action::ContinueRun, _) => return self.open_latest(),
-            (Action::ReplayRun, MenuPage::Home) => return self.replay(self.list().first()),
-            (_, MenuPage::Runs) => return self.act_on_runs(action),
+            (Action::ReplayRun, MenuPage::Home) => return self.replay(self.runs().first()),
+            (_, MenuPage::Runs) => return self.handle_runs_action(action),
             (Action::Close | Action::Discard, MenuPage::Compare) => self.page = MenuPage::Runs,
             (Action::Close | Action::Discard, _) => self.go_home(),
             (Action::Left | Action::Right, MenuPage::NewRun) => {
-                self.form.turn(action == Action::Right);
+                self.form.change_choice(action == Action::Right);
                 self.form.read_terms(&self.configuration);
             }
-            (Action::Open | Action::Commit, MenuPage::NewRun) => return self.form.enter(),
-            (Action::Open, MenuPage::Home) => return self.choose(),
-            (Action::Commit, MenuPage::Path) => return self.path.enter(),
+            (Action::Open | Action::Commit, MenuPage::NewRun) => return self.form.accept_row(),
+            (Action::Open, MenuPage::Home) => return self.activate(),
+            (Action::Commit, MenuPage::PathForm) => return self.path.open_path(),
             (_, MenuPage::Class) => {
                 if let Some(page) = &mut self.class {
-                    page.act(action);
+                    page.handle_action(action);
                 }
             }
-            (Action::Open, MenuPage::Lessons) => return self.lessons.begin(self.selected),
-            _ => self.walk(action),
+            (Action::Open, MenuPage::Lessons) => return self.lessons.start_lesson(self.selected),
+            _ => self.move_selection(action),
         }
         Vec::new()
     }
 
-    fn walk(&mut self, action: Action) {
-        let (last, page) = (self.last(), PAGE as usize);
-        let place = self.place();
+    fn move_selection(&mut self, action: Action) {
+        let (last, page) = (self.last_index(), PAGE_ROWS as usize);
+        let place = self.selection_mut();
         *place = match action {
             Action::Up | Action::CommitPrevious => place.saturating_sub(1),
             Action::Down | Action::CommitDown | Action::CommitNext => *place + 1,
@@ -307,9 +311,9 @@ impl Menu {
     }
 
     fn open_form(&mut self) {
-        self.early.clear();
+        self.deferred_actions.clear();
         self.page = MenuPage::NewRun;
-        self.form = RunForm::new(&self.configuration);
+        self.form = NewRunForm::new(&self.configuration);
         self.form.read_terms(&self.configuration);
     }
 
@@ -320,49 +324,49 @@ impl Menu {
         }
     }
 
-    fn choose(&mut self) -> Vec<Effect> {
-        match self.chosen_choice() {
+    fn activate(&mut self) -> Vec<Effect> {
+        match self.selected_entry() {
             Some(HomeEntry::Continue) => return self.open_latest(),
             Some(HomeEntry::Tour) => return vec![Effect::StartTour],
             Some(HomeEntry::New) => self.open_form(),
             Some(HomeEntry::Lessons) => {
-                self.lessons = LessonList::of(&self.configuration);
+                self.lessons = LessonList::load(&self.configuration);
                 (self.page, self.selected) = (MenuPage::Lessons, 0);
             }
-            Some(HomeEntry::Handout) => self.ask_path(PathWanted::Handout),
-            Some(HomeEntry::Class) => self.ask_path(PathWanted::Class),
+            Some(HomeEntry::Handout) => self.open_path_form(PathPurpose::Handout),
+            Some(HomeEntry::Class) => self.open_path_form(PathPurpose::Class),
             Some(HomeEntry::Runs) => return self.open_runs(),
             Some(HomeEntry::Compare) => {
                 let mut effects = self.open_runs();
                 effects.push(Effect::Say("Mark two or more, then compare".to_owned()));
                 return effects;
             }
-            Some(HomeEntry::Paper) => (self.page, self.selected) = (MenuPage::Paper, 0),
+            Some(HomeEntry::PublishedResults) => (self.page, self.selected) = (MenuPage::PublishedResults, 0),
             Some(HomeEntry::Quit) => return vec![Effect::Do(Action::Quit)],
             None => {}
         }
         Vec::new()
     }
 
-    fn ask_path(&mut self, wanted: PathWanted) {
+    fn open_path_form(&mut self, wanted: PathPurpose) {
         self.path = PathForm::new(wanted);
-        self.page = MenuPage::Path;
+        self.page = MenuPage::PathForm;
     }
 
     fn open_runs(&mut self) -> Vec<Effect> {
         self.page = MenuPage::Runs;
-        self.read_chosen()
+        self.request_selected_preview()
     }
 
     /// Handles a typed key.
-    pub fn key(&mut self, key: &KeyEvent) -> Vec<Effect> {
+    pub fn handle_key(&mut self, key: &KeyEvent) -> Vec<Effect> {
         match self.page {
-            MenuPage::NewRun => self.form.key(key),
-            MenuPage::Path => self.path.key(key),
-            MenuPage::Runs if self.table.is_typing() => self.table.edit_filter(|field| {
-                field.key(key);
+            MenuPage::NewRun => self.form.handle_key(key),
+            MenuPage::PathForm => self.path.handle_key(key),
+            MenuPage::Runs if self.table.is_filter_open() => self.table.edit_filter(|field| {
+                field.handle_key(key);
             }),
-            _ if key.code == KeyCode::Char('q') && self.asked.is_none() => {
+            _ if key.code == KeyCode::Char('q') && self.question.is_none() => {
                 return vec![Effect::Do(Action::Quit)];
             }
             _ => {}
@@ -374,32 +378,32 @@ impl Menu {
     pub fn paste(&mut self, text: &str) {
         match self.page {
             MenuPage::NewRun => self.form.paste(text),
-            MenuPage::Path => self.path.paste(text),
+            MenuPage::PathForm => self.path.paste(text),
             MenuPage::Runs => self.table.edit_filter(|field| field.insert(text.trim())),
             _ => {}
         }
     }
 
     /// Handles a click on a row: the first selects it, the second opens it.
-    pub fn click(&mut self, row: usize) -> Vec<Effect> {
-        if self.asked.is_some() {
+    pub fn handle_click(&mut self, row: usize) -> Vec<Effect> {
+        if self.question.is_some() {
             return Vec::new();
         }
         if self.page == MenuPage::Runs {
             let before = self.table.selected();
-            self.table.select_place(row);
+            self.table.select_visible_row(row);
             let again = before == self.table.selected();
-            return if again { self.act(Action::Open) } else { self.read_chosen() };
+            return if again { self.handle_action(Action::Open) } else { self.request_selected_preview() };
         }
         if let (MenuPage::Class, Some(page)) = (self.page, &mut self.class) {
-            page.light(row);
+            page.highlight(row);
             return Vec::new();
         }
-        let row = row.min(self.last());
-        let again = *self.place() == row;
-        *self.place() = row;
-        if again && !(self.page == MenuPage::NewRun && row < ROWS.len() - 1) {
-            self.act(Action::Open)
+        let row = row.min(self.last_index());
+        let again = *self.selection_mut() == row;
+        *self.selection_mut() = row;
+        if again && !(self.page == MenuPage::NewRun && row < FORM_ROWS.len() - 1) {
+            self.handle_action(Action::Open)
         } else {
             Vec::new()
         }
@@ -409,16 +413,16 @@ impl Menu {
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect) {
         if let (MenuPage::Class, Some(page)) = (self.page, &self.class) {
             page.draw(canvas, area);
-            return self.draw_instead(canvas, area);
+            return self.draw_open_error(canvas, area);
         }
         let version = concat!("version ", env!("CARGO_PKG_VERSION"), " ");
         let name = Rect { x: area.x + 2, y: area.y + 1, width: area.width.saturating_sub(3), height: 1 };
-        canvas.text(name, "▲  N O V A M I N D", Role::Title);
-        canvas.aligned(name, version, Role::Dim, Align::Right);
+        canvas.draw_text(name, "▲  N O V A M I N D", Role::Title);
+        canvas.draw_aligned(name, version, Role::Dim, Align::Right);
         let line = Rect { x: name.x + 3, y: name.y + 1, width: name.width.saturating_sub(3), ..name };
-        canvas.text(line, "one company, five hundred days, every decision yours", Role::Dim);
+        canvas.draw_text(line, "one company, five hundred days, every decision yours", Role::Dim);
         // Low windows give the last blank row to the page.
-        let above = if area.height < LOW { 3 } else { 4 };
+        let above = if area.height < MIN_HEIGHT_FOR_MARGIN { 3 } else { 4 };
         let body = Rect {
             x: area.x + 2,
             y: area.y + above,
@@ -431,10 +435,10 @@ impl Menu {
             MenuPage::Lessons => self.lessons.draw(canvas, body, self.selected),
             MenuPage::Runs => self.draw_runs(canvas, body),
             MenuPage::Compare => self.draw_compare(canvas, body),
-            MenuPage::Paper => self.draw_paper(canvas, body),
-            MenuPage::Path => self.path.draw(canvas, body),
+            MenuPage::PublishedResults => self.draw_published_results(canvas, body),
+            MenuPage::PathForm => self.path.draw(canvas, body),
             MenuPage::Class => {}
         }
-        self.draw_instead(canvas, body);
+        self.draw_open_error(canvas, body);
     }
 }

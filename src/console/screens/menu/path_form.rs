@@ -6,43 +6,43 @@ use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
 use crate::effect::Effect;
-use novamind_report::class::Shown;
-use novamind_tui::canvas::{Canvas, rows_of};
-use novamind_tui::text::wrapped;
+use novamind_report::class::ClassDisplayOptions;
+use novamind_tui::canvas::{Canvas, row_rects};
+use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::Field;
+use novamind_tui::widgets::TextField;
 use novamind_worker::request::Request;
 
-const WIDEST: u16 = 100;
+const MAX_TEXT_WIDTH: u16 = 100;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum PathWanted {
+pub(super) enum PathPurpose {
     Class,
     Handout,
 }
 
-impl PathWanted {
+impl PathPurpose {
     fn title(self) -> &'static str {
         match self {
-            PathWanted::Class => "Class",
-            PathWanted::Handout => "Handout",
+            PathPurpose::Class => "Class",
+            PathPurpose::Handout => "Handout",
         }
     }
 
-    fn asked(self) -> &'static str {
+    fn prompt(self) -> &'static str {
         match self {
-            PathWanted::Class => "Class folder",
-            PathWanted::Handout => "Handout file",
+            PathPurpose::Class => "Class folder",
+            PathPurpose::Handout => "Handout file",
         }
     }
 
-    fn explained(self) -> &'static str {
+    fn explanation(self) -> &'static str {
         match self {
-            PathWanted::Class => {
+            PathPurpose::Class => {
                 "The folder that `novamind class new` created. `novamind class collect DIR PLACES` collects the submissions. This \
                  page shows the last collection: ranking, curves, decisions, guesses, pitfalls."
             }
-            PathWanted::Handout => {
+            PathPurpose::Handout => {
                 "The file that your instructor gave you, such as S07.nm. Enter starts it, or continues the last unfinished try or \
                  part. From then on the start menu shows your runs only."
             }
@@ -51,56 +51,57 @@ impl PathWanted {
 }
 
 pub(super) struct PathForm {
-    wanted: PathWanted,
-    field: Field,
-    pub(super) refused: Option<String>,
+    purpose: PathPurpose,
+    field: TextField,
+    pub(super) rejection: Option<String>,
 }
 
 impl PathForm {
-    pub(super) fn new(wanted: PathWanted) -> PathForm {
-        PathForm { wanted, field: Field::default(), refused: None }
+    pub(super) fn new(wanted: PathPurpose) -> PathForm {
+        PathForm { purpose: wanted, field: TextField::default(), rejection: None }
     }
 
-    pub(super) fn key(&mut self, key: &KeyEvent) {
-        self.refused = None;
-        self.field.key(key);
+    pub(super) fn handle_key(&mut self, key: &KeyEvent) {
+        self.rejection = None;
+        self.field.handle_key(key);
     }
 
     pub(super) fn paste(&mut self, text: &str) {
-        self.refused = None;
+        self.rejection = None;
         self.field.insert(text.trim());
     }
 
-    pub(super) fn enter(&self) -> Vec<Effect> {
+    pub(super) fn open_path(&self) -> Vec<Effect> {
         // Terminals quote dropped files.
         let typed = self.field.text().trim().trim_matches(['\'', '"']);
         if typed.is_empty() {
-            return vec![Effect::Complain(format!("Type a path: {}", self.wanted.asked().to_lowercase()))];
+            return vec![Effect::Complain(format!("Type a path: {}", self.purpose.prompt().to_lowercase()))];
         }
         let path = PathBuf::from(typed);
-        vec![Effect::Request(match self.wanted {
-            PathWanted::Class => Request::ReadClass(path, Shown::default()),
-            PathWanted::Handout => Request::OpenHandout(path),
+        vec![Effect::Request(match self.purpose {
+            PathPurpose::Class => Request::ReadClass(path, ClassDisplayOptions::default()),
+            PathPurpose::Handout => Request::OpenHandout(path),
         })]
     }
 
     pub(super) fn draw(&self, canvas: &mut Canvas<'_>, area: Rect) {
-        let inside = canvas.pane(area, self.wanted.title(), "", true);
-        let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2).min(WIDEST), ..inside };
-        let mut rows = rows_of(inside);
+        let inside = canvas.draw_pane_frame(area, self.purpose.title(), "", true);
+        let inside =
+            Rect { x: inside.x + 1, width: inside.width.saturating_sub(2).min(MAX_TEXT_WIDTH), ..inside };
+        let mut rows = row_rects(inside);
         if let Some(row) = rows.next() {
-            canvas.text(row, self.wanted.asked(), Role::Strong);
+            canvas.draw_text(row, self.purpose.prompt(), Role::Strong);
         }
         if let Some(row) = rows.next() {
             self.field.draw(canvas, row);
         }
         rows.next();
-        let (text, role) = match &self.refused {
+        let (text, role) = match &self.rejection {
             Some(problem) => (format!("! {problem}"), Role::Bad),
-            None => (self.wanted.explained().to_owned(), Role::Text),
+            None => (self.purpose.explanation().to_owned(), Role::Text),
         };
-        for (row, line) in rows.zip(wrapped(&text, inside.width as usize)) {
-            canvas.text(row, &line, role);
+        for (row, line) in rows.zip(wrap(&text, inside.width as usize)) {
+            canvas.draw_text(row, &line, role);
         }
     }
 }

@@ -1,14 +1,14 @@
 //! Figures of the week: how each is read, formatted and judged, and the query for its rows.
 
 use crate::context::Figure;
-use novamind_base::notation::{dollars, grouped, percent};
+use novamind_base::formatting::{dollars, grouped_number, percent};
 use novamind_insight::WeekQuantity;
 use novamind_record::figures::{WeekFigure, WeekFigures};
-use novamind_session::{WEEK_OF_ENTRY, entries_of_weeks};
-use novamind_tui::text::arrow;
+use novamind_session::{WEEK_OF_ENTRY_SQL, entries_of_weeks_sql};
+use novamind_tui::text::format_change;
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::{Cell, Column, spark};
-use novamind_worker::company::Company;
+use novamind_tui::widgets::{TableCell, TableColumn, sparkline};
+use novamind_worker::company::DisplayedCompany;
 
 /// A figure of the week.
 pub struct Metric {
@@ -23,7 +23,7 @@ pub struct Metric {
     /// Whether a higher value is better.
     pub more_is_better: bool,
     /// Source of its rows.
-    source: RowsSource,
+    rows_source: RowsSource,
 }
 
 /// Source of the rows behind a figure.
@@ -33,7 +33,7 @@ enum RowsSource {
     /// Ledger entries that meet a condition.
     Ledger(&'static str),
     /// Currently active subscriptions that meet a condition; available for the last week only.
-    Active(&'static str),
+    ActiveSubscriptions(&'static str),
     /// Customers and subscriptions, by a column with a day and a condition.
     Customers(&'static str, &'static str),
     /// A column of the daily service.
@@ -44,7 +44,7 @@ enum RowsSource {
     None,
 }
 
-const fn metric(
+const fn new_metric(
     name: &'static str,
     term: &'static str,
     read: fn(&WeekFigures) -> f64,
@@ -52,38 +52,38 @@ const fn metric(
     more_is_better: bool,
     source: RowsSource,
 ) -> Metric {
-    Metric { name, term, read, write, more_is_better, source }
+    Metric { name, term, read, write, more_is_better, rows_source: source }
 }
 
-fn whole(value: f64) -> String {
-    grouped(value, 0)
+fn format_whole(value: f64) -> String {
+    grouped_number(value, 0)
 }
 
-fn share_or_none(value: f64) -> String {
+fn format_share(value: f64) -> String {
     if value.is_nan() { "–".to_owned() } else { percent(value, 1) }
 }
 
-fn none_or_percent(value: f64) -> String {
+fn format_percent(value: f64) -> String {
     if value > 0.0 { percent(value, 1) } else { "none".to_owned() }
 }
 
-const SMALL: &str = "c.customer_type = 'small'";
-const SIGNED: &str = "c.customer_type = 'small' AND s.status IN ('subscribed', 'cancelled')";
-const LEFT: &str = "c.customer_type = 'small' AND s.status = 'cancelled'";
-const DEALS: &str = "c.customer_type = 'large' AND s.status IN ('subscribed', 'cancelled')";
+const INDIVIDUALS_SQL: &str = "c.customer_type = 'small'";
+const SIGNUPS_SQL: &str = "c.customer_type = 'small' AND s.status IN ('subscribed', 'cancelled')";
+const CANCELLATIONS_SQL: &str = "c.customer_type = 'small' AND s.status = 'cancelled'";
+const DEALS_SQL: &str = "c.customer_type = 'large' AND s.status IN ('subscribed', 'cancelled')";
 
 /// All figures in display order.
 pub static METRICS: [Metric; 22] = [
-    metric("cash at week's end", "cash", |week| week.cash, dollars, true, RowsSource::Cash),
-    metric(
+    new_metric("cash at week's end", "cash", |week| week.cash, dollars, true, RowsSource::Cash),
+    new_metric(
         "recurring revenue",
         "mrr",
         |week| week.recurring_revenue,
         dollars,
         true,
-        RowsSource::Active("TRUE"),
+        RowsSource::ActiveSubscriptions("TRUE"),
     ),
-    metric(
+    new_metric(
         "payments",
         "payments",
         |week| week.payments,
@@ -91,7 +91,7 @@ pub static METRICS: [Metric; 22] = [
         true,
         RowsSource::Ledger("category = 'subscription_payment'"),
     ),
-    metric(
+    new_metric(
         "running costs",
         "running-costs",
         |week| week.costs,
@@ -99,106 +99,106 @@ pub static METRICS: [Metric; 22] = [
         false,
         RowsSource::Ledger("category IN ('compute', 'capacity', 'operations', 'development', 'advertising')"),
     ),
-    metric(
+    new_metric(
         "subscribers",
         "subscriber",
         |week| f64::from(week.individual_subscribers),
-        whole,
+        format_whole,
         true,
-        RowsSource::Active(SMALL),
+        RowsSource::ActiveSubscriptions(INDIVIDUALS_SQL),
     ),
-    metric(
+    new_metric(
         "individual leads",
         "lead",
         |week| f64::from(week.new_individual_leads),
-        whole,
+        format_whole,
         true,
-        RowsSource::Customers("c.created_day", SMALL),
+        RowsSource::Customers("c.created_day", INDIVIDUALS_SQL),
     ),
-    metric(
+    new_metric(
         "new subscribers",
         "conversion",
         |week| f64::from(week.new_individual_subscribers),
-        whole,
+        format_whole,
         true,
-        RowsSource::Customers("c.created_day", SIGNED),
+        RowsSource::Customers("c.created_day", SIGNUPS_SQL),
     ),
-    metric(
+    new_metric(
         "conversion",
         "conversion",
         WeekFigures::conversion,
-        share_or_none,
+        format_share,
         true,
-        RowsSource::Customers("c.created_day", SMALL),
+        RowsSource::Customers("c.created_day", INDIVIDUALS_SQL),
     ),
-    metric(
+    new_metric(
         "cancellations",
         "churn",
         |week| f64::from(week.cancellations),
-        whole,
+        format_whole,
         false,
-        RowsSource::Customers("s.end_day", LEFT),
+        RowsSource::Customers("s.end_day", CANCELLATIONS_SQL),
     ),
-    metric("upgrades", "upgrade", |week| f64::from(week.upgrades), whole, true, RowsSource::None),
-    metric("downgrades", "upgrade", |week| f64::from(week.downgrades), whole, false, RowsSource::None),
-    metric(
+    new_metric("upgrades", "upgrade", |week| f64::from(week.upgrades), format_whole, true, RowsSource::None),
+    new_metric("downgrades", "upgrade", |week| f64::from(week.downgrades), format_whole, false, RowsSource::None),
+    new_metric(
         "seats",
         "seats",
         |week| f64::from(week.enterprise_seats),
-        whole,
+        format_whole,
         true,
-        RowsSource::Active("c.customer_type = 'large'"),
+        RowsSource::ActiveSubscriptions("c.customer_type = 'large'"),
     ),
-    metric(
+    new_metric(
         "enterprise leads",
         "thread",
         |week| f64::from(week.new_enterprise_leads),
-        whole,
+        format_whole,
         true,
         RowsSource::Leads,
     ),
-    metric(
+    new_metric(
         "new seats",
         "seats",
         |week| f64::from(week.new_enterprise_seats),
-        whole,
+        format_whole,
         true,
-        RowsSource::Customers("s.start_day", DEALS),
+        RowsSource::Customers("s.start_day", DEALS_SQL),
     ),
-    metric("seats lost", "churn", |week| f64::from(week.seats_lost), whole, false, RowsSource::None),
-    metric(
+    new_metric("seats lost", "churn", |week| f64::from(week.seats_lost), format_whole, false, RowsSource::None),
+    new_metric(
         "usage, units",
         "usage",
         |week| week.usage as f64,
-        whole,
+        format_whole,
         true,
         RowsSource::Service("total_usage_units"),
     ),
-    metric(
+    new_metric(
         "overload, peak",
         "overload",
         |week| week.overload_peak,
-        none_or_percent,
+        format_percent,
         false,
         RowsSource::Service("max(0.0, 1.0 * total_usage_units / capacity_units - 1) AS overload"),
     ),
-    metric(
+    new_metric(
         "outage, minutes",
         "outage",
         |week| f64::from(week.downtime_minutes),
-        whole,
+        format_whole,
         false,
         RowsSource::Service("downtime_minutes"),
     ),
-    metric(
+    new_metric(
         "latency, peak ms",
         "latency",
         |week| week.p95_ms_peak,
-        whole,
+        format_whole,
         false,
         RowsSource::Service("p95_ms"),
     ),
-    metric(
+    new_metric(
         "error rate, peak",
         "error-rate",
         |week| week.error_rate_peak,
@@ -206,23 +206,23 @@ pub static METRICS: [Metric; 22] = [
         false,
         RowsSource::Service("error_rate"),
     ),
-    metric("open issues", "issue", |week| f64::from(week.open_issues), whole, false, RowsSource::None),
-    metric(
+    new_metric("open issues", "issue", |week| f64::from(week.open_issues), format_whole, false, RowsSource::None),
+    new_metric(
         "enterprises lost",
         "churn",
         |week| f64::from(week.companies_lost),
-        whole,
+        format_whole,
         false,
         RowsSource::None,
     ),
 ];
 
 /// Returns the columns of the table; narrow windows drop the last ones first.
-pub fn columns() -> Vec<Column> {
-    let numbers = ["this week", "change"].map(Column::numbers);
-    let last = ["last week", "4-wk mean"].map(Column::numbers);
-    let name = [Column::words("figure")];
-    name.into_iter().chain(numbers).chain([Column::words("trend")]).chain(last).collect()
+pub fn columns() -> Vec<TableColumn> {
+    let numbers = ["this week", "change"].map(TableColumn::numeric);
+    let last = ["last week", "4-wk mean"].map(TableColumn::numeric);
+    let name = [TableColumn::text("figure")];
+    name.into_iter().chain(numbers).chain([TableColumn::text("trend")]).chain(last).collect()
 }
 
 /// Returns the weeks that a column covers, as distances from the last week, farthest first.
@@ -237,15 +237,15 @@ fn weeks_of(column: usize) -> (u32, u32) {
 }
 
 /// Returns the row of a figure.
-pub fn row_of(metric: &Metric, company: &Company) -> Vec<Cell> {
+pub fn row_of(metric: &Metric, company: &DisplayedCompany) -> Vec<TableCell> {
     let trend = company.trend(12, metric.read);
     let now = trend.last().copied();
     // Only cash has a value before the first week.
-    let opening = matches!(metric.source, RowsSource::Cash).then_some(company.seen.starting_cash);
+    let opening = matches!(metric.rows_source, RowsSource::Cash).then_some(company.observation.starting_cash);
     let before = trend.len().checked_sub(2).map(|at| trend[at]).or(opening.filter(|_| now.is_some()));
     let cell = |value: Option<f64>| match value {
-        Some(value) => Cell::number(value, (metric.write)(value)),
-        None => Cell::words("–"),
+        Some(value) => TableCell::from_number(value, (metric.write)(value)),
+        None => TableCell::from_text("–"),
     };
     let change = now.zip(before).map(|(now, before)| now - before).filter(|change| !change.is_nan());
     let moved = match change {
@@ -259,35 +259,35 @@ pub fn row_of(metric: &Metric, company: &Company) -> Vec<Cell> {
             let size = if size == 0.0 { String::new() } else { (metric.write)(size) };
             // Changes of shares are in percentage points.
             let size = size.strip_suffix('%').map_or(size.clone(), |points| format!("{points} pt"));
-            Cell::number(change, arrow(change, &size)).role(tone)
+            TableCell::from_number(change, format_change(change, &size)).with_role(tone)
         }
-        None => Cell::words("–").role(Role::Dim),
+        None => TableCell::from_text("–").with_role(Role::Dim),
     };
     vec![
-        Cell::words(metric.name),
-        cell(now).role(Role::Strong),
+        TableCell::from_text(metric.name),
+        cell(now).with_role(Role::Strong),
         moved,
-        Cell::words(spark(&trend, 12)).role(Role::Series(0)),
-        cell(before).role(Role::Dim),
-        cell(company.mean_of_four(metric.read)).role(Role::Dim),
+        TableCell::from_text(sparkline(&trend, 12)).with_role(Role::Series(0)),
+        cell(before).with_role(Role::Dim),
+        cell(company.four_week_mean(metric.read)).with_role(Role::Dim),
     ]
 }
 
 /// Returns the figure in a column, with a query for its rows.
-pub fn figure(metric: &Metric, column: usize, company: &Company) -> Figure {
-    let week = company.seen.week;
+pub fn figure(metric: &Metric, column: usize, company: &DisplayedCompany) -> Figure {
+    let week = company.observation.week;
     let (from, to) = weeks_of(column);
     let (from, to) = (week.saturating_sub(from).max(1.min(week)), week.saturating_sub(to));
     let weeks = if from == to { format!("week {to}") } else { format!("weeks {from} to {to}") };
     let now = to == week;
-    let quantity = WeekFigure::named(metric.name).and_then(WeekQuantity::of_company);
+    let quantity = WeekFigure::parse_label(metric.name).and_then(WeekQuantity::for_company);
     Figure {
         title: format!("{}, {weeks}", metric.name),
         term: metric.term,
-        sql: statement(&metric.source, (from, to), now),
-        why: None,
+        sql: statement(&metric.rows_source, (from, to), now),
+        week_quantity: None,
     }
-    .of_week(quantity, to)
+    .with_week_quantity(quantity, to)
 }
 
 /// Returns the query for the rows of some weeks; `None` if only current rows exist and the weeks are past.
@@ -296,15 +296,15 @@ fn statement(source: &RowsSource, weeks: (u32, u32), now: bool) -> Option<String
     let between = |day: &str| format!("{day} BETWEEN {from} AND {to}");
     Some(match source {
         RowsSource::Cash => format!(
-            "SELECT {WEEK_OF_ENTRY} AS week, category, sum(amount) AS amount\nFROM ledger\nWHERE {}\nGROUP BY 1, 2\n\
+            "SELECT {WEEK_OF_ENTRY_SQL} AS week, category, sum(amount) AS amount\nFROM ledger\nWHERE {}\nGROUP BY 1, 2\n\
              ORDER BY 1 DESC, 3 DESC",
-            entries_of_weeks(0, weeks.1)
+            entries_of_weeks_sql(0, weeks.1)
         ),
         RowsSource::Ledger(condition) => format!(
             "SELECT day, category, amount, note\nFROM ledger\nWHERE {} AND {condition}\nORDER BY id",
-            entries_of_weeks(weeks.0, weeks.1)
+            entries_of_weeks_sql(weeks.0, weeks.1)
         ),
-        RowsSource::Active(condition) if now => format!(
+        RowsSource::ActiveSubscriptions(condition) if now => format!(
             "SELECT s.customer_id, c.group_id, s.plan, s.seat_count, s.effective_price,\n    \
              s.effective_price * s.seat_count AS amount, s.start_day\nFROM subscriptions s\n\
              CROSS JOIN customers c\nWHERE s.status = 'subscribed' AND c.customer_id = s.customer_id AND {condition}"
@@ -323,6 +323,6 @@ fn statement(source: &RowsSource, weeks: (u32, u32), now: bool) -> Option<String
              WHERE thread_type = 'new_lead' AND turn_number = 0 AND {}",
             between("day")
         ),
-        RowsSource::Active(_) | RowsSource::None => return None,
+        RowsSource::ActiveSubscriptions(_) | RowsSource::None => return None,
     })
 }

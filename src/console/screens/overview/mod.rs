@@ -5,7 +5,7 @@ pub mod figures;
 pub mod needs;
 mod news;
 mod quality;
-mod rows;
+mod linked_rows;
 #[cfg(test)]
 mod tests;
 mod trends;
@@ -17,14 +17,14 @@ use strum::VariantArray;
 use self::figures::METRICS;
 use self::news::NewsItem;
 use super::ScreenState;
-use super::panes::{Pane, Paned, draw_pane};
-use super::product::model::{Day, projects, service};
+use super::panes::{Pane, PaneScreen, draw_pane};
+use super::product::model::{ServiceDay, projects, parse_service_days};
 use crate::action::Action;
-use crate::context::Look;
-use novamind_database::Rows;
+use crate::context::ScreenContext;
+use novamind_database::QueryResult;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::widgets::Table;
-use novamind_worker::company::Company;
+use novamind_worker::company::DisplayedCompany;
 use novamind_worker::readings::Reading;
 
 /// Panes in tab order.
@@ -47,23 +47,23 @@ pub enum OverviewPane {
 #[derive(Default)]
 pub struct Overview {
     focus: OverviewPane,
-    need: usize,
+    selected_need: usize,
     week: Table,
     quality: Table,
-    days: Vec<Day>,
+    days: Vec<ServiceDay>,
     /// News from the readings.
     notices: Vec<NewsItem>,
     research: Vec<NewsItem>,
     news: Vec<NewsItem>,
-    item: usize,
+    selected_item: usize,
 }
 
 impl Overview {
-    fn gather(&mut self, company: &Company) {
+    fn rebuild_news(&mut self, company: &DisplayedCompany) {
         self.news = self.research.iter().chain(&self.notices).cloned().collect();
-        self.news.extend(news::of_posts(company));
+        self.news.extend(news::post_items(company));
         self.news.sort_by_key(|item| item.kind);
-        self.item = self.item.min(self.news.len().saturating_sub(1));
+        self.selected_item = self.selected_item.min(self.news.len().saturating_sub(1));
     }
 }
 
@@ -72,37 +72,37 @@ impl ScreenState for Overview {
         &[Reading::Service, Reading::WeekNotices, Reading::Research]
     }
 
-    fn take(&mut self, reading: Reading, rows: &Rows, look: &Look<'_>) {
+    fn apply_rows(&mut self, reading: Reading, rows: &QueryResult, look: &ScreenContext<'_>) {
         match reading {
-            Reading::Service => self.days = service(rows),
-            Reading::WeekNotices => self.notices = news::of_notices(rows),
-            _ => self.research = news::of_research(&projects(rows), look.company.seen.day),
+            Reading::Service => self.days = parse_service_days(rows),
+            Reading::WeekNotices => self.notices = news::notice_items(rows),
+            _ => self.research = news::research_items(&projects(rows), look.company.observation.day),
         }
-        self.gather(look.company);
+        self.rebuild_news(look.company);
     }
 
-    fn renew(&mut self, look: &Look<'_>) {
+    fn on_company_change(&mut self, look: &ScreenContext<'_>) {
         let company = look.company;
-        self.gather(company);
-        self.need = self.need.min(company.needs.len().saturating_sub(1));
+        self.rebuild_news(company);
+        self.selected_need = self.selected_need.min(company.action_items.len().saturating_sub(1));
         let rows = METRICS.iter().map(|metric| figures::row_of(metric, company)).collect();
         let first = self.week.rows().is_empty();
         if first {
-            self.week = Table::default().by_cell();
-            self.quality = Table::default().by_cell();
+            self.week = Table::default().with_cell_selection();
+            self.quality = Table::default().with_cell_selection();
         }
-        self.week.set(figures::columns(), rows);
+        self.week.set_columns_and_rows(figures::columns(), rows);
         let (columns, rows) = quality::table_of(company);
-        self.quality.set(columns, rows);
+        self.quality.set_columns_and_rows(columns, rows);
         if first {
-            self.week.act(Action::Right, 1);
-            self.quality.act(Action::Right, 1);
+            self.week.handle_action(Action::Right, 1);
+            self.quality.handle_action(Action::Right, 1);
         }
     }
 }
 
-impl Paned for Overview {
-    type Name = OverviewPane;
+impl PaneScreen for Overview {
+    type PaneId = OverviewPane;
 
     fn panes(&self) -> &'static [OverviewPane] {
         OverviewPane::VARIANTS
@@ -118,25 +118,25 @@ impl Paned for Overview {
         }
     }
 
-    fn focused(&self) -> OverviewPane {
+    fn focused_pane(&self) -> OverviewPane {
         self.focus
     }
 
-    fn focus_on(&mut self, name: OverviewPane) {
+    fn set_focused_pane(&mut self, name: OverviewPane) {
         self.focus = name;
     }
 
-    fn arrange(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+    fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
         if area.width >= 104 {
-            self.arrange_wide(canvas, area, look);
+            self.draw_wide_layout(canvas, area, look);
         } else {
-            self.arrange_small(canvas, area, look);
+            self.draw_small_layout(canvas, area, look);
         }
     }
 }
 
 impl Overview {
-    fn arrange_wide(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+    fn draw_wide_layout(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
         let [left, right] = Layout::horizontal([Constraint::Percentage(50), Constraint::Min(0)]).areas(area);
         let quality = (self.quality.rows().len() as u16 + 3).min(left.height / 2);
         // Usage has its own chart if cash keeps enough rows.
@@ -149,11 +149,11 @@ impl Overview {
             trends::draw_usage(canvas, used, &self.days);
         }
         draw_pane(self, OverviewPane::Quality, canvas, below, look);
-        let needs = needs::height(look.company, right.width, right.height / 3);
+        let needs = needs::pane_height(look.company, right.width, right.height / 3);
         let table = (METRICS.len() as u16 + 3).min(right.height.saturating_sub(needs));
         let left = right.height.saturating_sub(needs + table);
         let news = if left >= 3 { (self.news.len().max(1) as u16 + 2).min(left) } else { 0 };
-        let charts = trends::height(left - news);
+        let charts = trends::charts_height(left - news);
         let [above, new, week, small] = Layout::vertical([
             Constraint::Length(needs),
             Constraint::Length(news),
@@ -169,8 +169,8 @@ impl Overview {
         trends::draw(canvas, small, look.company);
     }
 
-    fn arrange_small(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
-        let needs = needs::height(look.company, area.width, area.height * 2 / 5);
+    fn draw_small_layout(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+        let needs = needs::pane_height(look.company, area.width, area.height * 2 / 5);
         let [above, below] = Layout::vertical([Constraint::Length(needs), Constraint::Min(0)]).areas(area);
         draw_pane(self, OverviewPane::Needs, canvas, above, look);
         // The week needs room for the name, value and change of each figure.

@@ -3,19 +3,19 @@
 use ratatui::layout::Rect;
 
 use super::Overview;
-use super::rows::{self, LinkedRow, walk};
+use super::linked_rows::{self, LinkedRow, move_selection};
 use crate::action::Action;
-use crate::context::{Figure, Look, ScreenId};
+use crate::context::{Figure, ScreenContext, ScreenId};
 use crate::effect::Effect;
 use crate::screens::customers::costs;
-use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
 use novamind_insight::WeekQuantity;
 use novamind_record::figures::WeekFigure;
-use novamind_report::needs::{Need, Place, Problem};
-use novamind_session::entries_of_weeks;
+use novamind_report::action_items::{ActionItem, ActionTarget, Problem};
+use novamind_session::entries_of_weeks_sql;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;
-use novamind_worker::company::Company;
+use novamind_worker::company::DisplayedCompany;
 
 /// Items that need action, most urgent first.
 pub struct NeedsPane;
@@ -25,35 +25,35 @@ impl Pane<Overview> for NeedsPane {
         vec![Action::Open]
     }
 
-    fn figure(&self, overview: &Overview, look: &Look<'_>) -> Option<Figure> {
-        look.company.needs.get(overview.need).map(|need| figure_of(need, look.company.seen.day))
+    fn figure(&self, overview: &Overview, look: &ScreenContext<'_>) -> Option<Figure> {
+        look.company.action_items.get(overview.selected_need).map(|need| figure_of(need, look.company.observation.day))
     }
 
-    fn act(&self, overview: &mut Overview, action: Action, look: &Look<'_>) -> Vec<Effect> {
-        let needs = &look.company.needs;
+    fn handle_action(&self, overview: &mut Overview, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+        let needs = &look.company.action_items;
         if action == Action::Open {
-            return needs.get(overview.need).map(way_of).into_iter().collect();
+            return needs.get(overview.selected_need).map(need_effect).into_iter().collect();
         }
-        walk(&mut overview.need, needs.len(), action);
+        move_selection(&mut overview.selected_need, needs.len(), action);
         Vec::new()
     }
 
-    fn click(&self, overview: &mut Overview, row: usize, look: &Look<'_>) -> Vec<Effect> {
-        let again = overview.need == row;
-        overview.need = row.min(look.company.needs.len().saturating_sub(1));
-        if again { self.act(overview, Action::Open, look) } else { Vec::new() }
+    fn handle_click(&self, overview: &mut Overview, row: usize, look: &ScreenContext<'_>) -> Vec<Effect> {
+        let again = overview.selected_need == row;
+        overview.selected_need = row.min(look.company.action_items.len().saturating_sub(1));
+        if again { self.handle_action(overview, Action::Open, look) } else { Vec::new() }
     }
 
-    fn border(&self, _: &Overview, _: Rect, look: &Look<'_>) -> Border {
-        let needs = &look.company.needs;
-        let urgent = needs.iter().filter(|need| need.urgent).count();
+    fn border(&self, _: &Overview, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
+        let needs = &look.company.action_items;
+        let urgent = needs.iter().filter(|need| need.is_urgent).count();
         let note = if urgent > 0 { format!("{urgent} now · {} in all", needs.len()) } else { String::new() };
-        Border { title: "Action needed".to_owned(), note, ..Border::default() }
+        PaneBorder { title: "Action needed".to_owned(), note, ..PaneBorder::default() }
     }
 
-    fn draw(&self, overview: &Overview, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
-        if look.company.needs.is_empty() {
-            let text = match look.company.seen.ended {
+    fn draw(&self, overview: &Overview, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
+        if look.company.action_items.is_empty() {
+            let text = match look.company.observation.ended {
                 Some(_) => "The run is over. You can still read and query it.",
                 // Items whose tool is locked are hidden, so an empty list does not mean that nothing needs
                 // action.
@@ -62,45 +62,45 @@ impl Pane<Overview> for NeedsPane {
                 }
                 None => "Nothing needs action. Start the next week with n.",
             };
-            canvas.text(seat.area, text, Role::Dim);
+            canvas.draw_text(seat.area, text, Role::Dim);
         }
-        rows::draw(canvas, seat, &rows_of(look.company), overview.need);
+        linked_rows::draw(canvas, seat, &rows_of(look.company), overview.selected_need);
     }
 }
 
-fn rows_of(company: &Company) -> Vec<LinkedRow> {
-    company.needs.iter().map(|need| LinkedRow::to(screen_of(need), need.in_words(), need.urgent)).collect()
+fn rows_of(company: &DisplayedCompany) -> Vec<LinkedRow> {
+    company.action_items.iter().map(|need| LinkedRow::new(screen_of(need), need.describe(), need.is_urgent)).collect()
 }
 
 /// Returns the height of the pane with its border, limited to `most`.
-pub fn height(company: &Company, width: u16, most: u16) -> u16 {
+pub fn pane_height(company: &DisplayedCompany, width: u16, most: u16) -> u16 {
     let room = width.saturating_sub(2);
     let lines: usize = rows_of(company).iter().map(|row| row.lines(room).len()).sum();
     (lines.max(1) as u16 + 2).min(most.max(4))
 }
 
 /// Returns the screen for an item.
-pub fn screen_of(need: &Need) -> ScreenId {
-    match &need.place {
-        Place::Call(..) => ScreenId::Tools,
-        Place::Thread(_) => ScreenId::Inbox,
-        Place::Group(_) => ScreenId::Customers,
-        Place::Books => ScreenId::Cash,
+pub fn screen_of(need: &ActionItem) -> ScreenId {
+    match &need.target {
+        ActionTarget::Call(..) => ScreenId::Tools,
+        ActionTarget::Thread(_) => ScreenId::Inbox,
+        ActionTarget::Group(_) => ScreenId::Customers,
+        ActionTarget::Ledger => ScreenId::Cash,
     }
 }
 
 /// Opens the form, thread or group of an item.
-pub fn way_of(need: &Need) -> Effect {
-    match &need.place {
-        Place::Call(tool, arguments) => Effect::Prefill { tool: *tool, arguments: arguments.clone() },
-        Place::Thread(number) => Effect::ShowThread(*number),
-        Place::Group(group) => Effect::ShowGroup(ScreenId::Customers, *group),
-        Place::Books => Effect::Show(ScreenId::Cash),
+pub fn need_effect(need: &ActionItem) -> Effect {
+    match &need.target {
+        ActionTarget::Call(tool, arguments) => Effect::Prefill { tool: *tool, arguments: arguments.clone() },
+        ActionTarget::Thread(number) => Effect::ShowThread(*number),
+        ActionTarget::Group(group) => Effect::ShowGroup(ScreenId::Customers, *group),
+        ActionTarget::Ledger => Effect::Show(ScreenId::Cash),
     }
 }
 
 /// Returns the figure of an item, with a query for its rows.
-pub fn figure_of(need: &Need, day: u32) -> Figure {
+pub fn figure_of(need: &ActionItem, day: u32) -> Figure {
     let from = day.saturating_sub(6);
     let days = |columns: &str| {
         format!("SELECT {columns}\nFROM service_day\nWHERE day BETWEEN {from} AND {day}\nORDER BY day")
@@ -115,7 +115,7 @@ pub fn figure_of(need: &Need, day: u32) -> Figure {
     let (term, sql) = match need.problem {
         Problem::Runway => {
             let week = day.div_ceil(7);
-            let weeks = entries_of_weeks(week.saturating_sub(3).max(1), week);
+            let weeks = entries_of_weeks_sql(week.saturating_sub(3).max(1), week);
             (
                 "runway",
                 Some(format!(
@@ -136,7 +136,7 @@ pub fn figure_of(need: &Need, day: u32) -> Figure {
         Problem::NoQuota => ("set_usage_quotas", None),
         Problem::NoLeads => ("lead", None),
         Problem::NoSales(group) => ("conversion", Some(leads_of(group.id()))),
-        Problem::Unwanted(group) => ("delivered-quality", Some(leads_of(group.id()))),
+        Problem::NoRequests(group) => ("delivered-quality", Some(leads_of(group.id()))),
         Problem::LeadCost(channel, group) => ("cost-per-lead", Some(costs::statement(channel, group))),
         Problem::Margin => ("gross-margin", None),
         Problem::Overload | Problem::Capacity => {
@@ -153,23 +153,23 @@ pub fn figure_of(need: &Need, day: u32) -> Figure {
             )),
         ),
     };
-    Figure { title: need.text.clone(), term, sql, why: None }.of_week(quantity_of(need), day.div_ceil(7))
+    Figure { title: need.text.clone(), term, sql, week_quantity: None }.with_week_quantity(quantity_of(need), day.div_ceil(7))
 }
 
 /// Returns the weekly figure of an item.
-fn quantity_of(need: &Need) -> Option<WeekQuantity> {
+fn quantity_of(need: &ActionItem) -> Option<WeekQuantity> {
     match need.problem {
-        Problem::Runway => WeekQuantity::of_company(WeekFigure::CashChange),
-        Problem::NoLeads => WeekQuantity::of_company(WeekFigure::Leads),
-        Problem::NoSales(group) => WeekQuantity::of_group(WeekFigure::Conversion, group),
-        Problem::Overload | Problem::Capacity => WeekQuantity::of_company(WeekFigure::OverloadPeak),
-        Problem::Outages => WeekQuantity::of_company(WeekFigure::Outage),
-        Problem::Backlog => WeekQuantity::of_company(WeekFigure::OpenIssues),
-        Problem::Churn(group) => WeekQuantity::of_group(WeekFigure::Churn, group),
+        Problem::Runway => WeekQuantity::for_company(WeekFigure::CashChange),
+        Problem::NoLeads => WeekQuantity::for_company(WeekFigure::Leads),
+        Problem::NoSales(group) => WeekQuantity::for_group(WeekFigure::Conversion, group),
+        Problem::Overload | Problem::Capacity => WeekQuantity::for_company(WeekFigure::OverloadPeak),
+        Problem::Outages => WeekQuantity::for_company(WeekFigure::Outage),
+        Problem::Backlog => WeekQuantity::for_company(WeekFigure::OpenIssues),
+        Problem::Churn(group) => WeekQuantity::for_group(WeekFigure::Churn, group),
         Problem::Threads
         | Problem::NoPrice
         | Problem::NoQuota
-        | Problem::Unwanted(_)
+        | Problem::NoRequests(_)
         | Problem::LeadCost(..)
         | Problem::Margin => None,
     }

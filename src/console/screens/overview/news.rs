@@ -3,17 +3,17 @@
 use ratatui::layout::Rect;
 
 use super::Overview;
-use super::rows::{self, LinkedRow, walk};
+use super::linked_rows::{self, LinkedRow, move_selection};
 use crate::action::Action;
-use crate::context::{Figure, Look, ScreenId};
+use crate::context::{Figure, ScreenContext, ScreenId};
 use crate::effect::Effect;
-use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
 use crate::screens::product::model::Project;
-use novamind_base::notation::grouped;
-use novamind_database::{Rows, text_at};
+use novamind_base::formatting::grouped_number;
+use novamind_database::{QueryResult, text_at};
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;
-use novamind_worker::company::Company;
+use novamind_worker::company::DisplayedCompany;
 use novamind_worker::posts::PostKind as Author;
 
 pub struct NewsPane;
@@ -23,35 +23,35 @@ impl Pane<Overview> for NewsPane {
         vec![Action::Open]
     }
 
-    fn figure(&self, overview: &Overview, look: &Look<'_>) -> Option<Figure> {
-        overview.news.get(overview.item).map(|item| item.figure(look.company.seen.day))
+    fn figure(&self, overview: &Overview, look: &ScreenContext<'_>) -> Option<Figure> {
+        overview.news.get(overview.selected_item).map(|item| item.figure(look.company.observation.day))
     }
 
-    fn act(&self, overview: &mut Overview, action: Action, _: &Look<'_>) -> Vec<Effect> {
+    fn handle_action(&self, overview: &mut Overview, action: Action, _: &ScreenContext<'_>) -> Vec<Effect> {
         if action == Action::Open {
-            return overview.news.get(overview.item).map(NewsItem::way).into_iter().collect();
+            return overview.news.get(overview.selected_item).map(NewsItem::effect).into_iter().collect();
         }
-        walk(&mut overview.item, overview.news.len(), action);
+        move_selection(&mut overview.selected_item, overview.news.len(), action);
         Vec::new()
     }
 
-    fn click(&self, overview: &mut Overview, row: usize, look: &Look<'_>) -> Vec<Effect> {
-        let again = overview.item == row;
-        overview.item = row.min(overview.news.len().saturating_sub(1));
-        if again { self.act(overview, Action::Open, look) } else { Vec::new() }
+    fn handle_click(&self, overview: &mut Overview, row: usize, look: &ScreenContext<'_>) -> Vec<Effect> {
+        let again = overview.selected_item == row;
+        overview.selected_item = row.min(overview.news.len().saturating_sub(1));
+        if again { self.handle_action(overview, Action::Open, look) } else { Vec::new() }
     }
 
-    fn border(&self, _: &Overview, _: Rect, _: &Look<'_>) -> Border {
-        Border { title: "New this week".to_owned(), ..Border::default() }
+    fn border(&self, _: &Overview, _: Rect, _: &ScreenContext<'_>) -> PaneBorder {
+        PaneBorder { title: "New this week".to_owned(), ..PaneBorder::default() }
     }
 
-    fn draw(&self, overview: &Overview, canvas: &mut Canvas<'_>, seat: Seat, _: &Look<'_>) {
+    fn draw(&self, overview: &Overview, canvas: &mut Canvas<'_>, seat: PanePlacement, _: &ScreenContext<'_>) {
         if overview.news.is_empty() {
-            canvas.text(seat.area, "nothing", Role::Dim);
+            canvas.draw_text(seat.area, "nothing", Role::Dim);
         }
-        let row = |item: &NewsItem| LinkedRow::to(item.screen(), item.text.clone(), false);
+        let row = |item: &NewsItem| LinkedRow::new(item.screen(), item.text.clone(), false);
         let rows: Vec<LinkedRow> = overview.news.iter().map(row).collect();
-        rows::draw(canvas, seat, &rows, overview.item);
+        linked_rows::draw(canvas, seat, &rows, overview.selected_item);
     }
 }
 
@@ -82,7 +82,7 @@ impl NewsItem {
     }
 
     /// Opens the details.
-    pub fn way(&self) -> Effect {
+    pub fn effect(&self) -> Effect {
         Effect::Show(self.screen())
     }
 
@@ -106,12 +106,12 @@ impl NewsItem {
                 ),
             ),
         };
-        Figure { title: self.text.clone(), term, sql: Some(sql), why: None }
+        Figure { title: self.text.clone(), term, sql: Some(sql), week_quantity: None }
     }
 }
 
 /// Returns the news from the notices of a week, newest first.
-pub fn of_notices(rows: &Rows) -> Vec<NewsItem> {
+pub fn notice_items(rows: &QueryResult) -> Vec<NewsItem> {
     let mut items = Vec::new();
     for row in &rows.rows {
         let kind = match text_at(row, 1) {
@@ -126,8 +126,8 @@ pub fn of_notices(rows: &Rows) -> Vec<NewsItem> {
 }
 
 /// Returns the R&D projects completed in the last week, with the quality that they add.
-pub fn of_research(projects: &[Project], day: u32) -> Vec<NewsItem> {
-    let ended = |project: &&Project| project.done && project.expected + 7 > day && project.expected <= day;
+pub fn research_items(projects: &[Project], day: u32) -> Vec<NewsItem> {
+    let ended = |project: &&Project| project.done && project.expected_day + 7 > day && project.expected_day <= day;
     let words = |project: &Project| NewsItem {
         kind: NewsKind::Research,
         text: format!("R&D {} completed: {:+.4} quality for every group", project.id, project.boost),
@@ -136,8 +136,8 @@ pub fn of_research(projects: &[Project], day: u32) -> Vec<NewsItem> {
 }
 
 /// Counts of posts and press items in the last week.
-pub fn of_posts(company: &Company) -> Vec<NewsItem> {
-    let day = company.seen.day;
+pub fn post_items(company: &DisplayedCompany) -> Vec<NewsItem> {
+    let day = company.observation.day;
     // Posts of the last week and of the four weeks before, newest first.
     let (mut own, mut before, mut press) = (0u32, 0u32, 0u32);
     for post in company.posts.iter().take_while(|post| post.day + 35 > day) {
@@ -151,7 +151,7 @@ pub fn of_posts(company: &Company) -> Vec<NewsItem> {
     }
     // Early in a run there are fewer weeks to compare with.
     let weeks = (day / 7).saturating_sub(1).min(4);
-    let usual = grouped(f64::from(before) / f64::from(weeks.max(1)), 0);
+    let usual = grouped_number(f64::from(before) / f64::from(weeks.max(1)), 0);
     let compared = match weeks {
         0 => String::new(),
         1 => format!(" ({usual} the week before)"),

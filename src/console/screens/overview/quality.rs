@@ -5,23 +5,23 @@ use unicode_width::UnicodeWidthStr;
 
 use super::Overview;
 use crate::action::Action;
-use crate::context::{Figure, Look, ScreenId};
+use crate::context::{Figure, ScreenContext, ScreenId};
 use crate::effect::Effect;
-use crate::screens::panes::{Border, Pane, Seat};
-use novamind_report::fit::Beside;
+use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
+use novamind_report::fit::RangePosition;
 use novamind_session::DeliveredQuality;
 use novamind_session::identifiers::Plan;
 use novamind_tools::ToolId;
 use novamind_tui::canvas::Canvas;
-use novamind_tui::text::number;
+use novamind_tui::text::format_number;
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::chart::note_room;
-use novamind_tui::widgets::{Cell, Column, Table};
-use novamind_worker::company::Company;
+use novamind_tui::widgets::chart::note_width;
+use novamind_tui::widgets::{TableCell, TableColumn, Table};
+use novamind_worker::company::DisplayedCompany;
 
 /// Columns of the required quality and of the bonus from targeted development.
-const FLOOR: usize = 4;
-const BONUS: usize = 6;
+const REQUIRED_QUALITY_COLUMN: usize = 4;
+const BONUS_COLUMN: usize = 6;
 
 pub struct QualityPane;
 
@@ -38,69 +38,69 @@ impl Pane<Overview> for QualityPane {
         vec![Action::Rows, Action::Sort, Action::Open]
     }
 
-    fn figure(&self, overview: &Overview, look: &Look<'_>) -> Option<Figure> {
+    fn figure(&self, overview: &Overview, look: &ScreenContext<'_>) -> Option<Figure> {
         let group = look.company.quality.get(overview.quality.selected()?)?.group;
         let column = overview.quality.selected_column();
         let of = match column.checked_sub(1).and_then(|at| Plan::ALL.get(at)) {
             Some(plan) => format!("on plan {plan}"),
-            None if (FLOOR..BONUS).contains(&column) => {
+            None if (REQUIRED_QUALITY_COLUMN..BONUS_COLUMN).contains(&column) => {
                 let title = format!("required quality of {group}");
                 let sql = format!("SELECT * FROM group_info_levels WHERE group_id = '{group}'");
-                return Some(Figure { title, term: "fit", sql: Some(sql), why: None });
+                return Some(Figure { title, term: "fit", sql: Some(sql), week_quantity: None });
             }
             None => "from targeted development".to_owned(),
         };
         let title = format!("delivered quality of {group} {of}");
-        Some(Figure { title, term: "delivered-quality", sql: None, why: None })
+        Some(Figure { title, term: "delivered-quality", sql: None, week_quantity: None })
     }
 
-    fn act(&self, overview: &mut Overview, action: Action, look: &Look<'_>) -> Vec<Effect> {
+    fn handle_action(&self, overview: &mut Overview, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
         if action == Action::Open {
             let row = overview.quality.selected().and_then(|row| look.company.quality.get(row));
             return row.map(|own| Effect::ShowGroup(ScreenId::Customers, own.group)).into_iter().collect();
         }
-        overview.quality.act(action, look.page);
+        overview.quality.handle_action(action, look.page_rows);
         Vec::new()
     }
 
-    fn border(&self, _: &Overview, area: Rect, look: &Look<'_>) -> Border {
+    fn border(&self, _: &Overview, area: Rect, look: &ScreenContext<'_>) -> PaneBorder {
         let (base, shared) = look.company.quality_base;
         let title = "Delivered quality";
         let full = format!("base {base:.2} · general {shared:+.4}");
-        let note = if full.width() <= note_room(area, title) { full } else { String::new() };
-        Border { title: title.to_owned(), note, ..Border::default() }
+        let note = if full.width() <= note_width(area, title) { full } else { String::new() };
+        PaneBorder { title: title.to_owned(), note, ..PaneBorder::default() }
     }
 
-    fn draw(&self, overview: &Overview, canvas: &mut Canvas<'_>, seat: Seat, _: &Look<'_>) {
-        overview.quality.draw(canvas, seat.area, seat.focused, seat.number);
+    fn draw(&self, overview: &Overview, canvas: &mut Canvas<'_>, seat: PanePlacement, _: &ScreenContext<'_>) {
+        overview.quality.draw(canvas, seat.area, seat.focused, seat.index);
     }
 }
 
-pub fn table_of(company: &Company) -> (Vec<Column>, Vec<Vec<Cell>>) {
-    let tier = |plan: &Plan| number(company.setting(ToolId::SetModelTiers, plan.id()));
-    let plans = Plan::ALL.iter().map(|plan| Column::numbers(format!("{plan} tier {}", tier(plan))));
-    let known = ["required", "as of"].map(Column::numbers);
-    let columns = [Column::words("group")].into_iter().chain(plans).chain(known);
-    let columns = columns.chain([Column::numbers("targeted")]);
+pub fn table_of(company: &DisplayedCompany) -> (Vec<TableColumn>, Vec<Vec<TableCell>>) {
+    let tier = |plan: &Plan| format_number(company.setting(ToolId::SetModelTiers, plan.id()));
+    let plans = Plan::ALL.iter().map(|plan| TableColumn::numeric(format!("{plan} tier {}", tier(plan))));
+    let known = ["required", "as of"].map(TableColumn::numeric);
+    let columns = [TableColumn::text("group")].into_iter().chain(plans).chain(known);
+    let columns = columns.chain([TableColumn::numeric("targeted")]);
     let row = |quality: &DeliveredQuality| {
         let bonus = match quality.group_bonus {
-            bonus if bonus > 0.0 => Cell::number(bonus, format!("+{bonus:.4}")),
-            _ => Cell::number(0.0, "–").role(Role::Dim),
+            bonus if bonus > 0.0 => TableCell::from_number(bonus, format!("+{bonus:.4}")),
+            _ => TableCell::from_number(0.0, "–").with_role(Role::Dim),
         };
         let fit = company.fit(quality.group);
         let plans = quality.by_plan.0.map(|value| {
-            let role = match fit.map(|fit| fit.floor.beside(value)) {
-                Some(Beside::Below) => Role::Bad,
-                Some(Beside::Above) => Role::Good,
+            let role = match fit.map(|fit| fit.floor.position_of(value)) {
+                Some(RangePosition::Below) => Role::Bad,
+                Some(RangePosition::Above) => Role::Good,
                 _ => Role::Text,
             };
-            Cell::number(value, format!("{value:.4}")).role(role)
+            TableCell::from_number(value, format!("{value:.4}")).with_role(role)
         });
-        let none = || Cell::words("–").role(Role::Dim);
-        let floor = fit.map_or_else(none, |fit| Cell::number(fit.floor.least, fit.floor.quality()));
+        let none = || TableCell::from_text("–").with_role(Role::Dim);
+        let floor = fit.map_or_else(none, |fit| TableCell::from_number(fit.floor.least, fit.floor.format_quality()));
         let as_of =
-            fit.map_or_else(none, |fit| Cell::number(f64::from(fit.as_of), format!("day {}", fit.as_of)));
-        let name = [Cell::words(quality.group.id()).role(Role::Strong)];
+            fit.map_or_else(none, |fit| TableCell::from_number(f64::from(fit.study_day), format!("day {}", fit.study_day)));
+        let name = [TableCell::from_text(quality.group.id()).with_role(Role::Strong)];
         name.into_iter().chain(plans).chain([floor, as_of, bonus]).collect()
     };
     (columns.collect(), company.quality.iter().map(row).collect())

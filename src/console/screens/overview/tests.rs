@@ -2,14 +2,14 @@ use super::*;
 use crate::context::ScreenId;
 use crate::effect::Effect;
 use crate::screens::Screen;
-use crate::test_kit::{act, asked, courted, drawn, on_screen, played, shown};
+use crate::test_kit::{handle_action, asked, session_with_negotiations, screen_text, played_screen, played_session, loaded_screen};
 use news::NewsKind;
 use novamind_database::Cell as Value;
-use novamind_report::needs::{Place, Problem};
+use novamind_report::action_items::{ActionTarget, Problem};
 use novamind_session::Session;
-use novamind_worker::questions::CallCheck;
+use novamind_worker::page_questions::CallCheck;
 
-fn sum_of(session: &mut Session, sql: &str, column: &str) -> f64 {
+fn sum_column(session: &mut Session, sql: &str, column: &str) -> f64 {
     let rows = session.query(&format!("SELECT {column} FROM ({sql})")).expect("an answer");
     match rows.rows[0][0] {
         Value::Integer(number) => number as f64,
@@ -19,10 +19,10 @@ fn sum_of(session: &mut Session, sql: &str, column: &str) -> f64 {
 }
 
 #[test]
-fn every_figure_of_the_week_is_made_of_its_rows() {
-    let mut session = played(7);
-    let company = Company::of(&session);
-    let week = company.seen.last_week.expect("a week");
+fn week_figures_equal_their_rows() {
+    let mut session = played_session(7);
+    let company = DisplayedCompany::from_session(&session);
+    let week = company.observation.last_week.expect("a week");
     let before = company.weeks[company.weeks.len() - 2];
     for (name, column) in [
         ("cash at week's end", "sum(amount)"),
@@ -48,7 +48,7 @@ fn every_figure_of_the_week_is_made_of_its_rows() {
                 assert!(place == 4, "{name}");
                 continue;
             };
-            let (shown, made) = ((metric.read)(figures), sum_of(&mut session, &sql, column));
+            let (shown, made) = ((metric.read)(figures), sum_column(&mut session, &sql, column));
             assert!(
                 (shown - made).abs() < 0.02,
                 "{name} in column {place}: {shown}, rows make {made}: {sql}"
@@ -58,88 +58,88 @@ fn every_figure_of_the_week_is_made_of_its_rows() {
 }
 
 #[test]
-fn the_selected_figure_names_figure_and_weeks() {
-    let (mut session, company, mut screen) = on_screen::<Overview>(6);
-    let keys = crate::keys::Keys::shipped();
-    let look = Look { company: &company, keys: &keys, page: 5 };
-    screen.focus_on(OverviewPane::Week);
+fn selected_figure_title_has_name_and_weeks() {
+    let (mut session, company, mut screen) = played_screen::<Overview>(6);
+    let keys = crate::keys::KeyBindings::bundled();
+    let look = ScreenContext { company: &company, keys: &keys, page_rows: 5 };
+    screen.set_focused_pane(OverviewPane::Week);
     let title = |screen: &Overview| screen.figure(&look).expect("a figure").title;
     assert_eq!(title(&screen), "cash at week's end, week 6");
     for _ in 0..4 {
-        act(&mut screen, Action::Right, &company);
+        handle_action(&mut screen, Action::Right, &company);
     }
-    act(&mut screen, Action::Down, &company);
+    handle_action(&mut screen, Action::Down, &company);
     assert_eq!(title(&screen), "recurring revenue, weeks 3 to 6");
-    screen.focus_on(OverviewPane::Quality);
+    screen.set_focused_pane(OverviewPane::Quality);
     assert_eq!(title(&screen), "delivered quality of E1 on plan A");
-    screen.focus_on(OverviewPane::Cash);
+    screen.set_focused_pane(OverviewPane::Cash);
     assert_eq!(title(&screen), "cash at week's end, week 6");
-    for pane in 0..Screen::panes(&screen) {
+    for pane in 0..Screen::pane_count(&screen) {
         screen.set_focus(pane);
         for _ in 0..METRICS.len() {
             if let Some(sql) = screen.figure(&look).and_then(|figure| figure.sql) {
                 session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
             }
-            act(&mut screen, Action::Down, &company);
+            handle_action(&mut screen, Action::Down, &company);
         }
     }
 }
 
 #[test]
-fn every_need_leads_to_its_object_and_names_its_rows() {
-    let mut session = courted();
-    let company = Company::of(&session);
-    let mut screen: Overview = shown(&mut session, &company);
-    assert!(company.needs.iter().any(|need| need.problem == Problem::Threads), "{:#?}", company.needs);
-    for need in &company.needs {
-        let effects = act(&mut screen, Action::Open, &company);
-        match (&need.place, &effects[..]) {
-            (Place::Call(tool, _), [Effect::Prefill { tool: shown, .. }]) => assert_eq!(tool, shown),
-            (Place::Thread(number), [Effect::ShowThread(shown)]) => assert_eq!(number, shown),
-            (Place::Group(group), [Effect::ShowGroup(ScreenId::Customers, shown)]) => {
+fn every_need_opens_its_object_and_has_source_rows() {
+    let mut session = session_with_negotiations();
+    let company = DisplayedCompany::from_session(&session);
+    let mut screen: Overview = loaded_screen(&mut session, &company);
+    assert!(company.action_items.iter().any(|need| need.problem == Problem::Threads), "{:#?}", company.action_items);
+    for need in &company.action_items {
+        let effects = handle_action(&mut screen, Action::Open, &company);
+        match (&need.target, &effects[..]) {
+            (ActionTarget::Call(tool, _), [Effect::Prefill { tool: shown, .. }]) => assert_eq!(tool, shown),
+            (ActionTarget::Thread(number), [Effect::ShowThread(shown)]) => assert_eq!(number, shown),
+            (ActionTarget::Group(group), [Effect::ShowGroup(ScreenId::Customers, shown)]) => {
                 assert_eq!(group, shown)
             }
-            (Place::Books, [Effect::Show(ScreenId::Cash)]) => {}
+            (ActionTarget::Ledger, [Effect::Show(ScreenId::Cash)]) => {}
             other => panic!("{other:?}"),
         }
-        if let Some(sql) = needs::figure_of(need, company.seen.day).sql {
+        if let Some(sql) = needs::figure_of(need, company.observation.day).sql {
             session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
         }
-        act(&mut screen, Action::Down, &company);
+        handle_action(&mut screen, Action::Down, &company);
     }
 }
 
 #[test]
-fn what_is_selected_is_explained_by_a_term_or_a_tool() {
-    let company = Company::of(&played(7));
-    let day = company.seen.day;
-    let needs = company.needs.iter().map(|need| needs::figure_of(need, day).term);
+fn every_selection_has_a_term_or_tool() {
+    let company = DisplayedCompany::from_session(&played_session(7));
+    let day = company.observation.day;
+    let needs = company.action_items.iter().map(|need| needs::figure_of(need, day).term);
     let metrics = METRICS.iter().map(|metric| metric.term);
     let kinds = [NewsKind::Research, NewsKind::Study, NewsKind::Economy, NewsKind::Posts, NewsKind::Press];
     let news = kinds.map(|kind| news::NewsItem { kind, text: String::new() }.figure(day).term);
     for term in needs.chain(metrics).chain(news) {
-        let kind = novamind_glossary::subject(term).map(|subject| subject.kind());
+        let kind = novamind_glossary::subject_by_name(term).map(|subject| subject.kind());
         assert!(matches!(kind, Some("term" | "tool")), "{term}: {kind:?}");
     }
 }
 
 #[test]
-fn the_waiting_threads_are_the_rows_of_their_need() {
-    let mut session = courted();
-    let company = Company::of(&session);
-    let need = company.needs.iter().find(|need| need.problem == Problem::Threads).expect("threads wait");
-    let sql = needs::figure_of(need, company.seen.day).sql.expect("rows");
-    let open = sum_of(&mut session, &sql, "count(*)");
-    assert_eq!(open, company.seen.waiting.len() as f64);
+fn waiting_threads_need_lists_those_threads() {
+    let mut session = session_with_negotiations();
+    let company = DisplayedCompany::from_session(&session);
+    let need = company.action_items.iter().find(|need| need.problem == Problem::Threads).expect("threads wait");
+    let sql = needs::figure_of(need, company.observation.day).sql.expect("rows");
+    let open = sum_column(&mut session, &sql, "count(*)");
+    assert_eq!(open, company.observation.waiting.len() as f64);
 }
 
 #[test]
-fn a_proposed_call_is_typed_into_its_form_and_can_be_sent() {
-    let mut session = played(0);
-    let company = Company::of(&session);
-    let need = &company.needs[0];
+fn proposed_call_fills_the_form() {
+    let mut session = played_session(0);
+    let company = DisplayedCompany::from_session(&session);
+    let need = &company.action_items[0];
     assert_eq!(need.problem, Problem::NoPrice);
-    let Effect::Prefill { tool, arguments } = needs::way_of(need) else { panic!("{need:?}") };
+    let Effect::Prefill { tool, arguments } = needs::need_effect(need) else { panic!("{need:?}") };
     let mut tools = crate::screens::tools::Tools::default();
     let effects = tools.prefill(tool, &arguments, &company);
     let checked = asked::<CallCheck>(&effects);
@@ -150,18 +150,18 @@ fn a_proposed_call_is_typed_into_its_form_and_can_be_sent() {
 }
 
 #[test]
-fn no_word_of_a_need_is_cut_while_there_is_room() {
-    let (_, company, screen) = on_screen::<Overview>(0);
+fn needs_are_not_truncated_if_they_fit() {
+    let (_, company, screen) = played_screen::<Overview>(0);
     for (width, height) in [(80, 21), (120, 37), (200, 57)] {
-        let text = drawn(&screen, &company, width, height);
-        let last = company.needs[0].text.split_whitespace().next_back().expect("a word");
+        let text = screen_text(&screen, &company, width, height);
+        let last = company.action_items[0].text.split_whitespace().next_back().expect("a word");
         assert!(text.contains(last), "{last} in\n{text}");
         for words in ["This week", "Action needed", "Cash", "individual leads", "→ Tools"] {
             assert!(text.contains(words), "{words} in\n{text}");
         }
     }
-    let (_, company, screen) = on_screen::<Overview>(9);
-    let large = drawn(&screen, &company, 200, 57);
+    let (_, company, screen) = played_screen::<Overview>(9);
+    let large = screen_text(&screen, &company, 200, 57);
     for words in
         ["Usage against capacity", "4-wk mean", "Delivered quality", "expected", "95 %", "New this week"]
     {
@@ -170,21 +170,21 @@ fn no_word_of_a_need_is_cut_while_there_is_room() {
 }
 
 #[test]
-fn cash_changes_in_the_first_week_as_the_header_says() {
-    let company = Company::of(&played(1));
+fn first_week_cash_change_matches_the_header() {
+    let company = DisplayedCompany::from_session(&played_session(1));
     let row = figures::row_of(&METRICS[0], &company);
     assert_eq!(METRICS[0].name, "cash at week's end");
     let change = row[2].number.expect("a change");
-    assert!((change - company.seen.cash_change).abs() < 0.01, "{row:?}");
-    assert_eq!(row[4].number, Some(company.seen.starting_cash), "{row:?}");
+    assert!((change - company.observation.cash_change).abs() < 0.01, "{row:?}");
+    assert_eq!(row[4].number, Some(company.observation.starting_cash), "{row:?}");
 }
 
 #[test]
-fn posts_are_compared_with_the_weeks_there_were() {
+fn post_counts_are_compared_with_existing_weeks() {
     for (weeks, words) in
         [(1, ""), (2, "the week before"), (3, "on average in the 2 weeks before"), (6, "four-week average")]
     {
-        let company = Company::of(&played(weeks));
+        let company = DisplayedCompany::from_session(&played_session(weeks));
         let by_people = |post: &&std::sync::Arc<novamind_worker::posts::Post>| {
             post.kind != novamind_worker::posts::PostKind::Press
         };
@@ -194,9 +194,9 @@ fn posts_are_compared_with_the_weeks_there_were() {
         let last = weeks as u32;
         let before: Vec<f64> = (last.saturating_sub(4).max(1)..last).map(|week| of(week) as f64).collect();
         let usual =
-            novamind_base::notation::grouped(before.iter().sum::<f64>() / before.len().max(1) as f64, 0);
+            novamind_base::formatting::grouped_number(before.iter().sum::<f64>() / before.len().max(1) as f64, 0);
         let told =
-            news::of_posts(&company).into_iter().find(|item| item.kind == NewsKind::Posts).expect("posts");
+            news::post_items(&company).into_iter().find(|item| item.kind == NewsKind::Posts).expect("posts");
         assert!(told.text.starts_with(&format!("{} new post", of(last))), "{}", told.text);
         let compared = told.text.split_once('(').map_or("", |(_, compared)| compared);
         assert!(

@@ -5,9 +5,9 @@ use ratatui::layout::Rect;
 use super::Overview;
 use super::figures::{self, METRICS};
 use crate::action::Action;
-use crate::context::{Figure, Look, ScreenId};
+use crate::context::{Figure, ScreenContext, ScreenId};
 use crate::effect::Effect;
-use crate::screens::panes::{Border, Pane, Seat};
+use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
 use novamind_session::week_of;
 use novamind_tui::canvas::Canvas;
 use novamind_tui::widgets::Table;
@@ -27,33 +27,33 @@ impl Pane<Overview> for WeekPane {
         vec![Action::Rows, Action::Sort, Action::Open]
     }
 
-    fn figure(&self, overview: &Overview, look: &Look<'_>) -> Option<Figure> {
+    fn figure(&self, overview: &Overview, look: &ScreenContext<'_>) -> Option<Figure> {
         let metric = METRICS.get(overview.week.selected()?)?;
         Some(figures::figure(metric, overview.week.selected_column(), look.company))
     }
 
-    fn act(&self, overview: &mut Overview, action: Action, look: &Look<'_>) -> Vec<Effect> {
+    fn handle_action(&self, overview: &mut Overview, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
         if action == Action::Open {
             let metric = overview.week.selected().and_then(|row| METRICS.get(row));
             return metric.map(|metric| Effect::Show(screen_of(metric.term))).into_iter().collect();
         }
-        overview.week.act(action, look.page);
+        overview.week.handle_action(action, look.page_rows);
         Vec::new()
     }
 
-    fn border(&self, overview: &Overview, _: Rect, look: &Look<'_>) -> Border {
-        let note = match overview.week.note() {
-            note if note.is_empty() => match &look.company.seen.last_week {
+    fn border(&self, overview: &Overview, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
+        let note = match overview.week.summary() {
+            note if note.is_empty() => match &look.company.observation.last_week {
                 Some(week) => format!("week {} · to day {}", week_of(week.day), week.day),
                 None => "no week yet".to_owned(),
             },
             note => note,
         };
-        Border { title: "This week".to_owned(), note, ..Border::default() }
+        PaneBorder { title: "This week".to_owned(), note, ..PaneBorder::default() }
     }
 
-    fn draw(&self, overview: &Overview, canvas: &mut Canvas<'_>, seat: Seat, _: &Look<'_>) {
-        overview.week.draw(canvas, seat.area, seat.focused, seat.number);
+    fn draw(&self, overview: &Overview, canvas: &mut Canvas<'_>, seat: PanePlacement, _: &ScreenContext<'_>) {
+        overview.week.draw(canvas, seat.area, seat.focused, seat.index);
     }
 }
 

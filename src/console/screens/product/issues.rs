@@ -4,53 +4,53 @@ use std::collections::BTreeMap;
 
 use ratatui::layout::Rect;
 
-use super::model::Ages;
-use super::part::{ProductPart, cell};
+use super::model::IssueAges;
+use super::panel::{ProductPanel, show_cell_effect};
 use super::{Product, ProductPane};
 use crate::context::Figure;
 use crate::effect::Effect;
-use crate::screens::panes::Seat;
-use novamind_base::notation::grouped;
+use crate::screens::panes::PanePlacement;
+use novamind_base::formatting::grouped_number;
 use novamind_insight::WeekQuantity;
 use novamind_record::figures::WeekFigure;
 use novamind_session::identifiers::Group;
 use novamind_tools::ToolId;
-use novamind_tui::canvas::{Canvas, Click, rows_of};
+use novamind_tui::canvas::{Canvas, Click, row_rects};
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::table::first_row;
-use novamind_worker::company::Company;
+use novamind_tui::widgets::table::first_visible_row;
+use novamind_worker::company::DisplayedCompany;
 
 /// Bar glyphs by age, newest first; older issues are denser.
-const SHADES: [char; 4] = ['░', '▒', '▓', '█'];
+const AGE_SYMBOLS: [char; 4] = ['░', '▒', '▓', '█'];
 
-const FIGURES: u16 = 45;
+const FIGURES_WIDTH: u16 = 45;
 
 /// Summarizes open issues; empty before they are read.
-fn summary(issues: Option<&BTreeMap<String, Ages>>) -> String {
+fn summary(issues: Option<&BTreeMap<String, IssueAges>>) -> String {
     let Some(issues) = issues else { return String::new() };
     let all: f64 = issues.values().flatten().fold(0.0, |sum, count| sum + count);
     let old: f64 = issues.values().fold(0.0, |sum, ages| sum + ages[2] + ages[3]);
-    format!("{} open, {} for 8 days or more", grouped(all, 0), grouped(old, 0))
+    format!("{} open, {} for 8 days or more", grouped_number(all, 0), grouped_number(old, 0))
 }
 
-pub struct Issues;
+pub struct IssuesPane;
 
-impl Issues {
+impl IssuesPane {
     fn group<'a>(&self, product: &'a Product) -> Option<&'a String> {
-        product.issues.as_ref()?.keys().nth(product.place(self.name()))
+        product.issues.as_ref()?.keys().nth(product.selected_row(self.id()))
     }
 }
 
-impl ProductPart for Issues {
-    fn name(&self) -> ProductPane {
+impl ProductPanel for IssuesPane {
+    fn id(&self) -> ProductPane {
         ProductPane::Issues
     }
 
-    fn rows(&self, product: &Product, _: &Company) -> usize {
+    fn row_count(&self, product: &Product, _: &DisplayedCompany) -> usize {
         product.issues.as_ref().map_or(0, BTreeMap::len)
     }
 
-    fn summary(&self, product: &Product, _: &Company, _: usize) -> String {
+    fn summary(&self, product: &Product, _: &DisplayedCompany, _: usize) -> String {
         summary(product.issues.as_ref())
     }
 
@@ -58,11 +58,11 @@ impl ProductPart for Issues {
         ToolId::SetTargetedOpsSpend.name()
     }
 
-    fn open(&self, product: &Product, _: &Company) -> Effect {
-        cell(ToolId::SetTargetedOpsSpend, self.group(product).cloned())
+    fn open_effect(&self, product: &Product, _: &DisplayedCompany) -> Effect {
+        show_cell_effect(ToolId::SetTargetedOpsSpend, self.group(product).cloned())
     }
 
-    fn selected(&self, product: &Product, company: &Company) -> Option<Figure> {
+    fn selected_figure(&self, product: &Product, company: &DisplayedCompany) -> Option<Figure> {
         let group = self.group(product)?;
         let sql = format!(
             "SELECT i.issue_id, i.customer_id, i.open_day, i.days_open\n\
@@ -72,58 +72,58 @@ impl ProductPart for Issues {
         );
         let title = format!("open issues of {group}");
         let quantity =
-            Group::parse(group).and_then(|group| WeekQuantity::of_group(WeekFigure::OpenIssues, group));
-        let figure = Figure { title, term: "issue", sql: Some(sql), why: None };
-        Some(figure.of_week(quantity, company.seen.week))
+            Group::parse(group).and_then(|group| WeekQuantity::for_group(WeekFigure::OpenIssues, group));
+        let figure = Figure { title, term: "issue", sql: Some(sql), week_quantity: None };
+        Some(figure.with_week_quantity(quantity, company.observation.week))
     }
 
-    fn paint(&self, product: &Product, canvas: &mut Canvas<'_>, seat: Seat, _: &Company) {
+    fn draw_content(&self, product: &Product, canvas: &mut Canvas<'_>, seat: PanePlacement, _: &DisplayedCompany) {
         draw(product, canvas, seat);
     }
 }
 
 /// Draws a row with all groups, then one row per group. All bars share one scale.
-fn draw(product: &Product, canvas: &mut Canvas<'_>, seat: Seat) {
-    let (area, selected) = (seat.area, product.place(ProductPane::Issues));
+fn draw(product: &Product, canvas: &mut Canvas<'_>, seat: PanePlacement) {
+    let (area, selected) = (seat.area, product.selected_row(ProductPane::Issues));
     let head = ["to 3 d", "4-7 d", "8-14 d", "15+ d", "all"].map(str::to_owned);
-    canvas.text(area, &line("group", &head), Role::Header);
+    canvas.draw_text(area, &line("group", &head), Role::Header);
     if area.height < 2 {
         return;
     }
     let below = Rect { y: area.y + 1, height: area.height - 1, ..area };
     let Some(issues) = product.issues.as_ref().filter(|issues| !issues.is_empty()) else {
         let words = if product.issues.is_some() { "No open issues" } else { "reading …" };
-        return canvas.text(below, words, Role::Dim);
+        return canvas.draw_text(below, words, Role::Dim);
     };
-    if area.width > FIGURES + 22 {
-        let place = Rect { x: area.x + FIGURES + 2, width: area.width - FIGURES - 2, height: 1, ..area };
-        canvas.text(place, "░ new … █ old", Role::Dim);
+    if area.width > FIGURES_WIDTH + 22 {
+        let place = Rect { x: area.x + FIGURES_WIDTH + 2, width: area.width - FIGURES_WIDTH - 2, height: 1, ..area };
+        canvas.draw_text(place, "░ new … █ old", Role::Dim);
     }
-    let mut all: Ages = [0.0; 4];
+    let mut all: IssueAges = [0.0; 4];
     for ages in issues.values() {
         all.iter_mut().zip(ages).for_each(|(sum, count)| *sum += count);
     }
     let whole = issues.values().map(|ages| ages.iter().sum::<f64>()).fold(1.0, f64::max);
     let first = Rect { height: 1, ..below };
-    canvas.text(first, &line("all", &cells(&all)), Role::Strong);
+    canvas.draw_text(first, &line("all", &cells(&all)), Role::Strong);
     let below = Rect { y: below.y + 1, height: below.height - 1, ..below };
     if seat.focused {
-        canvas.page = below.height.max(1);
+        canvas.page_rows = below.height.max(1);
     }
-    let from = first_row(selected, below.height as usize, issues.len());
-    for (row, (at, (group, ages))) in rows_of(below).zip(issues.iter().enumerate().skip(from)) {
+    let from = first_visible_row(selected, below.height as usize, issues.len());
+    for (row, (at, (group, ages))) in row_rects(below).zip(issues.iter().enumerate().skip(from)) {
         let role = match (seat.focused && at == selected, ages[3] > 0.0) {
             (true, _) => Role::Selection,
             (false, true) => Role::Warning,
             (false, false) => Role::Text,
         };
         canvas.clear(row, role);
-        canvas.text(row, &line(group, &cells(ages)), role);
-        canvas.click(row, Click::Row(seat.number, at));
-        if row.width > FIGURES + 8 {
-            let place = Rect { x: row.x + FIGURES + 2, width: row.width - FIGURES - 2, ..row };
-            let text = stacked(ages, whole, place.width as usize);
-            canvas.text(place, &text, if role == Role::Selection { role } else { Role::Series(0) });
+        canvas.draw_text(row, &line(group, &cells(ages)), role);
+        canvas.register_click(row, Click::Row(seat.index, at));
+        if row.width > FIGURES_WIDTH + 8 {
+            let place = Rect { x: row.x + FIGURES_WIDTH + 2, width: row.width - FIGURES_WIDTH - 2, ..row };
+            let text = stacked_bar(ages, whole, place.width as usize);
+            canvas.draw_text(place, &text, if role == Role::Selection { role } else { Role::Series(0) });
         }
     }
 }
@@ -133,18 +133,18 @@ fn line(name: &str, cells: &[String; 5]) -> String {
     format!("{name:<5}{young:>8}{week:>8}{fortnight:>8}{old:>8}{all:>8}")
 }
 
-fn cells(ages: &Ages) -> [String; 5] {
+fn cells(ages: &IssueAges) -> [String; 5] {
     let [young, week, fortnight, old] = *ages;
     [young, week, fortnight, old, ages.iter().sum()].map(|count| match count {
         0.0 => "–".to_owned(),
-        count => grouped(count, 0),
+        count => grouped_number(count, 0),
     })
 }
 
 /// Returns the ages of a group as one bar, relative to the group with the most issues.
-fn stacked(ages: &Ages, whole: f64, width: usize) -> String {
+fn stacked_bar(ages: &IssueAges, whole: f64, width: usize) -> String {
     let (mut text, mut sum, mut drawn) = (String::new(), 0.0, 0);
-    for (count, shade) in ages.iter().zip(SHADES) {
+    for (count, shade) in ages.iter().zip(AGE_SYMBOLS) {
         sum += count;
         let to = (sum / whole * width as f64).round() as usize;
         text.extend(std::iter::repeat_n(shade, to.saturating_sub(drawn)));
@@ -158,10 +158,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bars_are_as_long_as_the_share_and_denser_with_age() {
-        assert_eq!(stacked(&[5.0, 0.0, 2.0, 3.0], 10.0, 10), "░░░░░▓▓███");
-        assert_eq!(stacked(&[1.0, 0.0, 0.0, 1.0], 10.0, 10), "░█");
-        assert_eq!(stacked(&[0.0; 4], 1.0, 10), "");
+    fn stacked_bar_length_is_the_share_and_shade_the_age() {
+        assert_eq!(stacked_bar(&[5.0, 0.0, 2.0, 3.0], 10.0, 10), "░░░░░▓▓███");
+        assert_eq!(stacked_bar(&[1.0, 0.0, 0.0, 1.0], 10.0, 10), "░█");
+        assert_eq!(stacked_bar(&[0.0; 4], 1.0, 10), "");
         assert_eq!(summary(Some(&BTreeMap::new())), "0 open, 0 for 8 days or more");
         assert_eq!(summary(None), "");
     }

@@ -3,7 +3,7 @@
 mod capacity;
 mod issues;
 pub mod model;
-mod part;
+mod panel;
 mod plans;
 mod quality;
 mod research;
@@ -16,16 +16,16 @@ use std::collections::BTreeMap;
 use ratatui::layout::{Constraint, Layout, Rect};
 use strum::VariantArray;
 
-use self::model::{Ages, Day, PlanFacts, Project, ProjectOffer, Rung};
-use self::part::ProductPart;
+use self::model::{IssueAges, ServiceDay, PlanFacts, Project, ProjectOffer, CapacityTier};
+use self::panel::ProductPanel;
 use super::ScreenState;
-use super::panes::{Pane, Paned, draw_pane};
-use crate::context::Look;
-use novamind_database::Rows;
-use novamind_report::plan_margins::Sales;
+use super::panes::{Pane, PaneScreen, draw_pane};
+use crate::context::ScreenContext;
+use novamind_database::QueryResult;
+use novamind_report::plan_margins::PlanSales;
 use novamind_session::Category;
 use novamind_session::identifiers::Plan;
-use novamind_tui::canvas::{Canvas, Click, rows_of};
+use novamind_tui::canvas::{Canvas, Click, row_rects};
 use novamind_tui::theme::Role;
 use novamind_worker::readings::Reading;
 
@@ -59,14 +59,14 @@ impl ProductPane {
         }
     }
 
-    fn part(self) -> &'static dyn ProductPart {
+    fn panel(self) -> &'static dyn ProductPanel {
         match self {
-            ProductPane::Quality => &quality::Quality,
-            ProductPane::Plans => &plans::Plans,
-            ProductPane::Capacity => &capacity::Capacity,
-            ProductPane::Service => &service::Service,
-            ProductPane::Issues => &issues::Issues,
-            ProductPane::Research => &research::Research,
+            ProductPane::Quality => &quality::QualityComponentsPane,
+            ProductPane::Plans => &plans::PlansPane,
+            ProductPane::Capacity => &capacity::CapacityPane,
+            ProductPane::Service => &service::ServicePane,
+            ProductPane::Issues => &issues::IssuesPane,
+            ProductPane::Research => &research::ResearchPane,
         }
     }
 }
@@ -76,32 +76,32 @@ impl ProductPane {
 pub struct Product {
     focus: ProductPane,
     /// Selected row of each pane.
-    places: [usize; ProductPane::VARIANTS.len()],
-    sales: Sales,
+    selected_rows: [usize; ProductPane::VARIANTS.len()],
+    sales: PlanSales,
     plans: [PlanFacts; 3],
-    rungs: Vec<Rung>,
-    days: Vec<Day>,
+    capacity_tiers: Vec<CapacityTier>,
+    days: Vec<ServiceDay>,
     /// Open issues by group; `None` before they are read.
-    issues: Option<BTreeMap<String, Ages>>,
-    column: usize,
+    issues: Option<BTreeMap<String, IssueAges>>,
+    selected_plan: usize,
     projects: Vec<Project>,
     offers: Vec<ProjectOffer>,
-    spent: research::Spent,
+    spending: research::QualitySpending,
     /// Whether the selection was moved to the current capacity tier once.
-    placed: bool,
+    is_ladder_positioned: bool,
 }
 
 impl Product {
-    fn place(&self, pane: ProductPane) -> usize {
-        self.places[pane as usize]
+    fn selected_row(&self, pane: ProductPane) -> usize {
+        self.selected_rows[pane as usize]
     }
 
-    fn place_mut(&mut self, pane: ProductPane) -> &mut usize {
-        &mut self.places[pane as usize]
+    fn selected_row_mut(&mut self, pane: ProductPane) -> &mut usize {
+        &mut self.selected_rows[pane as usize]
     }
 
     fn plan(&self) -> Plan {
-        Plan::ALL[self.column.min(Plan::ALL.len() - 1)]
+        Plan::ALL[self.selected_plan.min(Plan::ALL.len() - 1)]
     }
 
     fn move_focus(&mut self, forward: bool) {
@@ -116,70 +116,70 @@ impl ScreenState for Product {
         &[Reading::Service, Reading::Research, Reading::Subscribers, Reading::Usage, Reading::OpenIssues]
     }
 
-    fn take(&mut self, reading: Reading, rows: &Rows, look: &Look<'_>) {
+    fn apply_rows(&mut self, reading: Reading, rows: &QueryResult, look: &ScreenContext<'_>) {
         match reading {
-            Reading::Service => self.days = model::service(rows),
+            Reading::Service => self.days = model::parse_service_days(rows),
             Reading::Research => self.projects = model::projects(rows),
-            Reading::Subscribers => self.sales.take_subscribers(rows),
-            Reading::Usage => self.sales.take_usage(rows),
+            Reading::Subscribers => self.sales.add_subscribers(rows),
+            Reading::Usage => self.sales.add_usage(rows),
             Reading::OpenIssues => self.issues = Some(model::issues(rows)),
             _ => {}
         }
         self.plans = model::plans(&self.sales, look.company);
     }
 
-    fn renew(&mut self, look: &Look<'_>) {
-        let spent = |category| model::spent(&look.company.weeks, category);
-        self.spent = research::Spent {
+    fn on_company_change(&mut self, look: &ScreenContext<'_>) {
+        let spent = |category| model::weekly_spending(&look.company.weeks, category);
+        self.spending = research::QualitySpending {
             development: spent(Category::Development),
             operations: spent(Category::Operations),
         };
-        self.rungs = model::ladder(look.company);
+        self.capacity_tiers = model::capacity_tiers(look.company);
         self.offers = model::offers(look.company);
         self.plans = model::plans(&self.sales, look.company);
-        if !self.placed {
+        if !self.is_ladder_positioned {
             let (_, set) = capacity::tiers(look.company, &self.days);
-            let rung = self.rungs.iter().position(|rung| rung.tier == set);
-            *self.place_mut(ProductPane::Capacity) = rung.unwrap_or(0);
-            self.placed = true;
+            let rung = self.capacity_tiers.iter().position(|rung| rung.tier == set);
+            *self.selected_row_mut(ProductPane::Capacity) = rung.unwrap_or(0);
+            self.is_ladder_positioned = true;
         }
     }
 }
 
-impl Paned for Product {
-    type Name = ProductPane;
+impl PaneScreen for Product {
+    type PaneId = ProductPane;
 
     fn panes(&self) -> &'static [ProductPane] {
         ProductPane::VARIANTS
     }
 
     fn pane(name: ProductPane) -> &'static dyn Pane<Product> {
-        name.part()
+        name.panel()
     }
 
-    fn focused(&self) -> ProductPane {
+    fn focused_pane(&self) -> ProductPane {
         self.focus
     }
 
-    fn focus_on(&mut self, name: ProductPane) {
+    fn set_focused_pane(&mut self, name: ProductPane) {
         self.focus = name;
     }
 
-    fn arrange(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+    fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
         if area.width >= 104 && area.height >= 32 {
-            self.arrange_all(canvas, area, look);
+            self.draw_wide_layout(canvas, area, look);
         } else {
-            self.arrange_one(canvas, area, look);
+            self.draw_small_layout(canvas, area, look);
         }
     }
 }
 
 impl Product {
     /// Draws all panes in two columns.
-    fn arrange_all(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+    fn draw_wide_layout(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
         use ProductPane::{Capacity, Issues, Plans, Quality, Research, Service};
         let [left, right] = Layout::horizontal([Constraint::Percentage(48), Constraint::Min(0)]).areas(area);
-        let rows = |pane: ProductPane| pane.part().rows(self, look.company) as u16;
+        let rows = |pane: ProductPane| pane.panel().row_count(self, look.company) as u16;
         let quality = (rows(Quality) + 3).min(left.height / 3);
         let plans = (rows(Plans) + 3).min(left.height / 3 + 2);
         let [top, middle, bottom] =
@@ -198,21 +198,21 @@ impl Product {
     }
 
     /// Draws one line per pane, with the focused pane below.
-    fn arrange_one(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+    fn draw_small_layout(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
         let panes = ProductPane::VARIANTS;
         let lines = (panes.len() as u16).min(area.height / 3);
         let [list, below] = Layout::vertical([Constraint::Length(lines), Constraint::Min(0)]).areas(area);
         let from = (self.focus as usize + 1).saturating_sub(lines as usize);
-        for (row, (number, pane)) in rows_of(list).zip(panes.iter().enumerate().skip(from)) {
+        for (row, (number, pane)) in row_rects(list).zip(panes.iter().enumerate().skip(from)) {
             let (mark, role) = match *pane == self.focus {
                 true => ("▸", Role::Title),
                 false => (" ", Role::Text),
             };
             let head = format!("{mark} {:<9} ", pane.title());
             let room = usize::from(row.width).saturating_sub(head.chars().count());
-            let text = head + &pane.part().summary(self, look.company, room);
-            canvas.text(row, &text, role);
-            canvas.click(row, Click::Pane(number));
+            let text = head + &pane.panel().summary(self, look.company, room);
+            canvas.draw_text(row, &text, role);
+            canvas.register_click(row, Click::Pane(number));
         }
         draw_pane(self, self.focus, canvas, below, look);
     }

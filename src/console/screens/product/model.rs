@@ -2,13 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use novamind_database::{Rows, number_at, text_at};
+use novamind_database::{QueryResult, number_at, text_at};
 use novamind_record::figures::WeekFigures;
-use novamind_report::plan_margins::{PlanUse, Sales};
+use novamind_report::plan_margins::{PlanUsage, PlanSales};
 use novamind_session::identifiers::Plan;
 use novamind_session::{Category, ResearchMeans};
 use novamind_tools::{CapacityTierFacts, ResearchTierFacts, ToolId};
-use novamind_worker::company::Company;
+use novamind_worker::company::DisplayedCompany;
 
 /// A plan with its settings and revenue.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -22,39 +22,39 @@ pub struct PlanFacts {
     /// Compute cost, $ per unit.
     pub unit_cost: f64,
     /// Its subscribers, their payments and their usage on the last day.
-    pub sold: PlanUse,
+    pub usage: PlanUsage,
 }
 
 impl PlanFacts {
     /// Returns the compute cost, $ per month and seat.
-    pub fn compute(&self) -> Option<f64> {
-        self.sold.compute(self.unit_cost)
+    pub fn compute_cost_per_seat(&self) -> Option<f64> {
+        self.usage.compute_cost(self.unit_cost)
     }
 
     /// Returns the share of the revenue that remains after compute.
     pub fn margin(&self) -> Option<f64> {
-        self.sold.margin(self.unit_cost)
+        self.usage.margin(self.unit_cost)
     }
 }
 
 /// Returns the plans with their settings and sales.
-pub fn plans(sales: &Sales, company: &Company) -> [PlanFacts; 3] {
+pub fn plans(sales: &PlanSales, company: &DisplayedCompany) -> [PlanFacts; 3] {
     Plan::ALL.map(|plan| {
         let tier = company.setting(ToolId::SetModelTiers, plan.id()) as u32;
-        let model = company.costs.model_tiers.get(&(tier as u8));
+        let model = company.price_list.model_tiers.get(&(tier as u8));
         PlanFacts {
             tier,
             quota: company.setting(ToolId::SetUsageQuotas, plan.id()),
             price: company.setting(ToolId::SetPrices, plan.id()),
             unit_cost: model.map_or(0.0, |model| model.cost_per_usage_unit),
-            sold: sales.of_plan(plan),
+            usage: sales.usage_of_plan(plan),
         }
     })
 }
 
 /// A capacity tier.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Rung {
+pub struct CapacityTier {
     /// Tier number.
     pub tier: u32,
     /// Units per day.
@@ -64,20 +64,20 @@ pub struct Rung {
 }
 
 /// Returns all capacity tiers, smallest first.
-pub fn ladder(company: &Company) -> Vec<Rung> {
-    let rung = |(tier, facts): (&u8, &CapacityTierFacts)| Rung {
+pub fn capacity_tiers(company: &DisplayedCompany) -> Vec<CapacityTier> {
+    let rung = |(tier, facts): (&u8, &CapacityTierFacts)| CapacityTier {
         tier: u32::from(*tier),
         units: f64::from(facts.capacity_units),
         cost: f64::from(facts.cost_per_day),
     };
-    let mut ladder: Vec<Rung> = company.costs.capacity_tiers.iter().map(rung).collect();
+    let mut ladder: Vec<CapacityTier> = company.price_list.capacity_tiers.iter().map(rung).collect();
     ladder.sort_by_key(|rung| rung.tier);
     ladder
 }
 
 /// The service on one day.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Day {
+pub struct ServiceDay {
     /// Day of the run.
     pub day: u32,
     /// Units used.
@@ -87,46 +87,46 @@ pub struct Day {
     /// Capacity tier on the day.
     pub tier: u32,
     /// 95th percentile of latency, ms.
-    pub latency: f64,
+    pub latency_ms: f64,
     /// Share of failed requests.
-    pub errors: f64,
+    pub error_rate: f64,
     /// Minutes of outage.
-    pub downtime: f64,
+    pub downtime_minutes: f64,
 }
 
-impl Day {
+impl ServiceDay {
     /// Returns the usage divided by capacity.
-    pub fn utilisation(&self) -> f64 {
+    pub fn utilization(&self) -> f64 {
         if self.capacity > 0.0 { self.usage / self.capacity } else { 0.0 }
     }
 }
 
 /// Returns the service by day.
-pub fn service(rows: &Rows) -> Vec<Day> {
-    let day = |row: &Vec<novamind_database::Cell>| Day {
+pub fn parse_service_days(rows: &QueryResult) -> Vec<ServiceDay> {
+    let day = |row: &Vec<novamind_database::Cell>| ServiceDay {
         day: number_at(row, 0) as u32,
         usage: number_at(row, 1),
         capacity: number_at(row, 2),
         tier: number_at(row, 3) as u32,
-        latency: number_at(row, 4),
-        errors: number_at(row, 5),
-        downtime: number_at(row, 6),
+        latency_ms: number_at(row, 4),
+        error_rate: number_at(row, 5),
+        downtime_minutes: number_at(row, 6),
     };
     rows.rows.iter().map(day).collect()
 }
 
 /// Returns the mean and peak usage of the last seven days; `None` before the first day.
-pub fn last_week(days: &[Day]) -> Option<(f64, f64)> {
+pub fn last_week(days: &[ServiceDay]) -> Option<(f64, f64)> {
     let last = &days[days.len().saturating_sub(7)..];
     let peak = last.iter().map(|day| day.usage).fold(0.0, f64::max);
     (!last.is_empty()).then(|| (last.iter().map(|day| day.usage).sum::<f64>() / last.len() as f64, peak))
 }
 
 /// Open issues by age in days: up to 3, 4 to 7, 8 to 14, 15 or more.
-pub type Ages = [f64; 4];
+pub type IssueAges = [f64; 4];
 
 /// Returns the open issues by group.
-pub fn issues(rows: &Rows) -> BTreeMap<String, Ages> {
+pub fn issues(rows: &QueryResult) -> BTreeMap<String, IssueAges> {
     let ages = |row: &Vec<novamind_database::Cell>| std::array::from_fn(|at| number_at(row, at + 1));
     rows.rows.iter().map(|row| (text_at(row, 0).to_owned(), ages(row))).collect()
 }
@@ -141,21 +141,21 @@ pub struct Project {
     /// Whether it is completed.
     pub done: bool,
     /// Day on which it was paid.
-    pub started: u32,
+    pub started_day: u32,
     /// Expected or actual day of completion.
-    pub expected: u32,
+    pub expected_day: u32,
     /// Quality that it adds.
     pub boost: f64,
 }
 
 /// Returns the R&D projects, newest first.
-pub fn projects(rows: &Rows) -> Vec<Project> {
+pub fn projects(rows: &QueryResult) -> Vec<Project> {
     let project = |row: &Vec<novamind_database::Cell>| Project {
         id: text_at(row, 0).to_owned(),
         tier: number_at(row, 1) as u32,
         done: text_at(row, 2) == "completed",
-        started: number_at(row, 3) as u32,
-        expected: number_at(row, 4) as u32,
+        started_day: number_at(row, 3) as u32,
+        expected_day: number_at(row, 4) as u32,
         boost: number_at(row, 5),
     };
     rows.rows.iter().map(project).collect()
@@ -173,22 +173,22 @@ pub struct ProjectOffer {
     /// Mean duration in days and mean quality gain.
     pub means: ResearchMeans,
     /// Numbers of running and of completed projects.
-    pub counts: (usize, usize),
+    pub running_and_done: (usize, usize),
 }
 
 /// Returns the R&D projects that can be started.
-pub fn offers(company: &Company) -> Vec<ProjectOffer> {
+pub fn offers(company: &DisplayedCompany) -> Vec<ProjectOffer> {
     let offer = |(tier, means): (&ResearchTierFacts, &ResearchMeans)| ProjectOffer {
         tier: u32::from(tier.tier),
         name: tier.name.clone(),
         cost: f64::from(tier.cost),
         means: *means,
-        counts: (tier.in_progress, tier.completed),
+        running_and_done: (tier.in_progress, tier.completed),
     };
     company.projects.tiers.iter().zip(&company.research_means).map(offer).collect()
 }
 
 /// Returns the dollars per week of a ledger category, from the first week.
-pub fn spent(weeks: &[WeekFigures], category: Category) -> Vec<f64> {
-    weeks.iter().map(|week| -week.booked.of(category)).collect()
+pub fn weekly_spending(weeks: &[WeekFigures], category: Category) -> Vec<f64> {
+    weeks.iter().map(|week| -week.booked.total_of(category)).collect()
 }

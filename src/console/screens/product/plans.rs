@@ -4,92 +4,92 @@ use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 
 use super::model::PlanFacts;
-use super::part::{ProductPart, cell};
+use super::panel::{ProductPanel, show_cell_effect};
 use super::{Product, ProductPane};
 use crate::action::Action;
 use crate::context::Figure;
 use crate::effect::Effect;
-use crate::screens::panes::Seat;
-use novamind_base::notation::{cents, compact, grouped, percent};
+use crate::screens::panes::PanePlacement;
+use novamind_base::formatting::{cents, compact_number, grouped_number, percent};
 use novamind_session::identifiers::Plan;
 use novamind_tools::ToolId;
-use novamind_tui::canvas::{Canvas, Click, rows_of};
-use novamind_tui::text::fitting;
+use novamind_tui::canvas::{Canvas, Click, row_rects};
+use novamind_tui::text::first_fitting;
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::table::first_row;
-use novamind_worker::company::Company;
+use novamind_tui::widgets::table::first_visible_row;
+use novamind_worker::company::DisplayedCompany;
 
 /// Table with plans as columns. A row opens the tool that sets it.
-pub struct Plans;
+pub struct PlansPane;
 
-impl ProductPart for Plans {
-    fn name(&self) -> ProductPane {
+impl ProductPanel for PlansPane {
+    fn id(&self) -> ProductPane {
         ProductPane::Plans
     }
 
-    fn rows(&self, _: &Product, _: &Company) -> usize {
-        FIGURES.len()
+    fn row_count(&self, _: &Product, _: &DisplayedCompany) -> usize {
+        PLAN_FIGURES.len()
     }
 
-    fn summary(&self, product: &Product, _: &Company, width: usize) -> String {
+    fn summary(&self, product: &Product, _: &DisplayedCompany, width: usize) -> String {
         let each = |write: fn(&PlanFacts) -> String| {
             let plans = Plan::ALL.iter().zip(&product.plans);
             plans.map(|(name, plan)| format!("{name} {}", write(plan))).collect::<Vec<_>>().join(", ")
         };
-        let customers = each(|plan| grouped(plan.sold.customers, 0));
+        let customers = each(|plan| grouped_number(plan.usage.customers, 0));
         if product.plans.iter().all(|plan| plan.margin().is_none()) {
-            return fitting(
+            return first_fitting(
                 [format!("no margin yet · customers {customers}"), "no margin yet".to_owned()],
                 width,
             );
         }
-        let margins = each(|plan| or_none(plan.margin(), |margin| percent(margin, 0)));
+        let margins = each(|plan| format_optional(plan.margin(), |margin| percent(margin, 0)));
         let wordings = [
             format!("margin at last-day usage {margins} · customers {customers}"),
             format!("margin at last-day usage {margins}"),
             format!("margin {margins}"),
         ];
-        fitting(wordings, width)
+        first_fitting(wordings, width)
     }
 
-    fn note(&self, _: &Product, _: &Company, _: usize) -> String {
+    fn note(&self, _: &Product, _: &DisplayedCompany, _: usize) -> String {
         "for seats with usage on the last day, 30 days a month".to_owned()
     }
 
     fn destination(&self, product: &Product) -> &'static str {
-        tool_of(product.place(self.name())).name()
+        tool_of(product.selected_row(self.id())).name()
     }
 
-    fn open(&self, product: &Product, _: &Company) -> Effect {
-        cell(tool_of(product.place(self.name())), Some(product.plan().to_string()))
+    fn open_effect(&self, product: &Product, _: &DisplayedCompany) -> Effect {
+        show_cell_effect(tool_of(product.selected_row(self.id())), Some(product.plan().to_string()))
     }
 
-    fn selected(&self, product: &Product, _: &Company) -> Option<Figure> {
-        Some(figure_of(product.place(self.name()), product.plan()))
+    fn selected_figure(&self, product: &Product, _: &DisplayedCompany) -> Option<Figure> {
+        Some(figure_of(product.selected_row(self.id()), product.plan()))
     }
 
-    fn turn(&self, product: &mut Product, action: Action) -> bool {
+    fn move_sideways(&self, product: &mut Product, action: Action) -> bool {
         match action {
-            Action::Left if product.column > 0 => product.column -= 1,
-            Action::Right if product.column + 1 < Plan::ALL.len() => product.column += 1,
+            Action::Left if product.selected_plan > 0 => product.selected_plan -= 1,
+            Action::Right if product.selected_plan + 1 < Plan::ALL.len() => product.selected_plan += 1,
             _ => return false,
         }
         true
     }
 
-    fn paint(&self, product: &Product, canvas: &mut Canvas<'_>, seat: Seat, _: &Company) {
-        let (area, plans, selected) = (seat.area, &product.plans, product.place(self.name()));
+    fn draw_content(&self, product: &Product, canvas: &mut Canvas<'_>, seat: PanePlacement, _: &DisplayedCompany) {
+        let (area, plans, selected) = (seat.area, &product.plans, product.selected_row(self.id()));
         let line = |name: &str, cells: [String; 3]| {
             let [a, b, c] = cells;
             format!("{name:<18} {a:>10} {b:>10} {c:>10}")
         };
-        canvas.text(area, &line("per plan", Plan::ALL.map(|plan| plan.id().to_owned())), Role::Header);
+        canvas.draw_text(area, &line("per plan", Plan::ALL.map(|plan| plan.id().to_owned())), Role::Header);
         let below = Rect { y: area.y + 1, height: area.height.saturating_sub(1), ..area };
         if seat.focused {
-            canvas.page = below.height.max(1);
+            canvas.page_rows = below.height.max(1);
         }
-        let from = first_row(selected, below.height as usize, FIGURES.len());
-        for (row, (at, (name, write))) in rows_of(below).zip(FIGURES.iter().enumerate().skip(from)) {
+        let from = first_visible_row(selected, below.height as usize, PLAN_FIGURES.len());
+        for (row, (at, (name, write))) in row_rects(below).zip(PLAN_FIGURES.iter().enumerate().skip(from)) {
             let loses = *name == "gross margin"
                 && plans.iter().any(|plan| plan.margin().is_some_and(|margin| margin < 0.0));
             let role = match (seat.focused && at == selected, loses) {
@@ -98,13 +98,13 @@ impl ProductPart for Plans {
                 (false, false) => Role::Text,
             };
             canvas.clear(row, role);
-            canvas.text(row, &line(name, [0, 1, 2].map(|plan| write(&plans[plan]))), role);
+            canvas.draw_text(row, &line(name, [0, 1, 2].map(|plan| write(&plans[plan]))), role);
             if seat.focused && at == selected {
-                let place = Rect { x: row.x + 19 + 11 * product.column as u16, width: 10, ..row };
+                let place = Rect { x: row.x + 19 + 11 * product.selected_plan as u16, width: 10, ..row };
                 let mark = Style::new().add_modifier(Modifier::BOLD | Modifier::UNDERLINED);
                 canvas.buffer.set_style(place.intersection(row).intersection(canvas.area()), mark);
             }
-            canvas.click(row, Click::Row(seat.number, at));
+            canvas.register_click(row, Click::Row(seat.index, at));
         }
     }
 }
@@ -112,28 +112,28 @@ impl ProductPart for Plans {
 /// Name and format of a figure.
 type PlanFigure = (&'static str, fn(&PlanFacts) -> String);
 
-fn or_none(value: Option<f64>, write: impl Fn(f64) -> String) -> String {
+fn format_optional(value: Option<f64>, write: impl Fn(f64) -> String) -> String {
     value.map_or("–".to_owned(), write)
 }
 
 /// Figures in display order, most used first.
-static FIGURES: [PlanFigure; 11] = [
+static PLAN_FIGURES: [PlanFigure; 11] = [
     ("model tier", |plan| format!("T{}", plan.tier)),
     ("price/month", |plan| cents(plan.price)),
-    ("quota/day", |plan| compact(plan.quota)),
-    ("unit cost, $/1k", |plan| format!("${}", grouped(plan.unit_cost * 1000.0, 3))),
-    ("customers", |plan| grouped(plan.sold.customers, 0)),
-    ("billed seats", |plan| grouped(plan.sold.seats, 0)),
-    ("usage/seat, day", |plan| or_none(plan.sold.usage(), |usage| grouped(usage, 1))),
-    ("paid/seat, mo.", |plan| or_none(plan.sold.revenue(), cents)),
-    ("compute/seat, mo.", |plan| or_none(plan.compute(), cents)),
+    ("quota/day", |plan| compact_number(plan.quota)),
+    ("unit cost, $/1k", |plan| format!("${}", grouped_number(plan.unit_cost * 1000.0, 3))),
+    ("customers", |plan| grouped_number(plan.usage.customers, 0)),
+    ("billed seats", |plan| grouped_number(plan.usage.seats, 0)),
+    ("usage/seat, day", |plan| format_optional(plan.usage.units_per_seat(), |usage| grouped_number(usage, 1))),
+    ("paid/seat, mo.", |plan| format_optional(plan.usage.revenue_per_seat(), cents)),
+    ("compute/seat, mo.", |plan| format_optional(plan.compute_cost_per_seat(), cents)),
     ("gross margin", |plan| {
         // The warning sign is on the losing plan, where narrow windows do not cut it.
-        or_none(plan.margin(), |margin| {
+        format_optional(plan.margin(), |margin| {
             format!("{}{}", if margin < 0.0 { "! " } else { "" }, percent(margin, 1))
         })
     }),
-    ("billed/month", |plan| format!("${}", compact(plan.sold.monthly))),
+    ("billed/month", |plan| format!("${}", compact_number(plan.usage.monthly_revenue))),
 ];
 
 /// Returns the tool that sets the value of a row.
@@ -176,5 +176,5 @@ fn figure_of(row: usize, plan: Plan) -> Figure {
         9 => ("gross margin", "gross-margin", subscribers()),
         _ => ("billed per month", "billed-seats", subscribers()),
     };
-    Figure { title: format!("{name} of plan {plan}"), term, sql, why: None }
+    Figure { title: format!("{name} of plan {plan}"), term, sql, week_quantity: None }
 }

@@ -2,30 +2,30 @@
 
 use ratatui::layout::Rect;
 
-use super::part::{ProductPart, cell};
+use super::panel::{ProductPanel, show_cell_effect};
 use super::{Product, ProductPane};
 use crate::context::Figure;
 use crate::effect::Effect;
-use crate::screens::panes::Seat;
+use crate::screens::panes::PanePlacement;
 use novamind_tools::ToolId;
-use novamind_tui::canvas::{Canvas, Click, rows_of};
-use novamind_tui::text::number;
+use novamind_tui::canvas::{Canvas, Click, row_rects};
+use novamind_tui::text::format_number;
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::table::first_row;
-use novamind_worker::company::Company;
+use novamind_tui::widgets::table::first_visible_row;
+use novamind_worker::company::DisplayedCompany;
 
-pub struct Quality;
+pub struct QualityComponentsPane;
 
-impl ProductPart for Quality {
-    fn name(&self) -> ProductPane {
+impl ProductPanel for QualityComponentsPane {
+    fn id(&self) -> ProductPane {
         ProductPane::Quality
     }
 
-    fn rows(&self, _: &Product, company: &Company) -> usize {
+    fn row_count(&self, _: &Product, company: &DisplayedCompany) -> usize {
         company.quality.len()
     }
 
-    fn summary(&self, _: &Product, company: &Company, _: usize) -> String {
+    fn summary(&self, _: &Product, company: &DisplayedCompany, _: usize) -> String {
         let (base, shared) = company.quality_base;
         let best =
             company.quality.iter().max_by(|left, right| left.group_bonus.total_cmp(&right.group_bonus));
@@ -39,33 +39,33 @@ impl ProductPart for Quality {
         ToolId::SetTargetedDevSpend.name()
     }
 
-    fn open(&self, product: &Product, company: &Company) -> Effect {
-        let group = company.quality.get(product.place(self.name())).map(|quality| quality.group.to_string());
-        cell(ToolId::SetTargetedDevSpend, group)
+    fn open_effect(&self, product: &Product, company: &DisplayedCompany) -> Effect {
+        let group = company.quality.get(product.selected_row(self.id())).map(|quality| quality.group.to_string());
+        show_cell_effect(ToolId::SetTargetedDevSpend, group)
     }
 
-    fn selected(&self, product: &Product, company: &Company) -> Option<Figure> {
-        let group = company.quality.get(product.place(self.name()))?.group;
+    fn selected_figure(&self, product: &Product, company: &DisplayedCompany) -> Option<Figure> {
+        let group = company.quality.get(product.selected_row(self.id()))?.group;
         let sql = "SELECT day, amount, note FROM ledger WHERE category = 'development' ORDER BY day DESC";
         let title = format!("delivered quality in {group}");
-        Some(Figure { title, term: "delivered-quality", sql: Some(sql.to_owned()), why: None })
+        Some(Figure { title, term: "delivered-quality", sql: Some(sql.to_owned()), week_quantity: None })
     }
 
-    fn paint(&self, product: &Product, canvas: &mut Canvas<'_>, seat: Seat, company: &Company) {
-        let (area, selected) = (seat.area, product.place(self.name()));
+    fn draw_content(&self, product: &Product, canvas: &mut Canvas<'_>, seat: PanePlacement, company: &DisplayedCompany) {
+        let (area, selected) = (seat.area, product.selected_row(self.id()));
         let (base, shared) = company.quality_base;
-        let tier = |plan: &str| format!("{plan} T{}", number(company.setting(ToolId::SetModelTiers, plan)));
+        let tier = |plan: &str| format!("{plan} T{}", format_number(company.setting(ToolId::SetModelTiers, plan)));
         let wide = area.width >= 62;
         let parts = if wide { format!(" {:>7} {:>8}", "base", "general") } else { String::new() };
         let head =
             format!("group {parts} {:>8} {:>9} {:>8} {:>8}", "targeted", tier("A"), tier("B"), tier("C"));
-        canvas.text(area, &head, Role::Header);
+        canvas.draw_text(area, &head, Role::Header);
         let below = Rect { y: area.y + 1, height: area.height.saturating_sub(1), ..area };
         if seat.focused {
-            canvas.page = below.height.max(1);
+            canvas.page_rows = below.height.max(1);
         }
-        let from = first_row(selected, below.height as usize, company.quality.len());
-        for (row, (at, quality)) in rows_of(below).zip(company.quality.iter().enumerate().skip(from)) {
+        let from = first_visible_row(selected, below.height as usize, company.quality.len());
+        for (row, (at, quality)) in row_rects(below).zip(company.quality.iter().enumerate().skip(from)) {
             let parts = if wide { format!(" {base:>7.4} {shared:>+8.4}") } else { String::new() };
             let own = match quality.group_bonus {
                 bonus if bonus > 0.0 => format!("{bonus:+.4}"),
@@ -79,8 +79,8 @@ impl ProductPart for Quality {
                 (false, false) => Role::Dim,
             };
             canvas.clear(row, role);
-            canvas.text(row, &text, role);
-            canvas.click(row, Click::Row(seat.number, at));
+            canvas.draw_text(row, &text, role);
+            canvas.register_click(row, Click::Row(seat.index, at));
         }
     }
 }

@@ -3,37 +3,37 @@
 use ratatui::layout::{Constraint, Layout, Rect};
 
 use super::model::Project;
-use super::part::{ProductPart, tier};
+use super::panel::{ProductPanel, prefill_tier_effect};
 use super::{Product, ProductPane};
 use crate::context::Figure;
 use crate::effect::Effect;
-use crate::screens::panes::Seat;
-use novamind_base::notation::{compact, dollars, short_dollars};
-use novamind_report::research::{mean_days, mean_gain};
+use crate::screens::panes::PanePlacement;
+use novamind_base::formatting::{compact_number, dollars, short_dollars};
+use novamind_report::research::{format_mean_days, format_mean_gain};
 use novamind_tools::ToolId;
-use novamind_tui::canvas::{Align, Canvas, Click, fit, rows_of};
+use novamind_tui::canvas::{Align, Canvas, Click, truncate_to_width, row_rects};
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::spark;
-use novamind_tui::widgets::table::first_row;
-use novamind_worker::company::Company;
+use novamind_tui::widgets::sparkline;
+use novamind_tui::widgets::table::first_visible_row;
+use novamind_worker::company::DisplayedCompany;
 
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Spent {
+pub struct QualitySpending {
     pub development: Vec<f64>,
     pub operations: Vec<f64>,
 }
 
 fn summary(projects: &[Project], last_day: u32) -> String {
     let running = projects.iter().filter(|project| !project.done);
-    let next = running.clone().min_by_key(|project| project.expected);
+    let next = running.clone().min_by_key(|project| project.expected_day);
     let done = projects.iter().filter(|project| project.done).count();
-    let late = match running.clone().filter(|project| project.expected > last_day).count() {
+    let late = match running.clone().filter(|project| project.expected_day > last_day).count() {
         0 => String::new(),
         late => format!(" · ! {late} after the last day"),
     };
     match next {
         Some(next) => {
-            let (count, id, day) = (running.count(), &next.id, next.expected);
+            let (count, id, day) = (running.count(), &next.id, next.expected_day);
             format!("{count} running, next {id} on day {day}{late} · {done} done")
         }
         None => format!("none running · {done} done"),
@@ -41,24 +41,24 @@ fn summary(projects: &[Project], last_day: u32) -> String {
 }
 
 /// Running and available projects.
-pub struct Research;
+pub struct ResearchPane;
 
-impl ProductPart for Research {
-    fn name(&self) -> ProductPane {
+impl ProductPanel for ResearchPane {
+    fn id(&self) -> ProductPane {
         ProductPane::Research
     }
 
-    fn rows(&self, product: &Product, _: &Company) -> usize {
+    fn row_count(&self, product: &Product, _: &DisplayedCompany) -> usize {
         product.projects.len() + product.offers.len()
     }
 
-    fn summary(&self, product: &Product, company: &Company, _: usize) -> String {
-        summary(&product.projects, company.seen.last_day)
+    fn summary(&self, product: &Product, company: &DisplayedCompany, _: usize) -> String {
+        summary(&product.projects, company.observation.last_day)
     }
 
-    fn note(&self, product: &Product, company: &Company, width: usize) -> String {
-        match product.focus == self.name() {
-            true => format!("{} cash", dollars(company.seen.cash)),
+    fn note(&self, product: &Product, company: &DisplayedCompany, width: usize) -> String {
+        match product.focus == self.id() {
+            true => format!("{} cash", dollars(company.observation.cash)),
             false => self.summary(product, company, width),
         }
     }
@@ -67,66 +67,66 @@ impl ProductPart for Research {
         ToolId::StartResearchProject.name()
     }
 
-    fn open(&self, product: &Product, _: &Company) -> Effect {
-        let offer = product.place(self.name()).checked_sub(product.projects.len());
+    fn open_effect(&self, product: &Product, _: &DisplayedCompany) -> Effect {
+        let offer = product.selected_row(self.id()).checked_sub(product.projects.len());
         let offer = offer.and_then(|at| product.offers.get(at));
-        tier(ToolId::StartResearchProject, offer.map(|offer| offer.tier))
+        prefill_tier_effect(ToolId::StartResearchProject, offer.map(|offer| offer.tier))
     }
 
-    fn selected(&self, product: &Product, _: &Company) -> Option<Figure> {
-        let (place, term) = (product.place(self.name()), "research-project");
+    fn selected_figure(&self, product: &Product, _: &DisplayedCompany) -> Option<Figure> {
+        let (place, term) = (product.selected_row(self.id()), "research-project");
         if let Some(project) = product.projects.get(place) {
             let sql = format!("SELECT * FROM research_projects WHERE project_id = '{}'", project.id);
             return Some(Figure {
                 title: format!("project {}", project.id),
                 term,
                 sql: Some(sql),
-                why: None,
+                week_quantity: None,
             });
         }
         let offer = product.offers.get(place - product.projects.len())?;
         let sql = "SELECT * FROM research_projects ORDER BY started_day DESC".to_owned();
-        Some(Figure { title: format!("project of tier {}", offer.tier), term, sql: Some(sql), why: None })
+        Some(Figure { title: format!("project of tier {}", offer.tier), term, sql: Some(sql), week_quantity: None })
     }
 
-    fn paint(&self, product: &Product, canvas: &mut Canvas<'_>, seat: Seat, company: &Company) {
+    fn draw_content(&self, product: &Product, canvas: &mut Canvas<'_>, seat: PanePlacement, company: &DisplayedCompany) {
         let line = (product.projects.len() as u16 + 1).clamp(2, (seat.area.height / 3).max(2));
         let [money, line, list] =
             Layout::vertical([Constraint::Length(2), Constraint::Length(line), Constraint::Min(0)])
                 .areas(seat.area);
-        draw_spent(canvas, money, &product.spent);
-        draw_line(product, canvas, Seat { area: line, ..seat }, company);
-        draw_offers(product, canvas, Seat { area: list, ..seat }, company);
+        draw_spending(canvas, money, &product.spending);
+        draw_timeline(product, canvas, PanePlacement { area: line, ..seat }, company);
+        draw_offers(product, canvas, PanePlacement { area: list, ..seat }, company);
     }
 }
 
-fn draw_spent(canvas: &mut Canvas<'_>, area: Rect, spent: &Spent) {
+fn draw_spending(canvas: &mut Canvas<'_>, area: Rect, spent: &QualitySpending) {
     let rows = [("development", &spent.development), ("operations", &spent.operations)];
-    for (row, (name, weeks)) in rows_of(area).zip(rows) {
-        let last = weeks.last().map_or("–".to_owned(), |dollars| format!("${}/wk", compact(*dollars)));
-        let trend = spark(weeks, row.width.saturating_sub(28) as usize);
+    for (row, (name, weeks)) in row_rects(area).zip(rows) {
+        let last = weeks.last().map_or("–".to_owned(), |dollars| format!("${}/wk", compact_number(*dollars)));
+        let trend = sparkline(weeks, row.width.saturating_sub(28) as usize);
         let name_and_figure = format!("{name:<12}{last:>12}");
-        canvas.text(row, &name_and_figure, Role::Text);
+        canvas.draw_text(row, &name_and_figure, Role::Text);
         let place = Rect { x: row.x + 26.min(row.width), width: row.width.saturating_sub(26), ..row };
-        canvas.text(place, &trend, Role::Series(0));
+        canvas.draw_text(place, &trend, Role::Series(0));
     }
 }
 
 /// Draws projects as bars over the days from the first start to the last end.
-fn draw_line(product: &Product, canvas: &mut Canvas<'_>, seat: Seat, company: &Company) {
+fn draw_timeline(product: &Product, canvas: &mut Canvas<'_>, seat: PanePlacement, company: &DisplayedCompany) {
     let (area, projects) = (seat.area, &product.projects);
     let selected =
-        Some(product.place(ProductPane::Research)).filter(|at| seat.focused && *at < projects.len());
-    let today = company.seen.day;
+        Some(product.selected_row(ProductPane::Research)).filter(|at| seat.focused && *at < projects.len());
+    let today = company.observation.day;
     let rows = area.height.saturating_sub(1) as usize;
-    let skipped = first_row(selected.unwrap_or(0), rows, projects.len());
+    let skipped = first_visible_row(selected.unwrap_or(0), rows, projects.len());
     let shown = &projects[skipped..projects.len().min(skipped + rows)];
     if shown.is_empty() {
-        canvas.text(area, "No projects yet. Start one with start_research_project.", Role::Dim);
+        canvas.draw_text(area, "No projects yet. Start one with start_research_project.", Role::Dim);
         return;
     }
-    let first = shown.iter().map(|project| project.started).min().unwrap_or(0).min(today);
-    let last = shown.iter().map(|project| project.expected).max().unwrap_or(0).max(today).max(first + 1);
+    let first = shown.iter().map(|project| project.started_day).min().unwrap_or(0).min(today);
+    let last = shown.iter().map(|project| project.expected_day).max().unwrap_or(0).max(today).max(first + 1);
     let names = 30.min(area.width);
     let width = area.width - names;
     let place = |day: u32| {
@@ -134,68 +134,68 @@ fn draw_line(product: &Product, canvas: &mut Canvas<'_>, seat: Seat, company: &C
         (share * f64::from(width.saturating_sub(1))).round() as u16
     };
     let head = format!("{:<7}{:>8}{:>5} {:>4}", "project", "boost", "from", "to");
-    canvas.text(area, &head, Role::Header);
+    canvas.draw_text(area, &head, Role::Header);
     if width >= 24 {
         let x = area.x + names;
-        canvas.text(Rect { x, width, ..area }, &format!("day {first}"), Role::Dim);
+        canvas.draw_text(Rect { x, width, ..area }, &format!("day {first}"), Role::Dim);
         let words = format!("day {last}");
-        canvas.aligned(Rect { x, width, ..area }, &words, Role::Dim, Align::Right);
+        canvas.draw_aligned(Rect { x, width, ..area }, &words, Role::Dim, Align::Right);
         // The mark is drawn only if both end labels leave room.
         let now = place(today);
         if now > 10 && now + 14 < width {
-            canvas.text(Rect { x: x + now, width: 5, ..area }, "▼ now", Role::Key);
+            canvas.draw_text(Rect { x: x + now, width: 5, ..area }, "▼ now", Role::Key);
         }
     }
     let below = Rect { y: area.y + 1, height: area.height.saturating_sub(1), ..area };
-    for (row, (at, project)) in rows_of(below).zip(shown.iter().enumerate()) {
+    for (row, (at, project)) in row_rects(below).zip(shown.iter().enumerate()) {
         let here = selected == Some(skipped + at);
         let role = match (here, project.done) {
             (true, _) => Role::Selection,
             (false, true) => Role::Dim,
             (false, false) => Role::Text,
         };
-        canvas.click(row, Click::Row(seat.number, skipped + at));
+        canvas.register_click(row, Click::Row(seat.index, skipped + at));
         let mark = match project.done {
             true => "✓",
-            false if project.expected > company.seen.last_day => "!",
+            false if project.expected_day > company.observation.last_day => "!",
             false => "…",
         };
         let text = format!(
             "{:<7}{:>+8.4}{:>5} {:>4} {mark}",
-            project.id, project.boost, project.started, project.expected
+            project.id, project.boost, project.started_day, project.expected_day
         );
-        canvas.text(Rect { width: names, ..row }, &text, role);
+        canvas.draw_text(Rect { width: names, ..row }, &text, role);
         if width < 4 {
             continue;
         }
-        let (from, to) = (place(project.started), place(project.expected));
+        let (from, to) = (place(project.started_day), place(project.expected_day));
         let (now, own) = (place(today), (to - from).max(1));
         let done = if project.done { own } else { now.clamp(from, from + own) - from };
         let bar = "█".repeat(done as usize) + &"░".repeat((own - done) as usize);
         let x = row.x + names + from;
         let role = if project.done { Role::Good } else { Role::Series(1) };
-        canvas.text(Rect { x, width: own.min(area.right().saturating_sub(x)), ..row }, &bar, role);
+        canvas.draw_text(Rect { x, width: own.min(area.right().saturating_sub(x)), ..row }, &bar, role);
         if now < from || now >= from + own {
-            canvas.text(Rect { x: row.x + names + now, width: 1, ..row }, "│", Role::Border);
+            canvas.draw_text(Rect { x: row.x + names + now, width: 1, ..row }, "│", Role::Border);
         }
     }
 }
 
-fn draw_offers(product: &Product, canvas: &mut Canvas<'_>, seat: Seat, company: &Company) {
+fn draw_offers(product: &Product, canvas: &mut Canvas<'_>, seat: PanePlacement, company: &DisplayedCompany) {
     let (area, offers, before) = (seat.area, &product.offers, product.projects.len());
-    let selected = product.place(ProductPane::Research).checked_sub(before).filter(|_| seat.focused);
+    let selected = product.selected_row(ProductPane::Research).checked_sub(before).filter(|_| seat.focused);
     let head = format!(
         "{:>4} {:<17} {:>8} {:>5} {:>7} {:>8}  ",
         "tier", "project", "cost", "days", "quality", "$/0.01"
     );
-    canvas.text(area, head.trim_end(), Role::Header);
+    canvas.draw_text(area, head.trim_end(), Role::Header);
     let below = Rect { y: area.y + 1, height: area.height.saturating_sub(1), ..area };
     if selected.is_some() {
-        canvas.page = below.height.max(1);
+        canvas.page_rows = below.height.max(1);
     }
-    let from = first_row(selected.unwrap_or(0), below.height as usize, offers.len());
-    for (row, (at, offer)) in rows_of(below).zip(offers.iter().enumerate().skip(from)) {
-        let affordable = offer.cost <= company.seen.cash;
+    let from = first_visible_row(selected.unwrap_or(0), below.height as usize, offers.len());
+    for (row, (at, offer)) in row_rects(below).zip(offers.iter().enumerate().skip(from)) {
+        let affordable = offer.cost <= company.observation.cash;
         let role = match (selected == Some(at), affordable) {
             (true, _) => Role::Selection,
             (false, true) => Role::Text,
@@ -207,11 +207,11 @@ fn draw_offers(product: &Product, canvas: &mut Canvas<'_>, seat: Seat, company: 
             false => "–".to_owned(),
         };
         let mut remarks = Vec::new();
-        if offer.counts.0 > 0 {
-            remarks.push(format!("{} running", offer.counts.0));
+        if offer.running_and_done.0 > 0 {
+            remarks.push(format!("{} running", offer.running_and_done.0));
         }
-        if offer.counts.1 > 0 {
-            remarks.push(format!("{} done", offer.counts.1));
+        if offer.running_and_done.1 > 0 {
+            remarks.push(format!("{} done", offer.running_and_done.1));
         }
         if !affordable {
             remarks.push("! exceeds your cash".to_owned());
@@ -226,13 +226,13 @@ fn draw_offers(product: &Product, canvas: &mut Canvas<'_>, seat: Seat, company: 
         let text = format!(
             "{:>4} {:<17} {:>8} {:>5} {:>7} {each:>8} {}",
             offer.tier,
-            fit(&offer.name, 17),
+            truncate_to_width(&offer.name, 17),
             short_dollars(offer.cost),
-            mean_days(&offer.means),
-            mean_gain(&offer.means, 3),
+            format_mean_days(&offer.means),
+            format_mean_gain(&offer.means, 3),
             remarks
         );
-        canvas.text(row, text.trim_end(), role);
-        canvas.click(row, Click::Row(seat.number, before + at));
+        canvas.draw_text(row, text.trim_end(), role);
+        canvas.register_click(row, Click::Row(seat.index, before + at));
     }
 }

@@ -2,73 +2,73 @@
 
 use ratatui::layout::Rect;
 
-use super::model::Day;
-use super::part::ProductPart;
+use super::model::ServiceDay;
+use super::panel::ProductPanel;
 use super::{Product, ProductPane};
 use crate::context::{Figure, NO_DATA};
 use crate::effect::Effect;
-use crate::screens::panes::Seat;
-use novamind_base::notation::{grouped, percent};
+use crate::screens::panes::PanePlacement;
+use novamind_base::formatting::{grouped_number, percent};
 use novamind_insight::WeekQuantity;
 use novamind_record::figures::WeekFigure;
-use novamind_tui::canvas::{Align, Canvas, rows_of};
-use novamind_tui::text::{fitting, number};
+use novamind_tui::canvas::{Align, Canvas, row_rects};
+use novamind_tui::text::{first_fitting, format_number};
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::spark;
-use novamind_worker::company::Company;
+use novamind_tui::widgets::sparkline;
+use novamind_worker::company::DisplayedCompany;
 
-pub struct Service;
+pub struct ServicePane;
 
-impl ProductPart for Service {
-    fn name(&self) -> ProductPane {
+impl ProductPanel for ServicePane {
+    fn id(&self) -> ProductPane {
         ProductPane::Service
     }
 
-    fn summary(&self, product: &Product, _: &Company, width: usize) -> String {
-        fitting(summary(&product.days), width)
+    fn summary(&self, product: &Product, _: &DisplayedCompany, width: usize) -> String {
+        first_fitting(summary(&product.days), width)
     }
 
     fn destination(&self, _: &Product) -> &'static str {
         "service_day"
     }
 
-    fn open(&self, _: &Product, _: &Company) -> Effect {
+    fn open_effect(&self, _: &Product, _: &DisplayedCompany) -> Effect {
         Effect::EditSql("SELECT * FROM service_day ORDER BY day DESC".to_owned())
     }
 
-    fn selected(&self, _: &Product, company: &Company) -> Option<Figure> {
+    fn selected_figure(&self, _: &Product, company: &DisplayedCompany) -> Option<Figure> {
         let sql = "SELECT day, p95_ms, error_rate, downtime_minutes, total_usage_units, capacity_units\n\
                    FROM service_day ORDER BY day DESC LIMIT 28";
         let title = "service, 28 days".to_owned();
-        let figure = Figure { title, term: "outage", sql: Some(sql.to_owned()), why: None };
-        Some(figure.of_week(WeekQuantity::of_company(WeekFigure::Outage), company.seen.week))
+        let figure = Figure { title, term: "outage", sql: Some(sql.to_owned()), week_quantity: None };
+        Some(figure.with_week_quantity(WeekQuantity::for_company(WeekFigure::Outage), company.observation.week))
     }
 
-    fn paint(&self, product: &Product, canvas: &mut Canvas<'_>, seat: Seat, _: &Company) {
+    fn draw_content(&self, product: &Product, canvas: &mut Canvas<'_>, seat: PanePlacement, _: &DisplayedCompany) {
         draw(canvas, seat.area, &product.days);
     }
 }
 
 /// Name, reader, format and aggregation of a measure.
-type Measure = (&'static str, fn(&Day) -> f64, fn(f64) -> String, fn(&[f64]) -> f64);
+type ServiceMeasure = (&'static str, fn(&ServiceDay) -> f64, fn(f64) -> String, fn(&[f64]) -> f64);
 
-static MEASURES: [Measure; 4] = [
-    ("utilization", Day::utilisation, |share| percent(share, 0), peak),
-    ("latency p95, ms", |day| day.latency, |value| grouped(value, 0), peak),
-    ("error rate", |day| day.errors, |share| percent(share, 2), peak),
-    ("outage, minutes", |day| day.downtime, number, |days| days.iter().sum()),
+static SERVICE_MEASURES: [ServiceMeasure; 4] = [
+    ("utilization", ServiceDay::utilization, |share| percent(share, 0), max_of_days),
+    ("latency p95, ms", |day| day.latency_ms, |value| grouped_number(value, 0), max_of_days),
+    ("error rate", |day| day.error_rate, |share| percent(share, 2), max_of_days),
+    ("outage, minutes", |day| day.downtime_minutes, format_number, |days| days.iter().sum()),
 ];
 
-fn peak(days: &[f64]) -> f64 {
+fn max_of_days(days: &[f64]) -> f64 {
     days.iter().copied().fold(0.0, f64::max)
 }
 
 /// Returns one line on the service, longest wording first.
-pub fn summary(days: &[Day]) -> Vec<String> {
+pub fn summary(days: &[ServiceDay]) -> Vec<String> {
     let Some(last) = days.last() else { return vec![NO_DATA.to_owned()] };
-    let minutes: f64 = days.iter().rev().take(28).map(|day| day.downtime).sum();
-    let (latency, errors) = (grouped(last.latency, 0), percent(last.errors, 2));
-    let outage = format!("outage {} min", number(minutes));
+    let minutes: f64 = days.iter().rev().take(28).map(|day| day.downtime_minutes).sum();
+    let (latency, errors) = (grouped_number(last.latency_ms, 0), percent(last.error_rate, 2));
+    let outage = format!("outage {} min", format_number(minutes));
     vec![
         format!("p95 {latency} ms · errors {errors} · {outage} in 28 days"),
         format!("p95 {latency} ms · errors {errors} · {outage}/28 d"),
@@ -76,17 +76,17 @@ pub fn summary(days: &[Day]) -> Vec<String> {
 }
 
 /// Draws the measures by day, then the last outages.
-pub fn draw(canvas: &mut Canvas<'_>, area: Rect, days: &[Day]) {
+pub fn draw(canvas: &mut Canvas<'_>, area: Rect, days: &[ServiceDay]) {
     let head = format!("{:<16}{:>8}{:>9}{:>9}  ", "", "last", "7-day", "28-day");
-    canvas.text(area, &head, Role::Header);
+    canvas.draw_text(area, &head, Role::Header);
     let trend = area.width.saturating_sub(44);
-    canvas.text(
+    canvas.draw_text(
         Rect { x: area.x + 44.min(area.width), width: trend, ..area },
         &format!("last {} days", (trend as usize).min(days.len())),
         Role::Header,
     );
-    let rows = rows_of(Rect { y: area.y + 1, height: area.height.saturating_sub(1), ..area });
-    let figures = MEASURES.iter().map(Some).chain(std::iter::once(None));
+    let rows = row_rects(Rect { y: area.y + 1, height: area.height.saturating_sub(1), ..area });
+    let figures = SERVICE_MEASURES.iter().map(Some).chain(std::iter::once(None));
     for (row, measure) in rows.zip(figures) {
         match measure {
             Some(measure) => draw_measure(canvas, row, measure, days),
@@ -95,7 +95,7 @@ pub fn draw(canvas: &mut Canvas<'_>, area: Rect, days: &[Day]) {
     }
 }
 
-fn draw_measure(canvas: &mut Canvas<'_>, row: Rect, (name, read, write, together): &Measure, days: &[Day]) {
+fn draw_measure(canvas: &mut Canvas<'_>, row: Rect, (name, read, write, together): &ServiceMeasure, days: &[ServiceDay]) {
     let values: Vec<f64> = days.iter().map(read).collect();
     let of_days = |count: usize| match &values[values.len().saturating_sub(count)..] {
         [] => "–".to_owned(),
@@ -103,29 +103,29 @@ fn draw_measure(canvas: &mut Canvas<'_>, row: Rect, (name, read, write, together
     };
     let last = values.last().map_or("–".to_owned(), |value| write(*value));
     let text = format!("{name:<16}{last:>8}{:>9}{:>9}", of_days(7), of_days(28));
-    canvas.text(row, &text, Role::Text);
+    canvas.draw_text(row, &text, Role::Text);
     if row.width > 44 {
         let room = row.width - 44;
         let place = Rect { x: row.x + 44, width: room, ..row };
-        canvas.text(place, &spark(&values, room as usize), Role::Series(0));
+        canvas.draw_text(place, &sparkline(&values, room as usize), Role::Series(0));
     }
     let overloaded = *name == "utilization" && values.last().is_some_and(|value| *value > 1.0);
     if overloaded {
-        canvas.aligned(Rect { width: 43.min(row.width), ..row }, "!", Role::Bad, Align::Right);
+        canvas.draw_aligned(Rect { width: 43.min(row.width), ..row }, "!", Role::Bad, Align::Right);
     }
 }
 
-fn draw_outages(canvas: &mut Canvas<'_>, row: Rect, days: &[Day]) {
+fn draw_outages(canvas: &mut Canvas<'_>, row: Rect, days: &[ServiceDay]) {
     let outages: Vec<String> = days
         .iter()
         .rev()
-        .filter(|day| day.downtime > 0.0)
+        .filter(|day| day.downtime_minutes > 0.0)
         .take(6)
-        .map(|day| format!("day {} {} min", day.day, number(day.downtime)))
+        .map(|day| format!("day {} {} min", day.day, format_number(day.downtime_minutes)))
         .collect();
     let text = match outages.is_empty() {
         true => "No outages so far. 7-day and 28-day figures are peaks.".to_owned(),
         false => format!("outages: {}", outages.join(" · ")),
     };
-    canvas.text(row, &text, Role::Dim);
+    canvas.draw_text(row, &text, Role::Dim);
 }

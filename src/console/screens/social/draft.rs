@@ -3,11 +3,11 @@
 use crossterm::event::{KeyCode, KeyEvent};
 use ratatui::layout::Rect;
 
-use super::{POST, Social, SocialPane};
+use super::{POST_TOOL, Social, SocialPane};
 use crate::action::{Action, Scope};
-use crate::context::{Figure, Look};
+use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
-use crate::screens::panes::{Border, Pane, Seat, draw_framed};
+use crate::screens::panes::{PaneBorder, Pane, PanePlacement, draw_framed};
 use novamind_tui::canvas::Canvas;
 use novamind_tui::theme::Role;
 
@@ -21,15 +21,15 @@ impl Pane<Social> for DraftPane {
     fn hints(&self, social: &Social) -> Vec<Action> {
         match social.editing {
             true => vec![Action::SendPost, Action::LeaveEditor],
-            false => vec![Action::Compose, Action::SendPost, Action::Unreply],
+            false => vec![Action::Compose, Action::SendPost, Action::ClearReply],
         }
     }
 
-    fn figure(&self, _: &Social, _: &Look<'_>) -> Option<Figure> {
-        Some(Figure { title: "your post".to_owned(), term: POST.name(), sql: None, why: None })
+    fn figure(&self, _: &Social, _: &ScreenContext<'_>) -> Option<Figure> {
+        Some(Figure { title: "your post".to_owned(), term: POST_TOOL.name(), sql: None, week_quantity: None })
     }
 
-    fn act(&self, social: &mut Social, action: Action, _: &Look<'_>) -> Vec<Effect> {
+    fn handle_action(&self, social: &mut Social, action: Action, _: &ScreenContext<'_>) -> Vec<Effect> {
         match action {
             Action::Open => social.editing = true,
             Action::Close => social.focus = SocialPane::Feed,
@@ -38,46 +38,46 @@ impl Pane<Social> for DraftPane {
         Vec::new()
     }
 
-    fn key(&self, social: &mut Social, key: &KeyEvent, _: &Look<'_>) -> Vec<Effect> {
+    fn handle_key(&self, social: &mut Social, key: &KeyEvent, _: &ScreenContext<'_>) -> Vec<Effect> {
         match key.code {
             _ if !social.editing => {}
             // A post has no columns, so tab moves the focus.
             KeyCode::Tab => return vec![Effect::Do(Action::FocusNext)],
             KeyCode::BackTab => return vec![Effect::Do(Action::FocusPrevious)],
-            _ => social.draft.key(key),
+            _ => social.draft.handle_key(key),
         }
         Vec::new()
     }
 
-    fn paste(&self, social: &mut Social, text: &str, _: &Look<'_>) -> Vec<Effect> {
+    fn paste(&self, social: &mut Social, text: &str, _: &ScreenContext<'_>) -> Vec<Effect> {
         if social.editing {
             social.draft.insert(text);
         }
         Vec::new()
     }
 
-    fn click(&self, social: &mut Social, _: usize, look: &Look<'_>) -> Vec<Effect> {
-        self.act(social, Action::Open, look)
+    fn handle_click(&self, social: &mut Social, _: usize, look: &ScreenContext<'_>) -> Vec<Effect> {
+        self.handle_action(social, Action::Open, look)
     }
 
-    fn border(&self, social: &Social, _: Rect, look: &Look<'_>) -> Border {
-        let title = match (social.answers, social.posted_this_week()) {
+    fn border(&self, social: &Social, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
+        let title = match (social.reply_to, social.has_posted_this_week()) {
             (Some(post), _) => format!("Answer to #{post}"),
             (None, true) => "New post · 1 of 1 this week".to_owned(),
             (None, false) => "New post · 0 of 1 this week".to_owned(),
         };
-        let keys: &[Action] = match (social.focus, social.editing, social.answers) {
+        let keys: &[Action] = match (social.focus, social.editing, social.reply_to) {
             (SocialPane::Draft, true, _) => &[Action::SendPost, Action::LeaveEditor],
-            (SocialPane::Draft, false, Some(_)) => &[Action::Compose, Action::SendPost, Action::Unreply],
+            (SocialPane::Draft, false, Some(_)) => &[Action::Compose, Action::SendPost, Action::ClearReply],
             (SocialPane::Draft, false, None) => &[Action::Compose, Action::SendPost],
             _ => &[Action::Compose],
         };
-        Border { title, note: length_words(social, look), keys: look.hints(keys), keys_always: true }
+        PaneBorder { title, note: length_text(social, look), keys: look.hints(keys), shows_keys_always: true }
     }
 
-    fn draw(&self, social: &Social, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+    fn draw(&self, social: &Social, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
         let key = look.keys.label(Action::Compose).unwrap_or_default();
-        let hint = match social.posted_this_week() {
+        let hint = match social.has_posted_this_week() {
             true => "This week's post is published. Write the next one next week.".to_owned(),
             false => format!("Write a post with {key}. One a week, read by every known group."),
         };
@@ -85,22 +85,22 @@ impl Pane<Social> for DraftPane {
     }
 
     /// Marks a post that is too long in the border.
-    fn show(&self, social: &Social, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
+    fn draw_with_border(&self, social: &Social, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
         let area = seat.area;
         if area.height < 3 {
             return;
         }
         draw_framed(self, social, canvas, seat, look);
-        if social.length() > look.company.terms.post_characters && area.width > 8 {
-            let width = (length_words(social, look).chars().count() as u16 + 1).min(area.width - 3);
+        if social.draft_length() > look.company.tool_limits.post_characters && area.width > 8 {
+            let width = (length_text(social, look).chars().count() as u16 + 1).min(area.width - 3);
             let row = Rect { x: area.right() - 2 - width, width, height: 1, ..area };
             canvas.buffer.set_style(row.intersection(canvas.area()), canvas.theme.style(Role::Bad));
         }
     }
 }
 
-fn length_words(social: &Social, look: &Look<'_>) -> String {
-    let (length, most) = (social.length(), look.company.terms.post_characters);
+fn length_text(social: &Social, look: &ScreenContext<'_>) -> String {
+    let (length, most) = (social.draft_length(), look.company.tool_limits.post_characters);
     match length > most {
         true => format!("! {length} of {most} characters: {} too many", length - most),
         false => format!("{length} of {most} characters"),

@@ -4,11 +4,11 @@ use std::cmp::Reverse;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use novamind_database::{Rows, number_at, text_at};
+use novamind_database::{QueryResult, number_at, text_at};
 pub use novamind_worker::posts::{Post, PostKind};
 
 /// Returns the player's posts from the database.
-pub fn own_posts(rows: &Rows) -> Vec<Arc<Post>> {
+pub fn own_posts(rows: &QueryResult) -> Vec<Arc<Post>> {
     let own = |row: &Vec<novamind_database::Cell>| {
         let answers = number_at(row, 3) as u32;
         let comments: Vec<u64> = serde_json::from_str(text_at(row, 5)).unwrap_or_default();
@@ -18,7 +18,7 @@ pub fn own_posts(rows: &Rows) -> Vec<Arc<Post>> {
             day: number_at(row, 1) as u32,
             author: "NovaMind".to_owned(),
             text: text_at(row, 2).to_owned(),
-            answers: (answers > 0).then_some(answers),
+            answered_post: (answers > 0).then_some(answers),
             views: number_at(row, 4) as u32,
             comments: comments.len() as u32,
         })
@@ -28,7 +28,7 @@ pub fn own_posts(rows: &Rows) -> Vec<Arc<Post>> {
 
 /// Filter of the feed.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Filter {
+pub struct PostFilter {
     /// Kind of author.
     pub kind: Option<PostKind>,
     /// Week of the posts.
@@ -39,16 +39,16 @@ pub struct Filter {
     pub text: String,
 }
 
-impl Filter {
+impl PostFilter {
     /// Returns whether a post passes the filter.
-    pub fn takes(&self, post: &Post) -> bool {
+    pub fn matches(&self, post: &Post) -> bool {
         let wanted = self.text.to_lowercase();
         self.kind.is_none_or(|kind| kind == post.kind)
             && self.week.is_none_or(|week| week == post.week())
-            && self.thread.is_none_or(|thread| belongs(post, thread))
+            && self.thread.is_none_or(|thread| is_in_thread(post, thread))
             && (wanted.is_empty()
                 || post.text.to_lowercase().contains(&wanted)
-                || post.head().to_lowercase().contains(&wanted))
+                || post.heading().to_lowercase().contains(&wanted))
     }
 
     /// Selects the next kind; after the last kind, all.
@@ -70,7 +70,7 @@ impl Filter {
     }
 
     /// Describes the filter; empty if it shows everything.
-    pub fn words(&self) -> String {
+    pub fn label(&self) -> String {
         let kind = self.kind.map(|kind| kind.name().to_owned());
         let week = self.week.map(|week| format!("week {week}"));
         let thread = self.thread.map(|(own, _)| format!("thread of your post {own}"));
@@ -80,10 +80,10 @@ impl Filter {
 }
 
 /// Returns whether a post belongs to the thread of one of the player's posts.
-fn belongs(post: &Post, (own, answered): (u32, Option<u32>)) -> bool {
+fn is_in_thread(post: &Post, (own, answered): (u32, Option<u32>)) -> bool {
     match post.kind {
         PostKind::Own => post.number == own,
-        PostKind::Comments => post.answers == Some(own),
+        PostKind::Comments => post.answered_post == Some(own),
         PostKind::Customers | PostKind::Press => Some(post.number) == answered,
     }
 }
@@ -94,7 +94,7 @@ pub fn threads(others: &[Arc<Post>], own: &[Arc<Post>]) -> Vec<Arc<Post>> {
     let place = |post: &Arc<Post>| {
         let thread = match post.kind {
             PostKind::Own => Some(post.number),
-            PostKind::Comments => post.answers.filter(|own| days.contains_key(own)),
+            PostKind::Comments => post.answered_post.filter(|own| days.contains_key(own)),
             _ => None,
         };
         let day = thread.and_then(|own| days.get(&own).copied()).unwrap_or(post.day);
@@ -112,7 +112,7 @@ pub fn threads(others: &[Arc<Post>], own: &[Arc<Post>]) -> Vec<Arc<Post>> {
 }
 
 /// Returns the number of other authors' posts per week, from the first week.
-pub fn by_week(posts: &[Arc<Post>], last: u32, takes: impl Fn(PostKind) -> bool) -> Vec<(f64, f64)> {
+pub fn posts_by_week(posts: &[Arc<Post>], last: u32, takes: impl Fn(PostKind) -> bool) -> Vec<(f64, f64)> {
     let count = |week: u32| posts.iter().filter(|post| takes(post.kind) && post.week() == week).count();
     (1..=last).map(|week| (f64::from(week), count(week) as f64)).collect()
 }
@@ -123,11 +123,11 @@ mod tests {
 
     fn post(kind: PostKind, number: u32, day: u32, answers: Option<u32>) -> Arc<Post> {
         let (author, text) = ("Ann · S1".to_owned(), format!("Words {number}"));
-        Arc::new(Post { kind, number, day, author, text, answers, views: 0, comments: 0 })
+        Arc::new(Post { kind, number, day, author, text, answered_post: answers, views: 0, comments: 0 })
     }
 
     #[test]
-    fn comments_stand_under_the_post_they_answer() {
+    fn comments_follow_the_post_they_reply_to() {
         let others = [
             post(PostKind::Comments, 9, 15, Some(1)),
             post(PostKind::Comments, 8, 15, Some(1)),
@@ -154,17 +154,17 @@ mod tests {
     }
 
     #[test]
-    fn filters_join_kind_week_and_text() {
+    fn filter_combines_kind_week_and_text() {
         let own = post(PostKind::Customers, 6, 21, None);
-        let mut filter = Filter::default();
-        assert!(filter.takes(&own) && filter.words().is_empty());
+        let mut filter = PostFilter::default();
+        assert!(filter.matches(&own) && filter.label().is_empty());
         filter.earlier_week(4);
-        assert!(!filter.takes(&own));
+        assert!(!filter.matches(&own));
         filter.earlier_week(4);
         filter.text = "wORDS".to_owned();
         filter.next_kind();
-        assert!(filter.takes(&own));
-        assert_eq!(filter.words(), "customers · week 3 · \"wORDS\"");
+        assert!(filter.matches(&own));
+        assert_eq!(filter.label(), "customers · week 3 · \"wORDS\"");
         for _ in 0..4 {
             filter.next_kind();
         }
@@ -173,8 +173,8 @@ mod tests {
     }
 
     #[test]
-    fn a_thread_is_our_post_its_comments_and_what_it_answers() {
-        let filter = Filter { thread: Some((2, Some(6))), ..Filter::default() };
+    fn thread_filter_includes_comments_and_the_original_post() {
+        let filter = PostFilter { thread: Some((2, Some(6))), ..PostFilter::default() };
         for (kind, number, answers, belongs) in [
             (PostKind::Own, 2, Some(6), true),
             (PostKind::Own, 6, None, false),
@@ -183,15 +183,15 @@ mod tests {
             (PostKind::Customers, 6, None, true),
             (PostKind::Press, 2, None, false),
         ] {
-            assert_eq!(filter.takes(&post(kind, number, 7, answers)), belongs, "{kind:?} {number}");
+            assert_eq!(filter.matches(&post(kind, number, 7, answers)), belongs, "{kind:?} {number}");
         }
-        assert_eq!(filter.words(), "thread of your post 2");
+        assert_eq!(filter.label(), "thread of your post 2");
     }
 
     #[test]
-    fn weeks_without_posts_count_as_none() {
+    fn weeks_without_posts_count_as_zero() {
         let posts = [post(PostKind::Press, 1, 1, None), post(PostKind::Press, 2, 15, None)];
-        assert_eq!(by_week(&posts, 3, |_| true), [(1.0, 1.0), (2.0, 0.0), (3.0, 1.0)]);
-        assert_eq!(by_week(&posts, 1, |kind| kind == PostKind::Own), [(1.0, 0.0)]);
+        assert_eq!(posts_by_week(&posts, 3, |_| true), [(1.0, 1.0), (2.0, 0.0), (3.0, 1.0)]);
+        assert_eq!(posts_by_week(&posts, 1, |kind| kind == PostKind::Own), [(1.0, 0.0)]);
     }
 }

@@ -3,10 +3,10 @@
 mod draft;
 pub mod feed;
 mod feed_pane;
-mod own;
+mod own_posts;
 #[cfg(test)]
 mod tests;
-mod wall;
+mod feed_rows;
 
 use std::sync::Arc;
 
@@ -14,24 +14,24 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use serde_json::{Value, json};
 use strum::VariantArray;
 
-use self::feed::{Filter, Post, PostKind};
+use self::feed::{PostFilter, Post, PostKind};
 use super::ScreenState;
-use super::panes::{Pane, Paned, draw_pane};
+use super::panes::{Pane, PaneScreen, draw_pane};
 use crate::action::Action;
-use crate::context::{Figure, Look, ScreenId};
+use crate::context::{Figure, ScreenContext, ScreenId};
 use crate::effect::Effect;
-use novamind_base::notation::grouped;
-use novamind_database::Rows;
-use novamind_report::post_leads::leads_around;
+use novamind_base::formatting::grouped_number;
+use novamind_database::QueryResult;
+use novamind_report::post_leads::lead_lines_around;
 use novamind_tools::ToolId;
-use novamind_tui::canvas::{Canvas, fit};
+use novamind_tui::canvas::{Canvas, truncate_to_width};
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::{Axis, Cell, Column, Editor, Field, Line, Side, Table, Unit, chart};
-use novamind_worker::asking::Pending;
-use novamind_worker::company::Company;
-use novamind_worker::message::News;
+use novamind_tui::widgets::{XAxis, TableCell, TableColumn, TextEditor, TextField, Curve, YAxis, Table, AxisUnit, draw_chart};
+use novamind_worker::question::Pending;
+use novamind_worker::company::DisplayedCompany;
+use novamind_worker::message::Response;
 use novamind_worker::posts::Posts;
-use novamind_worker::questions::CallCheck;
+use novamind_worker::page_questions::CallCheck;
 use novamind_worker::readings::Reading;
 
 /// Panes in tab order.
@@ -43,34 +43,34 @@ pub enum SocialPane {
     /// Editor for the next post.
     Draft,
     /// The player's posts.
-    Own,
+    OwnPosts,
 }
 
-const POST: ToolId = ToolId::PostSocialMedia;
+const POST_TOOL: ToolId = ToolId::PostSocialMedia;
 
 /// The social screen.
 #[derive(Default)]
 pub struct Social {
     focus: SocialPane,
     others: Posts,
-    own: Vec<Arc<Post>>,
+    own_posts: Vec<Arc<Post>>,
     /// All posts in feed order.
-    all: Vec<Arc<Post>>,
+    feed: Vec<Arc<Post>>,
     /// Indexes of the posts that pass the filter.
-    shown: Vec<usize>,
+    visible_posts: Vec<usize>,
     selected: usize,
-    filter: Filter,
-    typing: Option<Field>,
+    filter: PostFilter,
+    filter_field: Option<TextField>,
     table: Table,
-    draft: Editor,
+    draft: TextEditor,
     editing: bool,
-    answers: Option<u32>,
+    reply_to: Option<u32>,
     /// Check of the tool call before the user confirms it.
-    sending: Pending<CallCheck>,
+    pending_arguments: Pending<CallCheck>,
     /// Newest post that was seen; `None` before the screen was shown.
-    seen: Option<u32>,
+    newest_seen_post: Option<u32>,
     /// Last day that was seen before the run was opened.
-    viewed: Option<u32>,
+    last_viewed_day: Option<u32>,
     day: u32,
 }
 
@@ -79,99 +79,99 @@ impl Social {
         self.day.div_ceil(7)
     }
 
-    fn arrange(&mut self) {
-        let kept = self.post().map(|post| (post.kind, post.number));
-        self.all = feed::threads(&self.others, &self.own);
-        self.show_filtered(kept);
+    fn rebuild_feed(&mut self) {
+        let kept = self.selected_post().map(|post| (post.kind, post.number));
+        self.feed = feed::threads(&self.others, &self.own_posts);
+        self.update_visible_posts(kept);
         let row = |post: &Arc<Post>| {
             vec![
-                Cell::number(f64::from(post.day), post.day.to_string()).role(Role::Dim),
-                Cell::number(f64::from(post.views), grouped(f64::from(post.views), 0)),
-                Cell::number(f64::from(post.comments), post.comments.to_string()),
-                Cell::words(post.text.replace('\n', " ")),
+                TableCell::from_number(f64::from(post.day), post.day.to_string()).with_role(Role::Dim),
+                TableCell::from_number(f64::from(post.views), grouped_number(f64::from(post.views), 0)),
+                TableCell::from_number(f64::from(post.comments), post.comments.to_string()),
+                TableCell::from_text(post.text.replace('\n', " ")),
             ]
         };
-        let columns = ["day", "views", "comm."].map(Column::numbers);
-        let columns = columns.into_iter().chain([Column::words("text").at_most(u16::MAX)]).collect();
-        self.table.set(columns, self.own.iter().map(row).collect());
+        let columns = ["day", "views", "comm."].map(TableColumn::numeric);
+        let columns = columns.into_iter().chain([TableColumn::text("text").with_max_width(u16::MAX)]).collect();
+        self.table.set_columns_and_rows(columns, self.own_posts.iter().map(row).collect());
     }
 
     /// Applies the filter; the selection stays on its post if it is still shown.
-    fn show_filtered(&mut self, kept: Option<(PostKind, u32)>) {
-        self.shown = (0..self.all.len()).filter(|at| self.filter.takes(&self.all[*at])).collect();
-        let is_kept = |at: &usize| Some((self.all[*at].kind, self.all[*at].number)) == kept;
+    fn update_visible_posts(&mut self, kept: Option<(PostKind, u32)>) {
+        self.visible_posts = (0..self.feed.len()).filter(|at| self.filter.matches(&self.feed[*at])).collect();
+        let is_kept = |at: &usize| Some((self.feed[*at].kind, self.feed[*at].number)) == kept;
         // If the newest post is selected, the selection follows the newest post.
-        let place = self.shown.iter().position(is_kept).filter(|_| self.selected > 0);
+        let place = self.visible_posts.iter().position(is_kept).filter(|_| self.selected > 0);
         self.selected = place.unwrap_or(0);
     }
 
-    fn refilter(&mut self) {
-        let kept = self.post().map(|post| (post.kind, post.number));
-        self.show_filtered(kept);
+    fn apply_filter(&mut self) {
+        let kept = self.selected_post().map(|post| (post.kind, post.number));
+        self.update_visible_posts(kept);
     }
 
-    fn post(&self) -> Option<&Post> {
-        self.shown.get(self.selected).and_then(|at| self.all.get(*at)).map(Arc::as_ref)
+    fn selected_post(&self) -> Option<&Post> {
+        self.visible_posts.get(self.selected).and_then(|at| self.feed.get(*at)).map(Arc::as_ref)
     }
 
     /// Shows a post with its details and comments.
-    fn read(&self, post: &Post, company: &Company) -> Effect {
+    fn show_post(&self, post: &Post, company: &DisplayedCompany) -> Effect {
         let mut parts = vec![post.text.clone()];
         if post.kind == PostKind::Own {
             let of = |comment: &&Arc<Post>| {
-                comment.kind == PostKind::Comments && comment.answers == Some(post.number)
+                comment.kind == PostKind::Comments && comment.answered_post == Some(post.number)
             };
-            parts.extend(leads_around(post.day, &company.group_weeks, &company.seen.known_groups));
-            let comments = self.all.iter().filter(of);
-            parts.extend(comments.map(|comment| format!("↳ {}\n  {}", comment.head(), comment.text)));
-        } else if let Some(own) = self.own.iter().find(|own| post.answers == Some(own.number)) {
-            parts.push(format!("On {}:\n  {}", own.head(), own.text));
+            parts.extend(lead_lines_around(post.day, &company.group_weeks, &company.observation.known_groups));
+            let comments = self.feed.iter().filter(of);
+            parts.extend(comments.map(|comment| format!("↳ {}\n  {}", comment.heading(), comment.text)));
+        } else if let Some(own) = self.own_posts.iter().find(|own| post.answered_post == Some(own.number)) {
+            parts.push(format!("On {}:\n  {}", own.heading(), own.text));
         }
-        Effect::ShowText(format!("day {} · {}", post.day, post.head()), parts.join("\n\n"))
+        Effect::ShowText(format!("day {} · {}", post.day, post.heading()), parts.join("\n\n"))
     }
 
     /// Returns the selected post in the table of the player's posts.
-    fn own_post(&self) -> Option<&Post> {
-        self.table.selected().and_then(|row| self.own.get(row)).map(Arc::as_ref)
+    fn selected_own_post(&self) -> Option<&Post> {
+        self.table.selected().and_then(|row| self.own_posts.get(row)).map(Arc::as_ref)
     }
 
     /// Returns the player's post that heads the thread of a post, which is the post itself, a comment on it,
     /// or the post it answers.
-    fn thread_of(&self, post: &Post) -> Option<u32> {
+    fn thread_of_post(&self, post: &Post) -> Option<u32> {
         match post.kind {
             PostKind::Own => Some(post.number),
-            PostKind::Comments => post.answers.filter(|own| self.own.iter().any(|post| post.number == *own)),
-            _ => self.own.iter().find(|own| own.answers == Some(post.number)).map(|own| own.number),
+            PostKind::Comments => post.answered_post.filter(|own| self.own_posts.iter().any(|post| post.number == *own)),
+            _ => self.own_posts.iter().find(|own| own.answered_post == Some(post.number)).map(|own| own.number),
         }
     }
 
     /// Shows the thread of a post; within the thread, the complete post.
-    fn open(&mut self, post: Option<Post>, company: &Company) -> Vec<Effect> {
+    fn open_post(&mut self, post: Option<Post>, company: &DisplayedCompany) -> Vec<Effect> {
         let Some(post) = post else { return Vec::new() };
-        match self.thread_of(&post).filter(|_| self.filter.thread.is_none()) {
+        match self.thread_of_post(&post).filter(|_| self.filter.thread.is_none()) {
             Some(own) => {
-                let answered = self.own.iter().find(|post| post.number == own).and_then(|post| post.answers);
-                self.filter = Filter { thread: Some((own, answered)), ..Filter::default() };
+                let answered = self.own_posts.iter().find(|post| post.number == own).and_then(|post| post.answered_post);
+                self.filter = PostFilter { thread: Some((own, answered)), ..PostFilter::default() };
                 self.focus = SocialPane::Feed;
-                self.refilter();
+                self.apply_filter();
                 Vec::new()
             }
-            None => vec![self.read(&post, company)],
+            None => vec![self.show_post(&post, company)],
         }
     }
 
-    fn write(&mut self, answers: Option<u32>) {
+    fn start_draft(&mut self, answers: Option<u32>) {
         (self.focus, self.editing) = (SocialPane::Draft, true);
         if answers.is_some() {
-            self.answers = answers;
+            self.reply_to = answers;
         }
     }
 
-    fn reply(&mut self) -> Vec<Effect> {
-        let answerable = self.post().filter(|post| post.kind != PostKind::Own).map(|post| post.number);
+    fn start_reply(&mut self) -> Vec<Effect> {
+        let answerable = self.selected_post().filter(|post| post.kind != PostKind::Own).map(|post| post.number);
         match answerable.filter(|_| self.focus == SocialPane::Feed) {
             Some(number) => {
-                self.write(Some(number));
+                self.start_draft(Some(number));
                 Vec::new()
             }
             None => {
@@ -180,13 +180,13 @@ impl Social {
         }
     }
 
-    fn length(&self) -> usize {
+    fn draft_length(&self) -> usize {
         self.draft.text().chars().count()
     }
 
     /// Checks the tool call; the confirmation follows.
-    fn send(&mut self, look: &Look<'_>) -> Vec<Effect> {
-        let (length, most) = (self.length(), look.company.terms.post_characters);
+    fn check_post(&mut self, look: &ScreenContext<'_>) -> Vec<Effect> {
+        let (length, most) = (self.draft_length(), look.company.tool_limits.post_characters);
         if self.draft.is_blank() {
             let key = look.keys.label(Action::Compose).unwrap_or_default();
             return vec![Effect::Complain(format!("Nothing to publish. Write a post with {key}."))];
@@ -198,31 +198,31 @@ impl Social {
             ))];
         }
         let mut arguments = json!({ "content": self.draft.text() });
-        if let Some(number) = self.answers {
+        if let Some(number) = self.reply_to {
             arguments["reply_to_post_id"] = number.into();
         }
-        vec![Effect::Ask(self.sending.ask(CallCheck { tool: POST, arguments }))]
+        vec![Effect::Ask(self.pending_arguments.ask(CallCheck { tool: POST_TOOL, arguments }))]
     }
 
-    fn ask(&self, arguments: Value, effect_day: Option<u32>) -> Effect {
-        let kind = self.answers.map_or("Publish".to_owned(), |post| format!("Answer #{post} with"));
+    fn confirm_effect(&self, arguments: Value, effect_day: Option<u32>) -> Effect {
+        let kind = self.reply_to.map_or("Publish".to_owned(), |post| format!("Answer #{post} with"));
         let read =
             effect_day.map_or(String::new(), |day| format!(" Every known group reads it on day {day}."));
-        let text = fit(&self.draft.text(), 300);
+        let text = truncate_to_width(&self.draft.text(), 300);
         let text = format!(
             "{kind} \"{text}\"?{read} It costs nothing, cannot be undone, and is this week's only post."
         );
-        Effect::ConfirmCall { tool: POST, arguments, text }
+        Effect::ConfirmCall { tool: POST_TOOL, arguments, text }
     }
 
     /// Returns the unsent post, and the post that it answers.
-    pub fn unsent(&self) -> (String, Option<u32>) {
-        (self.draft.text(), self.answers)
+    pub fn draft_text(&self) -> (String, Option<u32>) {
+        (self.draft.text(), self.reply_to)
     }
 
     /// Restores an unsent post.
-    pub fn restore(&mut self, text: &str, answers: Option<u32>) {
-        (self.draft, self.answers) = (Editor::of(text), answers);
+    pub fn restore_draft(&mut self, text: &str, answers: Option<u32>) {
+        (self.draft, self.reply_to) = (TextEditor::with_text(text), answers);
     }
 
     fn change_filter(&mut self, action: Action) {
@@ -233,81 +233,81 @@ impl Social {
             Action::EarlierWeek => self.filter.earlier_week(last),
             _ => self.filter.later_week(last),
         }
-        self.refilter();
+        self.apply_filter();
     }
 
-    fn posted_this_week(&self) -> bool {
-        self.own.iter().any(|post| post.day == self.day)
+    fn has_posted_this_week(&self) -> bool {
+        self.own_posts.iter().any(|post| post.day == self.day)
     }
 }
 
 impl ScreenState for Social {
-    fn opened(&self) -> usize {
-        usize::from(self.focus == SocialPane::Draft || self.filter != Filter::default())
+    fn own_escape_depth(&self) -> usize {
+        usize::from(self.focus == SocialPane::Draft || self.filter != PostFilter::default())
     }
 
     fn readings(&self) -> &'static [Reading] {
         &[Reading::OwnPosts]
     }
 
-    fn take(&mut self, _: Reading, rows: &Rows, _: &Look<'_>) {
-        self.own = feed::own_posts(rows);
-        self.arrange();
+    fn apply_rows(&mut self, _: Reading, rows: &QueryResult, _: &ScreenContext<'_>) {
+        self.own_posts = feed::own_posts(rows);
+        self.rebuild_feed();
     }
 
-    fn looked_at(&mut self) {
-        self.seen = Some(self.others.iter().map(|post| post.number).max().unwrap_or(0));
+    fn mark_seen(&mut self) {
+        self.newest_seen_post = Some(self.others.iter().map(|post| post.number).max().unwrap_or(0));
     }
 
-    fn unseen(&self) -> usize {
+    fn unseen_count(&self) -> usize {
         // After a run is opened, posts of the last week are unread unless they were seen before.
-        let is_new = |post: &&Arc<Post>| match self.seen {
+        let is_new = |post: &&Arc<Post>| match self.newest_seen_post {
             Some(seen) => post.number > seen,
-            None => post.day + 7 > self.day && self.viewed.is_none_or(|day| post.day > day),
+            None => post.day + 7 > self.day && self.last_viewed_day.is_none_or(|day| post.day > day),
         };
         self.others.iter().filter(is_new).count()
     }
 
-    fn renew(&mut self, look: &Look<'_>) {
-        self.day = look.company.seen.day;
-        self.viewed = look.company.viewed.get(ScreenId::Social.id()).copied();
+    fn on_company_change(&mut self, look: &ScreenContext<'_>) {
+        self.day = look.company.observation.day;
+        self.last_viewed_day = look.company.last_viewed_days.get(ScreenId::Social.record_name()).copied();
         if !Arc::ptr_eq(&self.others, &look.company.posts) {
             self.others = look.company.posts.clone();
-            self.arrange();
+            self.rebuild_feed();
         }
     }
 
-    fn take_answers(&mut self, _: &Look<'_>) -> Vec<Effect> {
-        match self.sending.try_take() {
-            Some((call, Ok(preview))) => vec![self.ask(call.arguments, preview.effect_day)],
+    fn take_answers(&mut self, _: &ScreenContext<'_>) -> Vec<Effect> {
+        match self.pending_arguments.try_take() {
+            Some((call, Ok(preview))) => vec![self.confirm_effect(call.arguments, preview.effect_day)],
             Some((_, Err(refusal))) => vec![Effect::Complain(refusal.to_string())],
             None => Vec::new(),
         }
     }
 
-    fn hear(&mut self, news: &News, _: &Look<'_>) -> Vec<Effect> {
-        if matches!(news, News::Called(POST, Ok(_), _)) {
-            (self.draft, self.answers, self.editing) = (Editor::default(), None, false);
+    fn handle_response(&mut self, news: &Response, _: &ScreenContext<'_>) -> Vec<Effect> {
+        if matches!(news, Response::ToolCalled(POST_TOOL, Ok(_), _)) {
+            (self.draft, self.reply_to, self.editing) = (TextEditor::default(), None, false);
             self.focus = SocialPane::Feed;
         }
         Vec::new()
     }
 
-    fn open_object(&self, _: &Look<'_>) -> Option<(&'static str, String)> {
+    fn open_object(&self, _: &ScreenContext<'_>) -> Option<(&'static str, String)> {
         self.filter.thread.map(|(own, _)| ("post", own.to_string()))
     }
 
-    fn edited(&self) -> Option<(String, String)> {
+    fn edited_text(&self) -> Option<(String, String)> {
         self.editing.then(|| ("post".to_owned(), self.draft.text()))
     }
 
-    fn holds_unsent_text(&self) -> bool {
+    fn has_unsent_text(&self) -> bool {
         !self.draft.is_blank()
     }
 }
 
-impl Paned for Social {
-    type Name = SocialPane;
+impl PaneScreen for Social {
+    type PaneId = SocialPane;
 
     fn panes(&self) -> &'static [SocialPane] {
         SocialPane::VARIANTS
@@ -317,26 +317,26 @@ impl Paned for Social {
         match name {
             SocialPane::Feed => &feed_pane::FeedPane,
             SocialPane::Draft => &draft::DraftPane,
-            SocialPane::Own => &own::OwnPane,
+            SocialPane::OwnPosts => &own_posts::OwnPostsPane,
         }
     }
 
-    fn focused(&self) -> SocialPane {
+    fn focused_pane(&self) -> SocialPane {
         self.focus
     }
 
-    fn focus_on(&mut self, name: SocialPane) {
+    fn set_focused_pane(&mut self, name: SocialPane) {
         self.focus = name;
         self.editing = false;
-        self.typing = None;
+        self.filter_field = None;
     }
 
-    fn act_anywhere(&mut self, action: Action, look: &Look<'_>) -> Option<Vec<Effect>> {
+    fn handle_screen_action(&mut self, action: Action, look: &ScreenContext<'_>) -> Option<Vec<Effect>> {
         match action {
-            Action::Compose => self.write(None),
-            Action::Reply => return Some(self.reply()),
-            Action::SendPost => return Some(self.send(look)),
-            Action::Unreply => self.answers = None,
+            Action::Compose => self.start_draft(None),
+            Action::Reply => return Some(self.start_reply()),
+            Action::SendPost => return Some(self.check_post(look)),
+            Action::ClearReply => self.reply_to = None,
             Action::LeaveEditor => self.editing = false,
             Action::NextKind | Action::EarlierWeek | Action::LaterWeek => self.change_filter(action),
             _ => return None,
@@ -344,8 +344,8 @@ impl Paned for Social {
         Some(Vec::new())
     }
 
-    fn arrange(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
-        use SocialPane::{Draft, Feed, Own};
+    fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+        use SocialPane::{Draft, Feed, OwnPosts};
         if area.width >= 104 && area.height >= 20 {
             let right = (area.width / 3).clamp(40, 72);
             let [left, side] =
@@ -354,8 +354,8 @@ impl Paned for Social {
             let [own, weeks] = Layout::vertical([Constraint::Percentage(60), Constraint::Min(0)]).areas(side);
             draw_pane(self, Feed, canvas, feed, look);
             draw_pane(self, Draft, canvas, draft, look);
-            draw_pane(self, Own, canvas, own, look);
-            return self.draw_weeks(canvas, weeks);
+            draw_pane(self, OwnPosts, canvas, own, look);
+            return self.draw_weekly_counts(canvas, weeks);
         }
         // Panes stacked; if there are too few rows, only the focused one.
         let low = match self.focus {
@@ -364,11 +364,11 @@ impl Paned for Social {
             _ => 0,
         };
         let [upper, draft] = Layout::vertical([Constraint::Min(0), Constraint::Length(low)]).areas(area);
-        if self.focus == Own {
+        if self.focus == OwnPosts {
             let halves = [Constraint::Percentage(50), Constraint::Min(0)];
             let [own, weeks] = Layout::vertical(halves).areas(upper);
-            draw_pane(self, Own, canvas, own, look);
-            self.draw_weeks(canvas, weeks);
+            draw_pane(self, OwnPosts, canvas, own, look);
+            self.draw_weekly_counts(canvas, weeks);
         } else {
             draw_pane(self, Feed, canvas, upper, look);
         }
@@ -377,19 +377,19 @@ impl Paned for Social {
 }
 
 impl Social {
-    fn draw_weeks(&self, canvas: &mut Canvas<'_>, area: Rect) {
+    fn draw_weekly_counts(&self, canvas: &mut Canvas<'_>, area: Rect) {
         let last = self.last_week();
-        let people = feed::by_week(&self.others, last, |kind| kind == PostKind::Customers);
-        let press = feed::by_week(&self.others, last, |kind| kind == PostKind::Press);
+        let people = feed::posts_by_week(&self.others, last, |kind| kind == PostKind::Customers);
+        let press = feed::posts_by_week(&self.others, last, |kind| kind == PostKind::Press);
         let now = |points: &[(f64, f64)]| points.last().map_or(0.0, |point| point.1);
         let note = format!("customers {} · press {}", now(&people), now(&press));
-        let inside = canvas.pane(area, "Posts by week", &note, false);
+        let inside = canvas.draw_pane_frame(area, "Posts by week", &note, false);
         let lines = [
-            Line::through(people, Role::Series(0)),
-            Line { scattered: true, ..Line::through(press, Role::Series(1)) },
+            Curve::from_points(people, Role::Series(0)),
+            Curve { is_scatter: true, ..Curve::from_points(press, Role::Series(1)) },
         ];
-        let x = Axis { write: &|week| format!("week {week:.0}"), holds: &[] };
-        chart(canvas, inside, &lines, &x, &Side { unit: Unit::Number, holds: &[0.0] });
+        let x = XAxis { format: &|week| format!("week {week:.0}"), required_values: &[] };
+        draw_chart(canvas, inside, &lines, &x, &YAxis { unit: AxisUnit::Number, required_values: &[0.0] });
     }
 }
 
@@ -410,5 +410,5 @@ fn figure_of(post: &Post) -> Figure {
             format!("SELECT * FROM social_media_posts WHERE post_id = {number}"),
         ),
     };
-    Figure { title, term, sql: Some(sql), why: None }
+    Figure { title, term, sql: Some(sql), week_quantity: None }
 }

@@ -5,16 +5,16 @@ use std::collections::BTreeSet;
 use ratatui::layout::Rect;
 
 use crate::action::Action;
-use crate::screens::panes::Seat;
+use crate::screens::panes::PanePlacement;
 use novamind_database::{Column, Table, hidden_tables, tables};
-use novamind_tui::canvas::{Align, Canvas, Click, rows_of};
-use novamind_tui::text::wrapped;
+use novamind_tui::canvas::{Align, Canvas, Click, row_rects};
+use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::Field;
-use novamind_tui::widgets::table::first_row;
+use novamind_tui::widgets::TextField;
+use novamind_tui::widgets::table::first_visible_row;
 
 /// Marks x-ray tables.
-const XRAY: &str = "x-ray";
+const XRAY_LABEL: &str = "x-ray";
 
 /// Returns a table by index; x-ray tables follow the public ones.
 fn table_at(at: usize) -> &'static Table {
@@ -23,13 +23,13 @@ fn table_at(at: usize) -> &'static Table {
 
 /// The tree with its selection.
 #[derive(Debug, Default)]
-pub struct Browser {
+pub struct TableBrowser {
     /// Whether x-ray tables are shown below the others.
     pub shows_hidden: bool,
     open: BTreeSet<usize>,
     selected: usize,
     filter: String,
-    typing: Option<Field>,
+    filter_field: Option<TextField>,
 }
 
 /// A row of the tree: a table or one of its columns.
@@ -53,9 +53,9 @@ impl BrowserRow {
     }
 }
 
-impl Browser {
+impl TableBrowser {
     /// Returns the visible rows.
-    fn entries(&self) -> Vec<BrowserRow> {
+    fn visible_rows(&self) -> Vec<BrowserRow> {
         let wanted = self.filter.to_lowercase();
         let holds = |name: &str| wanted.is_empty() || name.to_lowercase().contains(&wanted);
         let mut entries = Vec::new();
@@ -73,11 +73,11 @@ impl Browser {
     }
 
     pub fn selected(&self) -> Option<BrowserRow> {
-        self.entries().get(self.selected).copied()
+        self.visible_rows().get(self.selected).copied()
     }
 
     /// Returns the name of the selected table if it is expanded.
-    pub fn opened(&self) -> Option<&'static str> {
+    pub fn open_table(&self) -> Option<&'static str> {
         let row = self.selected().filter(|row| self.open.contains(&row.table))?;
         Some(&row.table().name)
     }
@@ -85,50 +85,50 @@ impl Browser {
     /// Selects a visible row; returns whether it was already selected.
     pub fn select(&mut self, row: usize) -> bool {
         let again = self.selected == row;
-        self.selected = row.min(self.entries().len().saturating_sub(1));
+        self.selected = row.min(self.visible_rows().len().saturating_sub(1));
         again
     }
 
     /// Returns whether a filter is set or being typed.
     pub fn is_filtered(&self) -> bool {
-        self.is_typing() || !self.filter.is_empty()
+        self.is_filter_open() || !self.filter.is_empty()
     }
 
-    pub fn is_typing(&self) -> bool {
-        self.typing.is_some()
+    pub fn is_filter_open(&self) -> bool {
+        self.filter_field.is_some()
     }
 
-    pub fn edit_filter(&mut self, edit: &mut dyn FnMut(&mut Field)) {
-        if let Some(field) = &mut self.typing {
+    pub fn edit_filter_text(&mut self, edit: &mut dyn FnMut(&mut TextField)) {
+        if let Some(field) = &mut self.filter_field {
             edit(field);
             self.filter = field.text().to_owned();
-            self.stay_inside();
+            self.clamp_selection();
         }
     }
 
     /// Returns the filter, for the border.
-    pub fn note(&self) -> String {
+    pub fn filter_text(&self) -> String {
         if self.filter.is_empty() { String::new() } else { format!("\"{}\"", self.filter) }
     }
 
-    fn stay_inside(&mut self) {
-        self.selected = self.selected.min(self.entries().len().saturating_sub(1));
+    fn clamp_selection(&mut self) {
+        self.selected = self.selected.min(self.visible_rows().len().saturating_sub(1));
     }
 
-    fn fold(&mut self, open: bool) {
+    fn set_expanded(&mut self, open: bool) {
         let Some(entry) = self.selected() else { return };
         if open {
             self.open.insert(entry.table);
         } else {
             self.open.remove(&entry.table);
             let head = BrowserRow { table: entry.table, column: None };
-            self.selected = self.entries().iter().position(|own| *own == head).unwrap_or(0);
+            self.selected = self.visible_rows().iter().position(|own| *own == head).unwrap_or(0);
         }
     }
 
     /// Moves, expands, collapses and filters; returns false for other actions.
-    pub fn act(&mut self, action: Action, page: u16) -> bool {
-        let last = self.entries().len().saturating_sub(1);
+    pub fn handle_action(&mut self, action: Action, page: u16) -> bool {
+        let last = self.visible_rows().len().saturating_sub(1);
         match action {
             Action::Up => self.selected = self.selected.saturating_sub(1),
             Action::Down => self.selected = (self.selected + 1).min(last),
@@ -136,16 +136,16 @@ impl Browser {
             Action::PageDown => self.selected = (self.selected + page.max(1) as usize).min(last),
             Action::First => self.selected = 0,
             Action::Last => self.selected = last,
-            Action::Left => self.fold(false),
-            Action::Right => self.fold(true),
-            Action::Filter => self.typing = Some(Field::of(self.filter.clone())),
+            Action::Left => self.set_expanded(false),
+            Action::Right => self.set_expanded(true),
+            Action::Filter => self.filter_field = Some(TextField::with_text(self.filter.clone())),
             Action::Commit | Action::CommitDown | Action::CommitNext | Action::CommitPrevious => {
-                self.typing = None;
+                self.filter_field = None;
             }
-            Action::Discard | Action::Close if self.typing.is_some() || !self.filter.is_empty() => {
-                self.typing = None;
+            Action::Discard | Action::Close if self.filter_field.is_some() || !self.filter.is_empty() => {
+                self.filter_field = None;
                 self.filter.clear();
-                self.stay_inside();
+                self.clamp_selection();
             }
             _ => return false,
         }
@@ -153,69 +153,69 @@ impl Browser {
     }
 
     /// Draws the tree, and a description of the selected row below it.
-    pub fn draw(&self, canvas: &mut Canvas<'_>, seat: Seat) {
+    pub fn draw(&self, canvas: &mut Canvas<'_>, seat: PanePlacement) {
         let (inside, focused) = (seat.area, seat.focused);
         if inside.is_empty() {
             return;
         }
-        let entries = self.entries();
-        let words = if focused { self.explanation(inside.width as usize) } else { Vec::new() };
+        let entries = self.visible_rows();
+        let words = if focused { self.description_lines(inside.width as usize) } else { Vec::new() };
         let below = (words.len() as u16).min(inside.height / 3);
-        let filter_row = u16::from(self.typing.is_some());
+        let filter_row = u16::from(self.filter_field.is_some());
         let height = inside.height.saturating_sub(below + filter_row);
         let tree = Rect { height, ..inside };
         if focused {
-            canvas.page = height.max(1);
+            canvas.page_rows = height.max(1);
         }
         if entries.is_empty() {
-            canvas.text(tree, "No match", Role::Dim);
+            canvas.draw_text(tree, "No match", Role::Dim);
         }
-        let from = first_row(self.selected, height as usize, entries.len());
-        for (row, (at, entry)) in rows_of(tree).zip(entries.iter().enumerate().skip(from)) {
+        let from = first_visible_row(self.selected, height as usize, entries.len());
+        for (row, (at, entry)) in row_rects(tree).zip(entries.iter().enumerate().skip(from)) {
             self.draw_entry(canvas, row, *entry, (at == self.selected).then_some(focused));
-            canvas.click(row, Click::Row(seat.number, at));
+            canvas.register_click(row, Click::Row(seat.index, at));
         }
         let under = Rect { y: tree.bottom(), height: below, ..inside };
-        for (row, line) in rows_of(under).zip(&words) {
-            canvas.text(row, line, Role::Dim);
+        for (row, line) in row_rects(under).zip(&words) {
+            canvas.draw_text(row, line, Role::Dim);
         }
-        if let Some(field) = &self.typing {
+        if let Some(field) = &self.filter_field {
             let row = Rect { y: inside.bottom() - 1, height: 1, ..inside };
-            canvas.text(row, "/", Role::Key);
+            canvas.draw_text(row, "/", Role::Key);
             field.draw(canvas, Rect { x: row.x + 1, width: row.width - 1, ..row });
         }
     }
 
     fn draw_entry(&self, canvas: &mut Canvas<'_>, row: Rect, entry: BrowserRow, selected: Option<bool>) {
-        let over = selected.map(|focused| if focused { Role::Selection } else { Role::SelectionIdle });
+        let over = selected.map(|focused| if focused { Role::Selection } else { Role::InactiveSelection });
         if let Some(role) = over {
             canvas.clear(row, role);
         }
         match entry.column() {
             None => {
                 let mark = if self.open.contains(&entry.table) { "▾" } else { "▸" };
-                canvas.text(row, &format!("{mark} {}", entry.name()), over.unwrap_or(Role::Strong));
+                canvas.draw_text(row, &format!("{mark} {}", entry.name()), over.unwrap_or(Role::Strong));
                 let taken = entry.name().len() as u16 + 2;
-                if entry.table >= tables().len() && row.width > taken + XRAY.len() as u16 {
-                    canvas.aligned(row, XRAY, over.unwrap_or(Role::Warning), Align::Right);
+                if entry.table >= tables().len() && row.width > taken + XRAY_LABEL.len() as u16 {
+                    canvas.draw_aligned(row, XRAY_LABEL, over.unwrap_or(Role::Warning), Align::Right);
                 }
             }
             Some(column) => {
                 let kind = column.kind.as_str();
                 let room = row.width.saturating_sub(kind.len() as u16 + 1);
-                canvas.text(
+                canvas.draw_text(
                     Rect { width: room, ..row },
                     &format!("    {}", column.name),
                     over.unwrap_or(Role::Text),
                 );
                 if room > 12 {
-                    canvas.aligned(row, kind, over.unwrap_or(Role::Dim), Align::Right);
+                    canvas.draw_aligned(row, kind, over.unwrap_or(Role::Dim), Align::Right);
                 }
             }
         }
     }
 
-    fn explanation(&self, width: usize) -> Vec<String> {
+    fn description_lines(&self, width: usize) -> Vec<String> {
         let Some(entry) = self.selected() else { return Vec::new() };
         let mut text = match entry.column() {
             Some(column) => column.description.clone(),
@@ -225,7 +225,7 @@ impl Browser {
             text += &format!(": {}", column.values.join(", "));
         }
         let mut lines = vec!["─".repeat(width)];
-        lines.extend(wrapped(&text, width));
+        lines.extend(wrap(&text, width));
         lines
     }
 }
@@ -235,34 +235,34 @@ mod tests {
     use super::*;
 
     #[test]
-    fn tables_unfold_and_fold() {
-        let mut browser = Browser::default();
-        assert_eq!(browser.entries().len(), 19);
-        browser.act(Action::Right, 5);
-        assert_eq!(browser.entries().len(), 19 + tables()[0].columns.len());
-        browser.act(Action::Down, 5);
+    fn tables_expand_and_collapse() {
+        let mut browser = TableBrowser::default();
+        assert_eq!(browser.visible_rows().len(), 19);
+        browser.handle_action(Action::Right, 5);
+        assert_eq!(browser.visible_rows().len(), 19 + tables()[0].columns.len());
+        browser.handle_action(Action::Down, 5);
         assert_eq!(browser.selected().map(BrowserRow::name), Some("customer_id"));
-        browser.act(Action::Left, 5);
+        browser.handle_action(Action::Left, 5);
         assert_eq!(
-            (browser.entries().len(), browser.selected().map(BrowserRow::name)),
+            (browser.visible_rows().len(), browser.selected().map(BrowserRow::name)),
             (19, Some("customers"))
         );
     }
 
     #[test]
-    fn a_filter_finds_columns_in_folded_tables() {
-        let mut browser = Browser::default();
-        browser.act(Action::Last, 5);
-        browser.act(Action::Filter, 5);
-        browser.edit_filter(&mut |field| field.insert("amount"));
-        let names: Vec<&str> = browser.entries().into_iter().map(BrowserRow::name).collect();
+    fn filter_finds_columns_of_collapsed_tables() {
+        let mut browser = TableBrowser::default();
+        browser.handle_action(Action::Last, 5);
+        browser.handle_action(Action::Filter, 5);
+        browser.edit_filter_text(&mut |field| field.insert("amount"));
+        let names: Vec<&str> = browser.visible_rows().into_iter().map(BrowserRow::name).collect();
         assert!(names.contains(&"ledger") && names.contains(&"amount"), "{names:?}");
         assert!(browser.selected().is_some());
-        browser.act(Action::Discard, 5);
-        assert_eq!(browser.entries().len(), 19);
+        browser.handle_action(Action::Discard, 5);
+        assert_eq!(browser.visible_rows().len(), 19);
         browser.filter = "zzz".to_owned();
-        browser.stay_inside();
+        browser.clamp_selection();
         assert_eq!(browser.selected(), None);
-        assert!(browser.act(Action::Right, 5));
+        assert!(browser.handle_action(Action::Right, 5));
     }
 }

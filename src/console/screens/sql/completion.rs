@@ -2,14 +2,14 @@
 
 use novamind_database::catalogue::{Column, Table};
 use novamind_database::{table, tables};
-use novamind_tui::sql::{FUNCTIONS, KEYWORDS, LexemeKind, Token, is_word, statement_at, tokens};
+use novamind_tui::sql::{FUNCTIONS, KEYWORDS, TokenKind, Token, is_identifier_char, statement_at, tokenize};
 
 /// A suggestion.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Candidate {
     /// Text to insert.
     pub word: String,
-    pub what: String,
+    pub description: String,
 }
 
 /// Suggestions at the cursor, and the selected one.
@@ -17,12 +17,12 @@ pub struct Candidate {
 pub struct Completion {
     /// Suggestions, best first.
     pub candidates: Vec<Candidate>,
-    pub chosen: usize,
+    pub selected: usize,
     /// Number of typed characters of the word.
-    pub typed: usize,
+    pub typed_chars: usize,
 }
 
-const MOST: usize = 40;
+const MAX_CANDIDATES: usize = 40;
 
 /// A table of a statement with its alias.
 struct NamedTable {
@@ -37,12 +37,12 @@ pub fn complete(sql: &str, place: usize, least: usize) -> Option<Completion> {
     let start = range.start.min(place);
     let statement = &sql[start..range.end.max(place)];
     let place = place - start;
-    let pieces = tokens(statement);
-    let inside = |token: &&Token| token.place.start < place && place <= token.place.end;
+    let pieces = tokenize(statement);
+    let inside = |token: &&Token| token.range.start < place && place <= token.range.end;
     let here = pieces.iter().find(inside);
-    let open_comment = |token: &Token| token.kind == LexemeKind::Comment;
+    let open_comment = |token: &Token| token.kind == TokenKind::Comment;
     if here.is_some_and(|token| {
-        matches!(token.kind, LexemeKind::Text | LexemeKind::Number) || open_comment(token)
+        matches!(token.kind, TokenKind::StringLiteral | TokenKind::Number) || open_comment(token)
     }) {
         return None;
     }
@@ -50,64 +50,64 @@ pub fn complete(sql: &str, place: usize, least: usize) -> Option<Completion> {
     let word_start = before
         .char_indices()
         .rev()
-        .take_while(|(_, letter)| is_word(*letter))
+        .take_while(|(_, letter)| is_identifier_char(*letter))
         .last()
         .map_or(place, |(at, _)| at);
     let word = &before[word_start..];
     let sources = sources(statement, &pieces);
     let found = match before[..word_start].strip_suffix('.') {
         Some(rest) => {
-            let name = rest.rsplit(|letter| !is_word(letter)).next().unwrap_or_default();
-            of_source(name, &sources)?
+            let name = rest.rsplit(|letter| !is_identifier_char(letter)).next().unwrap_or_default();
+            source_candidates(name, &sources)?
         }
         None if word.chars().count() < least.max(1) => return None,
-        None => of_everything(statement, &pieces, word_start, &sources),
+        None => all_candidates(statement, &pieces, word_start, &sources),
     };
-    let candidates = matching(found, word);
+    let candidates = filter_candidates(found, word);
     let finished = candidates.first().is_some_and(|first| first.word.trim_end_matches('(') == word);
     (!candidates.is_empty() && !finished).then(|| Completion {
         candidates,
-        chosen: 0,
-        typed: word.chars().count(),
+        selected: 0,
+        typed_chars: word.chars().count(),
     })
 }
 
-fn of_column(table: &Table, column: &Column) -> Candidate {
-    Candidate { word: column.name.clone(), what: format!("{} {}", table.name, column.kind) }
+fn column_candidate(table: &Table, column: &Column) -> Candidate {
+    Candidate { word: column.name.clone(), description: format!("{} {}", table.name, column.kind) }
 }
 
-fn of_table(table: &Table) -> Candidate {
-    Candidate { word: table.name.clone(), what: "table".to_owned() }
+fn table_candidate(table: &Table) -> Candidate {
+    Candidate { word: table.name.clone(), description: "table".to_owned() }
 }
 
 /// Returns the columns of the table with a name or alias in the statement, or a name in the database.
-fn of_source(name: &str, sources: &[NamedTable]) -> Option<Vec<Candidate>> {
+fn source_candidates(name: &str, sources: &[NamedTable]) -> Option<Vec<Candidate>> {
     let own = sources.iter().find(|source| source.name.eq_ignore_ascii_case(name)).map(|source| source.table);
     let meant = own.or_else(|| table(name))?;
-    Some(meant.columns.iter().map(|column| of_column(meant, column)).collect())
+    Some(meant.columns.iter().map(|column| column_candidate(meant, column)).collect())
 }
 
 /// Returns the suggestions for a word without a point before it.
-fn of_everything(sql: &str, pieces: &[Token], word_start: usize, sources: &[NamedTable]) -> Vec<Candidate> {
-    let said = |token: &&Token| token.kind != LexemeKind::Comment && token.place.end <= word_start;
-    let last = pieces.iter().rev().find(said).map(|token| sql[token.place.clone()].to_uppercase());
+fn all_candidates(sql: &str, pieces: &[Token], word_start: usize, sources: &[NamedTable]) -> Vec<Candidate> {
+    let said = |token: &&Token| token.kind != TokenKind::Comment && token.range.end <= word_start;
+    let last = pieces.iter().rev().find(said).map(|token| sql[token.range.clone()].to_uppercase());
     let wants_table = last.is_some_and(|word| word == "FROM" || word == "JOIN");
-    let names = own_names(sql, pieces)
+    let names = cte_names(sql, pieces)
         .into_iter()
-        .map(|word| Candidate { word, what: "in this statement".to_owned() });
-    let all_tables = tables().iter().map(of_table);
+        .map(|word| Candidate { word, description: "in this statement".to_owned() });
+    let all_tables = tables().iter().map(table_candidate);
     if wants_table {
         return names.chain(all_tables).collect();
     }
-    let columns_of = |table: &'static Table| table.columns.iter().map(move |column| of_column(table, column));
+    let columns_of = |table: &'static Table| table.columns.iter().map(move |column| column_candidate(table, column));
     let near = sources.iter().flat_map(|source| columns_of(source.table));
     let far = tables().iter().filter(|_| sources.is_empty()).flat_map(columns_of);
-    let small = writes_small(sql, pieces);
+    let small = uses_lowercase_keywords(sql, pieces);
     let keyword = |word: &&str| Candidate {
         word: if small { word.to_lowercase() } else { (*word).to_owned() },
-        what: "keyword".to_owned(),
+        description: "keyword".to_owned(),
     };
-    let function = |word: &&str| Candidate { word: format!("{word}("), what: "function".to_owned() };
+    let function = |word: &&str| Candidate { word: format!("{word}("), description: "function".to_owned() };
     near.chain(names)
         .chain(KEYWORDS.iter().map(keyword))
         .chain(FUNCTIONS.iter().map(function))
@@ -117,14 +117,14 @@ fn of_everything(sql: &str, pieces: &[Token], word_start: usize, sources: &[Name
 }
 
 /// Returns whether the user writes keywords in lower case.
-fn writes_small(sql: &str, pieces: &[Token]) -> bool {
-    let mut keywords = pieces.iter().filter(|token| token.kind == LexemeKind::Keyword);
-    keywords.any(|token| sql[token.place.clone()].chars().all(char::is_lowercase))
+fn uses_lowercase_keywords(sql: &str, pieces: &[Token]) -> bool {
+    let mut keywords = pieces.iter().filter(|token| token.kind == TokenKind::Keyword);
+    keywords.any(|token| sql[token.range.clone()].chars().all(char::is_lowercase))
 }
 
 /// Returns the suggestions that start with the word, then those with a later part that does (`source` finds
 /// `acquisition_source`).
-fn matching(found: Vec<Candidate>, word: &str) -> Vec<Candidate> {
+fn filter_candidates(found: Vec<Candidate>, word: &str) -> Vec<Candidate> {
     let wanted = word.to_lowercase();
     let begins = |candidate: &Candidate| candidate.word.to_lowercase().starts_with(&wanted);
     let part = |candidate: &Candidate| {
@@ -133,7 +133,7 @@ fn matching(found: Vec<Candidate>, word: &str) -> Vec<Candidate> {
     let (first, rest): (Vec<_>, Vec<_>) = found.into_iter().partition(begins);
     let mut kept: Vec<Candidate> = Vec::new();
     for candidate in first.into_iter().chain(rest.into_iter().filter(part)) {
-        if kept.len() < MOST && !kept.iter().any(|other| other.word == candidate.word) {
+        if kept.len() < MAX_CANDIDATES && !kept.iter().any(|other| other.word == candidate.word) {
             kept.push(candidate);
         }
     }
@@ -142,8 +142,8 @@ fn matching(found: Vec<Candidate>, word: &str) -> Vec<Candidate> {
 
 /// Returns the tables in a statement, with their aliases.
 fn sources(sql: &str, pieces: &[Token]) -> Vec<NamedTable> {
-    let text = |at: usize| pieces.get(at).map_or("", |token| &sql[token.place.clone()]);
-    let is_name = |at: usize| pieces.get(at).is_some_and(|token| token.kind == LexemeKind::Name);
+    let text = |at: usize| pieces.get(at).map_or("", |token| &sql[token.range.clone()]);
+    let is_name = |at: usize| pieces.get(at).is_some_and(|token| token.kind == TokenKind::Identifier);
     let mut found = Vec::new();
     for at in (0..pieces.len()).filter(|at| is_name(*at)) {
         let Some(table) = table(text(at).trim_matches(['"', '`', '[', ']'])) else { continue };
@@ -159,10 +159,10 @@ fn sources(sql: &str, pieces: &[Token]) -> Vec<NamedTable> {
 }
 
 /// Returns the names of common table expressions: names before `AS (`.
-fn own_names(sql: &str, pieces: &[Token]) -> Vec<String> {
-    let text = |token: &Token| sql[token.place.clone()].to_owned();
+fn cte_names(sql: &str, pieces: &[Token]) -> Vec<String> {
+    let text = |token: &Token| sql[token.range.clone()].to_owned();
     let names = pieces.windows(3).filter(|three| {
-        three[0].kind == LexemeKind::Name
+        three[0].kind == TokenKind::Identifier
             && text(&three[1]).eq_ignore_ascii_case("as")
             && text(&three[2]) == "("
     });
@@ -174,7 +174,7 @@ mod tests {
     use super::*;
 
     /// Returns the suggestions at the `|`.
-    fn words(marked: &str) -> Vec<String> {
+    fn offered_words(marked: &str) -> Vec<String> {
         let place = marked.find('|').expect("a mark");
         let sql = marked.replace('|', "");
         let found = complete(&sql, place, 2);
@@ -183,47 +183,47 @@ mod tests {
 
     #[test]
     fn columns_of_the_named_tables_come_first() {
-        assert_eq!(words("SELECT cust| FROM ledger JOIN customers")[..2], ["customer_id", "customer_type"]);
-        assert_eq!(words("SELECT am| FROM ledger")[0], "amount");
-        assert_eq!(words("SELECT sour| FROM customers")[0], "acquisition_source");
+        assert_eq!(offered_words("SELECT cust| FROM ledger JOIN customers")[..2], ["customer_id", "customer_type"]);
+        assert_eq!(offered_words("SELECT am| FROM ledger")[0], "amount");
+        assert_eq!(offered_words("SELECT sour| FROM customers")[0], "acquisition_source");
     }
 
     #[test]
     fn an_alias_limits_the_columns_to_its_table() {
-        let all = words("SELECT s.| FROM subscriptions s JOIN customers AS c");
+        let all = offered_words("SELECT s.| FROM subscriptions s JOIN customers AS c");
         assert_eq!(all.len(), table("subscriptions").expect("a table").columns.len());
-        assert_eq!(words("SELECT c.em| FROM subscriptions s JOIN customers AS c"), ["email"]);
-        assert_eq!(words("SELECT customers.em|"), ["email"]);
-        assert!(words("SELECT x.| FROM customers c").is_empty());
+        assert_eq!(offered_words("SELECT c.em| FROM subscriptions s JOIN customers AS c"), ["email"]);
+        assert_eq!(offered_words("SELECT customers.em|"), ["email"]);
+        assert!(offered_words("SELECT x.| FROM customers c").is_empty());
     }
 
     #[test]
-    fn signs_of_several_bytes_before_a_point_name_no_table() {
+    fn multibyte_symbol_before_a_point_is_not_a_table() {
         for typed in ["€.|", "SELECT 😀.|", "x ,–.a|", "\u{202e}٣😀.|"] {
-            assert!(words(typed).is_empty(), "{typed}");
+            assert!(offered_words(typed).is_empty(), "{typed}");
         }
     }
 
     #[test]
     fn tables_follow_from_and_join() {
-        assert_eq!(words("SELECT * FROM le|")[0], "ledger");
-        assert!(words("SELECT * FROM customers JOIN su|").contains(&"subscriptions".to_owned()));
-        assert_eq!(words("WITH weekly AS (SELECT 1) SELECT * FROM we|"), ["weekly"]);
+        assert_eq!(offered_words("SELECT * FROM le|")[0], "ledger");
+        assert!(offered_words("SELECT * FROM customers JOIN su|").contains(&"subscriptions".to_owned()));
+        assert_eq!(offered_words("WITH weekly AS (SELECT 1) SELECT * FROM we|"), ["weekly"]);
     }
 
     #[test]
-    fn keywords_follow_the_habit_of_the_person() {
-        assert_eq!(words("sel|"), ["SELECT"]);
-        assert!(words("select 1 ord|").contains(&"order".to_owned()));
-        assert!(words("SELECT 1 ord|").contains(&"ORDER".to_owned()));
+    fn keywords_follow_the_case_of_the_statement() {
+        assert_eq!(offered_words("sel|"), ["SELECT"]);
+        assert!(offered_words("select 1 ord|").contains(&"order".to_owned()));
+        assert!(offered_words("SELECT 1 ord|").contains(&"ORDER".to_owned()));
     }
 
     #[test]
-    fn nothing_is_offered_inside_texts_and_comments_or_for_finished_words() {
+    fn no_completion_in_strings_comments_and_finished_words() {
         for marked in
             ["'sel|", "-- sel|", "/* sel|", "SELECT|", "SELECT 12|", "s|", "|", "SELECT * FROM ledger|"]
         {
-            assert!(words(marked).is_empty(), "{marked}");
+            assert!(offered_words(marked).is_empty(), "{marked}");
         }
         assert!(complete("s", 1, 1).is_some());
     }

@@ -6,34 +6,34 @@ use ratatui::style::{Modifier, Style};
 use unicode_width::UnicodeWidthStr;
 
 use super::completion::{Completion, complete};
-use novamind_tui::canvas::{Align, Canvas, rows_of};
-use novamind_tui::sql::{is_word, statement_at, tokens};
+use novamind_tui::canvas::{Align, Canvas, row_rects};
+use novamind_tui::sql::{is_identifier_char, statement_at, tokenize};
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::Editor;
-use novamind_tui::widgets::table::first_row;
+use novamind_tui::widgets::TextEditor;
+use novamind_tui::widgets::table::first_visible_row;
 
 /// Minimum length of a word for suggestions while typing.
-const LEAST_TYPED: usize = 2;
+const MIN_TYPED_CHARS: usize = 2;
 /// Number of visible suggestions.
-const SHOWN: u16 = 8;
+const MAX_VISIBLE_CANDIDATES: u16 = 8;
 
 /// A statement, and its position in the text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Statement {
     pub sql: String,
     /// Byte offset in the editor.
-    pub from: usize,
+    pub offset: usize,
 }
 
 pub struct QueryEditor {
-    text: Editor,
+    text: TextEditor,
     completion: Option<Completion>,
-    mark: Option<usize>,
+    error_offset: Option<usize>,
 }
 
 impl Default for QueryEditor {
     fn default() -> Self {
-        QueryEditor { text: Editor::default().unwrapped(), completion: None, mark: None }
+        QueryEditor { text: TextEditor::default().without_wrapping(), completion: None, error_offset: None }
     }
 }
 
@@ -48,15 +48,15 @@ impl QueryEditor {
     }
 
     pub fn replace(&mut self, sql: &str) {
-        self.text.replace(sql);
-        self.changed();
+        self.text.set_text(sql);
+        self.on_change();
     }
 
-    fn changed(&mut self) {
-        (self.completion, self.mark) = (None, None);
+    fn on_change(&mut self) {
+        (self.completion, self.error_offset) = (None, None);
     }
 
-    fn place(&self) -> usize {
+    fn cursor_offset(&self) -> usize {
         let (row, column) = self.text.cursor();
         let lines = self.text.lines();
         let above: usize = lines.iter().take(row).map(|line| line.len() + 1).sum();
@@ -67,21 +67,21 @@ impl QueryEditor {
     /// Returns the statement at the cursor; `None` if it is empty.
     pub fn statement(&self) -> Option<Statement> {
         let text = self.text();
-        let (range, ..) = statement_at(&text, self.place());
+        let (range, ..) = statement_at(&text, self.cursor_offset());
         let whole = &text[range.clone()];
         let from = range.start + (whole.len() - whole.trim_start().len());
         let sql = whole.trim().to_owned();
-        (!sql.is_empty()).then_some(Statement { sql, from })
+        (!sql.is_empty()).then_some(Statement { sql, offset: from })
     }
 
     /// Returns the index of the statement at the cursor, and the number of statements.
-    pub fn count(&self) -> (usize, usize) {
-        let (_, number, count) = statement_at(&self.text(), self.place());
+    pub fn statement_position(&self) -> (usize, usize) {
+        let (_, number, count) = statement_at(&self.text(), self.cursor_offset());
         (number, count)
     }
 
     /// Marks an error at a byte offset and moves the cursor there.
-    pub fn mark(&mut self, place: usize) {
+    pub fn mark_error(&mut self, place: usize) {
         let text = self.text();
         let place = (0..=place.min(text.len())).rev().find(|at| text.is_char_boundary(*at)).unwrap_or(0);
         let before = &text[..place];
@@ -89,7 +89,7 @@ impl QueryEditor {
         let column = before.rsplit('\n').next().map_or(0, |line| line.chars().count());
         self.text.move_to(row, column);
         self.completion = None;
-        self.mark = Some(place);
+        self.error_offset = Some(place);
     }
 
     /// Moves the cursor to the start.
@@ -97,23 +97,23 @@ impl QueryEditor {
         self.text.move_to(0, 0);
     }
 
-    pub fn key(&mut self, key: &KeyEvent) {
+    pub fn handle_key(&mut self, key: &KeyEvent) {
         if let Some(completion) = &mut self.completion {
             let last = completion.candidates.len() - 1;
             match key.code {
-                KeyCode::Up => return completion.chosen = completion.chosen.checked_sub(1).unwrap_or(last),
+                KeyCode::Up => return completion.selected = completion.selected.checked_sub(1).unwrap_or(last),
                 KeyCode::Down => {
-                    return completion.chosen =
-                        if completion.chosen == last { 0 } else { completion.chosen + 1 };
+                    return completion.selected =
+                        if completion.selected == last { 0 } else { completion.selected + 1 };
                 }
                 _ => {}
             }
         }
         let before = self.text.cursor();
         let count = self.text.lines().len();
-        self.text.key(key);
+        self.text.handle_key(key);
         let types = match key.code {
-            KeyCode::Char(letter) => is_word(letter) || letter == '.',
+            KeyCode::Char(letter) => is_identifier_char(letter) || letter == '.',
             // Deleting does not open suggestions.
             KeyCode::Backspace => self.completion.is_some(),
             _ => false,
@@ -123,22 +123,22 @@ impl QueryEditor {
             KeyCode::Left | KeyCode::Right | KeyCode::Up | KeyCode::Down | KeyCode::Home | KeyCode::End
         );
         if !moved_only && (before != self.text.cursor() || count != self.text.lines().len()) {
-            self.mark = None;
+            self.error_offset = None;
         }
-        self.completion = if types { complete(&self.text(), self.place(), LEAST_TYPED) } else { None };
+        self.completion = if types { complete(&self.text(), self.cursor_offset(), MIN_TYPED_CHARS) } else { None };
     }
 
     pub fn paste(&mut self, text: &str) {
         self.text.insert(text);
-        self.changed();
+        self.on_change();
     }
 
     /// Inserts the selected suggestion, otherwise shows suggestions, otherwise indents.
-    pub fn complete(&mut self) {
-        match self.completion.take().or_else(|| complete(&self.text(), self.place(), 1)) {
+    pub fn accept_or_offer_completion(&mut self) {
+        match self.completion.take().or_else(|| complete(&self.text(), self.cursor_offset(), 1)) {
             Some(completion) => {
-                let chosen = &completion.candidates[completion.chosen];
-                self.text.remove_before(completion.typed);
+                let chosen = &completion.candidates[completion.selected];
+                self.text.delete_before_cursor(completion.typed_chars);
                 self.text.insert(&chosen.word);
             }
             None => {
@@ -146,7 +146,7 @@ impl QueryEditor {
                 self.text.insert(&" ".repeat(4 - column % 4));
             }
         }
-        self.changed();
+        self.on_change();
     }
 
     /// Hides the suggestions; returns whether there were any.
@@ -157,14 +157,14 @@ impl QueryEditor {
     /// Inserts a name at the cursor, separated from the text before it.
     pub fn insert_name(&mut self, name: &str, after_another: bool) {
         let text = self.text();
-        let last = text[..self.place()].chars().next_back();
+        let last = text[..self.cursor_offset()].chars().next_back();
         let apart = match last {
-            Some(letter) if is_word(letter) && after_another => ", ",
-            Some(letter) if is_word(letter) || matches!(letter, ',' | ')' | '*') => " ",
+            Some(letter) if is_identifier_char(letter) && after_another => ", ",
+            Some(letter) if is_identifier_char(letter) || matches!(letter, ',' | ')' | '*') => " ",
             _ => "",
         };
         self.text.insert(&format!("{apart}{name}"));
-        self.changed();
+        self.on_change();
     }
 
     /// Draws the text with highlighting.
@@ -174,19 +174,19 @@ impl QueryEditor {
             return;
         }
         let text = self.text();
-        for token in tokens(&text) {
-            self.restyle(canvas, area, &text, token.place, canvas.style(token.kind.role()));
+        for token in tokenize(&text) {
+            self.style_range(canvas, area, &text, token.range, canvas.style(token.kind.role()));
         }
-        if let Some(mark) = self.mark {
-            let token = tokens(&text).into_iter().map(|token| token.place).find(|place| place.end > mark);
+        if let Some(mark) = self.error_offset {
+            let token = tokenize(&text).into_iter().map(|token| token.range).find(|place| place.end > mark);
             let place = token.unwrap_or(text.len().saturating_sub(1)..text.len());
             let style = canvas.style(Role::Bad).add_modifier(Modifier::UNDERLINED);
-            self.restyle(canvas, area, &text, place, style);
+            self.style_range(canvas, area, &text, place, style);
         }
     }
 
     /// Restyles a range of text that the text area has drawn.
-    fn restyle(
+    fn style_range(
         &self,
         canvas: &mut Canvas<'_>,
         area: Rect,
@@ -194,7 +194,7 @@ impl QueryEditor {
         place: std::ops::Range<usize>,
         style: Style,
     ) {
-        let (top, left) = self.text.scroll();
+        let (top, left) = self.text.scroll_offset();
         let area = area.intersection(canvas.buffer.area);
         let Some(piece) = text.get(place.clone()) else { return };
         let first_row = text[..place.start].matches('\n').count();
@@ -226,8 +226,8 @@ impl QueryEditor {
             completion.candidates.iter().map(|one| of(one).width()).max().unwrap_or(0)
         };
         let words = widest(|one| &one.word) as u16;
-        let width = (words + widest(|one| &one.what) as u16 + 6).min(area.width);
-        let rows = (completion.candidates.len() as u16).min(SHOWN);
+        let width = (words + widest(|one| &one.description) as u16 + 6).min(area.width);
+        let rows = (completion.candidates.len() as u16).min(MAX_VISIBLE_CANDIDATES);
         let (above, below) = (cursor.y.saturating_sub(area.y), area.bottom().saturating_sub(cursor.y + 1));
         let (y, height) = match below >= rows + 2 || below >= above {
             true => (cursor.y + 1, (rows + 2).min(below)),
@@ -236,19 +236,19 @@ impl QueryEditor {
         if height < 3 || width < 8 {
             return;
         }
-        let x = cursor.x.saturating_sub(completion.typed as u16 + 2).max(area.x).min(area.right() - width);
+        let x = cursor.x.saturating_sub(completion.typed_chars as u16 + 2).max(area.x).min(area.right() - width);
         let own = Rect { x, y, width, height };
         canvas.clear(own, Role::Field);
-        let inside = canvas.pane(own, "", "", true);
-        let from = first_row(completion.chosen, inside.height as usize, completion.candidates.len());
-        for (row, (at, one)) in rows_of(inside).zip(completion.candidates.iter().enumerate().skip(from)) {
-            let chosen = at == completion.chosen;
+        let inside = canvas.draw_pane_frame(own, "", "", true);
+        let from = first_visible_row(completion.selected, inside.height as usize, completion.candidates.len());
+        for (row, (at, one)) in row_rects(inside).zip(completion.candidates.iter().enumerate().skip(from)) {
+            let chosen = at == completion.selected;
             canvas.clear(row, if chosen { Role::Selection } else { Role::Field });
             let word = Rect { x: row.x + 1, width: words.min(row.width.saturating_sub(2)), ..row };
             let what_width = row.width.saturating_sub(words + 4);
-            canvas.text(word, &one.word, if chosen { Role::Selection } else { Role::Field });
+            canvas.draw_text(word, &one.word, if chosen { Role::Selection } else { Role::Field });
             let what = Rect { x: row.right() - what_width - 1, width: what_width, ..row };
-            canvas.aligned(what, &one.what, if chosen { Role::Selection } else { Role::Dim }, Align::Right);
+            canvas.draw_aligned(what, &one.description, if chosen { Role::Selection } else { Role::Dim }, Align::Right);
         }
     }
 }
@@ -258,74 +258,74 @@ mod tests {
     use super::*;
     use crossterm::event::KeyModifiers;
 
-    fn typed(text: &str) -> QueryEditor {
+    fn editor_after_typing(text: &str) -> QueryEditor {
         let mut editor = QueryEditor::default();
         for letter in text.chars() {
-            editor.key(&KeyEvent::new(KeyCode::Char(letter), KeyModifiers::NONE));
+            editor.handle_key(&KeyEvent::new(KeyCode::Char(letter), KeyModifiers::NONE));
         }
         editor
     }
 
     #[test]
     fn tab_accepts_what_is_offered() {
-        let mut editor = typed("sel");
+        let mut editor = editor_after_typing("sel");
         assert!(editor.completion.is_some());
-        editor.complete();
+        editor.accept_or_offer_completion();
         assert_eq!(editor.text(), "SELECT");
-        let mut editor = typed("SELECT * FROM led");
-        editor.complete();
+        let mut editor = editor_after_typing("SELECT * FROM led");
+        editor.accept_or_offer_completion();
         assert_eq!(editor.text(), "SELECT * FROM ledger");
-        editor.complete();
+        editor.accept_or_offer_completion();
         assert_eq!(editor.text(), "SELECT * FROM ledger    ", "nothing to complete: indented");
     }
 
     #[test]
-    fn enter_is_never_stolen_and_arrows_only_while_something_is_offered() {
-        let mut editor = typed("sel");
-        editor.key(&KeyEvent::new(KeyCode::Enter, KeyModifiers::NONE));
+    fn completion_captures_arrows_but_not_enter() {
+        let mut editor = editor_after_typing("sel");
+        editor.handle_key(&KeyEvent::new(KeyCode::Enter, KeyModifiers::NONE));
         assert_eq!(editor.text(), "sel\n");
-        let mut editor = typed("SELECT\nli");
+        let mut editor = editor_after_typing("SELECT\nli");
         let offered = editor.completion.as_ref().expect("LIMIT, LIKE").candidates.len();
         assert!(offered > 1);
-        editor.key(&KeyEvent::new(KeyCode::Up, KeyModifiers::NONE));
-        assert_eq!(editor.completion.as_ref().map(|own| own.chosen), Some(offered - 1));
+        editor.handle_key(&KeyEvent::new(KeyCode::Up, KeyModifiers::NONE));
+        assert_eq!(editor.completion.as_ref().map(|own| own.selected), Some(offered - 1));
         assert!(editor.hide_completion() && !editor.hide_completion());
-        editor.key(&KeyEvent::new(KeyCode::Up, KeyModifiers::NONE));
-        assert_eq!(editor.place(), 2, "now the cursor moves");
+        editor.handle_key(&KeyEvent::new(KeyCode::Up, KeyModifiers::NONE));
+        assert_eq!(editor.cursor_offset(), 2, "now the cursor moves");
     }
 
     #[test]
-    fn places_are_counted_in_bytes_and_survive_wide_letters() {
+    fn offsets_are_bytes_and_support_wide_characters() {
         let mut editor = QueryEditor::default();
         editor.replace("SELECT 'é日',\n  wrong FROM ledger");
-        editor.mark("SELECT 'é日',\n  ".len());
+        editor.mark_error("SELECT 'é日',\n  ".len());
         assert_eq!(editor.text.cursor(), (1, 2));
-        editor.mark(9);
+        editor.mark_error(9);
         assert_eq!(editor.text.cursor(), (0, 8), "within a character the cursor moves to its start");
-        editor.mark(999);
-        assert_eq!(editor.place(), editor.text().len());
+        editor.mark_error(999);
+        assert_eq!(editor.cursor_offset(), editor.text().len());
     }
 
     #[test]
-    fn only_the_statement_at_the_cursor_is_asked() {
+    fn statement_returns_the_one_at_the_cursor() {
         let mut editor = QueryEditor::default();
         editor.replace("SELECT 1;\n\nSELECT 2;");
-        assert_eq!(editor.statement(), Some(Statement { sql: "SELECT 2".to_owned(), from: 11 }));
-        assert_eq!(editor.count(), (2, 2));
+        assert_eq!(editor.statement(), Some(Statement { sql: "SELECT 2".to_owned(), offset: 11 }));
+        assert_eq!(editor.statement_position(), (2, 2));
         editor.replace(" \n ");
         assert_eq!(editor.statement(), None);
     }
 
     #[test]
-    fn names_are_put_in_apart() {
-        let mut editor = typed("SELECT");
+    fn inserted_names_are_separated() {
+        let mut editor = editor_after_typing("SELECT");
         editor.insert_name("day", false);
         editor.insert_name("amount", true);
         assert_eq!(editor.text(), "SELECT day, amount");
     }
 
     #[test]
-    fn the_place_of_an_error_is_underlined_until_something_is_typed() {
+    fn error_is_underlined_until_the_next_edit() {
         let theme = novamind_tui::theme::Theme::bundled("mono");
         let theme = theme.expect("a theme");
         let area = Rect::new(0, 0, 40, 3);
@@ -338,9 +338,9 @@ mod tests {
         let mut editor = QueryEditor::default();
         editor.replace("SELECT wrong FROM ledger");
         assert!(underlined(&editor).is_empty());
-        editor.mark(7);
+        editor.mark_error(7);
         assert_eq!(underlined(&editor), [7, 8, 9, 10, 11]);
-        editor.key(&KeyEvent::new(KeyCode::Char('x'), KeyModifiers::NONE));
+        editor.handle_key(&KeyEvent::new(KeyCode::Char('x'), KeyModifiers::NONE));
         assert!(underlined(&editor).is_empty());
     }
 }

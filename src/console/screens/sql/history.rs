@@ -1,50 +1,50 @@
 //! History of executed statements and replaced editor texts, newest first.
 
-use super::picker::{ListedQuery, Picker, in_a_line};
-use novamind_record::folder::library::{Head, body};
+use super::picker::{PickerItem, Picker, single_line};
+use novamind_record::folder::query_library::{QueryHeader, strip_header};
 
 #[derive(Default)]
-pub struct History {
+pub struct StatementHistory {
     /// Newest last.
-    kept: Vec<Kept>,
+    entries: Vec<HistoryEntry>,
 }
 
-struct Kept {
+struct HistoryEntry {
     sql: String,
     /// Whether it was replaced in the editor without being run.
-    draft: bool,
+    is_draft: bool,
 }
 
-impl History {
+impl StatementHistory {
     /// Adds an executed statement.
-    pub fn remember(&mut self, sql: &str) {
-        self.keep(sql, false);
+    pub fn add(&mut self, sql: &str) {
+        self.push(sql, false);
     }
 
     /// Adds a replaced text, unless it was run unchanged.
-    pub fn remember_draft(&mut self, sql: &str) {
+    pub fn add_draft(&mut self, sql: &str) {
         let sql = sql.trim();
-        if !sql.is_empty() && !self.kept.iter().any(|known| known.sql == sql && !known.draft) {
-            self.keep(sql, true);
+        if !sql.is_empty() && !self.entries.iter().any(|known| known.sql == sql && !known.is_draft) {
+            self.push(sql, true);
         }
     }
 
-    fn keep(&mut self, sql: &str, draft: bool) {
-        self.kept.retain(|known| known.sql != sql);
-        self.kept.push(Kept { sql: sql.to_owned(), draft });
+    fn push(&mut self, sql: &str, draft: bool) {
+        self.entries.retain(|known| known.sql != sql);
+        self.entries.push(HistoryEntry { sql: sql.to_owned(), is_draft: draft });
     }
 
     /// Returns a picker for the history; `earlier` are statements of previous sessions, newest last. Returns
     /// `None` if both are empty.
     pub fn picker(&self, earlier: &[String]) -> Option<Picker> {
-        let mut items: Vec<ListedQuery> = Vec::new();
-        let own = self.kept.iter().rev().map(|kept| (kept.sql.as_str(), kept.draft));
+        let mut items: Vec<PickerItem> = Vec::new();
+        let own = self.entries.iter().rev().map(|kept| (kept.sql.as_str(), kept.is_draft));
         for (sql, draft) in own.chain(earlier.iter().rev().map(|sql| (sql.as_str(), false))) {
             if items.iter().all(|item| item.sql != sql) {
-                items.push(ListedQuery {
+                items.push(PickerItem {
                     tag: if draft { "draft" } else { "" },
-                    title: title(sql),
-                    what: String::new(),
+                    title: statement_title(sql),
+                    description: String::new(),
                     preview: sql.to_owned(),
                     sql: sql.to_owned(),
                 });
@@ -55,53 +55,53 @@ impl History {
 }
 
 /// Returns a statement in one line, with its title first.
-fn title(sql: &str) -> String {
-    match Head::of(sql).title {
-        Some(title) => format!("{title}: {}", in_a_line(body(sql))),
-        None => in_a_line(sql),
+fn statement_title(sql: &str) -> String {
+    match QueryHeader::parse(sql).title {
+        Some(title) => format!("{title}: {}", single_line(strip_header(sql))),
+        None => single_line(sql),
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::picker::PickedQuery;
+    use super::super::picker::PickerResult;
     use super::*;
     use crate::action::Action;
 
-    fn listed(history: &History, earlier: &[String]) -> Vec<String> {
+    fn listed_titles(history: &StatementHistory, earlier: &[String]) -> Vec<String> {
         let Some(mut picker) = history.picker(earlier) else { return Vec::new() };
         let mut all = Vec::new();
         loop {
-            let PickedQuery::Statement(sql) = picker.act(Action::Commit) else { return all };
+            let PickerResult::Statement(sql) = picker.handle_action(Action::Commit) else { return all };
             if all.contains(&sql) {
                 return all;
             }
             all.push(sql);
-            picker.next();
+            picker.select_next();
         }
     }
 
     #[test]
-    fn statements_stand_once_the_newest_first() {
-        let mut history = History::default();
+    fn history_lists_each_statement_once_newest_first() {
+        let mut history = StatementHistory::default();
         assert!(history.picker(&[]).is_none());
         for sql in ["SELECT 1", "SELECT 2", "SELECT 1"] {
-            history.remember(sql);
+            history.add(sql);
         }
         let earlier = ["SELECT 2".to_owned(), "SELECT 0".to_owned()];
-        assert_eq!(listed(&history, &earlier), ["SELECT 1", "SELECT 2", "SELECT 0"]);
+        assert_eq!(listed_titles(&history, &earlier), ["SELECT 1", "SELECT 2", "SELECT 0"]);
     }
 
     #[test]
-    fn what_was_replaced_is_kept_as_a_draft_until_it_is_asked() {
-        let mut history = History::default();
-        history.remember("SELECT 1");
+    fn replaced_text_is_a_draft_until_it_is_run() {
+        let mut history = StatementHistory::default();
+        history.add("SELECT 1");
         for text in ["SELECT 1", "  ", "SELECT half\n"] {
-            history.remember_draft(text);
+            history.add_draft(text);
         }
-        assert_eq!(listed(&history, &[]), ["SELECT half", "SELECT 1"]);
-        assert!(history.kept.iter().any(|kept| kept.draft));
-        history.remember("SELECT half");
-        assert!(!history.kept.iter().any(|kept| kept.draft));
+        assert_eq!(listed_titles(&history, &[]), ["SELECT half", "SELECT 1"]);
+        assert!(history.entries.iter().any(|kept| kept.is_draft));
+        history.add("SELECT half");
+        assert!(!history.entries.iter().any(|kept| kept.is_draft));
     }
 }

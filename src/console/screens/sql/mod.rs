@@ -3,19 +3,19 @@
 mod browser;
 mod completion;
 mod editor;
-mod hidden;
+mod hidden_tables;
 mod history;
-mod meant;
-mod over;
+mod row_filter;
+mod overlays;
 mod panes;
 mod picker;
-mod pivot;
-mod plot;
+mod pivot_form;
+mod result_chart;
 mod results;
-mod saving;
-mod summary;
+mod save_query;
+mod aggregation;
 mod tabs;
-mod takeout;
+mod export;
 #[cfg(test)]
 mod tests;
 pub mod values;
@@ -26,21 +26,21 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use strum::VariantArray;
 
 use super::ScreenState;
-use super::panes::{Pane, Paned, draw_pane};
+use super::panes::{Pane, PaneScreen, draw_pane};
 use crate::action::Action;
-use crate::context::Look;
+use crate::context::ScreenContext;
 use crate::effect::Effect;
-use browser::Browser;
+use browser::TableBrowser;
 use editor::{QueryEditor, Statement};
-use hidden::names_hidden;
-use history::History;
-use novamind_record::folder::library::Library;
+use hidden_tables::reads_hidden_tables;
+use history::StatementHistory;
+use novamind_record::folder::query_library::QueryLibrary;
 use novamind_record::trajectory::record::QuerySource;
 use novamind_tui::canvas::Canvas;
-use novamind_worker::asking::Pending;
+use novamind_worker::question::Pending;
 use novamind_worker::queries::{QueriedTables, Query};
-use over::Over;
-use tabs::Tabs;
+use overlays::SqlOverlay;
+use tabs::ResultTabs;
 
 /// Panes in tab order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
@@ -58,82 +58,82 @@ pub enum SqlPane {
 const WIDE: u16 = 90;
 
 /// A running statement, and the editor text when it was started.
-struct Running {
+struct RunningStatement {
     text: String,
     statement: Statement,
-    since: Instant,
+    started_at: Instant,
     answer: Pending<Query>,
 }
 
 /// The SQL screen.
 pub struct Sql {
     editor: QueryEditor,
-    results: Tabs,
-    browser: Browser,
-    history: History,
-    library: Library,
-    over: Option<Over>,
+    results: ResultTabs,
+    browser: TableBrowser,
+    history: StatementHistory,
+    library: QueryLibrary,
+    overlay: Option<SqlOverlay>,
     focus: SqlPane,
-    running: Option<Running>,
+    running: Option<RunningStatement>,
     /// Whether the last action inserted a column from the tables; another one then follows after a comma.
-    column_put_in: bool,
+    has_inserted_column: bool,
     /// The last statement that was derived from a result.
-    derived: String,
+    derived_sql: String,
     /// Whether the run permits queries of x-ray tables.
-    may_look_inside: bool,
+    can_inspect: bool,
 }
 
 impl Default for Sql {
     fn default() -> Self {
         Sql {
             editor: QueryEditor::default(),
-            results: Tabs::default(),
-            browser: Browser::default(),
-            history: History::default(),
-            library: Library::shipped(),
-            over: None,
+            results: ResultTabs::default(),
+            browser: TableBrowser::default(),
+            history: StatementHistory::default(),
+            library: QueryLibrary::bundled(),
+            overlay: None,
             focus: SqlPane::Editor,
             running: None,
-            column_put_in: false,
-            derived: String::new(),
-            may_look_inside: false,
+            has_inserted_column: false,
+            derived_sql: String::new(),
+            can_inspect: false,
         }
     }
 }
 
 impl Sql {
     /// Stores the named queries.
-    pub fn learn(&mut self, library: Library) {
+    pub fn set_library(&mut self, library: QueryLibrary) {
         self.library = library;
     }
 
     /// Replaces the editor text; the old text is added to the history.
-    pub fn edit(&mut self, sql: &str) {
+    pub fn set_statement(&mut self, sql: &str) {
         if self.editor.text().trim() != sql.trim() {
-            self.history.remember_draft(&self.editor.text());
+            self.history.add_draft(&self.editor.text());
         }
         self.editor.replace(sql);
-        self.over = None;
+        self.overlay = None;
         self.focus = SqlPane::Editor;
     }
 
     /// Replaces the editor text and runs it.
     pub fn edit_and_run(&mut self, sql: &str) -> Vec<Effect> {
-        self.edit(sql);
+        self.set_statement(sql);
         self.editor.go_to_top();
         // The user did not type, so the result takes the focus.
         self.focus = SqlPane::Results;
-        self.run()
+        self.run_statement()
     }
 
     /// Replaces the editor text with a derived statement and runs it.
     fn edit_and_run_derived(&mut self, sql: &str) -> Vec<Effect> {
-        self.derived = sql.trim().to_owned();
+        self.derived_sql = sql.trim().to_owned();
         self.edit_and_run(sql)
     }
 
     /// Returns the editor text.
-    pub fn unsent(&self) -> String {
+    pub fn draft(&self) -> String {
         self.editor.text()
     }
 
@@ -142,7 +142,7 @@ impl Sql {
         self.running.is_some()
     }
 
-    fn run(&mut self) -> Vec<Effect> {
+    fn run_statement(&mut self) -> Vec<Effect> {
         if self.running.is_some() {
             return vec![Effect::Complain("A query is running. Cancel it with esc.".to_owned())];
         }
@@ -150,24 +150,24 @@ impl Sql {
         let Some(statement) = self.editor.statement() else {
             return vec![Effect::Complain("No statement to run. Type one first.".to_owned())];
         };
-        self.history.remember(&statement.sql);
+        self.history.add(&statement.sql);
         let of = self.tables_of(&statement.sql);
-        let (answer, ask) = Pending::asking(Query { sql: statement.sql.clone(), of });
-        self.running = Some(Running { text: self.editor.text(), statement, since: Instant::now(), answer });
+        let (answer, ask) = Pending::with_question(Query { sql: statement.sql.clone(), tables: of });
+        self.running = Some(RunningStatement { text: self.editor.text(), statement, started_at: Instant::now(), answer });
         vec![Effect::SentText("sql"), Effect::Ask(ask)]
     }
 
     /// Returns whether a statement reads x-ray tables and the run permits it.
-    fn looks_inside(&self, sql: &str) -> bool {
-        self.may_look_inside && names_hidden(sql)
+    fn reads_hidden_state(&self, sql: &str) -> bool {
+        self.can_inspect && reads_hidden_tables(sql)
     }
 
     fn tables_of(&self, sql: &str) -> QueriedTables {
         let is = |other: &str| sql.trim() == other.trim();
         QueriedTables::Visible(match self.library.queries().iter().any(|query| is(&query.sql)) {
-            _ if self.looks_inside(sql) => return QueriedTables::Hidden,
+            _ if self.reads_hidden_state(sql) => return QueriedTables::Hidden,
             true => QuerySource::Library,
-            false if is(&self.derived) => QuerySource::Derived,
+            false if is(&self.derived_sql) => QuerySource::Derived,
             false => QuerySource::Typed,
         })
     }
@@ -185,46 +185,46 @@ impl Sql {
 }
 
 impl ScreenState for Sql {
-    fn renew(&mut self, look: &Look<'_>) {
-        self.may_look_inside = look.company.may_look_inside;
-        self.browser.shows_hidden = self.may_look_inside;
+    fn on_company_change(&mut self, look: &ScreenContext<'_>) {
+        self.can_inspect = look.company.can_inspect;
+        self.browser.shows_hidden = self.can_inspect;
     }
 
-    fn opened(&self) -> usize {
+    fn own_escape_depth(&self) -> usize {
         let filtered = self.focus == SqlPane::Tables && self.browser.is_filtered();
-        usize::from(self.results.shown().is_chart()) + usize::from(filtered)
+        usize::from(self.results.current().is_chart()) + usize::from(filtered)
     }
 
-    fn open_object(&self, _: &Look<'_>) -> Option<(&'static str, String)> {
-        let table = self.browser.opened().filter(|_| self.focus == SqlPane::Tables)?;
+    fn open_object(&self, _: &ScreenContext<'_>) -> Option<(&'static str, String)> {
+        let table = self.browser.open_table().filter(|_| self.focus == SqlPane::Tables)?;
         Some(("table", table.to_owned()))
     }
 
-    fn edited(&self) -> Option<(String, String)> {
-        let typing = self.focus == SqlPane::Editor && self.over.is_none();
+    fn edited_text(&self) -> Option<(String, String)> {
+        let typing = self.focus == SqlPane::Editor && self.overlay.is_none();
         typing.then(|| ("sql".to_owned(), self.editor.text()))
     }
 
-    fn take_answers(&mut self, _: &Look<'_>) -> Vec<Effect> {
+    fn take_answers(&mut self, _: &ScreenContext<'_>) -> Vec<Effect> {
         let answer = self.running.as_mut().and_then(|running| running.answer.try_take());
         let Some((_, answer)) = answer else { return Vec::new() };
         let Some(running) = self.running.take() else { return Vec::new() };
         // An error position is valid only for the text that was run.
         if let Err(refusal) = &answer
-            && let Some(place) = results::place_of(refusal)
+            && let Some(place) = results::error_offset(refusal)
             && self.editor.text() == running.text
         {
-            self.editor.mark(running.statement.from + place);
+            self.editor.mark_error(running.statement.offset + place);
             self.focus = SqlPane::Editor;
         }
         let took = answer.as_ref().map_or(Duration::ZERO, |(_, took)| *took);
-        self.results.take(&running.statement.sql, answer.map(|(rows, _)| rows), took);
+        self.results.add_answer(&running.statement.sql, answer.map(|(rows, _)| rows), took);
         Vec::new()
     }
 }
 
-impl Paned for Sql {
-    type Name = SqlPane;
+impl PaneScreen for Sql {
+    type PaneId = SqlPane;
 
     fn panes(&self) -> &'static [SqlPane] {
         SqlPane::VARIANTS
@@ -238,41 +238,41 @@ impl Paned for Sql {
         }
     }
 
-    fn over(&self) -> Option<&'static dyn Pane<Sql>> {
-        self.over.as_ref().map(Over::pane)
+    fn overlay(&self) -> Option<&'static dyn Pane<Sql>> {
+        self.overlay.as_ref().map(SqlOverlay::pane)
     }
 
-    fn focused(&self) -> SqlPane {
+    fn focused_pane(&self) -> SqlPane {
         self.focus
     }
 
-    fn focus_on(&mut self, name: SqlPane) {
+    fn set_focused_pane(&mut self, name: SqlPane) {
         self.focus = name;
         self.editor.hide_completion();
     }
 
-    fn act_anywhere(&mut self, action: Action, look: &Look<'_>) -> Option<Vec<Effect>> {
+    fn handle_screen_action(&mut self, action: Action, look: &ScreenContext<'_>) -> Option<Vec<Effect>> {
         if action != Action::Open {
-            self.column_put_in = false;
+            self.has_inserted_column = false;
         }
         match action {
-            Action::RunQuery => return Some(self.run()),
+            Action::RunQuery => return Some(self.run_statement()),
             Action::Complete if self.focus != SqlPane::Editor => {
                 return Some(vec![Effect::Do(Action::FocusNext)]);
             }
             Action::EditQuery => self.focus = SqlPane::Editor,
-            Action::ClearQuery => self.edit(""),
+            Action::ClearQuery => self.set_statement(""),
             Action::LeaveEditor => return Some(self.leave_editor()),
-            Action::History => return Some(self.find_earlier(look)),
-            Action::Library => self.find_named(),
-            Action::SaveQuery => return Some(self.save()),
-            Action::Export => return Some(self.take_out()),
+            Action::History => return Some(self.open_history(look)),
+            Action::Library => self.open_library(),
+            Action::SaveQuery => return Some(self.open_save_query()),
+            Action::Export => return Some(self.open_export()),
             _ => return None,
         }
         Some(Vec::new())
     }
 
-    fn arrange(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+    fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
         let width = match area.width {
             wide if wide >= 150 => 38,
             wide if wide >= WIDE => 29,
@@ -289,7 +289,7 @@ impl Paned for Sql {
         draw_pane(self, SqlPane::Tables, canvas, tables, look);
         draw_pane(self, SqlPane::Editor, canvas, above, look);
         draw_pane(self, SqlPane::Results, canvas, below, look);
-        if self.focus == SqlPane::Editor && self.over.is_none() {
+        if self.focus == SqlPane::Editor && self.overlay.is_none() {
             self.editor.draw_completion(canvas, rest);
         }
     }

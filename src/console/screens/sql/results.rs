@@ -5,43 +5,43 @@ use std::time::Duration;
 use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
 
-use super::meant::RowsMeant;
-use super::plot::PlottedColumns;
-use super::{takeout, values};
+use super::row_filter::RowFilter;
+use super::result_chart::ResultChart;
+use super::{export, values};
 use crate::action::Action;
 use crate::effect::Effect;
-use crate::screens::panes::Seat;
-use novamind_database::{Cell, Rows};
-use novamind_record::folder::library::{ChartLine, Head, Library};
-use novamind_tools::Refusal;
-use novamind_tui::canvas::{Canvas, rows_of};
-use novamind_tui::text::wrapped;
+use crate::screens::panes::PanePlacement;
+use novamind_database::{Cell, QueryResult};
+use novamind_record::folder::query_library::{ChartSpec, QueryHeader, QueryLibrary};
+use novamind_tools::Rejection;
+use novamind_tui::canvas::{Canvas, row_rects};
+use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::Table;
 
 /// Answer to the last statement.
 #[derive(Debug, Default)]
-pub enum Answer {
+pub enum QueryAnswer {
     /// No statement has been run.
     #[default]
     None,
-    Rows(Rows, Duration),
-    Refused(Refusal),
+    Rows(QueryResult, Duration),
+    Rejected(Rejection),
 }
 
 #[derive(Default)]
-pub struct Results {
-    answer: Answer,
+pub struct ResultView {
+    answer: QueryAnswer,
     table: Table,
     /// Chart that the statement specifies.
-    proposed: Option<ChartLine>,
+    chart_line: Option<ChartSpec>,
     /// The chart, while it replaces the rows.
-    plot: Option<PlottedColumns>,
+    chart: Option<ResultChart>,
     bytes: usize,
 }
 
 /// Introduction, shown before the first query.
-const LESSON: &str =
+const INTRODUCTION: &str =
     "Open the library of queries with ctrl-o, type one of these, or choose a table (shift-tab, then enter):
 
 SELECT category, round(sum(amount)) AS dollars FROM ledger GROUP BY category ORDER BY dollars
@@ -55,31 +55,31 @@ FROM ad_channel_leads GROUP BY 1, 2 ORDER BY leads DESC
 Statements can only read. Days count from 0; amounts are in dollars.";
 
 /// Returns the byte offset of an error, if the message contains it.
-pub fn place_of(refusal: &Refusal) -> Option<usize> {
+pub fn error_offset(refusal: &Rejection) -> Option<usize> {
     let (_, place) = refusal.message.rsplit_once("(at character ")?;
     place.strip_suffix(')')?.parse::<usize>().ok()?.checked_sub(1)
 }
 
-impl Results {
+impl ResultView {
     /// Stores the answer to a statement.
-    pub fn take(&mut self, sql: &str, answer: Result<Rows, Refusal>, took: Duration) {
-        let proposed = Head::of(sql).chart;
+    pub fn set_answer(&mut self, sql: &str, answer: Result<QueryResult, Rejection>, took: Duration) {
+        let proposed = QueryHeader::parse(sql).chart;
         match answer {
             Ok(rows) => {
                 let columns = values::columns(&rows);
-                let same = matches!(&self.answer, Answer::Rows(before, _) if before.columns == rows.columns);
+                let same = matches!(&self.answer, QueryAnswer::Rows(before, _) if before.columns == rows.columns);
                 if !same {
-                    self.table = Table::new(columns.clone()).by_cell();
+                    self.table = Table::new(columns.clone()).with_cell_selection();
                 }
-                if !same || proposed != self.proposed {
-                    self.plot = None;
+                if !same || proposed != self.chart_line {
+                    self.chart = None;
                 }
-                self.table.set(columns, values::cells(&rows));
-                self.proposed = proposed;
-                self.bytes = bytes_of(&rows);
-                self.answer = Answer::Rows(rows, took);
+                self.table.set_columns_and_rows(columns, values::cells(&rows));
+                self.chart_line = proposed;
+                self.bytes = estimate_bytes(&rows);
+                self.answer = QueryAnswer::Rows(rows, took);
             }
-            Err(refusal) => (self.answer, self.bytes) = (Answer::Refused(refusal), 0),
+            Err(refusal) => (self.answer, self.bytes) = (QueryAnswer::Rejected(refusal), 0),
         }
     }
 
@@ -92,12 +92,12 @@ impl Results {
     }
 
     pub fn is_chart(&self) -> bool {
-        self.plot.is_some() && self.rows().is_some()
+        self.chart.is_some() && self.rows().is_some()
     }
 
     /// Returns whether the statement failed.
-    pub fn is_refused(&self) -> bool {
-        matches!(self.answer, Answer::Refused(_))
+    pub fn is_rejected(&self) -> bool {
+        matches!(self.answer, QueryAnswer::Rejected(_))
     }
 
     /// Returns the approximate size in bytes of the rows and their display form.
@@ -106,22 +106,22 @@ impl Results {
     }
 
     /// Returns the rows and the selected column.
-    pub fn focused_column(&self) -> Option<(&Rows, usize)> {
+    pub fn focused_column(&self) -> Option<(&QueryResult, usize)> {
         let at = self.table.selected_column();
         self.rows().filter(|rows| at < rows.columns.len()).map(|rows| (rows, at))
     }
 
     /// Returns the rows that counts and pivots cover.
-    pub fn rows_meant(&self) -> RowsMeant {
-        let all = |rows| RowsMeant::by(self.table.filter_text(), rows, self.table.shown());
-        self.rows().map_or(RowsMeant::All, all)
+    pub fn row_filter(&self) -> RowFilter {
+        let all = |rows| RowFilter::from_filter(self.table.filter_text(), rows, self.table.visible_rows());
+        self.rows().map_or(RowFilter::All, all)
     }
 
     /// Returns the available rows among them.
-    pub fn held(&self, meant: &RowsMeant) -> Rows {
-        let Some(all) = self.rows() else { return Rows::default() };
-        match (meant, self.rows_as_shown()) {
-            (RowsMeant::Holding { .. }, Some(shown)) => Rows { truncated: all.truncated, ..shown },
+    pub fn filtered_rows(&self, meant: &RowFilter) -> QueryResult {
+        let Some(all) = self.rows() else { return QueryResult::default() };
+        match (meant, self.visible_rows()) {
+            (RowFilter::Containing { .. }, Some(shown)) => QueryResult { truncated: all.truncated, ..shown },
             _ => all.clone(),
         }
     }
@@ -132,35 +132,35 @@ impl Results {
     }
 
     /// Returns the rows as shown, filtered and sorted.
-    fn rows_as_shown(&self) -> Option<Rows> {
+    fn visible_rows(&self) -> Option<QueryResult> {
         let all = self.rows()?;
-        let rows = self.table.shown().iter().map(|row| all.rows[*row].clone()).collect();
-        Some(Rows { columns: all.columns.clone(), rows, ..Rows::default() })
+        let rows = self.table.visible_rows().iter().map(|row| all.rows[*row].clone()).collect();
+        Some(QueryResult { columns: all.columns.clone(), rows, ..QueryResult::default() })
     }
 
     /// Describes the exported rows: `12 of 300 rows, as filtered`.
-    pub fn what_is_taken(&self) -> String {
+    pub fn export_label(&self) -> String {
         let Some(rows) = self.rows() else { return String::new() };
-        match (self.table.shown().len(), rows.rows.len()) {
-            (shown, all) if shown < all => format!("{shown} of {}, as filtered", takeout::count(all)),
-            (_, all) if rows.truncated => format!("the first {}; more exist", takeout::count(all)),
-            (_, all) => takeout::count(all),
+        match (self.table.visible_rows().len(), rows.rows.len()) {
+            (shown, all) if shown < all => format!("{shown} of {}, as filtered", export::format_row_count(all)),
+            (_, all) if rows.truncated => format!("the first {}; more exist", export::format_row_count(all)),
+            (_, all) => export::format_row_count(all),
         }
     }
 
     /// Exports the rows as shown.
-    pub fn take_out(&self, way: Action) -> Vec<Effect> {
-        self.rows_as_shown().map_or_else(Vec::new, |rows| takeout::take(way, &rows))
+    pub fn export(&self, way: Action) -> Vec<Effect> {
+        self.visible_rows().map_or_else(Vec::new, |rows| export::export_rows(way, &rows))
     }
 
     fn open_chart(&mut self) -> Vec<Effect> {
-        self.plot = self.rows().and_then(|rows| PlottedColumns::of(rows, self.proposed.as_ref()));
-        match (&self.plot, self.rows()) {
+        self.chart = self.rows().and_then(|rows| ResultChart::for_rows(rows, self.chart_line.as_ref()));
+        match (&self.chart, self.rows()) {
             (Some(_), _) => Vec::new(),
             (None, Some(_)) => {
                 vec![Effect::Complain("No numeric column to chart".to_owned())]
             }
-            (None, None) if self.is_refused() => {
+            (None, None) if self.is_rejected() => {
                 vec![Effect::Complain("No result to chart. The last statement failed.".to_owned())]
             }
             (None, None) => {
@@ -170,35 +170,35 @@ impl Results {
     }
 
     /// Runs an action in the chart; other actions go to the rows.
-    fn act_in_chart(&mut self, action: Action, page: u16) -> Vec<Effect> {
-        let (Some(plot), Answer::Rows(rows, _)) = (&mut self.plot, &self.answer) else { return Vec::new() };
+    fn handle_chart_action(&mut self, action: Action, page: u16) -> Vec<Effect> {
+        let (Some(plot), QueryAnswer::Rows(rows, _)) = (&mut self.chart, &self.answer) else { return Vec::new() };
         match action {
             Action::ChartX => plot.next_x(rows),
             Action::ChartY => plot.next_y(rows),
-            Action::MoreSeries if !plot.more(rows) => {
+            Action::MoreSeries if !plot.add_series(rows) => {
                 return vec![Effect::Complain("No other numeric column, or no room for it".to_owned())];
             }
             Action::MoreSeries | Action::Left | Action::Right => {}
-            Action::FewerSeries => plot.fewer(),
-            Action::ChartKind => plot.other_kind(),
+            Action::FewerSeries => plot.remove_series(),
+            Action::ChartKind => plot.toggle_kind(),
             Action::Sort => {
                 let column = plot.first_y();
                 self.table.select_column(column);
-                self.table.act(Action::Sort, page);
+                self.table.handle_action(Action::Sort, page);
             }
-            Action::CloseChart | Action::Close => self.plot = None,
+            Action::CloseChart | Action::Close => self.chart = None,
             Action::Filter => {
-                self.plot = None;
-                self.table.act(Action::Filter, page);
+                self.chart = None;
+                self.table.handle_action(Action::Filter, page);
             }
-            other => return self.act_in_rows(other, page),
+            other => return self.handle_rows_action(other, page),
         }
         Vec::new()
     }
 
-    fn rows(&self) -> Option<&Rows> {
+    fn rows(&self) -> Option<&QueryResult> {
         match &self.answer {
-            Answer::Rows(rows, _) => Some(rows),
+            QueryAnswer::Rows(rows, _) => Some(rows),
             _ => None,
         }
     }
@@ -209,59 +209,59 @@ impl Results {
     }
 
     /// Returns the column and value of the selected cell.
-    fn cell(&self) -> Option<(&str, &Cell)> {
+    fn selected_cell(&self) -> Option<(&str, &Cell)> {
         let at = self.table.selected_column();
         Some((self.rows()?.columns.get(at)?, self.row()?.get(at)?))
     }
 
     /// Moves, sorts, filters, copies or switches to a chart.
-    pub fn act(&mut self, action: Action, page: u16) -> Vec<Effect> {
+    pub fn handle_action(&mut self, action: Action, page: u16) -> Vec<Effect> {
         match action {
-            _ if self.is_chart() => self.act_in_chart(action, page),
+            _ if self.is_chart() => self.handle_chart_action(action, page),
             Action::Chart => self.open_chart(),
-            other => self.act_in_rows(other, page),
+            other => self.handle_rows_action(other, page),
         }
     }
 
-    fn act_in_rows(&mut self, action: Action, page: u16) -> Vec<Effect> {
+    fn handle_rows_action(&mut self, action: Action, page: u16) -> Vec<Effect> {
         let nothing = || vec![Effect::Complain("No result to copy from".to_owned())];
         match action {
-            Action::WholeCell => {
-                let read = |(name, cell): (&str, &Cell)| Effect::ShowText(name.to_owned(), readable(cell));
-                self.cell().map(read).map_or_else(nothing, |effect| vec![effect])
+            Action::ShowCell => {
+                let read = |(name, cell): (&str, &Cell)| Effect::ShowText(name.to_owned(), format_cell(cell));
+                self.selected_cell().map(read).map_or_else(nothing, |effect| vec![effect])
             }
             Action::CopyCell => {
-                let copy = |(_, cell)| vec![Effect::Copy(values::whole(cell))];
-                self.cell().map_or_else(nothing, copy)
+                let copy = |(_, cell)| vec![Effect::Copy(values::full_text(cell))];
+                self.selected_cell().map_or_else(nothing, copy)
             }
-            Action::CopyRow => self.row().map_or_else(nothing, |row| vec![Effect::Copy(values::tabbed(row))]),
+            Action::CopyRow => self.row().map_or_else(nothing, |row| vec![Effect::Copy(values::tab_separated_row(row))]),
             Action::CommitNext | Action::CommitPrevious => {
-                self.table.act(Action::Commit, page);
+                self.table.handle_action(Action::Commit, page);
                 Vec::new()
             }
             other => {
-                self.table.act(other, page);
+                self.table.handle_action(other, page);
                 Vec::new()
             }
         }
     }
 
     /// Handles a click on a row; a second click opens its cell.
-    pub fn click(&mut self, place: usize, page: u16) -> Vec<Effect> {
+    pub fn handle_click(&mut self, place: usize, page: u16) -> Vec<Effect> {
         let before = self.table.selected();
-        self.table.select_place(place);
+        self.table.select_visible_row(place);
         let again = before == self.table.selected() && !self.is_chart();
-        if again { self.act(Action::WholeCell, page) } else { Vec::new() }
+        if again { self.handle_action(Action::ShowCell, page) } else { Vec::new() }
     }
 
     /// Returns the title and note: description of the result, its filter and order.
-    pub fn head(&self) -> (String, String) {
+    pub fn heading(&self) -> (String, String) {
         match &self.answer {
-            Answer::None => ("Result".to_owned(), "no query yet".to_owned()),
-            Answer::Refused(refusal) => (format!("Result · {}", outcome(refusal.code)), String::new()),
-            Answer::Rows(rows, took) => {
-                let drawn = self.plot.as_ref().map(|plot| format!(" · {}", plot.title(rows)));
-                (title(rows, *took) + &drawn.unwrap_or_default(), self.table.note())
+            QueryAnswer::None => ("Result".to_owned(), "no query yet".to_owned()),
+            QueryAnswer::Rejected(refusal) => (format!("Result · {}", rejection_title(refusal.code)), String::new()),
+            QueryAnswer::Rows(rows, took) => {
+                let drawn = self.chart.as_ref().map(|plot| format!(" · {}", plot.title(rows)));
+                (result_title(rows, *took) + &drawn.unwrap_or_default(), self.table.summary())
             }
         }
     }
@@ -273,21 +273,21 @@ impl Results {
             seconds => format!("{seconds} s "),
         };
         let row = Rect { height: 1.min(area.height), ..area };
-        canvas.text(row, &format!("running {seconds}… esc cancels"), Role::Warning);
+        canvas.draw_text(row, &format!("running {seconds}… esc cancels"), Role::Warning);
     }
 
-    pub fn draw(&self, canvas: &mut Canvas<'_>, seat: Seat, library: &Library) {
+    pub fn draw(&self, canvas: &mut Canvas<'_>, seat: PanePlacement, library: &QueryLibrary) {
         match &self.answer {
-            Answer::None => draw_nothing(canvas, seat.area, library),
-            Answer::Refused(refusal) => {
-                let role = if outcome(refusal.code) == "failed" { Role::Bad } else { Role::Warning };
-                text(canvas, seat.area, refusal.code, &refusal.message, role);
+            QueryAnswer::None => draw_empty_state(canvas, seat.area, library),
+            QueryAnswer::Rejected(refusal) => {
+                let role = if rejection_title(refusal.code) == "failed" { Role::Bad } else { Role::Warning };
+                draw_wrapped_text(canvas, seat.area, refusal.code, &refusal.message, role);
             }
-            Answer::Rows(rows, _) => self.draw_rows(canvas, seat, rows),
+            QueryAnswer::Rows(rows, _) => self.draw_rows(canvas, seat, rows),
         }
     }
 
-    fn draw_rows(&self, canvas: &mut Canvas<'_>, seat: Seat, rows: &Rows) {
+    fn draw_rows(&self, canvas: &mut Canvas<'_>, seat: PanePlacement, rows: &QueryResult) {
         let area = seat.area;
         let remark = match (&rows.warning, &rows.hint) {
             (Some(warning), _) => Some(warning.clone()),
@@ -300,19 +300,19 @@ impl Results {
             Some(remark) if rows.rows.is_empty() => {
                 let below =
                     Rect { y: area.y + 2.min(area.height), height: area.height.saturating_sub(2), ..area };
-                text(canvas, below, "", &remark, role);
+                draw_wrapped_text(canvas, below, "", &remark, role);
                 0
             }
             Some(remark) => {
-                canvas.text(area, &remark, role);
+                canvas.draw_text(area, &remark, role);
                 1.min(area.height)
             }
             None => 0,
         };
         let below = Rect { y: area.y + used, height: area.height.saturating_sub(used), ..area };
-        match &self.plot {
-            Some(plot) => plot.draw(canvas, Seat { area: below, ..seat }, rows, &self.table),
-            None => self.table.draw(canvas, below, seat.focused, seat.number),
+        match &self.chart {
+            Some(plot) => plot.draw(canvas, PanePlacement { area: below, ..seat }, rows, &self.table),
+            None => self.table.draw(canvas, below, seat.focused, seat.index),
         }
     }
 
@@ -320,13 +320,13 @@ impl Results {
     pub fn hints(&self) -> Vec<Action> {
         match (self.is_chart(), self.rows()) {
             (true, _) => vec![Action::ChartY, Action::ChartKind, Action::CloseChart, Action::EditQuery],
-            (false, Some(_)) => vec![Action::WholeCell, Action::Chart, Action::Export, Action::EditQuery],
+            (false, Some(_)) => vec![Action::ShowCell, Action::Chart, Action::Export, Action::EditQuery],
             (false, None) => vec![Action::EditQuery],
         }
     }
 
     /// Returns the actions for the current answer.
-    pub fn keys(&self) -> &'static [Action] {
+    pub fn actions(&self) -> &'static [Action] {
         match (self.is_chart(), &self.answer) {
             (true, _) => &[
                 Action::ChartX,
@@ -337,9 +337,9 @@ impl Results {
                 Action::Sort,
                 Action::CloseChart,
             ],
-            (false, Answer::None | Answer::Refused(_)) => &[],
-            (false, Answer::Rows(..)) => &[
-                Action::WholeCell,
+            (false, QueryAnswer::None | QueryAnswer::Rejected(_)) => &[],
+            (false, QueryAnswer::Rows(..)) => &[
+                Action::ShowCell,
                 Action::Sort,
                 Action::Filter,
                 Action::Chart,
@@ -354,19 +354,19 @@ impl Results {
 }
 
 /// Draws the introduction, and the library if it fits.
-fn draw_nothing(canvas: &mut Canvas<'_>, area: Rect, library: &Library) {
-    let used = (text(canvas, area, "", LESSON, Role::Text) + 1).min(area.height);
+fn draw_empty_state(canvas: &mut Canvas<'_>, area: Rect, library: &QueryLibrary) {
+    let used = (draw_wrapped_text(canvas, area, "", INTRODUCTION, Role::Text) + 1).min(area.height);
     let below = Rect { y: area.y + used, height: area.height - used, ..area };
     let titles = library.queries().iter().map(|query| query.title.width()).max().unwrap_or(0) as u16;
-    for (row, query) in rows_of(below).zip(library.queries()) {
-        canvas.text(Rect { width: titles.min(row.width), ..row }, &query.title, Role::Text);
+    for (row, query) in row_rects(below).zip(library.queries()) {
+        canvas.draw_text(Rect { width: titles.min(row.width), ..row }, &query.title, Role::Text);
         let what = Rect { x: row.x + titles + 2, width: row.width.saturating_sub(titles + 2), ..row };
-        canvas.text(what, &query.what, Role::Dim);
+        canvas.draw_text(what, &query.description, Role::Dim);
     }
 }
 
 /// Returns the outcome of a statement without rows.
-fn outcome(code: &str) -> &'static str {
+fn rejection_title(code: &str) -> &'static str {
     match code {
         "sql_timeout" => "stopped at a limit",
         "sql_cancelled" => "cancelled",
@@ -374,7 +374,7 @@ fn outcome(code: &str) -> &'static str {
     }
 }
 
-fn title(rows: &Rows, took: Duration) -> String {
+fn result_title(rows: &QueryResult, took: Duration) -> String {
     let of = if rows.truncated { "first " } else { "" };
     let milliseconds = took.as_secs_f64() * 1e3;
     let time = match milliseconds {
@@ -382,18 +382,18 @@ fn title(rows: &Rows, took: Duration) -> String {
         quick if quick >= 1.0 => format!("{quick:.0} ms"),
         _ => "under 1 ms".to_owned(),
     };
-    format!("Result · {of}{} · {time}", takeout::count(rows.rows.len()))
+    format!("Result · {of}{} · {time}", export::format_row_count(rows.rows.len()))
 }
 
 /// Returns the bytes of rows and of their cells, which contain only the start of long texts.
-fn bytes_of(rows: &Rows) -> usize {
-    const OF_A_CELL: usize = 128;
+fn estimate_bytes(rows: &QueryResult) -> usize {
+    const BYTES_PER_CELL: usize = 128;
     let text = |cell: &Cell| if let Cell::Text(text) = cell { text.len() + text.len().min(400) } else { 0 };
-    rows.rows.iter().flatten().map(|cell| OF_A_CELL + text(cell)).sum()
+    rows.rows.iter().flatten().map(|cell| BYTES_PER_CELL + text(cell)).sum()
 }
 
 /// Returns a value for a separate window, with formatted JSON.
-fn readable(cell: &Cell) -> String {
+fn format_cell(cell: &Cell) -> String {
     match cell {
         Cell::Null => "NULL".to_owned(),
         Cell::Text(text) if text.is_empty() => "(empty text)".to_owned(),
@@ -401,22 +401,22 @@ fn readable(cell: &Cell) -> String {
             let value = serde_json::from_str::<serde_json::Value>(text).ok();
             value.and_then(|value| serde_json::to_string_pretty(&value).ok()).unwrap_or_else(|| text.clone())
         }
-        other => values::whole(other),
+        other => values::full_text(other),
     }
 }
 
 /// Draws wrapped text below a heading; returns the number of rows.
-fn text(canvas: &mut Canvas<'_>, area: Rect, head: &str, words: &str, role: Role) -> u16 {
-    let mut rows = rows_of(area);
+fn draw_wrapped_text(canvas: &mut Canvas<'_>, area: Rect, head: &str, words: &str, role: Role) -> u16 {
+    let mut rows = row_rects(area);
     let mut used = 0;
     if !head.is_empty()
         && let Some(row) = rows.next()
     {
-        canvas.text(row, head, role);
+        canvas.draw_text(row, head, role);
         used += 1;
     }
-    for (row, line) in rows.zip(wrapped(words, area.width as usize)) {
-        canvas.text(row, &line, role);
+    for (row, line) in rows.zip(wrap(words, area.width as usize)) {
+        canvas.draw_text(row, &line, role);
         used += 1;
     }
     used
@@ -424,7 +424,7 @@ fn text(canvas: &mut Canvas<'_>, area: Rect, head: &str, words: &str, role: Role
 
 /// Returns the example statements of the introduction.
 #[cfg(test)]
-pub fn examples() -> Vec<String> {
-    let statements = LESSON.split("\n\n").filter(|part| part.starts_with("SELECT"));
+pub fn example_statements() -> Vec<String> {
+    let statements = INTRODUCTION.split("\n\n").filter(|part| part.starts_with("SELECT"));
     statements.map(str::to_owned).collect()
 }

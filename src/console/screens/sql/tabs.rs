@@ -4,89 +4,89 @@
 use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr;
 
-use super::picker::in_a_line;
-use super::results::Results;
-use novamind_database::{Rows, table};
-use novamind_record::folder::library::{Head, body};
-use novamind_tools::Refusal;
+use super::picker::single_line;
+use super::results::ResultView;
+use novamind_database::{QueryResult, table};
+use novamind_record::folder::query_library::{QueryHeader, strip_header};
+use novamind_tools::Rejection;
 use novamind_tui::canvas::{Canvas, Click};
-use novamind_tui::sql::tokens;
+use novamind_tui::sql::tokenize;
 use novamind_tui::theme::Role;
 use std::time::Duration;
 
-const MOST: usize = 9;
+const MAX_TABS: usize = 9;
 /// Maximum number of pinned tabs; one is left for the next statement.
-const MOST_PINNED: usize = MOST - 1;
+const MAX_PINNED_TABS: usize = MAX_TABS - 1;
 /// Total bytes of all tabs; beyond that the oldest are closed.
-const MOST_BYTES: usize = 128 << 20;
+const MAX_TOTAL_BYTES: usize = 128 << 20;
 /// Maximum characters of a title.
-const TITLE: usize = 18;
+const MAX_TITLE_CHARS: usize = 18;
 /// Indexes of clicks on tabs follow those of all rows.
-const FIRST_CLICK: usize = usize::MAX - MOST;
+const FIRST_TAB_CLICK: usize = usize::MAX - MAX_TABS;
 /// Below this height only the border identifies the tab.
-const ROOM: u16 = 6;
+const MIN_HEIGHT_FOR_TABS: u16 = 6;
 
-struct Tab {
+struct ResultTab {
     sql: String,
     title: String,
     pinned: bool,
-    results: Results,
+    results: ResultView,
 }
 
 /// The tabs, newest last.
 #[derive(Default)]
-pub struct Tabs {
-    tabs: Vec<Tab>,
-    at: usize,
+pub struct ResultTabs {
+    tabs: Vec<ResultTab>,
+    current_index: usize,
     /// Shown before the first statement.
-    nothing: Results,
+    placeholder: ResultView,
 }
 
-impl Tabs {
-    pub fn shown(&self) -> &Results {
-        self.tabs.get(self.at).map_or(&self.nothing, |tab| &tab.results)
+impl ResultTabs {
+    pub fn current(&self) -> &ResultView {
+        self.tabs.get(self.current_index).map_or(&self.placeholder, |tab| &tab.results)
     }
 
-    pub fn shown_mut(&mut self) -> &mut Results {
-        match self.tabs.get_mut(self.at) {
+    pub fn current_mut(&mut self) -> &mut ResultView {
+        match self.tabs.get_mut(self.current_index) {
             Some(tab) => &mut tab.results,
-            None => &mut self.nothing,
+            None => &mut self.placeholder,
         }
     }
 
     /// Returns the statement of the shown result.
     pub fn statement(&self) -> Option<&str> {
-        self.tabs.get(self.at).map(|tab| tab.sql.as_str())
+        self.tabs.get(self.current_index).map(|tab| tab.sql.as_str())
     }
 
     /// Stores the answer to a statement and shows it. After an error the statement keeps its previous rows.
-    pub fn take(&mut self, sql: &str, answer: Result<Rows, Refusal>, took: Duration) {
-        let renewed = |tab: &Tab| !tab.pinned && answer.is_ok() && tab.sql == sql;
+    pub fn add_answer(&mut self, sql: &str, answer: Result<QueryResult, Rejection>, took: Duration) {
+        let renewed = |tab: &ResultTab| !tab.pinned && answer.is_ok() && tab.sql == sql;
         let known = self.tabs.iter().position(renewed);
-        let refused = self.tabs.iter().position(|tab| tab.results.is_refused());
+        let refused = self.tabs.iter().position(|tab| tab.results.is_rejected());
         let at = known.or(refused).unwrap_or_else(|| {
-            let results = Results::default();
-            self.tabs.push(Tab { sql: String::new(), title: String::new(), pinned: false, results });
+            let results = ResultView::default();
+            self.tabs.push(ResultTab { sql: String::new(), title: String::new(), pinned: false, results });
             self.tabs.len() - 1
         });
         let tab = &mut self.tabs[at];
-        (tab.sql, tab.title) = (sql.to_owned(), title(sql));
-        tab.results.take(sql, answer, took);
-        self.at = at;
+        (tab.sql, tab.title) = (sql.to_owned(), tab_title(sql));
+        tab.results.set_answer(sql, answer, took);
+        self.current_index = at;
         // Failed statements are dropped once another result is shown.
         if let Some(other) = refused.filter(|other| *other != at) {
             self.remove(other);
         }
-        self.stay_in_bounds();
+        self.evict_old_tabs();
     }
 
     fn bytes(&self) -> usize {
         self.tabs.iter().map(|tab| tab.results.bytes()).sum()
     }
 
-    fn stay_in_bounds(&mut self) {
-        while self.tabs.len() > MOST || self.bytes() > MOST_BYTES {
-            let oldest = (0..self.tabs.len()).find(|at| *at != self.at && !self.tabs[*at].pinned);
+    fn evict_old_tabs(&mut self) {
+        while self.tabs.len() > MAX_TABS || self.bytes() > MAX_TOTAL_BYTES {
+            let oldest = (0..self.tabs.len()).find(|at| *at != self.current_index && !self.tabs[*at].pinned);
             let Some(oldest) = oldest else { return };
             self.remove(oldest);
         }
@@ -94,22 +94,22 @@ impl Tabs {
 
     fn remove(&mut self, at: usize) {
         self.tabs.remove(at);
-        if self.at > at || self.at == self.tabs.len() {
-            self.at = self.at.saturating_sub(1);
+        if self.current_index > at || self.current_index == self.tabs.len() {
+            self.current_index = self.current_index.saturating_sub(1);
         }
     }
 
     /// Shows the next or previous tab, cyclically.
-    pub fn walk(&mut self, on: bool) {
+    pub fn select_adjacent(&mut self, on: bool) {
         let count = self.tabs.len().max(1);
-        self.at = (self.at + if on { 1 } else { count - 1 }) % count;
+        self.current_index = (self.current_index + if on { 1 } else { count - 1 }) % count;
     }
 
     /// Closes the shown tab; returns whether there was one.
     pub fn close(&mut self) -> bool {
-        let is_there = self.at < self.tabs.len();
+        let is_there = self.current_index < self.tabs.len();
         if is_there {
-            self.remove(self.at);
+            self.remove(self.current_index);
         }
         is_there
     }
@@ -118,17 +118,17 @@ impl Tabs {
     ///
     /// # Errors
     /// The reason why it cannot be pinned.
-    pub fn pin(&mut self) -> Result<bool, String> {
+    pub fn toggle_pin(&mut self) -> Result<bool, String> {
         let pinned = self.tabs.iter().filter(|tab| tab.pinned);
         let (count, bytes) =
             pinned.fold((0, 0), |(count, bytes), tab| (count + 1, bytes + tab.results.bytes()));
-        let Some(tab) = self.tabs.get_mut(self.at).filter(|tab| !tab.results.is_refused()) else {
+        let Some(tab) = self.tabs.get_mut(self.current_index).filter(|tab| !tab.results.is_rejected()) else {
             return Err("No result to pin. Run a statement first.".to_owned());
         };
-        if !tab.pinned && count == MOST_PINNED {
-            return Err(format!("{MOST_PINNED} results are pinned. Unpin or close one first."));
+        if !tab.pinned && count == MAX_PINNED_TABS {
+            return Err(format!("{MAX_PINNED_TABS} results are pinned. Unpin or close one first."));
         }
-        if !tab.pinned && bytes + tab.results.bytes() > MOST_BYTES {
+        if !tab.pinned && bytes + tab.results.bytes() > MAX_TOTAL_BYTES {
             return Err("The pinned results are too large. Unpin or close one first.".to_owned());
         }
         tab.pinned = !tab.pinned;
@@ -136,31 +136,31 @@ impl Tabs {
     }
 
     /// Returns ` 2/3` if there are several tabs.
-    pub fn number(&self) -> String {
-        if self.tabs.len() > 1 { format!(" {}/{}", self.at + 1, self.tabs.len()) } else { String::new() }
+    pub fn position_label(&self) -> String {
+        if self.tabs.len() > 1 { format!(" {}/{}", self.current_index + 1, self.tabs.len()) } else { String::new() }
     }
 
     /// Shows the clicked tab; returns false for clicks on rows.
-    pub fn click(&mut self, place: usize) -> bool {
-        let tab = place.checked_sub(FIRST_CLICK).filter(|at| *at < self.tabs.len());
+    pub fn handle_click(&mut self, place: usize) -> bool {
+        let tab = place.checked_sub(FIRST_TAB_CLICK).filter(|at| *at < self.tabs.len());
         if let Some(at) = tab {
-            self.at = at;
+            self.current_index = at;
         }
         tab.is_some()
     }
 
     /// Draws the titles if they fit; returns the area for the result.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, pane: usize) -> Rect {
-        if self.tabs.len() < 2 || area.height < ROOM {
+        if self.tabs.len() < 2 || area.height < MIN_HEIGHT_FOR_TABS {
             return area;
         }
-        let label = |(at, tab): (usize, &Tab)| {
+        let label = |(at, tab): (usize, &ResultTab)| {
             format!(" {}{} {} ", at + 1, if tab.pinned { "*" } else { "" }, tab.title)
         };
         let labels: Vec<String> = self.tabs.iter().enumerate().map(label).collect();
-        let width = |from: usize| labels[from..=self.at].iter().map(|label| label.width() + 1).sum::<usize>();
+        let width = |from: usize| labels[from..=self.current_index].iter().map(|label| label.width() + 1).sum::<usize>();
         // Keep the shown tab visible.
-        let first = (0..self.at).find(|from| width(*from) <= area.width as usize).unwrap_or(self.at);
+        let first = (0..self.current_index).find(|from| width(*from) <= area.width as usize).unwrap_or(self.current_index);
         let mut x = area.x;
         for (at, label) in labels.iter().enumerate().skip(first) {
             let room = area.right().saturating_sub(x);
@@ -168,8 +168,8 @@ impl Tabs {
             if own.width < 4 {
                 break;
             }
-            canvas.text(own, label, if at == self.at { Role::Selection } else { Role::Dim });
-            canvas.click(own, Click::Row(pane, FIRST_CLICK + at));
+            canvas.draw_text(own, label, if at == self.current_index { Role::Selection } else { Role::Dim });
+            canvas.register_click(own, Click::Row(pane, FIRST_TAB_CLICK + at));
             x += own.width + 1;
         }
         Rect { y: area.y + 1, height: area.height - 1, ..area }
@@ -177,16 +177,16 @@ impl Tabs {
 }
 
 /// Returns the title of a tab: the title of its statement, its first table, or its first words.
-fn title(sql: &str) -> String {
+fn tab_title(sql: &str) -> String {
     let short = |text: String| match text.chars().count() {
-        long if long > TITLE => text.chars().take(TITLE - 1).chain(['…']).collect(),
+        long if long > MAX_TITLE_CHARS => text.chars().take(MAX_TITLE_CHARS - 1).chain(['…']).collect(),
         _ => text,
     };
-    if let Some(title) = Head::of(sql).title {
+    if let Some(title) = QueryHeader::parse(sql).title {
         return short(title);
     }
-    let named = tokens(sql).into_iter().find_map(|token| table(&sql[token.place]));
-    short(named.map_or_else(|| in_a_line(body(sql)), |table| table.name.clone()))
+    let named = tokenize(sql).into_iter().find_map(|token| table(&sql[token.range]));
+    short(named.map_or_else(|| single_line(strip_header(sql)), |table| table.name.clone()))
 }
 
 #[cfg(test)]
@@ -194,94 +194,94 @@ mod tests {
     use super::*;
     use novamind_database::Cell;
 
-    fn rows(number: i64) -> Result<Rows, Refusal> {
+    fn rows(number: i64) -> Result<QueryResult, Rejection> {
         let columns = vec!["n".to_owned()];
-        Ok(Rows { columns, rows: vec![vec![Cell::Integer(number)]], ..Rows::default() })
+        Ok(QueryResult { columns, rows: vec![vec![Cell::Integer(number)]], ..QueryResult::default() })
     }
 
-    fn take(tabs: &mut Tabs, number: i64) {
-        tabs.take(&format!("SELECT {number}"), rows(number), Duration::ZERO);
+    fn add_answer_for(tabs: &mut ResultTabs, number: i64) {
+        tabs.add_answer(&format!("SELECT {number}"), rows(number), Duration::ZERO);
     }
 
-    fn titles(tabs: &Tabs) -> Vec<&str> {
+    fn titles(tabs: &ResultTabs) -> Vec<&str> {
         tabs.tabs.iter().map(|tab| tab.title.as_str()).collect()
     }
 
     #[test]
-    fn the_last_nine_are_kept_and_pinned_ones_longer() {
-        let mut tabs = Tabs::default();
-        assert!(!tabs.close() && tabs.pin().is_err());
-        take(&mut tabs, 1);
-        assert_eq!((tabs.pin(), tabs.number().as_str()), (Ok(true), ""));
-        (2..=12).for_each(|number| take(&mut tabs, number));
+    fn tabs_keep_the_last_nine_and_pinned_results() {
+        let mut tabs = ResultTabs::default();
+        assert!(!tabs.close() && tabs.toggle_pin().is_err());
+        add_answer_for(&mut tabs, 1);
+        assert_eq!((tabs.toggle_pin(), tabs.position_label().as_str()), (Ok(true), ""));
+        (2..=12).for_each(|number| add_answer_for(&mut tabs, number));
         assert_eq!(titles(&tabs)[..2], ["SELECT 1", "SELECT 5"]);
-        assert_eq!((tabs.tabs.len(), tabs.number().as_str()), (9, " 9/9"));
-        take(&mut tabs, 6);
+        assert_eq!((tabs.tabs.len(), tabs.position_label().as_str()), (9, " 9/9"));
+        add_answer_for(&mut tabs, 6);
         assert_eq!(
             (tabs.tabs.len(), tabs.statement()),
             (9, Some("SELECT 6")),
             "running it again updates its tab"
         );
-        take(&mut tabs, 1);
-        assert_eq!((titles(&tabs)[0], tabs.at), ("SELECT 1", 8), "a pinned tab does not change");
+        add_answer_for(&mut tabs, 1);
+        assert_eq!((titles(&tabs)[0], tabs.current_index), ("SELECT 1", 8), "a pinned tab does not change");
         assert_eq!(tabs.tabs.iter().filter(|tab| tab.sql == "SELECT 1").count(), 2);
         for _ in 0..8 {
-            tabs.walk(true);
-            if !tabs.tabs[tabs.at].pinned {
-                tabs.pin().ok();
+            tabs.select_adjacent(true);
+            if !tabs.tabs[tabs.current_index].pinned {
+                tabs.toggle_pin().ok();
             }
         }
-        assert_eq!(tabs.tabs.iter().filter(|tab| tab.pinned).count(), MOST_PINNED);
-        take(&mut tabs, 99);
+        assert_eq!(tabs.tabs.iter().filter(|tab| tab.pinned).count(), MAX_PINNED_TABS);
+        add_answer_for(&mut tabs, 99);
         assert_eq!((tabs.tabs.len(), tabs.statement()), (9, Some("SELECT 99")));
     }
 
     #[test]
-    fn a_refusal_takes_no_rows_away_and_goes_with_the_next_answer() {
-        let mut tabs = Tabs::default();
-        take(&mut tabs, 1);
-        tabs.take("SELECT 1", Err(Refusal::new("sql_cancelled", "cancelled")), Duration::ZERO);
-        assert_eq!((tabs.tabs.len(), tabs.at), (2, 1));
-        tabs.take("SELECT x", Err(Refusal::new("sql_error", "no")), Duration::ZERO);
+    fn rejection_keeps_earlier_rows_until_the_next_answer() {
+        let mut tabs = ResultTabs::default();
+        add_answer_for(&mut tabs, 1);
+        tabs.add_answer("SELECT 1", Err(Rejection::new("sql_cancelled", "cancelled")), Duration::ZERO);
+        assert_eq!((tabs.tabs.len(), tabs.current_index), (2, 1));
+        tabs.add_answer("SELECT x", Err(Rejection::new("sql_error", "no")), Duration::ZERO);
         assert_eq!(tabs.tabs.len(), 2);
-        take(&mut tabs, 1);
+        add_answer_for(&mut tabs, 1);
         assert_eq!(
-            (tabs.tabs.len(), tabs.at),
+            (tabs.tabs.len(), tabs.current_index),
             (1, 0),
             "the tab is updated and the failed statement is dropped"
         );
     }
 
     #[test]
-    fn walking_and_closing_go_round() {
-        let mut tabs = Tabs::default();
-        tabs.walk(true);
-        (1..=3).for_each(|number| take(&mut tabs, number));
-        tabs.walk(true);
+    fn selecting_and_closing_tabs_wraps() {
+        let mut tabs = ResultTabs::default();
+        tabs.select_adjacent(true);
+        (1..=3).for_each(|number| add_answer_for(&mut tabs, number));
+        tabs.select_adjacent(true);
         assert_eq!(tabs.statement(), Some("SELECT 1"));
-        tabs.walk(false);
+        tabs.select_adjacent(false);
         assert!(tabs.close());
         assert_eq!((tabs.statement(), tabs.tabs.len()), (Some("SELECT 2"), 2));
-        assert!(tabs.click(FIRST_CLICK) && !tabs.click(FIRST_CLICK + 5) && !tabs.click(1));
+        assert!(tabs.handle_click(FIRST_TAB_CLICK) && !tabs.handle_click(FIRST_TAB_CLICK + 5) && !tabs.handle_click(1));
         assert_eq!(tabs.statement(), Some("SELECT 1"));
     }
 
     #[test]
-    fn large_results_push_older_ones_out() {
-        let mut tabs = Tabs::default();
-        let text = Cell::Text("x".repeat(MOST_BYTES / 4));
+    fn large_results_evict_older_ones() {
+        let mut tabs = ResultTabs::default();
+        let text = Cell::Text("x".repeat(MAX_TOTAL_BYTES / 4));
         for number in 0..4 {
             let large =
-                Rows { columns: vec!["n".to_owned()], rows: vec![vec![text.clone()]], ..Rows::default() };
-            tabs.take(&format!("SELECT {number}"), Ok(large), Duration::ZERO);
+                QueryResult { columns: vec!["n".to_owned()], rows: vec![vec![text.clone()]], ..QueryResult::default() };
+            tabs.add_answer(&format!("SELECT {number}"), Ok(large), Duration::ZERO);
         }
-        assert!(tabs.bytes() <= MOST_BYTES && tabs.tabs.len() == 3, "{}", tabs.tabs.len());
+        assert!(tabs.bytes() <= MAX_TOTAL_BYTES && tabs.tabs.len() == 3, "{}", tabs.tabs.len());
     }
 
     #[test]
-    fn titles_say_what_was_asked() {
-        assert_eq!(title("-- title: Revenue by plan\nSELECT 1"), "Revenue by plan");
-        assert_eq!(title("SELECT count(*) FROM Ledger l"), "ledger");
-        assert_eq!(title("SELECT 1 + 2 + 3 + 4 + 5"), "SELECT 1 + 2 + 3 …");
+    fn titles_describe_the_statement() {
+        assert_eq!(tab_title("-- title: Revenue by plan\nSELECT 1"), "Revenue by plan");
+        assert_eq!(tab_title("SELECT count(*) FROM Ledger l"), "ledger");
+        assert_eq!(tab_title("SELECT 1 + 2 + 3 + 4 + 5"), "SELECT 1 + 2 + 3 …");
     }
 }

@@ -2,50 +2,50 @@
 
 use serde_json::Value;
 
-use novamind_base::notation::{csv_cell, grouped, printable};
-use novamind_database::{Cell, Rows};
-use novamind_session::rows_as_json;
+use novamind_base::formatting::{escape_csv_cell, grouped_number, escape_control_characters};
+use novamind_database::{Cell, QueryResult};
+use novamind_session::rows_to_json;
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::{Cell as Shown, Column};
+use novamind_tui::widgets::{TableCell as TableCell, TableColumn};
 
 /// Maximum column width on the screen; longer values can be opened.
-const WIDEST: u16 = 48;
+const MAX_COLUMN_WIDTH: u16 = 48;
 
 /// Returns whether a column contains only numbers.
-pub fn is_numeric(rows: &Rows, at: usize) -> bool {
+pub fn is_numeric(rows: &QueryResult, at: usize) -> bool {
     let mut said = rows.rows.iter().filter_map(|row| row.get(at)).filter(|cell| **cell != Cell::Null);
     let is_number = |cell: &Cell| matches!(cell, Cell::Integer(_) | Cell::Real(_));
     said.next().is_some_and(is_number) && said.all(is_number)
 }
 
 /// Returns the number of decimals shown in a column.
-pub fn decimals_shown(rows: &Rows, at: usize) -> usize {
-    Style::of(rows, at).decimals
+pub fn decimals_shown(rows: &QueryResult, at: usize) -> usize {
+    NumberFormat::for_column(rows, at).decimals
 }
 
 /// Returns the columns of a result for the screen.
-pub fn columns(rows: &Rows) -> Vec<Column> {
+pub fn columns(rows: &QueryResult) -> Vec<TableColumn> {
     let column = |(at, name): (usize, &String)| {
-        if is_numeric(rows, at) { Column::numbers(name.as_str()) } else { Column::words(name.as_str()) }
+        if is_numeric(rows, at) { TableColumn::numeric(name.as_str()) } else { TableColumn::text(name.as_str()) }
     };
-    rows.columns.iter().enumerate().map(column).map(|column| column.at_most(WIDEST)).collect()
+    rows.columns.iter().enumerate().map(column).map(|column| column.with_max_width(MAX_COLUMN_WIDTH)).collect()
 }
 
 /// Returns the cells of a result for the screen.
-pub fn cells(rows: &Rows) -> Vec<Vec<Shown>> {
-    let styles: Vec<Style> = (0..rows.columns.len()).map(|at| Style::of(rows, at)).collect();
-    let row = |row: &Vec<Cell>| row.iter().zip(&styles).map(|(cell, style)| style.cell(cell)).collect();
+pub fn cells(rows: &QueryResult) -> Vec<Vec<TableCell>> {
+    let styles: Vec<NumberFormat> = (0..rows.columns.len()).map(|at| NumberFormat::for_column(rows, at)).collect();
+    let row = |row: &Vec<Cell>| row.iter().zip(&styles).map(|(cell, style)| style.display_cell(cell)).collect();
     rows.rows.iter().map(row).collect()
 }
 
 /// Number format of a column, the same for all rows.
-struct Style {
+struct NumberFormat {
     decimals: usize,
-    groups: bool,
+    groups_digits: bool,
 }
 
-impl Style {
-    fn of(rows: &Rows, at: usize) -> Style {
+impl NumberFormat {
+    fn for_column(rows: &QueryResult, at: usize) -> NumberFormat {
         let reals = || {
             let cells = rows.rows.iter().filter_map(|row| row.get(at));
             cells.filter_map(|cell| match cell {
@@ -66,26 +66,26 @@ impl Style {
         let groups = !names
             .iter()
             .any(|part| name.split(|letter: char| !letter.is_alphanumeric()).any(|word| word == *part));
-        Style { decimals: needed.min(sensible), groups }
+        NumberFormat { decimals: needed.min(sensible), groups_digits: groups }
     }
 
-    fn cell(&self, cell: &Cell) -> Shown {
+    fn display_cell(&self, cell: &Cell) -> TableCell {
         match cell {
-            Cell::Null => Shown::words("NULL").role(Role::Dim),
-            Cell::Text(text) => Shown::words(flat(text)),
-            Cell::Integer(number) if self.groups => Shown::number(*number as f64, grouped_integer(*number)),
-            Cell::Integer(number) => Shown::number(*number as f64, number.to_string()),
-            Cell::Real(number) => Shown::number(*number, self.real(*number)),
+            Cell::Null => TableCell::from_text("NULL").with_role(Role::Dim),
+            Cell::Text(text) => TableCell::from_text(single_line(text)),
+            Cell::Integer(number) if self.groups_digits => TableCell::from_number(*number as f64, grouped_integer(*number)),
+            Cell::Integer(number) => TableCell::from_number(*number as f64, number.to_string()),
+            Cell::Real(number) => TableCell::from_number(*number, self.format_real(*number)),
         }
     }
 
-    fn real(&self, number: f64) -> String {
+    fn format_real(&self, number: f64) -> String {
         let text = format!("{number:.*}", self.decimals);
         let vanishes = number != 0.0 && text.parse() == Ok(0.0);
         match number {
             _ if !number.is_finite() => number.to_string(),
             _ if vanishes || number.abs() >= 1e15 => format!("{number:.3e}"),
-            _ if self.groups => grouped(number, self.decimals),
+            _ if self.groups_digits => grouped_number(number, self.decimals),
             _ => text,
         }
     }
@@ -110,12 +110,12 @@ fn grouped_integer(number: i64) -> String {
 }
 
 /// Returns the start of a text in one line.
-fn flat(text: &str) -> String {
+fn single_line(text: &str) -> String {
     text.chars().take(400).map(|letter| if letter.is_control() { ' ' } else { letter }).collect()
 }
 
 /// Returns a value in full for copying and export; NULL is empty.
-pub fn whole(cell: &Cell) -> String {
+pub fn full_text(cell: &Cell) -> String {
     match cell {
         Cell::Null => String::new(),
         Cell::Integer(number) => number.to_string(),
@@ -125,31 +125,31 @@ pub fn whole(cell: &Cell) -> String {
 }
 
 /// Returns a row with tab separators, as spreadsheets accept it.
-pub fn tabbed(row: &[Cell]) -> String {
-    let clean = |cell: &Cell| harmless(cell).replace(['\t', '\n', '\r'], " ");
+pub fn tab_separated_row(row: &[Cell]) -> String {
+    let clean = |cell: &Cell| escape_for_spreadsheet(cell).replace(['\t', '\n', '\r'], " ");
     row.iter().map(clean).collect::<Vec<_>>().join("\t")
 }
 
 /// Returns a result with headings and tab separators.
-pub fn all_tabbed(rows: &Rows) -> String {
+pub fn to_tab_separated(rows: &QueryResult) -> String {
     let mut text = rows.columns.join("\t") + "\n";
     for row in &rows.rows {
-        text += &(tabbed(row) + "\n");
+        text += &(tab_separated_row(row) + "\n");
     }
     text
 }
 
 /// Returns a result as a Markdown table; numbers are right-aligned.
-pub fn markdown(rows: &Rows) -> String {
+pub fn to_markdown(rows: &QueryResult) -> String {
     let clean = |text: &str| {
-        printable(text).replace('\\', "\\\\").replace('|', "\\|").replace(['\n', '\r', '\t'], " ")
+        escape_control_characters(text).replace('\\', "\\\\").replace('|', "\\|").replace(['\n', '\r', '\t'], " ")
     };
     let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
     let mut text = line(rows.columns.iter().map(|name| clean(name)).collect());
     let side = |at: usize| if is_numeric(rows, at) { "---:" } else { "---" }.to_owned();
     text += &line((0..rows.columns.len()).map(side).collect());
     for row in &rows.rows {
-        text += &line(row.iter().map(|cell| clean(&whole(cell))).collect());
+        text += &line(row.iter().map(|cell| clean(&full_text(cell))).collect());
     }
     text
 }
@@ -158,26 +158,26 @@ pub fn markdown(rows: &Rows) -> String {
 ///
 /// # Errors
 /// Never for a buffer in memory; the writer's type requires the result.
-pub fn csv(rows: &Rows) -> Result<Vec<u8>, String> {
+pub fn to_csv(rows: &QueryResult) -> Result<Vec<u8>, String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(&rows.columns).map_err(|error| error.to_string())?;
     for row in &rows.rows {
-        writer.write_record(row.iter().map(harmless)).map_err(|error| error.to_string())?;
+        writer.write_record(row.iter().map(escape_for_spreadsheet)).map_err(|error| error.to_string())?;
     }
     writer.into_inner().map_err(|error| error.to_string())
 }
 
 /// Returns a complete value, safe for spreadsheet programs.
-fn harmless(cell: &Cell) -> String {
+fn escape_for_spreadsheet(cell: &Cell) -> String {
     match cell {
-        Cell::Text(text) => csv_cell(text).into_owned(),
-        other => whole(other),
+        Cell::Text(text) => escape_csv_cell(text).into_owned(),
+        other => full_text(other),
     }
 }
 
 /// Returns a result as a JSON list with one object per row.
-pub fn json(rows: &Rows) -> Vec<u8> {
-    let list = rows_as_json(rows).remove("rows").unwrap_or(Value::Array(Vec::new()));
+pub fn to_json(rows: &QueryResult) -> Vec<u8> {
+    let list = rows_to_json(rows).remove("rows").unwrap_or(Value::Array(Vec::new()));
     let mut text = serde_json::to_vec_pretty(&list).unwrap_or_default();
     text.push(b'\n');
     text
@@ -187,11 +187,11 @@ pub fn json(rows: &Rows) -> Vec<u8> {
 mod tests {
     use super::*;
 
-    fn result(columns: &[&str], rows: Vec<Vec<Cell>>) -> Rows {
-        Rows { columns: columns.iter().map(|name| (*name).to_owned()).collect(), rows, ..Rows::default() }
+    fn result(columns: &[&str], rows: Vec<Vec<Cell>>) -> QueryResult {
+        QueryResult { columns: columns.iter().map(|name| (*name).to_owned()).collect(), rows, ..QueryResult::default() }
     }
 
-    fn column(name: &str, cells: &[Cell]) -> Vec<String> {
+    fn column_texts(name: &str, cells: &[Cell]) -> Vec<String> {
         let rows = result(&[name], cells.iter().map(|cell| vec![cell.clone()]).collect());
         self::cells(&rows).into_iter().map(|row| row[0].text.clone()).collect()
     }
@@ -199,18 +199,18 @@ mod tests {
     #[test]
     fn numbers_of_a_column_have_the_same_decimals() {
         use Cell::{Integer, Null, Real, Text};
-        assert_eq!(column("price", &[Real(12.0), Real(1.25), Null]), ["12.00", "1.25", "NULL"]);
-        assert_eq!(column("cash", &[Real(1_234_567.891_23), Real(0.5)]), ["1,234,567.89", "0.50"]);
-        assert_eq!(column("share", &[Real(1.0 / 3.0), Real(1e-9)]), ["0.333333", "1.000e-9"]);
-        assert_eq!(column("x", &[Real(3.0), Real(f64::INFINITY), Real(1e300)]), ["3", "inf", "1.000e300"]);
-        assert_eq!(column("subs", &[Integer(28_114), Integer(-5)]), ["28,114", "-5"]);
-        assert_eq!(column("customer_id", &[Integer(28_114)]), ["28114"]);
-        assert_eq!(column("n", &[Integer(i64::MIN)]), ["-9,223,372,036,854,775,808"]);
-        assert_eq!(column("text", &[Text("a\nb".to_owned())]), ["a b"]);
+        assert_eq!(column_texts("price", &[Real(12.0), Real(1.25), Null]), ["12.00", "1.25", "NULL"]);
+        assert_eq!(column_texts("cash", &[Real(1_234_567.891_23), Real(0.5)]), ["1,234,567.89", "0.50"]);
+        assert_eq!(column_texts("share", &[Real(1.0 / 3.0), Real(1e-9)]), ["0.333333", "1.000e-9"]);
+        assert_eq!(column_texts("x", &[Real(3.0), Real(f64::INFINITY), Real(1e300)]), ["3", "inf", "1.000e300"]);
+        assert_eq!(column_texts("subs", &[Integer(28_114), Integer(-5)]), ["28,114", "-5"]);
+        assert_eq!(column_texts("customer_id", &[Integer(28_114)]), ["28114"]);
+        assert_eq!(column_texts("n", &[Integer(i64::MIN)]), ["-9,223,372,036,854,775,808"]);
+        assert_eq!(column_texts("text", &[Text("a\nb".to_owned())]), ["a b"]);
     }
 
     #[test]
-    fn a_column_of_numbers_stands_right() {
+    fn numeric_columns_are_right_aligned() {
         use novamind_tui::canvas::Align;
         let rows = result(
             &["a", "b", "c"],
@@ -232,18 +232,18 @@ mod tests {
                 vec![Cell::Null, Cell::Null, Cell::Real(2.0)],
             ],
         );
-        let text = String::from_utf8(csv(&rows).expect("CSV")).expect("text");
+        let text = String::from_utf8(to_csv(&rows).expect("CSV")).expect("text");
         assert_eq!(text, "a,b,a\n0.30000000000000004,\"say \"\"no\"\", twice\n\",7\n,,2.0\n");
-        let value: Value = serde_json::from_slice(&json(&rows)).expect("JSON");
+        let value: Value = serde_json::from_slice(&to_json(&rows)).expect("JSON");
         assert_eq!(value[0]["a"], 0.1 + 0.2);
         assert_eq!(value[1]["b"], Value::Null);
         assert_eq!(
-            markdown(&rows),
+            to_markdown(&rows),
             "| a | b | a |\n| ---: | --- | ---: |\n| 0.30000000000000004 | say \"no\", twice  | 7 |\n|  |  | 2.0 |\n"
         );
         let sign = result(&["x"], vec![vec![Cell::Text("a|b\\".to_owned())]]);
-        assert_eq!(markdown(&sign), "| x |\n| --- |\n| a\\|b\\\\ |\n");
-        assert!(all_tabbed(&rows).starts_with("a\tb\ta\n0.3"));
-        assert_eq!(tabbed(&rows.rows[0]), "0.30000000000000004\tsay \"no\", twice \t7");
+        assert_eq!(to_markdown(&sign), "| x |\n| --- |\n| a\\|b\\\\ |\n");
+        assert!(to_tab_separated(&rows).starts_with("a\tb\ta\n0.3"));
+        assert_eq!(tab_separated_row(&rows.rows[0]), "0.30000000000000004\tsay \"no\", twice \t7");
     }
 }

@@ -5,145 +5,145 @@ use std::collections::BTreeMap;
 use crossterm::event::KeyEvent;
 use serde_json::Value;
 
-use super::earlier;
-use super::sheet::{CellPlace, Sheet};
+use super::earlier_calls;
+use super::sheet::{CellPosition, ToolSheet};
 use crate::action::Action;
-use crate::attention::BETWEEN_CELLS;
+use crate::attention::CELL_SEPARATOR;
 use crate::effect::Effect;
-use novamind_base::notation::{dollars, parse_number};
-use novamind_report::count;
+use novamind_base::formatting::{dollars, parse_number};
+use novamind_report::pluralize;
 use novamind_report::research::outlook_lines;
 use novamind_session::Preview;
-use novamind_tools::{ArgumentKind, Key, Kind, Refusal, Spec};
+use novamind_tools::{ArgumentKind, MapKey, ToolKind, Rejection, ToolSpec};
 use novamind_tui::chord::Chord;
-use novamind_tui::widgets::field::ONLY_NUMBERS;
-use novamind_tui::widgets::{Editor, Field};
-use novamind_worker::asking::Pending;
-use novamind_worker::company::Company;
-use novamind_worker::questions::CallCheck;
+use novamind_tui::widgets::field::NUMBER_HINT;
+use novamind_tui::widgets::{TextEditor, TextField};
+use novamind_worker::question::Pending;
+use novamind_worker::company::DisplayedCompany;
+use novamind_worker::page_questions::CallCheck;
 
-pub struct Form {
-    pub spec: &'static Spec,
+pub struct ToolForm {
+    pub spec: &'static ToolSpec,
     /// Whether the run offers the tool.
-    is_offered: bool,
-    pub sheet: Sheet,
-    pub at: CellPlace,
+    is_available: bool,
+    pub sheet: ToolSheet,
+    pub focus: CellPosition,
     /// While the user types into the cell: its previous draft.
-    pub typing: Option<Option<Field>>,
+    pub draft_before_edit: Option<Option<TextField>>,
     /// The code editor; the draft of the cell follows its text.
-    writing: Option<Box<Editor>>,
+    code_editor: Option<Box<TextEditor>>,
     /// The cell that enter has just left. Copying down then uses the typed value.
-    left: Option<CellPlace>,
+    committed_cell: Option<CellPosition>,
     /// The customer number being typed to add a row to a block.
-    pub adding: Option<(usize, Field)>,
+    pub new_customer: Option<(usize, TextField)>,
     /// Drafts that the last reset discarded, by path. A second reset restores them.
-    dropped: BTreeMap<String, String>,
+    discarded_drafts: BTreeMap<String, String>,
     /// The check of the call, if it has arrived.
-    pub preview: Option<Result<Preview, Refusal>>,
+    pub preview: Option<Result<Preview, Rejection>>,
     checking: Pending<CallCheck>,
     /// The last sent arguments of a tool that keeps its form.
-    sent: Option<Value>,
-    pub answer: Option<Result<Value, Refusal>>,
+    sent_arguments: Option<Value>,
+    pub answer: Option<Result<Value, Rejection>>,
     /// Earlier calls of the tool: decision day and arguments, newest first.
-    pub earlier: Vec<(u32, String)>,
+    pub earlier_calls: Vec<(u32, String)>,
 }
 
-impl Form {
+impl ToolForm {
     /// Returns the form with the current values.
-    pub fn of(spec: &'static Spec, company: &Company) -> Form {
-        Form {
+    pub fn new(spec: &'static ToolSpec, company: &DisplayedCompany) -> ToolForm {
+        ToolForm {
             spec,
-            is_offered: company.has_tool(spec.id),
-            sheet: Sheet::of(spec, company),
-            at: CellPlace::default(),
-            typing: None,
-            writing: None,
-            left: None,
-            adding: None,
-            dropped: BTreeMap::new(),
+            is_available: company.has_tool(spec.id),
+            sheet: ToolSheet::new(spec, company),
+            focus: CellPosition::default(),
+            draft_before_edit: None,
+            code_editor: None,
+            committed_cell: None,
+            new_customer: None,
+            discarded_drafts: BTreeMap::new(),
             preview: None,
             checking: Pending::default(),
-            sent: None,
+            sent_arguments: None,
             answer: None,
-            earlier: earlier::calls(spec.id, company, earlier::MOST),
+            earlier_calls: earlier_calls::earlier_calls(spec.id, company, earlier_calls::MAX_EARLIER_CALLS),
         }
     }
 
     /// Returns whether it has unsent values that can be sent. Reading tools have none, and lessons lock some
     /// tools.
-    pub fn is_draft(&self) -> bool {
-        let is_sent = || self.sent.is_some() && self.sheet.arguments().ok() == self.sent;
-        let can_be_sent = self.spec.kind.acts() || (self.spec.id.runs_code() && !is_sent());
-        self.is_offered && can_be_sent && self.sheet.is_changed()
+    pub fn has_draft(&self) -> bool {
+        let is_sent = || self.sent_arguments.is_some() && self.sheet.arguments().ok() == self.sent_arguments;
+        let can_be_sent = self.spec.kind.changes_company() || (self.spec.id.executes_code() && !is_sent());
+        self.is_available && can_be_sent && self.sheet.is_changed()
     }
 
     /// Returns whether keys type characters.
     pub fn is_typing(&self) -> bool {
-        self.typing.is_some() || self.adding.is_some()
+        self.draft_before_edit.is_some() || self.new_customer.is_some()
     }
 
     /// Returns the code editor, while it is open.
-    pub fn writing(&self) -> Option<&Editor> {
-        self.writing.as_deref()
+    pub fn code_editor(&self) -> Option<&TextEditor> {
+        self.code_editor.as_deref()
     }
 
     /// Updates the current values and keeps the drafts.
-    pub fn renew(&mut self, company: &Company) {
-        self.is_offered = company.has_tool(self.spec.id);
-        self.sheet = self.sheet.renewed(company);
-        self.earlier = earlier::calls(self.spec.id, company, earlier::MOST);
+    pub fn update(&mut self, company: &DisplayedCompany) {
+        self.is_available = company.has_tool(self.spec.id);
+        self.sheet = self.sheet.with_current_values(company);
+        self.earlier_calls = earlier_calls::earlier_calls(self.spec.id, company, earlier_calls::MAX_EARLIER_CALLS);
         self.preview = None;
-        self.keep_inside();
+        self.clamp_focus();
     }
 
     /// Discards the drafts and selects the first cell.
-    pub fn reset(&mut self, company: &Company) {
-        self.sheet = Sheet::of(self.spec, company);
-        self.at = CellPlace::default();
-        (self.typing, self.writing, self.left, self.adding, self.preview) = (None, None, None, None, None);
+    pub fn reset(&mut self, company: &DisplayedCompany) {
+        self.sheet = ToolSheet::new(self.spec, company);
+        self.focus = CellPosition::default();
+        (self.draft_before_edit, self.code_editor, self.committed_cell, self.new_customer, self.preview) = (None, None, None, None, None);
         self.checking.cancel();
-        self.dropped.clear();
-        self.keep_inside();
+        self.discarded_drafts.clear();
+        self.clamp_focus();
     }
 
     /// Discards the drafts. Repeated before other input, it restores them.
-    fn drop_drafts(&mut self, company: &Company) -> Vec<Effect> {
+    fn toggle_drafts(&mut self, company: &DisplayedCompany) -> Vec<Effect> {
         if self.sheet.is_changed() {
-            let typed = self.sheet.typed();
+            let typed = self.sheet.drafts();
             self.reset(company);
-            self.dropped = typed;
-            let dropped = count(self.dropped.len() as u32, "value");
+            self.discarded_drafts = typed;
+            let dropped = pluralize(self.discarded_drafts.len() as u32, "value");
             return vec![Effect::Say(format!("{dropped} discarded. Reset again to restore them."))];
         }
-        let dropped = std::mem::take(&mut self.dropped);
+        let dropped = std::mem::take(&mut self.discarded_drafts);
         if dropped.is_empty() {
             return vec![Effect::Complain("Nothing to reset. The form shows the current values.".to_owned())];
         }
         self.reset(company);
-        self.sheet.retype(&dropped);
+        self.sheet.restore_drafts(&dropped);
         let mut effects = self.check();
-        effects.push(Effect::Say(format!("{} restored", count(dropped.len() as u32, "value"))));
+        effects.push(Effect::Say(format!("{} restored", pluralize(dropped.len() as u32, "value"))));
         effects
     }
 
-    fn keep_inside(&mut self) {
-        if self.sheet.slot(self.at).is_none() {
-            self.at = self.sheet.places().next().unwrap_or_default();
+    fn clamp_focus(&mut self) {
+        if self.sheet.cell(self.focus).is_none() {
+            self.focus = self.sheet.positions().next().unwrap_or_default();
         }
     }
 
     /// Returns the equivalent call in a program.
-    pub fn call(&self) -> String {
-        let arguments = self.sheet.arguments().map_or("…".to_owned(), |arguments| spaced(&arguments));
+    pub fn call_text(&self) -> String {
+        let arguments = self.sheet.arguments().map_or("…".to_owned(), |arguments| format_json(&arguments));
         format!("{}.{}({arguments})", self.spec.module.id(), self.spec.name())
     }
 
     /// Returns the channel and group of the focused cell in the advertising matrix.
     pub fn cell_names(&self) -> Option<(&str, &str)> {
-        let block = self.sheet.blocks.get(self.at.block)?;
+        let block = self.sheet.blocks.get(self.focus.block)?;
         match block.argument.kind {
-            ArgumentKind::Matrix(Key::Channel, Key::Group, _) => {
-                Some((block.rows.get(self.at.row)?, block.columns.get(self.at.column)?))
+            ArgumentKind::Matrix(MapKey::Channel, MapKey::Group, _) => {
+                Some((block.rows.get(self.focus.row)?, block.columns.get(self.focus.column)?))
             }
             _ => None,
         }
@@ -153,14 +153,14 @@ impl Form {
     pub fn check(&mut self) -> Vec<Effect> {
         self.preview = None;
         self.checking.cancel();
-        if self.spec.id.runs_code() {
+        if self.spec.id.executes_code() {
             // The answer belonged to the previous code.
             self.answer = None;
         }
         let quiet = match self.spec.kind {
-            Kind::Setting | Kind::OneShot => !self.sheet.is_changed(),
-            Kind::Purchase | Kind::Time => false,
-            Kind::Read | Kind::Engine => true,
+            ToolKind::Setting | ToolKind::OneShot => !self.sheet.is_changed(),
+            ToolKind::Purchase | ToolKind::Time => false,
+            ToolKind::Read | ToolKind::Engine => true,
         };
         match self.sheet.arguments() {
             Ok(arguments) if !quiet => {
@@ -177,24 +177,24 @@ impl Form {
     }
 
     /// Sends the call, or explains why it cannot be sent.
-    pub fn apply(&mut self) -> Vec<Effect> {
-        (self.typing, self.writing) = (None, None);
+    pub fn submit(&mut self) -> Vec<Effect> {
+        (self.draft_before_edit, self.code_editor) = (None, None);
         let arguments = match self.sheet.arguments() {
             Ok(arguments) => arguments,
             Err(place) => {
-                self.at = place;
+                self.focus = place;
                 let block = &self.sheet.blocks[place.block];
                 let path = block.path(place.row, place.column);
                 return vec![Effect::Complain(format!("{path}: {}", block.expected()))];
             }
         };
         let tool = self.spec.id;
-        self.sent = tool.runs_code().then(|| arguments.clone());
+        self.sent_arguments = tool.executes_code().then(|| arguments.clone());
         match self.spec.kind {
-            Kind::Setting if !self.sheet.is_changed() => {
+            ToolKind::Setting if !self.sheet.is_changed() => {
                 vec![Effect::Complain("Nothing has changed. Enter a value first.".to_owned())]
             }
-            Kind::Purchase => match &self.preview {
+            ToolKind::Purchase => match &self.preview {
                 Some(Ok(preview)) => {
                     let mut text = format!(
                         "{tool} {arguments} costs {} at once and cannot be undone.",
@@ -207,7 +207,7 @@ impl Form {
                 }
                 _ => vec![Effect::call(tool, arguments)],
             },
-            Kind::OneShot if self.sheet.is_changed() => {
+            ToolKind::OneShot if self.sheet.is_changed() => {
                 let text = format!("{tool} {arguments} cannot be undone.");
                 vec![Effect::ConfirmCall { tool, arguments, text }]
             }
@@ -215,23 +215,23 @@ impl Form {
         }
     }
 
-    pub fn act(&mut self, action: Action, company: &Company) -> Vec<Effect> {
-        let left = self.left.take();
+    pub fn handle_action(&mut self, action: Action, company: &DisplayedCompany) -> Vec<Effect> {
+        let left = self.committed_cell.take();
         match action {
-            Action::Apply => return self.apply(),
-            Action::EditCell if self.sheet.blocks.is_empty() => return self.apply(),
-            Action::EditCell => self.edit(),
-            Action::SameDown => return self.same_down(left.unwrap_or(self.at)),
-            Action::ClearCell => return self.clear(),
-            Action::ResetForm => return self.drop_drafts(company),
-            Action::CopyCall => return vec![Effect::Copy(self.call())],
+            Action::Apply => return self.submit(),
+            Action::EditCell if self.sheet.blocks.is_empty() => return self.submit(),
+            Action::EditCell => self.start_typing(),
+            Action::CopyDown => return self.copy_down(left.unwrap_or(self.focus)),
+            Action::ClearCell => return self.clear_cell(),
+            Action::ResetForm => return self.toggle_drafts(company),
+            Action::CopyCall => return vec![Effect::Copy(self.call_text())],
             Action::Discard => {
-                if let Some(before) = self.typing.take()
-                    && let Some(slot) = self.sheet.slot_mut(self.at)
+                if let Some(before) = self.draft_before_edit.take()
+                    && let Some(slot) = self.sheet.cell_mut(self.focus)
                 {
                     slot.draft = before;
                 }
-                self.adding = None;
+                self.new_customer = None;
                 return self.check();
             }
             Action::LeaveEditor => {
@@ -241,87 +241,87 @@ impl Form {
             Action::Commit | Action::CommitDown | Action::CommitNext | Action::CommitPrevious => {
                 return self.commit(action);
             }
-            _ => self.walk(action),
+            _ => self.move_focus(action),
         }
         Vec::new()
     }
 
-    fn edit(&mut self) {
-        if let Some(block) = self.at_adding_row() {
-            self.adding = Some((block, Field::default()));
+    fn start_typing(&mut self) {
+        if let Some(block) = self.add_row_block() {
+            self.new_customer = Some((block, TextField::default()));
             return;
         }
         let text = self.is_at_text();
-        let is_code = self.sheet.blocks.get(self.at.block).is_some_and(super::sheet::Block::is_code);
-        if let Some(slot) = self.sheet.slot_mut(self.at) {
-            self.typing = Some(slot.draft.clone());
+        let is_code = self.sheet.blocks.get(self.focus.block).is_some_and(super::sheet::ArgumentBlock::is_code);
+        if let Some(slot) = self.sheet.cell_mut(self.focus) {
+            self.draft_before_edit = Some(slot.draft.clone());
             let held = slot.text();
-            self.writing = is_code.then(|| Box::new(Editor::of(&held).unwrapped()));
+            self.code_editor = is_code.then(|| Box::new(TextEditor::with_text(&held).without_wrapping()));
             // Typing replaces a number but edits a text.
-            slot.draft = Some(if text { Field::of(held) } else { Field::to_replace(held) });
+            slot.draft = Some(if text { TextField::with_text(held) } else { TextField::with_selected_text(held) });
         }
     }
 
     /// Continues typing after the text of the cell.
-    fn go_on_here(&mut self) {
-        if let Some(slot) = self.sheet.slot_mut(self.at) {
-            self.typing = Some(slot.draft.clone());
-            slot.draft = Some(Field::of(slot.text()));
+    fn resume_typing(&mut self) {
+        if let Some(slot) = self.sheet.cell_mut(self.focus) {
+            self.draft_before_edit = Some(slot.draft.clone());
+            slot.draft = Some(TextField::with_text(slot.text()));
         }
     }
 
     /// Returns whether a digit starts a number in the focused cell.
-    pub fn takes_numbers(&self) -> bool {
-        let is_cell = self.sheet.slot(self.at).is_some() && !self.is_at_text();
-        !self.is_typing() && (is_cell || self.at_adding_row().is_some())
+    pub fn accepts_digits(&self) -> bool {
+        let is_cell = self.sheet.cell(self.focus).is_some() && !self.is_at_text();
+        !self.is_typing() && (is_cell || self.add_row_block().is_some())
     }
 
     fn is_at_text(&self) -> bool {
-        self.sheet.blocks.get(self.at.block).is_some_and(super::sheet::Block::is_text)
+        self.sheet.blocks.get(self.focus.block).is_some_and(super::sheet::ArgumentBlock::is_text)
     }
 
     /// Returns the block whose last line adds a row, if that line has the focus.
-    pub fn at_adding_row(&self) -> Option<usize> {
-        let block = self.sheet.blocks.get(self.at.block)?;
-        (block.is_open() && self.at.row == block.rows.len()).then_some(self.at.block)
+    pub fn add_row_block(&self) -> Option<usize> {
+        let block = self.sheet.blocks.get(self.focus.block)?;
+        (block.accepts_new_rows() && self.focus.row == block.rows.len()).then_some(self.focus.block)
     }
 
     fn commit(&mut self, action: Action) -> Vec<Effect> {
-        if let Some((block, field)) = self.adding.take() {
+        if let Some((block, field)) = self.new_customer.take() {
             if field.text().trim().is_empty() {
                 return Vec::new();
             }
             if !self.sheet.add_customer(block, field.text()) {
                 return vec![Effect::Complain("Type a customer number, for example 17".to_owned())];
             }
-            self.at = CellPlace { block, row: self.sheet.blocks[block].rows.len() - 1, column: 0 };
-            self.edit();
+            self.focus = CellPosition { block, row: self.sheet.blocks[block].rows.len() - 1, column: 0 };
+            self.start_typing();
             return Vec::new();
         }
-        self.settle();
-        let left = self.at;
+        self.store_draft();
+        let left = self.focus;
         match action {
-            Action::CommitNext => self.walk(Action::Right),
-            Action::CommitPrevious => self.walk(Action::Up),
-            _ => self.walk(Action::Down),
+            Action::CommitNext => self.move_focus(Action::Right),
+            Action::CommitPrevious => self.move_focus(Action::Up),
+            _ => self.move_focus(Action::Down),
         }
         // Enter ends typing; movement keys continue typing in the next cell. Below the last row, typing stays
         // open so that further digits do not switch screens.
         match action {
-            Action::CommitDown if self.at == left => self.go_on_here(),
-            Action::Commit => self.left = Some(left),
-            _ if self.at == left => {}
-            _ => self.edit(),
+            Action::CommitDown if self.focus == left => self.resume_typing(),
+            Action::Commit => self.committed_cell = Some(left),
+            _ if self.focus == left => {}
+            _ => self.start_typing(),
         }
         self.check()
     }
 
     /// Stores the typed text as the draft of its cell.
-    fn settle(&mut self) {
-        self.typing = None;
-        let scalar = self.sheet.blocks.get(self.at.block).is_some_and(super::sheet::Block::is_scalar);
-        if let Some(slot) = self.sheet.slot_mut(self.at) {
-            let text = slot.draft.as_ref().map_or("", Field::text).trim();
+    fn store_draft(&mut self) {
+        self.draft_before_edit = None;
+        let scalar = self.sheet.blocks.get(self.focus.block).is_some_and(super::sheet::ArgumentBlock::is_scalar);
+        if let Some(slot) = self.sheet.cell_mut(self.focus) {
+            let text = slot.draft.as_ref().map_or("", TextField::text).trim();
             let same = !slot.is_changed() && parse_number(text).is_some();
             // The text equals the current value, or a number was cleared: the cell is unchanged.
             if same || (scalar && text.is_empty()) {
@@ -332,23 +332,23 @@ impl Form {
 
     /// Ends typing and keeps the draft.
     pub fn stop_typing(&mut self) {
-        self.adding = None;
-        self.writing = None;
-        if self.typing.is_some() {
-            self.settle();
+        self.new_customer = None;
+        self.code_editor = None;
+        if self.draft_before_edit.is_some() {
+            self.store_draft();
         }
     }
 
     /// Returns the typed text in the order of the cells.
     pub fn typed_text(&self) -> String {
-        let adding = self.adding.iter().map(|(_, field)| field.text());
-        let drafts = self.sheet.places().filter_map(|place| self.sheet.slot(place)?.draft.as_ref());
-        drafts.map(Field::text).chain(adding).collect::<Vec<_>>().join(BETWEEN_CELLS)
+        let adding = self.new_customer.iter().map(|(_, field)| field.text());
+        let drafts = self.sheet.positions().filter_map(|place| self.sheet.cell(place)?.draft.as_ref());
+        drafts.map(TextField::text).chain(adding).collect::<Vec<_>>().join(CELL_SEPARATOR)
     }
 
     /// Copies the value of a cell to the cells below.
-    fn same_down(&mut self, from: CellPlace) -> Vec<Effect> {
-        let text = self.sheet.slot(from).map(super::sheet::Slot::text).unwrap_or_default();
+    fn copy_down(&mut self, from: CellPosition) -> Vec<Effect> {
+        let text = self.sheet.cell(from).map(super::sheet::EditableCell::text).unwrap_or_default();
         if text.trim().is_empty() {
             return vec![Effect::Complain("This cell is empty. There is no value to copy down.".to_owned())];
         }
@@ -362,18 +362,18 @@ impl Form {
         for block in blocks {
             let rows = if block == from.block { from.row..below } else { 0..1 };
             for row in rows {
-                if let Some(slot) = self.sheet.slot_mut(CellPlace { block, row, column: from.column }) {
-                    slot.draft = Some(Field::of(text.clone()));
+                if let Some(slot) = self.sheet.cell_mut(CellPosition { block, row, column: from.column }) {
+                    slot.draft = Some(TextField::with_text(text.clone()));
                 }
             }
         }
         self.check()
     }
 
-    fn clear(&mut self) -> Vec<Effect> {
-        let scalar = self.sheet.blocks.get(self.at.block).is_some_and(super::sheet::Block::is_scalar);
-        if let Some(slot) = self.sheet.slot_mut(self.at) {
-            slot.draft = Some(Field::of(if scalar { "0" } else { "" }));
+    fn clear_cell(&mut self) -> Vec<Effect> {
+        let scalar = self.sheet.blocks.get(self.focus.block).is_some_and(super::sheet::ArgumentBlock::is_scalar);
+        if let Some(slot) = self.sheet.cell_mut(self.focus) {
+            slot.draft = Some(TextField::with_text(if scalar { "0" } else { "" }));
         }
         self.check()
     }
@@ -383,19 +383,19 @@ impl Form {
         let mut lines = Vec::new();
         for (at, block) in self.sheet.blocks.iter().enumerate() {
             lines.extend((0..block.rows.len()).map(|row| (at, row, block.columns.len())));
-            if block.is_open() {
+            if block.accepts_new_rows() {
                 lines.push((at, block.rows.len(), 1));
             }
         }
         lines
     }
 
-    fn walk(&mut self, action: Action) {
+    fn move_focus(&mut self, action: Action) {
         let lines = self.lines();
         let Some(line) =
-            lines.iter().position(|(block, row, _)| (*block, *row) == (self.at.block, self.at.row))
+            lines.iter().position(|(block, row, _)| (*block, *row) == (self.focus.block, self.focus.row))
         else {
-            return self.keep_inside();
+            return self.clamp_focus();
         };
         let last = lines.len() - 1;
         let to = match action {
@@ -405,46 +405,46 @@ impl Form {
             Action::PageDown => (line + 8).min(last),
             Action::First => 0,
             Action::Last => last,
-            Action::Right if self.at.column + 1 < lines[line].2 => {
-                self.at.column += 1;
+            Action::Right if self.focus.column + 1 < lines[line].2 => {
+                self.focus.column += 1;
                 line
             }
             Action::Right if line < last => {
-                self.at.column = 0;
+                self.focus.column = 0;
                 line + 1
             }
             Action::Left => {
-                self.at.column = self.at.column.saturating_sub(1);
+                self.focus.column = self.focus.column.saturating_sub(1);
                 line
             }
             _ => line,
         };
         let (block, row, cells) = lines[to];
-        self.at = CellPlace { block, row, column: self.at.column.min(cells - 1) };
+        self.focus = CellPosition { block, row, column: self.focus.column.min(cells - 1) };
     }
 
-    pub fn key(&mut self, key: &KeyEvent) -> Vec<Effect> {
-        self.left = None;
-        if self.takes_numbers() && Chord::of(key).begins_number() {
-            self.edit();
+    pub fn handle_key(&mut self, key: &KeyEvent) -> Vec<Effect> {
+        self.committed_cell = None;
+        if self.accepts_digits() && Chord::from_event(key).starts_number() {
+            self.start_typing();
         }
-        if let Some((_, field)) = &mut self.adding {
-            field.key(key);
+        if let Some((_, field)) = &mut self.new_customer {
+            field.handle_key(key);
             return Vec::new();
         }
-        if let Some(editor) = &mut self.writing {
-            editor.key(key);
-            return self.take_written();
+        if let Some(editor) = &mut self.code_editor {
+            editor.handle_key(key);
+            return self.store_code();
         }
         let text = self.is_at_text();
-        if self.typing.is_some()
-            && let Some(slot) = self.sheet.slot_mut(self.at)
+        if self.draft_before_edit.is_some()
+            && let Some(slot) = self.sheet.cell_mut(self.focus)
             && let Some(field) = &mut slot.draft
         {
             if text {
-                field.key(key);
-            } else if !field.number_key(key) {
-                return vec![Effect::Complain(ONLY_NUMBERS.to_owned())];
+                field.handle_key(key);
+            } else if !field.handle_number_key(key) {
+                return vec![Effect::Complain(NUMBER_HINT.to_owned())];
             }
             return self.check();
         }
@@ -452,28 +452,28 @@ impl Form {
     }
 
     /// Stores the code as the draft of its cell.
-    fn take_written(&mut self) -> Vec<Effect> {
-        if let (Some(editor), Some(slot)) = (&self.writing, self.sheet.slot_mut(self.at)) {
-            slot.draft = Some(Field::of(editor.text()));
+    fn store_code(&mut self) -> Vec<Effect> {
+        if let (Some(editor), Some(slot)) = (&self.code_editor, self.sheet.cell_mut(self.focus)) {
+            slot.draft = Some(TextField::with_text(editor.text()));
         }
         self.check()
     }
 
     pub fn paste(&mut self, text: &str) -> Vec<Effect> {
-        if self.typing.is_none() && self.adding.is_none() {
-            self.edit();
-            let typing = self.typing.is_some() && !self.is_at_text();
-            if let Some(slot) = self.sheet.slot_mut(self.at).filter(|_| typing) {
-                slot.draft = Some(Field::default());
+        if self.draft_before_edit.is_none() && self.new_customer.is_none() {
+            self.start_typing();
+            let typing = self.draft_before_edit.is_some() && !self.is_at_text();
+            if let Some(slot) = self.sheet.cell_mut(self.focus).filter(|_| typing) {
+                slot.draft = Some(TextField::default());
             }
         }
-        if let Some(editor) = &mut self.writing {
+        if let Some(editor) = &mut self.code_editor {
             editor.insert(text);
-            return self.take_written();
+            return self.store_code();
         }
-        if let Some((_, field)) = &mut self.adding {
+        if let Some((_, field)) = &mut self.new_customer {
             field.insert(text.trim());
-        } else if let Some(field) = self.sheet.slot_mut(self.at).and_then(|slot| slot.draft.as_mut()) {
+        } else if let Some(field) = self.sheet.cell_mut(self.focus).and_then(|slot| slot.draft.as_mut()) {
             field.insert(text.trim());
         }
         self.check()
@@ -481,15 +481,15 @@ impl Form {
 }
 
 /// Returns the JSON with spaces after commas and colons, so that lines can wrap.
-pub(super) fn spaced(value: &Value) -> String {
+pub(super) fn format_json(value: &Value) -> String {
     match value {
         Value::Object(fields) => {
             let one = |(name, value): (&String, &Value)| {
-                format!("{}: {}", Value::String(name.clone()), spaced(value))
+                format!("{}: {}", Value::String(name.clone()), format_json(value))
             };
             format!("{{{}}}", fields.iter().map(one).collect::<Vec<_>>().join(", "))
         }
-        Value::Array(items) => format!("[{}]", items.iter().map(spaced).collect::<Vec<_>>().join(", ")),
+        Value::Array(items) => format!("[{}]", items.iter().map(format_json).collect::<Vec<_>>().join(", ")),
         plain => plain.to_string(),
     }
 }

@@ -1,24 +1,24 @@
 //! Margins that a draft of prices, model tiers or quotas would result in.
 
-use super::form::Form;
-use novamind_report::plan_margins::{Lever, PlanTerms, Sales, margin_lines, margin_summary};
+use super::form::ToolForm;
+use novamind_report::plan_margins::{MarginSetting, DraftPlanTerms, PlanSales, margin_lines, margin_summary};
 use novamind_session::identifiers::ByPlan;
 use novamind_tools::ToolId;
-use novamind_worker::company::Company;
+use novamind_worker::company::DisplayedCompany;
 
 /// Returns the margin lines for a form, heading first: for every model tier, or in brief for the set tier
 /// only. Empty for other tools.
-pub fn margins(form: &Form, sales: &Sales, company: &Company, brief: bool) -> Vec<String> {
-    let Some(lever) = Lever::of(form.spec.id) else { return Vec::new() };
-    let now = ByPlan::from_fn(|plan| PlanTerms {
+pub fn form_margin_lines(form: &ToolForm, sales: &PlanSales, company: &DisplayedCompany, brief: bool) -> Vec<String> {
+    let Some(lever) = MarginSetting::from_tool(form.spec.id) else { return Vec::new() };
+    let now = ByPlan::from_fn(|plan| DraftPlanTerms {
         price: company.setting(ToolId::SetPrices, plan.id()),
         tier: company.setting(ToolId::SetModelTiers, plan.id()) as u8,
         quota: company.setting(ToolId::SetUsageQuotas, plan.id()),
     });
     let terms = form.sheet.arguments().map_or(now, |arguments| lever.apply(now, &arguments));
     let mut models: Vec<(u8, f64)> =
-        company.costs.model_tiers.iter().map(|(tier, model)| (*tier, model.cost_per_usage_unit)).collect();
+        company.price_list.model_tiers.iter().map(|(tier, model)| (*tier, model.cost_per_usage_unit)).collect();
     models.sort_by_key(|(tier, _)| *tier);
     let lines = if brief { margin_summary } else { margin_lines };
-    lines(sales, &terms, lever, &models, company.seen.day)
+    lines(sales, &terms, lever, &models, company.observation.day)
 }

@@ -1,6 +1,6 @@
 //! Forms of all tools, generated from the catalog.
 
-mod earlier;
+mod earlier_calls;
 mod figure;
 mod form;
 mod form_pane;
@@ -20,24 +20,24 @@ use serde_json::Value;
 use strum::VariantArray;
 
 use super::ScreenState;
-use super::panes::{Pane, Paned, draw_pane};
+use super::panes::{Pane, PaneScreen, draw_pane};
 use crate::action::Action;
-use crate::context::{Look, ScreenId};
+use crate::context::{ScreenContext, ScreenId};
 use crate::effect::Effect;
-use form::{Form, spaced};
-use novamind_base::notation::plain_numbers;
-use novamind_database::Rows;
+use form::{ToolForm, format_json};
+use novamind_base::formatting::normalize_json_numbers;
+use novamind_database::QueryResult;
 use novamind_report::insights::{insights_as_ranges, overview_with_ages};
-use novamind_report::plan_margins::Sales;
+use novamind_report::plan_margins::PlanSales;
 use novamind_report::research::projects_with_means;
 use novamind_session::JournalEntry;
-use novamind_tools::{Answer, CATALOGUE, Spec, ToolId};
+use novamind_tools::{Answer, CATALOGUE, ToolSpec, ToolId};
 use novamind_tui::canvas::Canvas;
-use novamind_tui::widgets::Field;
-use novamind_worker::company::Company;
-use novamind_worker::message::News;
+use novamind_tui::widgets::TextField;
+use novamind_worker::company::DisplayedCompany;
+use novamind_worker::message::Response;
 use novamind_worker::readings::Reading;
-use outcome::Leads;
+use outcome::ChannelLeads;
 
 /// Panes of the screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
@@ -56,18 +56,18 @@ pub struct Tools {
     /// Index among the shown tools.
     selected: usize,
     filter: String,
-    typing: Option<Field>,
+    filter_field: Option<TextField>,
     /// Opened forms with their drafts.
-    forms: BTreeMap<ToolId, Form>,
-    leads: Leads,
-    sales: Sales,
+    forms: BTreeMap<ToolId, ToolForm>,
+    leads: ChannelLeads,
+    sales: PlanSales,
 }
 
 impl Tools {
     /// Returns the tools that pass the filter, in catalog order.
-    fn shown(&self) -> Vec<&'static Spec> {
+    fn visible_tools(&self) -> Vec<&'static ToolSpec> {
         let wanted = self.filter.to_lowercase();
-        let fits = |spec: &&'static Spec| {
+        let fits = |spec: &&'static ToolSpec| {
             spec.name().contains(&wanted)
                 || spec.code.to_lowercase().starts_with(&wanted)
                 || spec.summary.to_lowercase().contains(&wanted)
@@ -75,95 +75,95 @@ impl Tools {
         CATALOGUE.iter().map(|tool| tool.spec()).filter(fits).collect()
     }
 
-    fn here(&self) -> Option<&'static Spec> {
-        self.shown().get(self.selected).copied()
+    fn selected_tool(&self) -> Option<&'static ToolSpec> {
+        self.visible_tools().get(self.selected).copied()
     }
 
-    fn form(&mut self, company: &Company) -> Option<&mut Form> {
-        let spec = self.here()?;
-        Some(self.forms.entry(spec.id).or_insert_with(|| Form::of(spec, company)))
+    fn form(&mut self, company: &DisplayedCompany) -> Option<&mut ToolForm> {
+        let spec = self.selected_tool()?;
+        Some(self.forms.entry(spec.id).or_insert_with(|| ToolForm::new(spec, company)))
     }
 
-    fn seen_form(&self) -> Option<&Form> {
-        self.forms.get(&self.here()?.id)
+    fn visible_form(&self) -> Option<&ToolForm> {
+        self.forms.get(&self.selected_tool()?.id)
     }
 
     /// Shows the form of a tool.
-    pub fn show(&mut self, tool: ToolId, company: &Company) {
+    pub fn show_tool(&mut self, tool: ToolId, company: &DisplayedCompany) {
         self.filter.clear();
-        self.typing = None;
-        if let Some(place) = self.shown().iter().position(|spec| spec.id == tool) {
+        self.filter_field = None;
+        if let Some(place) = self.visible_tools().iter().position(|spec| spec.id == tool) {
             self.selected = place;
             self.focus = ToolsPane::Form;
             if let Some(form) = self.form(company) {
-                form.at = sheet::CellPlace::default();
+                form.focus = sheet::CellPosition::default();
             }
         }
     }
 
     /// Shows the form of a tool and focuses the first cell of a group, plan or similar.
-    pub fn show_cell(&mut self, tool: ToolId, of: &str, company: &Company) {
-        self.show(tool, company);
+    pub fn show_cell(&mut self, tool: ToolId, of: &str, company: &DisplayedCompany) {
+        self.show_tool(tool, company);
         if let Some(form) = self.form(company)
-            && let Some(place) = form.sheet.place_for(of)
+            && let Some(place) = form.sheet.position_of_name(of)
         {
-            form.at = place;
+            form.focus = place;
         }
     }
 
     /// Returns the path of the focused cell.
     #[cfg(test)]
-    pub fn place_path(&self) -> Option<String> {
-        let form = self.seen_form()?;
-        let block = form.sheet.blocks.get(form.at.block)?;
-        Some(block.path(form.at.row, form.at.column))
+    pub fn focused_path(&self) -> Option<String> {
+        let form = self.visible_form()?;
+        let block = form.sheet.blocks.get(form.focus.block)?;
+        Some(block.path(form.focus.row, form.focus.column))
     }
 
     /// Returns the arguments that the shown form would send.
     #[cfg(test)]
     pub fn typed_arguments(&self) -> Option<Value> {
-        self.seen_form()?.sheet.arguments().ok()
+        self.visible_form()?.sheet.arguments().ok()
     }
 
     /// Shows the form of a tool with arguments filled in.
-    pub fn prefill(&mut self, tool: ToolId, arguments: &Value, company: &Company) -> Vec<Effect> {
-        self.show(tool, company);
+    pub fn prefill(&mut self, tool: ToolId, arguments: &Value, company: &DisplayedCompany) -> Vec<Effect> {
+        self.show_tool(tool, company);
         self.form(company).map_or(Vec::new(), |form| {
             form.sheet.fill(arguments);
             form.check()
         })
     }
 
-    fn drafts(&self) -> impl Iterator<Item = &Form> {
-        self.forms.values().filter(|form| form.is_draft())
+    fn forms_with_drafts(&self) -> impl Iterator<Item = &ToolForm> {
+        self.forms.values().filter(|form| form.has_draft())
     }
 
     /// Returns the tools whose forms have unsent values.
-    pub fn unsent(&self) -> Vec<ToolId> {
-        self.drafts().map(|form| form.spec.id).collect()
+    pub fn tools_with_drafts(&self) -> Vec<ToolId> {
+        self.forms_with_drafts().map(|form| form.spec.id).collect()
     }
 
     /// Returns the name of the tool whose form is shown.
     pub fn form_name(&self) -> Option<&'static str> {
-        self.here().map(Spec::name)
+        self.selected_tool().map(ToolSpec::name)
     }
 
     /// Returns the unsent values by tool and path.
-    pub fn typed_values(&self) -> BTreeMap<ToolId, BTreeMap<String, String>> {
-        let unsent = self.unsent().into_iter();
-        unsent.filter_map(|tool| Some((tool, self.forms.get(&tool)?.sheet.typed()))).collect()
+    pub fn draft_values(&self) -> BTreeMap<ToolId, BTreeMap<String, String>> {
+        let unsent = self.tools_with_drafts().into_iter();
+        unsent.filter_map(|tool| Some((tool, self.forms.get(&tool)?.sheet.drafts()))).collect()
     }
 
     /// Restores unsent values.
-    pub fn restore(&mut self, tool: ToolId, values: &BTreeMap<String, String>, company: &Company) {
+    pub fn restore_drafts(&mut self, tool: ToolId, values: &BTreeMap<String, String>, company: &DisplayedCompany) {
         let Some(spec) = CATALOGUE.iter().map(|own| own.spec()).find(|spec| spec.id == tool) else { return };
-        let form = self.forms.entry(tool).or_insert_with(|| Form::of(spec, company));
-        form.sheet.retype(values);
+        let form = self.forms.entry(tool).or_insert_with(|| ToolForm::new(spec, company));
+        form.sheet.restore_drafts(values);
     }
 
     /// Opens the separate screen or dialog of a tool, if it has one.
-    fn elsewhere(&self) -> Option<Effect> {
-        match self.here()?.id {
+    fn dedicated_screen_effect(&self) -> Option<Effect> {
+        match self.selected_tool()?.id {
             ToolId::NextWeek => Some(Effect::Do(Action::NextWeek)),
             ToolId::Query => Some(Effect::Show(ScreenId::Sql)),
             _ => None,
@@ -171,18 +171,18 @@ impl Tools {
     }
 
     /// Returns this week's calls and drafts, one per line, for copying.
-    fn calls(&self, company: &Company) -> String {
-        let day = company.seen.day;
+    fn calls_text(&self, company: &DisplayedCompany) -> String {
+        let day = company.observation.day;
         let done = company.journal.iter().filter_map(|entry| match entry {
             JournalEntry::Call { day: own, tool, args, .. } if *own == day => {
                 let module = tool.spec().module.id();
-                Some(format!("{module}.{tool}({})", spaced(args)))
+                Some(format!("{module}.{tool}({})", format_json(args)))
             }
             _ => None,
         });
-        let mut lines = vec![format!("# day {day}, run {}", company.seen.run)];
+        let mut lines = vec![format!("# day {day}, run {}", company.observation.run)];
         lines.extend(done);
-        let drafts: Vec<String> = self.drafts().map(Form::call).collect();
+        let drafts: Vec<String> = self.forms_with_drafts().map(ToolForm::call_text).collect();
         if !drafts.is_empty() {
             lines.push("# not sent yet".to_owned());
             lines.extend(drafts);
@@ -197,51 +197,51 @@ impl ScreenState for Tools {
         &[Reading::LeadsByChannel, Reading::Subscribers, Reading::Usage]
     }
 
-    fn take(&mut self, reading: Reading, rows: &Rows, _: &Look<'_>) {
+    fn apply_rows(&mut self, reading: Reading, rows: &QueryResult, _: &ScreenContext<'_>) {
         match reading {
-            Reading::LeadsByChannel => self.leads = Leads::read(rows),
-            Reading::Subscribers => self.sales.take_subscribers(rows),
-            Reading::Usage => self.sales.take_usage(rows),
+            Reading::LeadsByChannel => self.leads = ChannelLeads::from_rows(rows),
+            Reading::Subscribers => self.sales.add_subscribers(rows),
+            Reading::Usage => self.sales.add_usage(rows),
             _ => {}
         }
     }
 
-    fn renew(&mut self, look: &Look<'_>) {
+    fn on_company_change(&mut self, look: &ScreenContext<'_>) {
         for form in self.forms.values_mut() {
-            form.renew(look.company);
+            form.update(look.company);
         }
         self.form(look.company);
     }
 
-    fn take_answers(&mut self, _: &Look<'_>) -> Vec<Effect> {
-        self.forms.values_mut().for_each(Form::take_preview);
+    fn take_answers(&mut self, _: &ScreenContext<'_>) -> Vec<Effect> {
+        self.forms.values_mut().for_each(ToolForm::take_preview);
         Vec::new()
     }
 
-    fn hear(&mut self, news: &News, look: &Look<'_>) -> Vec<Effect> {
+    fn handle_response(&mut self, news: &Response, look: &ScreenContext<'_>) -> Vec<Effect> {
         match news {
             // The last check and answer are outdated.
-            News::Restored(_, Ok(_), _) => {
+            Response::SettingRestored(_, Ok(_), _) => {
                 self.forms.values_mut().for_each(|form| form.answer = None);
             }
-            News::Called(tool, answer, _) => {
+            Response::ToolCalled(tool, answer, _) => {
                 if let Some(form) = self.forms.get_mut(tool) {
-                    if answer.is_ok() && tool.runs_code() {
+                    if answer.is_ok() && tool.executes_code() {
                         // The user can correct the call and send it again.
                         form.stop_typing();
                     } else if answer.is_ok() {
                         form.reset(look.company);
                         // A sent form returns the focus to the list.
-                        if form.spec.kind.acts() {
+                        if form.spec.kind.changes_company() {
                             self.focus = ToolsPane::List;
                         }
                     } else if let Err(refusal) = answer
                         && let Some(place) =
-                            refusal.field.as_ref().and_then(|field| form.sheet.place_of(field))
+                            refusal.field.as_ref().and_then(|field| form.sheet.position_of_path(field))
                     {
-                        form.at = place;
+                        form.focus = place;
                     }
-                    form.answer = Some(answer.clone().map(|answer| for_people(&answer, look.company)));
+                    form.answer = Some(answer.clone().map(|answer| display_value(&answer, look.company)));
                 }
             }
             _ => {}
@@ -249,34 +249,34 @@ impl ScreenState for Tools {
         Vec::new()
     }
 
-    fn open_here(&self, _: &Look<'_>) -> Option<String> {
-        (self.focus == ToolsPane::Form).then(|| self.here().map(|spec| spec.name().to_owned())).flatten()
+    fn open_item_title(&self, _: &ScreenContext<'_>) -> Option<String> {
+        (self.focus == ToolsPane::Form).then(|| self.selected_tool().map(|spec| spec.name().to_owned())).flatten()
     }
 
-    fn opened(&self) -> usize {
+    fn own_escape_depth(&self) -> usize {
         usize::from(self.focus == ToolsPane::Form)
-            + usize::from(!self.filter.is_empty() || self.typing.is_some())
+            + usize::from(!self.filter.is_empty() || self.filter_field.is_some())
     }
 
-    fn open_object(&self, _: &Look<'_>) -> Option<(&'static str, String)> {
-        let tool = self.here().filter(|_| self.focus == ToolsPane::Form)?;
+    fn open_object(&self, _: &ScreenContext<'_>) -> Option<(&'static str, String)> {
+        let tool = self.selected_tool().filter(|_| self.focus == ToolsPane::Form)?;
         Some(("tool", tool.name().to_owned()))
     }
 
-    fn edited(&self) -> Option<(String, String)> {
-        let form = self.seen_form().filter(|_| self.focus == ToolsPane::Form)?;
+    fn edited_text(&self) -> Option<(String, String)> {
+        let form = self.visible_form().filter(|_| self.focus == ToolsPane::Form)?;
         Some((format!("form {}", form.spec.id), form.typed_text()))
     }
 
-    fn holds_unsent_text(&self) -> bool {
-        !self.unsent().is_empty()
+    fn has_unsent_text(&self) -> bool {
+        !self.tools_with_drafts().is_empty()
     }
 }
 
 /// Returns an answer as users see it: estimates as ranges with their day, and the minimum for means of
 /// projects.
-fn for_people(answer: &Answer, company: &Company) -> Value {
-    let told = plain_numbers(answer.to_json());
+fn display_value(answer: &Answer, company: &DisplayedCompany) -> Value {
+    let told = normalize_json_numbers(answer.to_json());
     match answer {
         Answer::GetGroupInsights(insights) => {
             company.fit(insights.group_id).map_or_else(|| told.clone(), |fit| insights_as_ranges(&told, fit))
@@ -287,8 +287,8 @@ fn for_people(answer: &Answer, company: &Company) -> Value {
     }
 }
 
-impl Paned for Tools {
-    type Name = ToolsPane;
+impl PaneScreen for Tools {
+    type PaneId = ToolsPane;
 
     fn panes(&self) -> &'static [ToolsPane] {
         ToolsPane::VARIANTS
@@ -301,19 +301,19 @@ impl Paned for Tools {
         }
     }
 
-    fn focused(&self) -> ToolsPane {
+    fn focused_pane(&self) -> ToolsPane {
         self.focus
     }
 
-    fn focus_on(&mut self, name: ToolsPane) {
+    fn set_focused_pane(&mut self, name: ToolsPane) {
         self.focus = name;
         if name == ToolsPane::List {
             // The text stays a draft, but typing does not continue when the focus returns.
-            self.forms.values_mut().for_each(Form::stop_typing);
+            self.forms.values_mut().for_each(ToolForm::stop_typing);
         }
     }
 
-    fn arrange(&self, canvas: &mut Canvas<'_>, area: Rect, look: &Look<'_>) {
+    fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
         let narrow = area.width < 100;
         let list = match self.focus {
             ToolsPane::Form if narrow => 0,

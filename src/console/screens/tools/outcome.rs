@@ -4,41 +4,41 @@ use std::collections::BTreeMap;
 
 use serde_json::Value;
 
-use super::form::Form;
-use super::margins::margins;
-use super::reference::reference;
-use super::sheet::Block;
+use super::form::ToolForm;
+use super::margins::form_margin_lines;
+use super::reference::reference_lines;
+use super::sheet::ArgumentBlock;
 use crate::action::Action;
-use crate::context::Look;
-use novamind_base::notation::{dollars, grouped};
-use novamind_database::{Rows, number_at, text_at};
-use novamind_report::plan_margins::Sales;
+use crate::context::ScreenContext;
+use novamind_base::formatting::{dollars, grouped_number};
+use novamind_database::{QueryResult, number_at, text_at};
+use novamind_report::plan_margins::PlanSales;
 use novamind_report::research::outlook_lines;
-use novamind_report::review::terms_line;
-use novamind_tools::{ArgumentKind, Key};
-use novamind_tui::text::{count, number, wrapped};
+use novamind_report::cost_review::cost_line;
+use novamind_tools::{ArgumentKind, MapKey};
+use novamind_tui::text::{format_count, format_number, wrap};
 use novamind_tui::theme::Role;
 
 /// Leads and spend of the last four weeks by channel and group, from `ad_channel_leads`.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct Leads(BTreeMap<(String, String), (f64, f64)>);
+pub(super) struct ChannelLeads(BTreeMap<(String, String), (f64, f64)>);
 
-impl Leads {
-    pub fn read(rows: &Rows) -> Leads {
+impl ChannelLeads {
+    pub fn from_rows(rows: &QueryResult) -> ChannelLeads {
         let own = |row: &Vec<novamind_database::Cell>| {
             let pair = (text_at(row, 0).to_owned(), text_at(row, 1).to_owned());
             (pair, (number_at(row, 2), number_at(row, 3)))
         };
-        Leads(rows.rows.iter().map(own).collect())
+        ChannelLeads(rows.rows.iter().map(own).collect())
     }
 
     /// Returns whether a block shows them.
-    pub fn is_of(&self, block: &Block) -> bool {
-        matches!(block.argument.kind, ArgumentKind::Matrix(Key::Channel, Key::Group, _))
+    pub fn applies_to(&self, block: &ArgumentBlock) -> bool {
+        matches!(block.argument.kind, ArgumentKind::Matrix(MapKey::Channel, MapKey::Group, _))
     }
 
     /// Returns the groups with the most leads per dollar in a channel, best first: `S1 298 · S3 71`.
-    pub fn best(&self, channel: &str) -> Option<String> {
+    pub fn best_groups(&self, channel: &str) -> Option<String> {
         let mut rates: Vec<(&str, f64)> = self
             .0
             .iter()
@@ -46,35 +46,35 @@ impl Leads {
             .map(|((_, group), (leads, spend))| (group.as_str(), leads / spend * 1000.0))
             .collect();
         rates.sort_by(|left, right| right.1.total_cmp(&left.1).then(left.0.cmp(right.0)));
-        let one = |(group, rate): &(&str, f64)| format!("{group} {}", rate_in_words(*rate));
+        let one = |(group, rate): &(&str, f64)| format!("{group} {}", format_rate(*rate));
         let best: Vec<String> = rates.iter().take(2).map(one).collect();
         (!best.is_empty()).then(|| best.join(" · "))
     }
 
     /// Describes the results of one channel and group.
-    pub fn of(&self, channel: &str, group: &str) -> Option<String> {
+    pub fn pair_summary(&self, channel: &str, group: &str) -> Option<String> {
         let (leads, spend) =
             self.0.get(&(channel.to_owned(), group.to_owned())).filter(|(_, spend)| *spend > 0.0)?;
         Some(format!(
             "{channel} × {group}, last four weeks: {} for {}, {} per $1,000",
-            count(*leads, "lead"),
+            format_count(*leads, "lead"),
             dollars(*spend),
-            rate_in_words(leads / spend * 1000.0)
+            format_rate(leads / spend * 1000.0)
         ))
     }
 }
 
-fn rate_in_words(rate: f64) -> String {
-    grouped(rate, if rate < 10.0 { 1 } else { 0 })
+fn format_rate(rate: f64) -> String {
+    grouped_number(rate, if rate < 10.0 { 1 } else { 0 })
 }
 
 /// Amount of text below the values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Detail {
+pub(super) enum DetailLevel {
     /// Everything, with blank rows.
-    Usual,
+    Full,
     /// No repeated text and no blank rows.
-    Dense,
+    Compact,
     /// Dense, with margins of the set model tiers only.
     Brief,
 }
@@ -82,36 +82,36 @@ pub(super) enum Detail {
 pub(super) struct OutcomeLines {
     pub lines: Vec<(String, Role)>,
     /// Number of leading lines up to the last row of margins, or of the project's range; 0 for other tools.
-    pub needed: usize,
+    pub required_lines: usize,
 }
 
 impl OutcomeLines {
     /// Returns whether a row of the margins is too wide.
-    pub fn is_cut(&self, width: usize) -> bool {
-        self.lines.iter().take(self.needed).any(|(line, _)| line.chars().count() > width)
+    pub fn is_truncated(&self, width: usize) -> bool {
+        self.lines.iter().take(self.required_lines).any(|(line, _)| line.chars().count() > width)
     }
 }
 
 /// Returns the text below the values: check of the call, the call, its effect, reference figures, and the
 /// answer.
 pub(super) fn outcome_lines(
-    form: &Form,
-    leads: &Leads,
-    sales: &Sales,
-    look: &Look<'_>,
-    (width, detail): (usize, Detail),
+    form: &ToolForm,
+    leads: &ChannelLeads,
+    sales: &PlanSales,
+    look: &ScreenContext<'_>,
+    (width, detail): (usize, DetailLevel),
 ) -> OutcomeLines {
-    let dense = detail != Detail::Usual;
+    let dense = detail != DetailLevel::Full;
     let mut lines: Vec<(String, Role)> = Vec::new();
     let mut paragraph = |text: &str, role: Role| {
-        lines.extend(wrapped(text, width).into_iter().map(|line| (line, role)));
+        lines.extend(wrap(text, width).into_iter().map(|line| (line, role)));
     };
-    if form.spec.kind.acts() && form.sheet.is_changed() {
+    if form.spec.kind.changes_company() && form.sheet.is_changed() {
         paragraph(&draft_line(form, look, dense), Role::Changed);
     }
     match &form.preview {
         Some(Ok(preview)) => {
-            if let Some(terms) = terms_line(preview) {
+            if let Some(terms) = cost_line(preview) {
                 paragraph(&format!("→ {terms}"), Role::Strong);
             }
             for line in preview.research.iter().flat_map(outlook_lines) {
@@ -122,12 +122,12 @@ pub(super) fn outcome_lines(
         None => {}
     }
     // The answer of code needs the room more than the code itself.
-    let answer = form.answer.as_ref().filter(|_| !form.sheet.is_changed() || form.spec.id.runs_code());
-    let is_said = answer.is_some() && form.spec.id.runs_code();
-    if !dense && !is_said && (form.sheet.is_changed() || !form.spec.kind.acts()) {
-        paragraph(&format!("≡ {}", form.call()), Role::Dim);
+    let answer = form.answer.as_ref().filter(|_| !form.sheet.is_changed() || form.spec.id.executes_code());
+    let is_said = answer.is_some() && form.spec.id.executes_code();
+    if !dense && !is_said && (form.sheet.is_changed() || !form.spec.kind.changes_company()) {
+        paragraph(&format!("≡ {}", form.call_text()), Role::Dim);
     }
-    if let Some(words) = form.cell_names().and_then(|(channel, group)| leads.of(channel, group)) {
+    if let Some(words) = form.cell_names().and_then(|(channel, group)| leads.pair_summary(channel, group)) {
         paragraph(&words, Role::Text);
     }
     if let Some(answer) = answer {
@@ -137,7 +137,7 @@ pub(super) fn outcome_lines(
         form.preview.as_ref().is_some_and(|preview| preview.as_ref().is_ok_and(|own| own.research.is_some()));
     let mut needed = if spread { lines.len() } else { 0 };
     let tables =
-        [margins(form, sales, look.company, detail == Detail::Brief), reference(form.spec.id, look.company)];
+        [form_margin_lines(form, sales, look.company, detail == DetailLevel::Brief), reference_lines(form.spec.id, look.company)];
     for (number, table) in tables.iter().enumerate().filter(|(_, table)| !table.is_empty()) {
         if !dense {
             lines.push((" ".to_owned(), Role::Text));
@@ -146,9 +146,9 @@ pub(super) fn outcome_lines(
             let role = if at == 0 { Role::Header } else { Role::Text };
             // Table rows keep their spaces; sentences may wrap.
             let is_row = line.contains("  ") || line.chars().count() <= width;
-            let parts = if is_row { vec![line.clone()] } else { wrapped(line, width) };
+            let parts = if is_row { vec![line.clone()] } else { wrap(line, width) };
             lines.extend(parts.into_iter().map(|part| (part, role)));
-            if number == 0 && (line.contains("  ") || detail == Detail::Brief) {
+            if number == 0 && (line.contains("  ") || detail == DetailLevel::Brief) {
                 needed = lines.len();
             }
         }
@@ -156,25 +156,25 @@ pub(super) fn outcome_lines(
     let mut about = |text: &str| {
         if !text.is_empty() {
             lines.push((String::new(), Role::Text));
-            lines.extend(wrapped(text, width).into_iter().map(|line| (line, Role::Text)));
+            lines.extend(wrap(text, width).into_iter().map(|line| (line, Role::Text)));
         }
     };
-    about(&look.company.numbers.fill(form.spec.effect));
-    OutcomeLines { lines, needed }
+    about(&look.company.numbers.substitute(form.spec.effect));
+    OutcomeLines { lines, required_lines: needed }
 }
 
 /// Describes the draft: values as old → new, and the keys to send or discard it.
-fn draft_line(form: &Form, look: &Look<'_>, dense: bool) -> String {
+fn draft_line(form: &ToolForm, look: &ScreenContext<'_>, dense: bool) -> String {
     let changes: Vec<String> = form
         .sheet
-        .places()
+        .positions()
         .filter_map(|place| {
-            let (block, slot) = (&form.sheet.blocks[place.block], form.sheet.slot(place)?);
+            let (block, slot) = (&form.sheet.blocks[place.block], form.sheet.cell(place)?);
             if block.is_text() || !slot.is_changed() {
                 return None;
             }
-            let new = slot.value().ok()?.map_or("–".to_owned(), number);
-            let old = slot.current.map_or("–".to_owned(), number);
+            let new = slot.value().ok()?.map_or("–".to_owned(), format_number);
+            let old = slot.current.map_or("–".to_owned(), format_number);
             let path = block.path(place.row, place.column);
             let name = path.split_once('.').map_or(path.as_str(), |(_, rest)| rest).replace('.', " × ");
             Some(format!("{name} {old} → {new}"))
@@ -190,7 +190,7 @@ fn draft_line(form: &Form, look: &Look<'_>, dense: bool) -> String {
     format!("{draft}{}{words} ({keys})", if words.is_empty() { "" } else { ": " })
 }
 
-fn answer_lines(answer: &Result<Value, novamind_tools::Refusal>, paragraph: &mut impl FnMut(&str, Role)) {
+fn answer_lines(answer: &Result<Value, novamind_tools::Rejection>, paragraph: &mut impl FnMut(&str, Role)) {
     match answer {
         Ok(value) => {
             paragraph("✓ answered", Role::Good);
@@ -199,7 +199,7 @@ fn answer_lines(answer: &Result<Value, novamind_tools::Refusal>, paragraph: &mut
                 said.lines().for_each(|line| paragraph(line, Role::Text));
                 return remarks.lines().for_each(|line| paragraph(line, Role::Dim));
             }
-            for line in readable(value, 0) {
+            for line in format_answer(value, 0) {
                 paragraph(&line, Role::Text);
             }
         }
@@ -207,20 +207,20 @@ fn answer_lines(answer: &Result<Value, novamind_tools::Refusal>, paragraph: &mut
             paragraph(&format!("! {}: {}", refusal.code, refusal.message), Role::Bad);
             if refusal.results.len() > 1 {
                 let results = serde_json::to_value(&refusal.results).unwrap_or_default();
-                readable(&results, 0).iter().for_each(|line| paragraph(line, Role::Text));
+                format_answer(&results, 0).iter().for_each(|line| paragraph(line, Role::Text));
             }
         }
     }
 }
 
 /// Returns an answer as indented lines, with flat objects on one line.
-fn readable(value: &Value, depth: usize) -> Vec<String> {
+fn format_answer(value: &Value, depth: usize) -> Vec<String> {
     let indent = "  ".repeat(depth + 1);
     let flat = |value: &Value| !matches!(value, Value::Object(_) | Value::Array(_));
     let word = |value: &Value| match value {
         Value::String(text) => text.clone(),
         Value::Number(figure) => figure.as_f64().map_or(figure.to_string(), |figure| {
-            if figure.fract() == 0.0 { number(figure) } else { figure.to_string() }
+            if figure.fract() == 0.0 { format_number(figure) } else { figure.to_string() }
         }),
         Value::Null => "–".to_owned(),
         other => other.to_string(),
@@ -239,11 +239,11 @@ fn readable(value: &Value, depth: usize) -> Vec<String> {
                     vec![format!("{indent}{name}: {}", pairs(fields))]
                 }
                 inner => {
-                    std::iter::once(format!("{indent}{name}")).chain(readable(inner, depth + 1)).collect()
+                    std::iter::once(format!("{indent}{name}")).chain(format_answer(inner, depth + 1)).collect()
                 }
             })
             .collect(),
-        Value::Array(items) => items.iter().flat_map(|item| readable(item, depth)).collect(),
+        Value::Array(items) => items.iter().flat_map(|item| format_answer(item, depth)).collect(),
         other => vec![format!("{indent}{}", word(other))],
     }
 }
@@ -254,7 +254,7 @@ mod tests {
     use novamind_database::Cell;
 
     #[test]
-    fn a_channel_is_known_by_what_it_brought_for_the_money() {
+    fn channel_groups_are_ranked_by_leads_per_dollar() {
         let row = |channel: &str, group: &str, leads: i64, spend: f64| {
             let text = |text: &str| Cell::Text(text.to_owned());
             vec![text(channel), text(group), Cell::Integer(leads), Cell::Real(spend)]
@@ -265,10 +265,10 @@ mod tests {
             row("linkedin", "S2", 30, 1000.0),
             row("search_ads", "S1", 0, 0.0),
         ];
-        let leads = Leads::read(&Rows { rows, ..Rows::default() });
-        assert_eq!(leads.best("linkedin").as_deref(), Some("S1 300 · S2 30"));
-        assert_eq!((leads.best("search_ads"), leads.of("search_ads", "S1")), (None, None));
-        let words = leads.of("linkedin", "E1").expect("words");
+        let leads = ChannelLeads::from_rows(&QueryResult { rows, ..QueryResult::default() });
+        assert_eq!(leads.best_groups("linkedin").as_deref(), Some("S1 300 · S2 30"));
+        assert_eq!((leads.best_groups("search_ads"), leads.pair_summary("search_ads", "S1")), (None, None));
+        let words = leads.pair_summary("linkedin", "E1").expect("words");
         assert!(words.ends_with("2 leads for $8,000, 0.2 per $1,000"), "{words}");
     }
 }

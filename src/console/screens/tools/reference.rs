@@ -3,15 +3,15 @@
 use indexmap::IndexMap;
 use unicode_width::UnicodeWidthStr;
 
-use novamind_base::notation::{cents, dollars, grouped};
-use novamind_report::research::{mean_days, mean_gain};
+use novamind_base::formatting::{cents, dollars, grouped_number};
+use novamind_report::research::{format_mean_days, format_mean_gain};
 use novamind_session::ResearchMeans;
 use novamind_tools::{ResearchTierFacts, ToolId};
-use novamind_tui::text::number;
-use novamind_worker::company::Company;
+use novamind_tui::text::format_number;
+use novamind_worker::company::DisplayedCompany;
 
 /// Returns the lines next to a form, heading first; empty for tools without reference figures.
-pub fn reference(tool: ToolId, company: &Company) -> Vec<String> {
+pub fn reference_lines(tool: ToolId, company: &DisplayedCompany) -> Vec<String> {
     match tool {
         ToolId::SetModelTiers | ToolId::SetUsageQuotas => models(company),
         ToolId::SetCapacityTier => capacities(company),
@@ -29,39 +29,39 @@ fn tiers<T>(costs: &IndexMap<u8, T>) -> Vec<(u8, &T)> {
     tiers
 }
 
-fn models(company: &Company) -> Vec<String> {
+fn models(company: &DisplayedCompany) -> Vec<String> {
     let mut lines = vec!["tier  quality ×   $ per 1,000 units".to_owned()];
-    lines.extend(tiers(&company.costs.model_tiers).into_iter().map(|(tier, facts)| {
+    lines.extend(tiers(&company.price_list.model_tiers).into_iter().map(|(tier, facts)| {
         let cost = facts.cost_per_usage_unit * 1000.0;
         format!("{tier:>4}  {:>9.2}   {cost:>17.4}", facts.quality_multiplier)
     }));
     lines
 }
 
-fn capacities(company: &Company) -> Vec<String> {
+fn capacities(company: &DisplayedCompany) -> Vec<String> {
     let now = company.setting(ToolId::SetCapacityTier, "tier") as u8;
     let mut lines = vec!["tier     units a day     $ a day".to_owned()];
-    lines.extend(tiers(&company.costs.capacity_tiers).into_iter().map(|(tier, facts)| {
+    lines.extend(tiers(&company.price_list.capacity_tiers).into_iter().map(|(tier, facts)| {
         let mark = if tier == now { "  now" } else { "" };
         let (units, cost) = (f64::from(facts.capacity_units), f64::from(facts.cost_per_day));
-        format!("{tier:>4}  {:>14}  {:>10}{mark}", grouped(units, 0), dollars(cost))
+        format!("{tier:>4}  {:>14}  {:>10}{mark}", grouped_number(units, 0), dollars(cost))
     }));
-    if let Some(week) = company.seen.last_week.filter(|week| week.days_run > 0) {
+    if let Some(week) = company.observation.last_week.filter(|week| week.days_run > 0) {
         let mean = week.usage as f64 / f64::from(week.days_run);
-        lines.push(format!("used  {:>14}  a day last week", grouped(mean, 0)));
+        lines.push(format!("used  {:>14}  a day last week", grouped_number(mean, 0)));
     }
     lines
 }
 
-fn projects(company: &Company) -> Vec<String> {
+fn projects(company: &DisplayedCompany) -> Vec<String> {
     let row = |(tier, means): (&ResearchTierFacts, &ResearchMeans)| {
         let running = if tier.in_progress > 0 { "running" } else { "" };
         [
             tier.tier.to_string(),
             tier.name.clone(),
             dollars(f64::from(tier.cost)),
-            mean_days(means),
-            mean_gain(means, 4),
+            format_mean_days(means),
+            format_mean_gain(means, 4),
             running.to_owned(),
         ]
     };
@@ -82,13 +82,13 @@ fn projects(company: &Company) -> Vec<String> {
     rows.iter().map(line).collect()
 }
 
-fn threads(company: &Company) -> Vec<String> {
-    if company.seen.waiting.is_empty() {
+fn threads(company: &DisplayedCompany) -> Vec<String> {
+    if company.observation.waiting.is_empty() {
         return Vec::new();
     }
     let mut lines =
         vec!["customer  group   seats  thread            asks         days left  enterprise".to_owned()];
-    lines.extend(company.seen.waiting.iter().map(|thread| {
+    lines.extend(company.observation.waiting.iter().map(|thread| {
         let asks = thread.asked.map_or("–".to_owned(), cents);
         format!(
             "{:>8}  {:<6} {:>6}  {:<16} {asks:>8}   {:>14}  {}",
@@ -97,23 +97,23 @@ fn threads(company: &Company) -> Vec<String> {
             thread.seats,
             thread.kind,
             thread.days_left,
-            company.names.of(thread.customer)
+            company.company_names.name(thread.customer)
         )
     }));
     lines
 }
 
-fn prices(company: &Company) -> Vec<String> {
+fn prices(company: &DisplayedCompany) -> Vec<String> {
     let mut lines = vec!["plan  tier  quota a day  full quota/month".to_owned()];
     lines.extend(["A", "B", "C"].into_iter().map(|plan| {
         let (tier, quota) =
             (company.setting(ToolId::SetModelTiers, plan), company.setting(ToolId::SetUsageQuotas, plan));
         let unit =
-            company.costs.model_tiers.get(&(tier as u8)).map_or(0.0, |facts| facts.cost_per_usage_unit);
+            company.price_list.model_tiers.get(&(tier as u8)).map_or(0.0, |facts| facts.cost_per_usage_unit);
         format!(
             "{plan:<4}  {:>4}  {:>11}  {:>16}",
-            number(tier),
-            grouped(quota, 0),
+            format_number(tier),
+            grouped_number(quota, 0),
             dollars(quota * unit * 30.0)
         )
     }));

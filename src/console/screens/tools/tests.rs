@@ -2,40 +2,40 @@ use serde_json::json;
 
 use super::*;
 use crate::action::Scope;
-use crate::keys::Keys;
+use crate::keys::KeyBindings;
 use crate::screens::Screen;
-use crate::test_kit::{act, company, drawn, on_screen, played, shown, sweep};
+use crate::test_kit::{handle_action, new_company, screen_text, played_screen, played_session, loaded_screen, draw_at_all_sizes};
 use novamind_record::trajectory::record::Via;
 use novamind_session::identifiers::Plan;
-use novamind_tools::{Refusal, ToolId};
+use novamind_tools::{Rejection, ToolId};
 use novamind_tui::chord::Chord;
 use novamind_worker::request::Request;
 
 /// Types into the form of a tool. Named keys are pressed, other strings are typed.
-fn typed(tool: ToolId, keys: &[&str]) -> (Tools, Vec<Effect>) {
-    let (company, bindings) = (company(), Keys::shipped());
-    let look = Look { company: &company, keys: &bindings, page: 10 };
+fn form_after_keys(tool: ToolId, keys: &[&str]) -> (Tools, Vec<Effect>) {
+    let (company, bindings) = (new_company(), KeyBindings::bundled());
+    let look = ScreenContext { company: &company, keys: &bindings, page_rows: 10 };
     let mut tools = Tools::default();
-    tools.show(tool, &company);
+    tools.show_tool(tool, &company);
     let mut effects = Vec::new();
     for key in keys {
         let chord = Chord::parse(key).expect(key);
-        let event = chord.event();
-        let text = tools.scopes()[0].is_text() && chord.is_text();
+        let event = chord.to_event();
+        let text = tools.scopes()[0].is_text() && chord.is_text_input();
         let scopes: Vec<Scope> =
             tools.scopes().into_iter().filter(|scope| !text || scope.is_text()).collect();
         effects = match bindings.action(&scopes, chord) {
-            Some(action) => tools.act(action, &look),
-            None => tools.key(&event, &look),
+            Some(action) => tools.handle_action(action, &look),
+            None => tools.handle_key(&event, &look),
         };
     }
     (tools, effects)
 }
 
 #[test]
-fn enter_edits_a_cell_and_arrows_go_on_in_the_next() {
+fn enter_edits_a_cell_and_arrows_move_on() {
     let (_, effects) =
-        typed(ToolId::SetPrices, &["enter", "1", "2", "down", "2", "5", "down", "5", "5", "ctrl-s"]);
+        form_after_keys(ToolId::SetPrices, &["enter", "1", "2", "down", "2", "5", "down", "5", "5", "ctrl-s"]);
     let Some(Effect::Request(Request::Call { tool, arguments })) = effects.first() else {
         panic!("{effects:?}")
     };
@@ -43,84 +43,84 @@ fn enter_edits_a_cell_and_arrows_go_on_in_the_next() {
 }
 
 #[test]
-fn down_in_the_last_row_goes_on_typing_there() {
+fn down_in_the_last_row_continues_typing() {
     let (tools, _) =
-        typed(ToolId::SetPrices, &["enter", "1", "2", "down", "2", "5", "down", "5", "down", "5"]);
-    let form = tools.seen_form().expect("a form");
+        form_after_keys(ToolId::SetPrices, &["enter", "1", "2", "down", "2", "5", "down", "5", "down", "5"]);
+    let form = tools.visible_form().expect("a form");
     assert!(form.is_typing());
     assert_eq!(form.sheet.arguments(), Ok(json!({"A": 12, "B": 25, "C": 55})));
 }
 
 #[test]
-fn a_second_reset_brings_the_draft_back() {
+fn second_reset_restores_the_draft() {
     let keys = ["enter", "1", "2", "down", "2", "5", "enter", "r"];
-    let (tools, said) = typed(ToolId::SetPrices, &keys);
-    assert!(!tools.holds_unsent_text());
+    let (tools, said) = form_after_keys(ToolId::SetPrices, &keys);
+    assert!(!tools.has_unsent_text());
     assert!(matches!(&said[..], [Effect::Say(text)] if text.starts_with("2 values discarded")), "{said:?}");
-    let (tools, said) = typed(ToolId::SetPrices, &[&keys[..], &["r"]].concat());
-    assert_eq!(tools.seen_form().expect("a form").sheet.arguments(), Ok(json!({"A": 12, "B": 25})));
+    let (tools, said) = form_after_keys(ToolId::SetPrices, &[&keys[..], &["r"]].concat());
+    assert_eq!(tools.visible_form().expect("a form").sheet.arguments(), Ok(json!({"A": 12, "B": 25})));
     assert!(matches!(said.last(), Some(Effect::Say(text)) if text == "2 values restored"), "{said:?}");
-    let (_, said) = typed(ToolId::SetPrices, &["r"]);
+    let (_, said) = form_after_keys(ToolId::SetPrices, &["r"]);
     assert!(matches!(&said[..], [Effect::Complain(_)]), "{said:?}");
 }
 
 #[test]
-fn an_empty_cell_says_that_it_has_nothing_to_copy() {
-    let (_, said) = typed(ToolId::SetTargetedAdSpend, &["="]);
+fn copying_an_empty_cell_shows_an_error() {
+    let (_, said) = form_after_keys(ToolId::SetTargetedAdSpend, &["="]);
     assert!(matches!(&said[..], [Effect::Complain(text)] if text.contains("empty")), "{said:?}");
 }
 
 #[test]
-fn tab_leaves_the_last_cell_as_it_was_typed_and_a_form_opens_at_its_first() {
+fn tab_keeps_the_typed_value_and_forms_open_at_the_first_cell() {
     let (mut tools, _) =
-        typed(ToolId::SetPrices, &["enter", "1", "2", "tab", "2", "5", "tab", "5", "5", "tab"]);
-    let form = tools.seen_form().expect("a form");
+        form_after_keys(ToolId::SetPrices, &["enter", "1", "2", "tab", "2", "5", "tab", "5", "5", "tab"]);
+    let form = tools.visible_form().expect("a form");
     assert!(!form.is_typing());
     assert_eq!(form.sheet.arguments(), Ok(json!({"A": 12, "B": 25, "C": 55})));
-    assert_eq!(tools.place_path().as_deref(), Some("C"));
-    tools.show(ToolId::SetPrices, &company());
-    assert_eq!(tools.place_path().as_deref(), Some("A"));
+    assert_eq!(tools.focused_path().as_deref(), Some("C"));
+    tools.show_tool(ToolId::SetPrices, &new_company());
+    assert_eq!(tools.focused_path().as_deref(), Some("A"));
 }
 
 #[test]
-fn leaving_the_form_ends_typing_and_keeps_what_was_typed() {
-    let (mut tools, _) = typed(ToolId::SetPrices, &["enter", "1", "2", "down", "backspace"]);
-    assert!(tools.seen_form().is_some_and(Form::is_typing));
+fn leaving_the_form_keeps_the_draft() {
+    let (mut tools, _) = form_after_keys(ToolId::SetPrices, &["enter", "1", "2", "down", "backspace"]);
+    assert!(tools.visible_form().is_some_and(ToolForm::is_typing));
     // A click on the list while a number is empty in the form.
-    tools.focus_on(ToolsPane::List);
-    let form = tools.seen_form().expect("a form");
+    tools.set_focused_pane(ToolsPane::List);
+    let form = tools.visible_form().expect("a form");
     assert!(!form.is_typing(), "enter must start typing, not end it");
     assert_eq!(form.sheet.arguments(), Ok(json!({"A": 12})), "a cleared number is not sent");
-    let (mut tools, _) = typed(ToolId::SetPrices, &["enter", "1", "2"]);
-    tools.focus_on(ToolsPane::List);
+    let (mut tools, _) = form_after_keys(ToolId::SetPrices, &["enter", "1", "2"]);
+    tools.set_focused_pane(ToolsPane::List);
     assert_eq!(tools.typed_arguments(), Some(json!({"A": 12})));
 }
 
 #[test]
-fn a_digit_begins_a_number_and_letters_type_nothing() {
-    let (tools, _) = typed(ToolId::SetPrices, &["9", "5", "enter", "2"]);
-    assert_eq!(tools.seen_form().expect("a form").sheet.arguments(), Ok(json!({"A": 95, "B": 2})));
-    let (tools, _) = typed(ToolId::SetPrices, &["9", "5", "esc"]);
-    assert!(!tools.seen_form().expect("a form").sheet.is_changed(), "esc restores the previous value");
-    let (tools, _) = typed(ToolId::SetTargetedAdSpend, &["v", "t"]);
-    let form = tools.seen_form().expect("a form");
+fn digits_start_a_number_and_letters_do_nothing() {
+    let (tools, _) = form_after_keys(ToolId::SetPrices, &["9", "5", "enter", "2"]);
+    assert_eq!(tools.visible_form().expect("a form").sheet.arguments(), Ok(json!({"A": 95, "B": 2})));
+    let (tools, _) = form_after_keys(ToolId::SetPrices, &["9", "5", "esc"]);
+    assert!(!tools.visible_form().expect("a form").sheet.is_changed(), "esc restores the previous value");
+    let (tools, _) = form_after_keys(ToolId::SetTargetedAdSpend, &["v", "t"]);
+    let form = tools.visible_form().expect("a form");
     assert!(!form.is_typing() && !form.sheet.is_changed(), "{:?}", form.sheet.arguments());
 }
 
 #[test]
-fn one_quota_is_changed_alone_and_an_emptied_number_stays_what_it_was() {
-    let mut session = played(1);
-    let company = Company::of(&session);
-    let keys = Keys::shipped();
-    let look = Look { company: &company, keys: &keys, page: 10 };
-    let mut tools: Tools = shown(&mut session, &company);
-    tools.show(ToolId::SetUsageQuotas, &company);
+fn changing_one_quota_keeps_the_others() {
+    let mut session = played_session(1);
+    let company = DisplayedCompany::from_session(&session);
+    let keys = KeyBindings::bundled();
+    let look = ScreenContext { company: &company, keys: &keys, page_rows: 10 };
+    let mut tools: Tools = loaded_screen(&mut session, &company);
+    tools.show_tool(ToolId::SetUsageQuotas, &company);
     let press = |tools: &mut Tools, key: &str| {
         let chord = Chord::parse(key).expect(key);
         let typed = tools.scopes()[0].is_text() && chord.is_printable();
         match keys.action(&tools.scopes(), chord).filter(|_| !typed) {
-            Some(action) => tools.act(action, &look),
-            None => tools.key(&chord.event(), &look),
+            Some(action) => tools.handle_action(action, &look),
+            None => tools.handle_key(&chord.to_event(), &look),
         }
     };
     for key in ["down", "enter", "9", "0", "0", "down", "backspace", "enter"] {
@@ -133,38 +133,38 @@ fn one_quota_is_changed_alone_and_an_emptied_number_stays_what_it_was() {
 }
 
 #[test]
-fn after_a_call_the_keys_are_those_of_the_list_again() {
-    let (mut tools, _) = typed(ToolId::SetPrices, &["enter", "1", "2", "enter"]);
-    let (company, keys) = (company(), Keys::shipped());
-    let look = Look { company: &company, keys: &keys, page: 10 };
-    let refused = Refusal::at("A", "price_not_positive", "no");
-    tools.hear(&News::Called(ToolId::SetPrices, Err(refused), company.clone().into()), &look);
+fn focus_returns_to_the_list_after_a_call() {
+    let (mut tools, _) = form_after_keys(ToolId::SetPrices, &["enter", "1", "2", "enter"]);
+    let (company, keys) = (new_company(), KeyBindings::bundled());
+    let look = ScreenContext { company: &company, keys: &keys, page_rows: 10 };
+    let refused = Rejection::for_field("A", "price_not_positive", "no");
+    tools.handle_response(&Response::ToolCalled(ToolId::SetPrices, Err(refused), company.clone().into()), &look);
     assert_eq!(tools.focus, ToolsPane::Form, "a rejected call keeps the focus in its form");
-    let set = played(0).call("set_prices", &json!({"A": 12}), Via::Form).expect("a price");
-    tools.hear(&News::Called(ToolId::SetPrices, Ok(set.into()), company.clone().into()), &look);
+    let set = played_session(0).call("set_prices", &json!({"A": 12}), Via::Form).expect("a price");
+    tools.handle_response(&Response::ToolCalled(ToolId::SetPrices, Ok(set.into()), company.clone().into()), &look);
     assert_eq!((tools.focus, tools.scopes()), (ToolsPane::List, vec![Scope::List]));
-    assert!(tools.seen_form().expect("a form").answer.is_some());
-    tools.hear(&News::Restored("undone", Ok(Vec::new()), company.clone().into()), &look);
-    assert!(tools.seen_form().expect("a form").answer.is_none(), "an undo invalidates the answer");
+    assert!(tools.visible_form().expect("a form").answer.is_some());
+    tools.handle_response(&Response::SettingRestored("undone", Ok(Vec::new()), company.clone().into()), &look);
+    assert!(tools.visible_form().expect("a form").answer.is_none(), "an undo invalidates the answer");
 }
 
 #[test]
-fn deals_are_typed_as_json_and_asked_about_before_they_go_out() {
+fn deals_are_typed_as_json_and_confirmed() {
     let keys = [
         "enter", "[", "[", "7", ",", "[", "[", "\"", "B", "\"", ",", "3", "0", "]", "]", "]", "]", "enter",
         "ctrl-s",
     ];
-    let (tools, effects) = typed(ToolId::SendEnterpriseDeal, &keys);
+    let (tools, effects) = form_after_keys(ToolId::SendEnterpriseDeal, &keys);
     let Some(Effect::ConfirmCall { tool, arguments, text }) = effects.first() else { panic!("{effects:?}") };
     assert_eq!((*tool, arguments), (ToolId::SendEnterpriseDeal, &json!({"deals": [[7, [["B", 30]]]]})));
     assert!(text.contains("cannot be undone"), "{text}");
-    assert!(tools.holds_unsent_text());
-    let (_, effects) = typed(ToolId::SendEnterpriseDeal, &["enter", "[", "7", "enter", "ctrl-s"]);
+    assert!(tools.has_unsent_text());
+    let (_, effects) = form_after_keys(ToolId::SendEnterpriseDeal, &["enter", "[", "7", "enter", "ctrl-s"]);
     assert!(
         matches!(&effects[..], [Effect::Complain(text)] if text.starts_with("deals: enter a list")),
         "{effects:?}"
     );
-    let (_, effects) = typed(ToolId::RejectEnterpriseDeal, &["ctrl-s"]);
+    let (_, effects) = form_after_keys(ToolId::RejectEnterpriseDeal, &["ctrl-s"]);
     assert!(
         matches!(&effects[..], [Effect::Request(Request::Call { .. })]),
         "the tool names the missing argument: {effects:?}"
@@ -172,61 +172,61 @@ fn deals_are_typed_as_json_and_asked_about_before_they_go_out() {
 }
 
 #[test]
-fn escape_brings_back_what_was_there() {
-    let (tools, _) = typed(ToolId::SetPrices, &["enter", "1", "2", "enter", "up", "enter", "9", "9", "esc"]);
-    assert_eq!(tools.seen_form().expect("a form").sheet.arguments(), Ok(json!({"A": 12})));
+fn escape_restores_the_previous_value() {
+    let (tools, _) = form_after_keys(ToolId::SetPrices, &["enter", "1", "2", "enter", "up", "enter", "9", "9", "esc"]);
+    assert_eq!(tools.visible_form().expect("a form").sheet.arguments(), Ok(json!({"A": 12})));
 }
 
 #[test]
-fn the_same_value_goes_down_a_column() {
+fn copy_down_fills_the_column() {
     // The value of the focused cell, or of the cell that enter has just left.
     for keys in [&["right", "enter", "4", "0", "enter", "up", "="][..], &["right", "4", "0", "enter", "="]] {
-        let (tools, _) = typed(ToolId::SetTargetedAdSpend, keys);
-        let arguments = tools.seen_form().expect("a form").sheet.arguments().expect("numbers");
+        let (tools, _) = form_after_keys(ToolId::SetTargetedAdSpend, keys);
+        let arguments = tools.visible_form().expect("a form").sheet.arguments().expect("numbers");
         let matrix = arguments["targeted_spend"].as_object().expect("a matrix");
         assert_eq!(matrix.len(), 5);
         assert!(matrix.values().all(|groups| groups == &json!({"S2": 40})), "{matrix:?}");
     }
-    let (_, said) = typed(ToolId::SetTargetedAdSpend, &["right", "4", "0", "enter", "down", "="]);
+    let (_, said) = form_after_keys(ToolId::SetTargetedAdSpend, &["right", "4", "0", "enter", "down", "="]);
     assert!(matches!(&said[..], [Effect::Complain(text)] if text.contains("empty")), "{said:?}");
 }
 
 #[test]
 fn a_form_without_changes_is_not_sent_and_a_wrong_cell_is_named() {
-    let (_, effects) = typed(ToolId::SetPrices, &["ctrl-s"]);
+    let (_, effects) = form_after_keys(ToolId::SetPrices, &["ctrl-s"]);
     assert!(matches!(&effects[..], [Effect::Complain(text)] if text.contains("Nothing has changed")));
-    let (_, effects) = typed(ToolId::SetPrices, &["enter", "1", "-", "ctrl-s"]);
+    let (_, effects) = form_after_keys(ToolId::SetPrices, &["enter", "1", "-", "ctrl-s"]);
     assert!(matches!(&effects[..], [Effect::Complain(text)] if text.starts_with("A: enter a number")));
 }
 
 #[test]
-fn drafts_stay_when_another_tool_is_looked_at() {
-    let (mut tools, _) = typed(ToolId::SetPrices, &["enter", "1", "2", "enter"]);
-    let (company, keys) = (company(), Keys::shipped());
-    let look = Look { company: &company, keys: &keys, page: 10 };
-    tools.show(ToolId::SetDailySpend, &company);
-    tools.renew(&look);
-    tools.show(ToolId::SetPrices, &company);
-    assert_eq!(tools.seen_form().expect("a form").sheet.arguments(), Ok(json!({"A": 12})));
-    assert!(tools.holds_unsent_text());
+fn drafts_are_kept_when_another_tool_is_shown() {
+    let (mut tools, _) = form_after_keys(ToolId::SetPrices, &["enter", "1", "2", "enter"]);
+    let (company, keys) = (new_company(), KeyBindings::bundled());
+    let look = ScreenContext { company: &company, keys: &keys, page_rows: 10 };
+    tools.show_tool(ToolId::SetDailySpend, &company);
+    tools.on_company_change(&look);
+    tools.show_tool(ToolId::SetPrices, &company);
+    assert_eq!(tools.visible_form().expect("a form").sheet.arguments(), Ok(json!({"A": 12})));
+    assert!(tools.has_unsent_text());
 }
 
 #[test]
 fn a_draft_shows_old_and_new_and_is_offered_again_after_esc() {
-    let (_, company, mut tools) = on_screen::<Tools>(2);
-    tools.show(ToolId::SetPrices, &company);
-    let keys = Keys::shipped();
-    let look = Look { company: &company, keys: &keys, page: 10 };
+    let (_, company, mut tools) = played_screen::<Tools>(2);
+    tools.show_tool(ToolId::SetPrices, &company);
+    let keys = KeyBindings::bundled();
+    let look = ScreenContext { company: &company, keys: &keys, page_rows: 10 };
     for key in ["enter", "1", "4", "enter", "esc"] {
         let chord = Chord::parse(key).expect(key);
         match keys.action(&tools.scopes(), chord) {
-            Some(action) => tools.act(action, &look),
-            None => tools.key(&chord.event(), &look),
+            Some(action) => tools.handle_action(action, &look),
+            None => tools.handle_key(&chord.to_event(), &look),
         };
     }
     assert_eq!(tools.focus, ToolsPane::List, "esc leaves the form");
     for (width, height) in [(120, 37), (200, 57)] {
-        let text = drawn(&tools, &company, width, height);
+        let text = screen_text(&tools, &company, width, height);
         for words in [
             "* 1 draft",
             " *set_prices",
@@ -237,51 +237,51 @@ fn a_draft_shows_old_and_new_and_is_offered_again_after_esc() {
             assert!(text.contains(words), "{words} in\n{text}");
         }
     }
-    let effects = act(&mut tools, Action::Open, &company);
-    assert!(effects.is_empty() && tools.holds_unsent_text());
-    act(&mut tools, Action::ResetForm, &company);
-    assert!(!tools.holds_unsent_text());
+    let effects = handle_action(&mut tools, Action::Open, &company);
+    assert!(effects.is_empty() && tools.has_unsent_text());
+    handle_action(&mut tools, Action::ResetForm, &company);
+    assert!(!tools.has_unsent_text());
 }
 
 #[test]
-fn a_matrix_says_what_its_sums_were_and_what_a_channel_brought() {
-    let (mut session, company, mut tools) = on_screen::<Tools>(5);
-    tools.show(ToolId::SetTargetedAdSpend, &company);
+fn matrix_shows_current_totals_and_channel_leads() {
+    let (mut session, company, mut tools) = played_screen::<Tools>(5);
+    tools.show_tool(ToolId::SetTargetedAdSpend, &company);
     let form = tools.form(&company).expect("a form");
-    let place = form.sheet.place_of("targeted_spend.content_marketing.S1").expect("a cell");
-    form.at = place;
-    form.sheet.slot_mut(place).expect("a slot").draft = Some(Field::of("900"));
+    let place = form.sheet.position_of_path("targeted_spend.content_marketing.S1").expect("a cell");
+    form.focus = place;
+    form.sheet.cell_mut(place).expect("a slot").draft = Some(TextField::with_text("900"));
     let rows = session
         .query("SELECT sum(leads_generated), sum(spend) FROM ad_channel_leads WHERE channel_id = 'content_marketing' AND day > 7")
         .expect("rows")
         .rows;
     let leads = novamind_database::number_at(&rows[0], 0);
     let spend = novamind_database::number_at(&rows[0], 1);
-    let leads_in_words = novamind_base::notation::grouped(leads, 0);
+    let leads_in_words = novamind_base::formatting::grouped_number(leads, 0);
     let words = format!("content_marketing × S1, last four weeks: {leads_in_words} leads for");
-    let text = drawn(&tools, &company, 200, 57);
+    let text = screen_text(&tools, &company, 200, 57);
     let rate = format!("S1 {:.0}", leads / spend * 1000.0);
     for words in
         [words.as_str(), "was (+150)", "leads/$1k (yours)", &rate, "content_marketing × S1 750 → 900"]
     {
         assert!(text.contains(words), "{words} in\n{text}");
     }
-    assert!(!drawn(&tools, &company, 80, 21).contains("(yours)"));
-    tools.focus_on(ToolsPane::Form);
-    sweep(&mut tools, &company);
+    assert!(!screen_text(&tools, &company, 80, 21).contains("(yours)"));
+    tools.set_focused_pane(ToolsPane::Form);
+    draw_at_all_sizes(&mut tools, &company);
 }
 
 #[test]
-fn calls_of_the_week_and_drafts_go_to_a_file() {
-    let mut session = played(1);
+fn calls_and_drafts_are_written_to_a_file() {
+    let mut session = played_session(1);
     session.call("set_prices", &json!({"A": 13}), Via::Form).expect("prices");
-    let company = Company::of(&session);
-    let mut tools: Tools = shown(&mut session, &company);
-    tools.show(ToolId::SetCapacityTier, &company);
+    let company = DisplayedCompany::from_session(&session);
+    let mut tools: Tools = loaded_screen(&mut session, &company);
+    tools.show_tool(ToolId::SetCapacityTier, &company);
     let form = tools.form(&company).expect("a form");
-    let place = form.at;
-    form.sheet.slot_mut(place).expect("a slot").draft = Some(Field::of("3"));
-    let effects = act(&mut tools, Action::SaveCalls, &company);
+    let place = form.focus;
+    form.sheet.cell_mut(place).expect("a slot").draft = Some(TextField::with_text("3"));
+    let effects = handle_action(&mut tools, Action::SaveCalls, &company);
     let [Effect::Write(name, contents)] = &effects[..] else { panic!("{effects:?}") };
     let text = String::from_utf8(contents.clone()).expect("text");
     assert_eq!(name, "calls.txt");
@@ -296,16 +296,16 @@ fn calls_of_the_week_and_drafts_go_to_a_file() {
 
 #[test]
 fn a_field_names_its_term_and_its_history() {
-    let (mut session, company, mut tools) = on_screen::<Tools>(3);
-    let keys = Keys::shipped();
-    let look = Look { company: &company, keys: &keys, page: 10 };
+    let (mut session, company, mut tools) = played_screen::<Tools>(3);
+    let keys = KeyBindings::bundled();
+    let look = ScreenContext { company: &company, keys: &keys, page_rows: 10 };
     let mut asked = std::collections::BTreeSet::new();
     for tool in CATALOGUE {
         let spec = tool.spec();
-        tools.show(spec.id, &company);
-        let places = tools.seen_form().map_or(Vec::new(), |form| form.sheet.places().collect());
+        tools.show_tool(spec.id, &company);
+        let places = tools.visible_form().map_or(Vec::new(), |form| form.sheet.positions().collect());
         for place in places {
-            tools.form(&company).expect("a form").at = place;
+            tools.form(&company).expect("a form").focus = place;
             let figure = tools.figure(&look).expect("a figure");
             let (own, argument) = figure.term.split_once('.').expect("tool.argument");
             assert!(
@@ -317,11 +317,11 @@ fn a_field_names_its_term_and_its_history() {
                 session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
             }
         }
-        tools.focus_on(ToolsPane::List);
+        tools.set_focused_pane(ToolsPane::List);
         assert_eq!(tools.figure(&look).expect("a figure").term, spec.name());
     }
-    tools.show(ToolId::SetPrices, &company);
-    tools.form(&company).expect("a form").at = Default::default();
+    tools.show_tool(ToolId::SetPrices, &company);
+    tools.form(&company).expect("a form").focus = Default::default();
     let figure = tools.figure(&look).expect("a figure");
     assert_eq!(figure.term, "set_prices.A");
     let rows = session.query(&figure.sql.expect("rows")).expect("rows").rows;
@@ -329,28 +329,28 @@ fn a_field_names_its_term_and_its_history() {
 }
 
 #[test]
-fn forms_show_figures_and_never_the_names_of_parameters() {
-    let company = company();
+fn forms_show_values_instead_of_parameter_names() {
+    let company = new_company();
     let mut tools = Tools::default();
     for spec in CATALOGUE.iter().map(|tool| tool.spec()) {
-        tools.show(spec.id, &company);
-        let text = drawn(&tools, &company, 200, 120);
+        tools.show_tool(spec.id, &company);
+        let text = screen_text(&tools, &company, 200, 120);
         let named = |after: &str| after.split(['}', ' ']).next().is_some_and(|name| name.contains('.'));
         let raw = text.split('{').skip(1).any(named);
         assert!(!raw, "{}: {text}", spec.name());
     }
-    tools.show(ToolId::SetTargetedAdSpend, &company);
-    assert!(drawn(&tools, &company, 200, 57).contains("$0.50 for every lead"));
+    tools.show_tool(ToolId::SetTargetedAdSpend, &company);
+    assert!(screen_text(&tools, &company, 200, 57).contains("$0.50 for every lead"));
 }
 
 #[test]
 fn a_matrix_keeps_its_totals_and_marks_the_columns_beyond_its_edges() {
-    let company = company();
+    let company = new_company();
     let look_at = |column: usize| {
         let mut keys = vec!["right"; column];
         keys.push("enter");
-        let (tools, _) = typed(ToolId::SetTargetedAdSpend, &keys);
-        let text = drawn(&tools, &company, 80, 21);
+        let (tools, _) = form_after_keys(ToolId::SetTargetedAdSpend, &keys);
+        let text = screen_text(&tools, &company, 80, 21);
         text.lines().find(|line| line.contains("total")).expect("a head").to_owned()
     };
     let (first, last) = (look_at(0), look_at(5));
@@ -360,16 +360,16 @@ fn a_matrix_keeps_its_totals_and_marks_the_columns_beyond_its_edges() {
 
 #[test]
 fn the_keys_of_a_form_say_that_enter_edits() {
-    let (tools, _) = typed(ToolId::SetPrices, &[]);
-    let text = drawn(&tools, &company(), 120, 37);
+    let (tools, _) = form_after_keys(ToolId::SetPrices, &[]);
+    let text = screen_text(&tools, &new_company(), 120, 37);
     assert!(text.contains("enter edit the value") && !text.contains("type a number"), "{text}");
-    let (tools, _) = typed(ToolId::SetPrices, &["enter"]);
-    assert!(!drawn(&tools, &company(), 120, 37).contains("enter edit"));
+    let (tools, _) = form_after_keys(ToolId::SetPrices, &["enter"]);
+    assert!(!screen_text(&tools, &new_company(), 120, 37).contains("enter edit"));
 }
 
 #[test]
-fn columns_of_projects_stand_apart() {
-    let lines = reference::reference(ToolId::StartResearchProject, &company());
+fn project_columns_are_separated() {
+    let lines = reference::reference_lines(ToolId::StartResearchProject, &new_company());
     assert!(lines.len() > 10, "{lines:?}");
     let ends = lines[0].find("cost").expect("a column") + "cost".len();
     for line in &lines[1..] {
@@ -381,24 +381,24 @@ fn columns_of_projects_stand_apart() {
 
 #[test]
 fn a_small_window_shows_every_value_and_the_margin_of_every_plan() {
-    let (_, company, mut screen) = on_screen::<Tools>(6);
+    let (_, company, mut screen) = played_screen::<Tools>(6);
     let sold: Vec<&str> = Plan::ALL
         .into_iter()
-        .filter(|plan| screen.sales.of_plan(*plan).usage().is_some())
+        .filter(|plan| screen.sales.usage_of_plan(*plan).units_per_seat().is_some())
         .map(Plan::id)
         .collect();
     assert!(sold.len() >= 2, "{sold:?}");
     for tool in [ToolId::SetPrices, ToolId::SetModelTiers, ToolId::SetUsageQuotas] {
         for draft in [json!({}), json!({"A": 4, "B": 3, "C": 5})] {
             screen.prefill(tool, &draft, &company);
-            screen.focus_on(ToolsPane::Form);
+            screen.set_focused_pane(ToolsPane::Form);
             for (width, height) in [(60, 13), (80, 21), (120, 37), (200, 57)] {
-                let text = drawn(&screen, &company, width, height);
+                let text = screen_text(&screen, &company, width, height);
                 let holds =
                     |words: &[&str]| text.lines().any(|line| words.iter().all(|word| line.contains(word)));
                 let at = format!("{tool} {draft} at {width}x{height} in\n{text}");
                 for plan in ["A", "B", "C"] {
-                    let now = novamind_tui::text::number(company.setting(tool, plan));
+                    let now = novamind_tui::text::format_number(company.setting(tool, plan));
                     assert!(holds(&[&format!(" {plan}  "), &now]), "value of {plan}: {at}");
                 }
                 for plan in &sold {
@@ -410,32 +410,32 @@ fn a_small_window_shows_every_value_and_the_margin_of_every_plan() {
 }
 
 #[test]
-fn code_is_written_in_lines_and_pasted_as_it_is() {
+fn code_keeps_its_lines_when_pasted() {
     let keys = ["enter", "#", "space", "p", "enter", "x"];
-    let (tools, _) = typed(ToolId::PythonExec, &keys);
+    let (tools, _) = form_after_keys(ToolId::PythonExec, &keys);
     assert_eq!(tools.scopes()[0], Scope::Editor);
-    let text = drawn(&tools, &company(), 80, 21);
+    let text = screen_text(&tools, &new_company(), 80, 21);
     assert!(text.contains("code, line 2 of 2"), "{text}");
-    let (_, effects) = typed(ToolId::PythonExec, &[&keys[..], &["ctrl-s"]].concat());
+    let (_, effects) = form_after_keys(ToolId::PythonExec, &[&keys[..], &["ctrl-s"]].concat());
     let [Effect::Request(Request::Call { arguments, .. })] = &effects[..] else { panic!("{effects:?}") };
     assert_eq!(arguments["code"], "# p\nx");
     // Reopened, the form has the code and shows its number of lines.
-    let (mut tools, _) = typed(ToolId::PythonExec, &[&keys[..], &["esc"]].concat());
-    let (company, bindings) = (company(), Keys::shipped());
-    let text = drawn(&tools, &company, 80, 21);
+    let (mut tools, _) = form_after_keys(ToolId::PythonExec, &[&keys[..], &["esc"]].concat());
+    let (company, bindings) = (new_company(), KeyBindings::bundled());
+    let text = screen_text(&tools, &company, 80, 21);
     assert!(text.contains("# p … 2 lines"), "{text}");
-    let look = Look { company: &company, keys: &bindings, page: 10 };
+    let look = ScreenContext { company: &company, keys: &bindings, page_rows: 10 };
     // The output is shown below the code until the code changes.
     let said = json!({"returncode": 0, "stdout": "first\nsecond\n", "stderr": ""});
     tools.forms.get_mut(&ToolId::PythonExec).expect("a form").answer = Some(Ok(said));
-    let text = drawn(&tools, &company, 80, 21);
+    let text = screen_text(&tools, &company, 80, 21);
     assert!(text.contains("answered") && text.contains("first") && text.contains("second"), "{text}");
-    assert_eq!(tools.unsent(), [ToolId::PythonExec]);
-    tools.act(Action::Apply, &look);
-    assert!(tools.unsent().is_empty(), "it was sent");
-    tools.act(Action::ResetForm, &look);
+    assert_eq!(tools.tools_with_drafts(), [ToolId::PythonExec]);
+    tools.handle_action(Action::Apply, &look);
+    assert!(tools.tools_with_drafts().is_empty(), "it was sent");
+    tools.handle_action(Action::ResetForm, &look);
     tools.paste("# python\nfor day in range(2):\n    print(day)\n", &look);
-    let effects = tools.act(Action::Apply, &look);
+    let effects = tools.handle_action(Action::Apply, &look);
     let [Effect::Request(Request::Call { arguments, .. })] = &effects[..] else { panic!("{effects:?}") };
     assert_eq!(arguments["code"], "# python\nfor day in range(2):\n    print(day)\n");
 }

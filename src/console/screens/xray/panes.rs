@@ -3,63 +3,63 @@
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 
-use super::typing::Expected;
-use super::view::{Choices, View};
-use super::{Xray, XrayPane, lines};
+use super::input::InputKind;
+use super::view::{ViewChoices, XrayView};
+use super::{Xray, XrayPane, inspection_text};
 use crate::action::{Action, Scope};
-use crate::context::{Figure, Look};
+use crate::context::{Figure, ScreenContext};
 use crate::effect::Effect;
-use crate::screens::panes::{Border, Pane, Seat};
-use novamind_base::notation::capital;
+use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
+use novamind_base::formatting::capitalize;
 use novamind_insight::LeadFactor;
-use novamind_tui::canvas::{Canvas, rows_of};
+use novamind_tui::canvas::{Canvas, row_rects};
 use novamind_tui::theme::Role;
 use novamind_tui::widgets::Table;
-use novamind_worker::look_inside::LookQuestion;
+use novamind_worker::inspection::InspectionQuestion;
 
 pub struct ViewsPane;
 
 /// Groups, components or breakpoints of the view.
 pub struct ChoicesPane;
 
-pub struct SeenPane;
+pub struct InspectionPane;
 
-fn scopes_of_list(table: Option<&Table>) -> Vec<Scope> {
+fn list_scopes(table: Option<&Table>) -> Vec<Scope> {
     match table {
-        Some(table) if table.is_typing() => vec![Scope::Field, Scope::List],
+        Some(table) if table.is_filter_open() => vec![Scope::Field, Scope::List],
         _ => vec![Scope::Xray, Scope::List],
     }
 }
 
-fn keys_of(view: View) -> &'static [Action] {
+fn view_actions(view: XrayView) -> &'static [Action] {
     match view {
-        View::Leads => &[
+        XrayView::Leads => &[
             Action::Left,
             Action::Right,
             Action::HoldFactor,
-            Action::TypeChoice,
+            Action::TypeTarget,
             Action::SeekDay,
-            Action::AskWords,
+            Action::TypeCommand,
         ],
-        View::Streams => &[Action::TypeChoice, Action::AskWords],
-        View::Words => &[Action::AskWords],
-        View::Breakpoints => &[
-            Action::TypeChoice,
+        XrayView::Draws => &[Action::TypeTarget, Action::TypeCommand],
+        XrayView::Commands => &[Action::TypeCommand],
+        XrayView::Breakpoints => &[
+            Action::TypeTarget,
             Action::RunDays,
-            Action::LookBack,
+            Action::BreakpointHistory,
             Action::RemoveBreakpoint,
-            Action::AskWords,
+            Action::TypeCommand,
         ],
-        _ if view.choices() == Choices::Nothing && view != View::Customer => {
-            &[Action::Left, Action::Right, Action::DayWeekBefore, Action::SeekDay, Action::AskWords]
+        _ if view.choices() == ViewChoices::Nothing && view != XrayView::Customer => {
+            &[Action::Left, Action::Right, Action::DayWeekBefore, Action::SeekDay, Action::TypeCommand]
         }
-        _ => &[Action::Left, Action::Right, Action::TypeChoice, Action::SeekDay, Action::AskWords],
+        _ => &[Action::Left, Action::Right, Action::TypeTarget, Action::SeekDay, Action::TypeCommand],
     }
 }
 
 fn figure_of(xray: &Xray) -> Option<Figure> {
     let view = xray.view();
-    xray.is_open.then(|| Figure { title: view.title().to_owned(), term: view.term(), sql: None, why: None })
+    xray.can_inspect.then(|| Figure { title: view.title().to_owned(), term: view.term(), sql: None, week_quantity: None })
 }
 
 impl Pane<Xray> for ViewsPane {
@@ -68,115 +68,115 @@ impl Pane<Xray> for ViewsPane {
     }
 
     fn scopes(&self, xray: &Xray) -> Vec<Scope> {
-        scopes_of_list(Some(&xray.views))
+        list_scopes(Some(&xray.views))
     }
 
     fn hints(&self, xray: &Xray) -> Vec<Action> {
-        keys_of(xray.view()).to_vec()
+        view_actions(xray.view()).to_vec()
     }
 
-    fn figure(&self, xray: &Xray, _: &Look<'_>) -> Option<Figure> {
+    fn figure(&self, xray: &Xray, _: &ScreenContext<'_>) -> Option<Figure> {
         figure_of(xray)
     }
 
-    fn act(&self, xray: &mut Xray, action: Action, look: &Look<'_>) -> Vec<Effect> {
+    fn handle_action(&self, xray: &mut Xray, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
         match action {
             Action::Open => {
                 let is_empty = match xray.view() {
-                    View::Customer => xray.customer.is_none(),
-                    View::Words => xray.said.is_none(),
+                    XrayView::Customer => xray.customer.is_none(),
+                    XrayView::Commands => xray.command_output.is_none(),
                     _ => false,
                 };
                 match is_empty {
-                    true => return xray.type_in(Expected::in_view(xray.view())),
-                    false => xray.focus = XrayPane::Seen,
+                    true => return xray.start_input(InputKind::for_view(xray.view())),
+                    false => xray.focus = XrayPane::Inspection,
                 }
             }
             Action::Sort | Action::Filter => {}
             action => {
                 let before = xray.view();
-                xray.views.act(action, look.page);
+                xray.views.handle_action(action, look.page_rows);
                 if xray.view() != before {
-                    xray.begin_view();
+                    xray.reset_view();
                 }
             }
         }
-        xray.ask()
+        xray.request_inspection()
     }
 
-    fn click(&self, xray: &mut Xray, row: usize, _: &Look<'_>) -> Vec<Effect> {
-        xray.views.select_place(row);
-        xray.begin_view();
-        xray.ask()
+    fn handle_click(&self, xray: &mut Xray, row: usize, _: &ScreenContext<'_>) -> Vec<Effect> {
+        xray.views.select_visible_row(row);
+        xray.reset_view();
+        xray.request_inspection()
     }
 
-    fn border(&self, _: &Xray, _: Rect, _: &Look<'_>) -> Border {
-        Border { title: "Views".to_owned(), ..Border::default() }
+    fn border(&self, _: &Xray, _: Rect, _: &ScreenContext<'_>) -> PaneBorder {
+        PaneBorder { title: "Views".to_owned(), ..PaneBorder::default() }
     }
 
-    fn draw(&self, xray: &Xray, canvas: &mut Canvas<'_>, seat: Seat, _: &Look<'_>) {
-        xray.views.draw(canvas, seat.area, seat.focused, seat.number);
+    fn draw(&self, xray: &Xray, canvas: &mut Canvas<'_>, seat: PanePlacement, _: &ScreenContext<'_>) {
+        xray.views.draw(canvas, seat.area, seat.focused, seat.index);
     }
 }
 
 impl Pane<Xray> for ChoicesPane {
     fn table<'a>(&self, xray: &'a Xray) -> Option<&'a Table> {
-        xray.choices()
+        xray.choice_table()
     }
 
     fn table_mut<'a>(&self, xray: &'a mut Xray) -> Option<&'a mut Table> {
-        xray.choices_mut()
+        xray.choice_table_mut()
     }
 
     fn scopes(&self, xray: &Xray) -> Vec<Scope> {
-        scopes_of_list(xray.choices())
+        list_scopes(xray.choice_table())
     }
 
     fn hints(&self, xray: &Xray) -> Vec<Action> {
-        let filter = xray.view().choices() != Choices::Breakpoints;
-        keys_of(xray.view()).iter().copied().chain(filter.then_some(Action::Filter)).collect()
+        let filter = xray.view().choices() != ViewChoices::Breakpoints;
+        view_actions(xray.view()).iter().copied().chain(filter.then_some(Action::Filter)).collect()
     }
 
-    fn figure(&self, xray: &Xray, _: &Look<'_>) -> Option<Figure> {
+    fn figure(&self, xray: &Xray, _: &ScreenContext<'_>) -> Option<Figure> {
         figure_of(xray)
     }
 
-    fn act(&self, xray: &mut Xray, action: Action, look: &Look<'_>) -> Vec<Effect> {
-        let is_filtered = xray.choices().is_some_and(Table::is_filtered);
+    fn handle_action(&self, xray: &mut Xray, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+        let is_filtered = xray.choice_table().is_some_and(Table::is_filtered);
         match action {
-            Action::Open => xray.focus = XrayPane::Seen,
+            Action::Open => xray.focus = XrayPane::Inspection,
             Action::Close if !is_filtered => xray.focus = XrayPane::Views,
             Action::Sort => {}
             action => {
-                if let Some(table) = xray.choices_mut() {
-                    table.act(action, look.page);
+                if let Some(table) = xray.choice_table_mut() {
+                    table.handle_action(action, look.page_rows);
                 }
             }
         }
-        xray.ask()
+        xray.request_inspection()
     }
 
-    fn click(&self, xray: &mut Xray, row: usize, _: &Look<'_>) -> Vec<Effect> {
-        if let Some(table) = xray.choices_mut() {
-            table.select_place(row);
+    fn handle_click(&self, xray: &mut Xray, row: usize, _: &ScreenContext<'_>) -> Vec<Effect> {
+        if let Some(table) = xray.choice_table_mut() {
+            table.select_visible_row(row);
         }
-        xray.ask()
+        xray.request_inspection()
     }
 
-    fn border(&self, xray: &Xray, _: Rect, _: &Look<'_>) -> Border {
-        Border { title: xray.view().choices().title().to_owned(), ..Border::default() }
+    fn border(&self, xray: &Xray, _: Rect, _: &ScreenContext<'_>) -> PaneBorder {
+        PaneBorder { title: xray.view().choices().title().to_owned(), ..PaneBorder::default() }
     }
 
-    fn draw(&self, xray: &Xray, canvas: &mut Canvas<'_>, seat: Seat, _: &Look<'_>) {
-        if let Some(table) = xray.choices() {
-            table.draw(canvas, seat.area, seat.focused, seat.number);
+    fn draw(&self, xray: &Xray, canvas: &mut Canvas<'_>, seat: PanePlacement, _: &ScreenContext<'_>) {
+        if let Some(table) = xray.choice_table() {
+            table.draw(canvas, seat.area, seat.focused, seat.index);
         }
     }
 }
 
-impl Pane<Xray> for SeenPane {
+impl Pane<Xray> for InspectionPane {
     fn scopes(&self, xray: &Xray) -> Vec<Scope> {
-        match (xray.is_open, &xray.typing) {
+        match (xray.can_inspect, &xray.input) {
             (false, _) => vec![Scope::List],
             (true, Some(_)) => vec![Scope::Field],
             (true, None) => vec![Scope::Xray, Scope::List],
@@ -184,69 +184,69 @@ impl Pane<Xray> for SeenPane {
     }
 
     fn hints(&self, xray: &Xray) -> Vec<Action> {
-        match (xray.is_open, &xray.typing) {
+        match (xray.can_inspect, &xray.input) {
             (false, _) => Vec::new(),
             (true, Some(_)) => vec![Action::Commit, Action::Discard],
-            (true, None) => keys_of(xray.view()).to_vec(),
+            (true, None) => view_actions(xray.view()).to_vec(),
         }
     }
 
-    fn figure(&self, xray: &Xray, _: &Look<'_>) -> Option<Figure> {
+    fn figure(&self, xray: &Xray, _: &ScreenContext<'_>) -> Option<Figure> {
         figure_of(xray)
     }
 
-    fn act(&self, xray: &mut Xray, action: Action, look: &Look<'_>) -> Vec<Effect> {
-        let moves_cursor = xray.view() == View::Leads;
+    fn handle_action(&self, xray: &mut Xray, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+        let moves_cursor = xray.view() == XrayView::Leads;
         match action {
-            Action::Commit | Action::CommitDown => return xray.commit(),
-            Action::Discard => (xray.typing, xray.problem) = (None, None),
-            Action::Open if matches!(xray.view(), View::Customer | View::Breakpoints | View::Words) => {
-                return xray.type_in(Expected::in_view(xray.view()));
+            Action::Commit | Action::CommitDown => return xray.submit_input(),
+            Action::Discard => (xray.input, xray.problem) = (None, None),
+            Action::Open if matches!(xray.view(), XrayView::Customer | XrayView::Breakpoints | XrayView::Commands) => {
+                return xray.start_input(InputKind::for_view(xray.view()));
             }
             Action::Close => xray.focus = XrayPane::Views,
-            Action::Up if moves_cursor => xray.factor = xray.factor.saturating_sub(1),
+            Action::Up if moves_cursor => xray.selected_factor = xray.selected_factor.saturating_sub(1),
             Action::Down if moves_cursor => {
-                xray.factor = (xray.factor + 1).min(LeadFactor::ALL.len() - 1);
+                xray.selected_factor = (xray.selected_factor + 1).min(LeadFactor::ALL.len() - 1);
             }
-            action => drop(xray.scroll.act(action, look.page.into())),
+            action => drop(xray.scroll.handle_action(action, look.page_rows.into())),
         }
         Vec::new()
     }
 
-    fn key(&self, xray: &mut Xray, key: &KeyEvent, _: &Look<'_>) -> Vec<Effect> {
+    fn handle_key(&self, xray: &mut Xray, key: &KeyEvent, _: &ScreenContext<'_>) -> Vec<Effect> {
         xray.problem = None;
-        if let Some(typing) = &mut xray.typing {
-            typing.field.key(key);
+        if let Some(typing) = &mut xray.input {
+            typing.field.handle_key(key);
         }
         Vec::new()
     }
 
-    fn paste(&self, xray: &mut Xray, text: &str, _: &Look<'_>) -> Vec<Effect> {
-        if let Some(typing) = &mut xray.typing {
+    fn paste(&self, xray: &mut Xray, text: &str, _: &ScreenContext<'_>) -> Vec<Effect> {
+        if let Some(typing) = &mut xray.input {
             typing.field.insert(text.trim());
         }
         Vec::new()
     }
 
-    fn border(&self, xray: &Xray, _: Rect, look: &Look<'_>) -> Border {
-        if !xray.is_open {
-            return Border { title: "X-ray".to_owned(), ..Border::default() };
+    fn border(&self, xray: &Xray, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
+        if !xray.can_inspect {
+            return PaneBorder { title: "X-ray".to_owned(), ..PaneBorder::default() };
         }
         let view = xray.view();
         let title = match (view, view.choices()) {
-            (View::Customer, _) => xray.customer.map_or(String::new(), |own| format!(" {own}")),
-            (View::Words, _) => match (xray.words_asked(), xray.said.as_ref().map(|said| &said.question)) {
+            (XrayView::Customer, _) => xray.customer.map_or(String::new(), |own| format!(" {own}")),
+            (XrayView::Commands, _) => match (xray.pending_command(), xray.command_output.as_ref().map(|said| &said.question)) {
                 (Some(words), _) => format!(": {words}"),
-                (None, Some(LookQuestion::Words(words, _))) => format!(": {words}"),
+                (None, Some(InspectionQuestion::Command(words, _))) => format!(": {words}"),
                 _ => String::new(),
             },
-            (_, Choices::Groups) => xray.group().map_or(String::new(), |own| format!(" of {own}")),
-            (_, Choices::Parts) => xray.part().map_or(String::new(), |own| format!(" of {}", own.id())),
+            (_, ViewChoices::Groups) => xray.group().map_or(String::new(), |own| format!(" of {own}")),
+            (_, ViewChoices::Parts) => xray.selected_part().map_or(String::new(), |own| format!(" of {}", own.id())),
             _ => String::new(),
         };
         let note = match (xray.asked.is_waiting(), view.has_day()) {
             (true, _) => "re-simulating …".to_owned(),
-            (false, true) => format!("day {} of {}", xray.day_seen(), xray.last_day),
+            (false, true) => format!("day {} of {}", xray.shown_day(), xray.last_day),
             (false, false) => format!("after day {}", xray.last_day),
         };
         let label = |action| look.keys.label(action).unwrap_or_default();
@@ -257,7 +257,7 @@ impl Pane<Xray> for SeenPane {
             label(Action::DayWeekBefore),
             label(Action::DayWeekAfter)
         );
-        let others: Vec<Action> = keys_of(view)
+        let others: Vec<Action> = view_actions(view)
             .iter()
             .copied()
             .filter(|action| !matches!(action, Action::Left | Action::Right | Action::DayWeekBefore))
@@ -268,22 +268,22 @@ impl Pane<Xray> for SeenPane {
             (true, false) => format!("{days} · {others}"),
             (false, _) => others,
         };
-        Border { title: format!("{}{title}", capital(view.title())), note, keys, keys_always: true }
+        PaneBorder { title: format!("{}{title}", capitalize(view.title())), note, keys, shows_keys_always: true }
     }
 
-    fn draw(&self, xray: &Xray, canvas: &mut Canvas<'_>, seat: Seat, look: &Look<'_>) {
-        let below = u16::from(xray.typing.is_some()) + u16::from(xray.problem.is_some());
+    fn draw(&self, xray: &Xray, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
+        let below = u16::from(xray.input.is_some()) + u16::from(xray.problem.is_some());
         let below = below.min(seat.area.height);
         let area = Rect { height: seat.area.height - below, ..seat.area };
-        lines::draw(xray, canvas, Seat { area, ..seat }, look);
-        let mut rows = rows_of(Rect { y: area.bottom(), height: below, ..seat.area });
+        inspection_text::draw(xray, canvas, PanePlacement { area, ..seat }, look);
+        let mut rows = row_rects(Rect { y: area.bottom(), height: below, ..seat.area });
         if let (Some(problem), Some(row)) = (&xray.problem, rows.next()) {
-            canvas.text(row, problem, Role::Bad);
+            canvas.draw_text(row, problem, Role::Bad);
         }
-        if let (Some(typing), Some(row)) = (&xray.typing, rows.next()) {
-            let prompt = typing.expected.prompt();
+        if let (Some(typing), Some(row)) = (&xray.input, rows.next()) {
+            let prompt = typing.kind.prompt();
             let before = (prompt.len() as u16 + 1).min(row.width);
-            canvas.text(row, prompt, Role::Key);
+            canvas.draw_text(row, prompt, Role::Key);
             typing.field.draw(canvas, Rect { x: row.x + before, width: row.width - before, ..row });
         }
     }

@@ -3,7 +3,7 @@
 use strum::VariantArray;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, VariantArray)]
-pub enum View {
+pub enum XrayView {
     /// The equation of a group's leads.
     #[default]
     Leads,
@@ -15,19 +15,19 @@ pub enum View {
     Reputation,
     /// Spillover of reputation.
     Spillover,
-    Rivals,
+    Competitors,
     Drift,
     /// Next random draws of a component.
-    Streams,
+    Draws,
     /// Hidden state of a customer.
     Customer,
     Breakpoints,
     /// Plain-mode commands.
-    Words,
+    Commands,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Choices {
+pub enum ViewChoices {
     Groups,
     /// Components with random draws.
     Parts,
@@ -36,52 +36,52 @@ pub enum Choices {
     Nothing,
 }
 
-impl View {
+impl XrayView {
     pub fn title(self) -> &'static str {
         match self {
-            View::Leads => "leads",
-            View::Quality => "quality",
-            View::Satisfaction => "satisfaction",
-            View::Reputation => "reputation",
-            View::Spillover => "spillover",
-            View::Rivals => "competitors",
-            View::Drift => "drift",
-            View::Streams => "streams",
-            View::Customer => "customer",
-            View::Breakpoints => "breakpoints",
-            View::Words => "commands",
+            XrayView::Leads => "leads",
+            XrayView::Quality => "quality",
+            XrayView::Satisfaction => "satisfaction",
+            XrayView::Reputation => "reputation",
+            XrayView::Spillover => "spillover",
+            XrayView::Competitors => "competitors",
+            XrayView::Drift => "drift",
+            XrayView::Draws => "streams",
+            XrayView::Customer => "customer",
+            XrayView::Breakpoints => "breakpoints",
+            XrayView::Commands => "commands",
         }
     }
 
-    pub fn choices(self) -> Choices {
+    pub fn choices(self) -> ViewChoices {
         match self {
-            View::Leads | View::Quality | View::Satisfaction | View::Reputation => Choices::Groups,
-            View::Streams => Choices::Parts,
-            View::Breakpoints => Choices::Breakpoints,
-            View::Spillover | View::Rivals | View::Drift | View::Customer | View::Words => Choices::Nothing,
+            XrayView::Leads | XrayView::Quality | XrayView::Satisfaction | XrayView::Reputation => ViewChoices::Groups,
+            XrayView::Draws => ViewChoices::Parts,
+            XrayView::Breakpoints => ViewChoices::Breakpoints,
+            XrayView::Spillover | XrayView::Competitors | XrayView::Drift | XrayView::Customer | XrayView::Commands => ViewChoices::Nothing,
         }
     }
 
     /// Returns whether it shows one day. The others show future values or settings.
     pub fn has_day(self) -> bool {
-        !matches!(self, View::Streams | View::Breakpoints | View::Words)
+        !matches!(self, XrayView::Draws | XrayView::Breakpoints | XrayView::Commands)
     }
 
     pub fn term(self) -> &'static str {
         match self {
-            View::Breakpoints => "breakpoint",
+            XrayView::Breakpoints => "breakpoint",
             _ => "x-ray",
         }
     }
 }
 
-impl Choices {
+impl ViewChoices {
     pub fn title(self) -> &'static str {
         match self {
-            Choices::Groups => "Group",
-            Choices::Parts => "Component",
-            Choices::Breakpoints => "Set",
-            Choices::Nothing => "",
+            ViewChoices::Groups => "Group",
+            ViewChoices::Parts => "Component",
+            ViewChoices::Breakpoints => "Set",
+            ViewChoices::Nothing => "",
         }
     }
 }

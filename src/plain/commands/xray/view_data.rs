@@ -3,15 +3,16 @@
 use serde_json::{Map, Value, json};
 
 use novamind_insight::{
-    DriftState, Follows, GroupDrifted, KeyedDraws, MoodTerm, NextDraws, NextRivalMove, OwnChange,
-    PlanDelivered, QualityEquation, ReputationEquation, RivalState, SatisfactionEquation, Spillover,
+    CompetitorState, DeliveredPlanQuality, DrawEffect, DriftState, GroupDriftState, KeyedDraws,
+    NextCompetitorMove, NextDraws, QualityEquation, ReputationEquation, SatisfactionEquation,
+    SatisfactionTerm, Spillover, SubscriberContribution,
 };
 use novamind_session::RivalEvent;
 use novamind_session::identifiers::{Group, Plan};
 
-pub(super) fn quality_as_data(own: &QualityEquation) -> Value {
+pub(super) fn quality_to_json(own: &QualityEquation) -> Value {
     let plan = |plan: Plan| {
-        let PlanDelivered { tier, multiplier, delivered } = own.plans[plan];
+        let DeliveredPlanQuality { tier, multiplier, delivered } = own.plans[plan];
         json!({
             "plan": plan.id(), "tier": tier, "multiplier": multiplier, "delivered": delivered,
             "felt": delivered - own.service_penalty,
@@ -22,116 +23,116 @@ pub(super) fn quality_as_data(own: &QualityEquation) -> Value {
         "day": own.day,
         "base": own.base,
         "shared": own.shared,
-        "own": own.own,
+        "own": own.group_gain,
         "plans": Plan::ALL.map(plan),
         "service_penalty": own.service_penalty,
         "gains": own.gains,
-        "banks": {"shared": own.shared_bank, "own": own.own_bank},
+        "banks": {"shared": own.shared_bank, "own": own.group_bank},
         "expectation": {
-            "everyone": own.everyone, "quality": own.expectation.quality, "budget": own.expectation.c_max,
+            "everyone": own.common_expectation, "quality": own.expectation.quality, "budget": own.expectation.c_max,
         },
     })
 }
 
-pub(super) fn satisfaction_as_data(own: &SatisfactionEquation) -> Value {
-    let terms = |of: &dyn Fn(MoodTerm) -> Option<f64>| {
-        let named = MoodTerm::ALL.map(|term| (term.id().to_owned(), json!(of(term))));
+pub(super) fn satisfaction_to_json(own: &SatisfactionEquation) -> Value {
+    let terms = |of: &dyn Fn(SatisfactionTerm) -> Option<f64>| {
+        let named = SatisfactionTerm::ALL.map(|term| (term.id().to_owned(), json!(of(term))));
         Value::Object(named.into_iter().collect())
     };
     json!({
         "group": own.group.id(),
         "day": own.day,
         "weight": own.weight,
-        "felt_by": own.felt_by(),
+        "felt_by": own.included_subscribers(),
         "before": own.before(),
         "terms": terms(&|term| own.term(term)),
         "terms_yesterday": terms(&|term| own.term_yesterday(term)),
         "felt": own.instant(),
         "after": own.after(),
-        "left": own.left,
-        "came": own.came,
+        "left": own.departed,
+        "came": own.joined,
         "subscribers": own.subscribers,
-        "evening": own.evening,
+        "evening": own.end_of_day,
     })
 }
 
-fn contribution(own: &OwnChange) -> Value {
-    json!({"subscribers": own.subscribers, "called": own.called, "counts": own.counts, "change": own.made()})
+fn contribution_to_json(own: &SubscriberContribution) -> Value {
+    json!({"subscribers": own.subscribers, "called": own.requested_change, "counts": own.is_applied, "change": own.applied_change()})
 }
 
-pub(super) fn reputation_as_data(own: &ReputationEquation) -> Value {
+pub(super) fn reputation_to_json(own: &ReputationEquation) -> Value {
     json!({
         "group": own.group.id(),
         "day": own.day,
         "before": own.before,
-        "cancellations": own.gave_up,
-        "lost_companies": own.lost,
-        "own": contribution(&own.own),
-        "spills": own.spills,
+        "cancellations": own.individual_departures,
+        "lost_companies": own.enterprise_departures,
+        "own": contribution_to_json(&own.contribution),
+        "spills": own.spillovers,
         "bounds": own.bounds,
         "after": own.after,
-        "least_own_change": own.least.own,
-        "least_spill": own.least.spill,
+        "least_own_change": own.thresholds.subscriber_contribution,
+        "least_spill": own.thresholds.spillover,
     })
 }
 
-pub(super) fn spillover_as_data(own: &Spillover) -> Value {
-    let of = |group: &Group| (group.id().to_owned(), contribution(&own.own[*group]));
+pub(super) fn spillover_to_json(own: &Spillover) -> Value {
+    let of = |group: &Group| (group.id().to_owned(), contribution_to_json(&own.contributions[*group]));
     json!({
         "day": own.day,
-        "own": Value::Object(own.known.iter().map(of).collect()),
-        "spills": own.spills,
-        "least_own_change": own.least.own,
-        "least_spill": own.least.spill,
+        "own": Value::Object(own.known_groups.iter().map(of).collect()),
+        "spills": own.spillovers,
+        "least_own_change": own.thresholds.subscriber_contribution,
+        "least_spill": own.thresholds.spillover,
     })
 }
 
-fn rival_event(own: &RivalEvent) -> Value {
+fn competitor_event_to_json(own: &RivalEvent) -> Value {
     let RivalEvent { day, boost, sampled, u, by_feedback } = own;
     json!({"day": day, "raised_by": boost, "drawn_size": sampled, "share": u, "copied": by_feedback})
 }
 
-pub(super) fn rivals_as_data(own: &RivalState) -> Value {
+pub(super) fn competitors_to_json(own: &CompetitorState) -> Value {
     let bank = |(group, bonus, bank): &(Group, f64, f64)| {
         (group.id().to_owned(), json!({"improvements": bonus, "bank": bank}))
     };
-    let next = |next: &NextRivalMove| {
-        let shares = next.shares.iter().map(|(group, share)| (group.id().to_owned(), json!(share)));
+    let next = |next: &NextCompetitorMove| {
+        let shares = next.group_shares.iter().map(|(group, share)| (group.id().to_owned(), json!(share)));
         json!({
-            "day": next.day, "drawn_size": next.sampled, "share": next.u, "copied": next.copied(own.shared_bank),
-            "copies_above": next.copies_above(), "shares": Value::Object(shares.collect()),
-            "made": next.made.as_ref().map(rival_event),
+            "day": next.day, "drawn_size": next.sampled_size, "share": next.copied_share, "copied": next.copied_quality(own.shared_bank),
+            "copies_above": next.copy_threshold(), "shares": Value::Object(shares.collect()),
+            "made": next.outcome.as_ref().map(competitor_event_to_json),
         })
     };
     json!({
         "day": own.day,
         "shared_improvements": own.shared_bonus,
         "shared_bank": own.shared_bank,
-        "own": Value::Object(own.own.iter().map(bank).collect()),
-        "everyone": own.everyone,
-        "moves": own.moves.iter().map(|(event, _)| rival_event(event)).collect::<Vec<_>>(),
-        "next": own.next.as_ref().map(next),
+        "own": Value::Object(own.group_banks.iter().map(bank).collect()),
+        "everyone": own.common_expectation,
+        "moves": own.moves.iter().map(|(event, _)| competitor_event_to_json(event)).collect::<Vec<_>>(),
+        "next": own.next_move.as_ref().map(next),
     })
 }
 
-pub(super) fn drift_as_data(own: &DriftState) -> Value {
-    let group = |own: &GroupDrifted| {
+pub(super) fn drift_to_json(own: &DriftState) -> Value {
+    let group = |own: &GroupDriftState| {
         json!({
-            "group": own.group.id(), "known": own.is_known, "own": own.own,
+            "group": own.group.id(), "known": own.is_known, "own": own.group_expectation,
             "quality": own.expectation.quality, "budget": own.expectation.c_max,
-            "next_own": own.step.quality, "next_budget": own.step.c_max,
+            "next_own": own.next_step.quality, "next_budget": own.next_step.c_max,
         })
     };
     json!({
         "day": own.day,
-        "everyone": own.everyone,
+        "everyone": own.common_expectation,
         "next_day": own.next_day,
-        "next_everyone": own.step,
+        "next_everyone": own.next_common_step,
         "groups": own.groups.iter().map(group).collect::<Vec<_>>(),
     })
 }
 
-pub(super) fn streams_as_data(own: &NextDraws) -> Value {
+pub(super) fn streams_to_json(own: &NextDraws) -> Value {
     let stream = |own: &KeyedDraws| {
         let key: Map<String, Value> =
             own.key.iter().map(|(name, value)| ((*name).to_owned(), json!(value))).collect();
@@ -141,7 +142,7 @@ pub(super) fn streams_as_data(own: &NextDraws) -> Value {
             "group": own.group.map(Group::id),
             "uniform": own.draws.iter().map(|draw| draw.uniform).collect::<Vec<_>>(),
             "normal": own.draws.iter().map(|draw| draw.normal).collect::<Vec<_>>(),
-            "follows": follows(&own.follows),
+            "follows": follows_to_json(&own.effect),
         })
     };
     json!({
@@ -153,19 +154,19 @@ pub(super) fn streams_as_data(own: &NextDraws) -> Value {
     })
 }
 
-fn follows(own: &Follows) -> Value {
+fn follows_to_json(own: &DrawEffect) -> Value {
     match own {
-        Follows::Leads { expected, number } => json!({"expected": expected, "leads": number}),
-        Follows::FailedPayments { rate, customers } => json!({"rate": rate, "customers": customers}),
-        Follows::OutageAbove(chance) => json!({"outage_above": chance}),
-        Follows::Noise(noise) => json!({"noise": noise}),
-        Follows::Project { tier, days, gain } => json!({"tier": tier, "days": days, "gain": gain}),
-        Follows::Found(group) => json!({"found": group.map(Group::id)}),
-        Follows::Surge(surge) => json!({
+        DrawEffect::Leads { expected, number } => json!({"expected": expected, "leads": number}),
+        DrawEffect::FailedPayments { rate, customers } => json!({"rate": rate, "customers": customers}),
+        DrawEffect::OutageAbove(chance) => json!({"outage_above": chance}),
+        DrawEffect::Noise(noise) => json!({"noise": noise}),
+        DrawEffect::Project { tier, days, gain } => json!({"tier": tier, "days": days, "gain": gain}),
+        DrawEffect::Found(group) => json!({"found": group.map(Group::id)}),
+        DrawEffect::Surge(surge) => json!({
             "surge": surge.map(|own| json!({"until": own.end_day - 1, "multiplier": own.multiplier})),
         }),
-        Follows::Index { before, after } => json!({"before": before, "after": after}),
-        Follows::RivalMove(made) => json!({
+        DrawEffect::Index { before, after } => json!({"before": before, "after": after}),
+        DrawEffect::CompetitorMove(made) => json!({
             "move": made.map(|(sampled, u)| json!({"drawn_size": sampled, "share": u})),
         }),
     }

@@ -4,9 +4,9 @@
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use super::answers::{Answered, Asked};
 use super::lesson::LessonNote;
 use super::presence::{Clock, Limit, Presence};
+use super::questions::{QuestionAnswer, QuestionShown};
 
 /// An activity that does not change the run.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,30 +18,30 @@ pub enum Activity {
     /// A time limit approached or was reached.
     Limit(Limit),
     /// A screen was viewed.
-    View(View),
+    View(ScreenView),
     /// An object was opened: a group, a thread, a tool, a post, a study.
-    Select(Select),
+    Select(ObjectSelection),
     /// A dialog was open.
     Dialog(DialogUse),
     /// A term was explained.
-    Help(Help),
+    Help(HelpRequest),
     /// A text was edited and sent, or abandoned.
-    Draft(Draft),
+    Draft(TextEdit),
     /// A question of the study was shown.
-    Question(Asked),
+    Question(QuestionShown),
     /// A question was answered or skipped.
-    Answer(Answered),
+    Answer(QuestionAnswer),
     /// An event of the lesson of the run.
     Lesson(LessonNote),
     /// A command read the run without playing it.
-    Look(Look),
+    ExternalRead(ExternalRead),
     /// Hidden state was shown.
-    Xray(XrayLook),
+    Inspection(Inspection),
 }
 
 /// A view of a screen.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct View {
+pub struct ScreenView {
     /// Screen.
     pub screen: String,
     /// Previous screen; empty if there was none.
@@ -52,7 +52,7 @@ pub struct View {
 
 /// An object that was opened on a screen.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Select {
+pub struct ObjectSelection {
     /// Screen.
     pub screen: String,
     /// Kind of the object: `group`, `thread`, `tool`, `post`, `study`, `table`, `figure`, `command`.
@@ -96,7 +96,7 @@ pub struct DialogStep {
 
 /// A term that was explained.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Help {
+pub struct HelpRequest {
     /// Term, tool, table or column.
     pub term: String,
     /// Place of the request: a screen, a dialog, `plain`.
@@ -105,11 +105,11 @@ pub struct Help {
 
 /// A text that was edited.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Draft {
+pub struct TextEdit {
     /// Place: `rationale`, `forecasts`, `notes`, `sql`, `post`, or `form` and the tool.
     pub place: String,
     /// Outcome.
-    pub outcome: DraftOutcome,
+    pub outcome: TextEditOutcome,
     /// Characters of the text when it was sent or abandoned.
     pub length: u64,
     /// Typed characters.
@@ -130,7 +130,7 @@ pub struct Draft {
 /// Outcome of an edited text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum DraftOutcome {
+pub enum TextEditOutcome {
     /// It was sent or saved.
     Sent,
     /// It was abandoned.
@@ -141,7 +141,7 @@ pub enum DraftOutcome {
 
 /// A command that read the run without playing it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Look {
+pub struct ExternalRead {
     /// Command: `query`, `report`, `replay`, `pictures`, `compare`.
     pub command: String,
     /// Details: the statement or the format.
@@ -150,7 +150,7 @@ pub struct Look {
 
 /// An inspection of hidden state.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct XrayLook {
+pub struct Inspection {
     /// Kind of the inspection: `leads`, `customer`, `sql` and so on.
     pub what: String,
     /// Group, customer or part, or the statement of `sql`; empty if there is no choice.
@@ -161,7 +161,7 @@ pub struct XrayLook {
 
 impl Activity {
     /// Kinds that a study can exclude from the record. Inspections and lesson events are always recorded.
-    pub const KINDS: [&str; 11] = [
+    pub const OPTIONAL_KINDS: [&str; 11] = [
         "session", "clock", "limit", "view", "select", "dialog", "help", "draft", "question", "answer",
         "look",
     ];
@@ -180,8 +180,8 @@ impl Activity {
             Activity::Question(_) => "question",
             Activity::Answer(_) => "answer",
             Activity::Lesson(_) => "lesson",
-            Activity::Look(_) => "look",
-            Activity::Xray(_) => "xray",
+            Activity::ExternalRead(_) => "look",
+            Activity::Inspection(_) => "xray",
         }
     }
 
@@ -198,27 +198,27 @@ impl Activity {
     }
 
     /// Parses a line of a kind. Returns `None` if the kind is not an activity.
-    pub(super) fn read(kind: &str, line: &[u8]) -> Option<serde_json::Result<Activity>> {
-        fn of<'a, T: Deserialize<'a>>(
+    pub(super) fn parse(kind: &str, line: &[u8]) -> Option<serde_json::Result<Activity>> {
+        fn parse_as<'a, T: Deserialize<'a>>(
             line: &'a [u8],
             kind: fn(T) -> Activity,
         ) -> serde_json::Result<Activity> {
             serde_json::from_slice(line).map(kind)
         }
         Some(match kind {
-            "session" => of(line, |presence| Activity::Session(Box::new(presence))),
-            "clock" => of(line, Activity::Clock),
-            "limit" => of(line, Activity::Limit),
-            "view" => of(line, Activity::View),
-            "select" => of(line, Activity::Select),
-            "dialog" => of(line, Activity::Dialog),
-            "help" => of(line, Activity::Help),
-            "draft" => of(line, Activity::Draft),
-            "question" => of(line, Activity::Question),
-            "answer" => of(line, Activity::Answer),
-            "lesson" => of(line, Activity::Lesson),
-            "look" => of(line, Activity::Look),
-            "xray" => of(line, Activity::Xray),
+            "session" => parse_as(line, |presence| Activity::Session(Box::new(presence))),
+            "clock" => parse_as(line, Activity::Clock),
+            "limit" => parse_as(line, Activity::Limit),
+            "view" => parse_as(line, Activity::View),
+            "select" => parse_as(line, Activity::Select),
+            "dialog" => parse_as(line, Activity::Dialog),
+            "help" => parse_as(line, Activity::Help),
+            "draft" => parse_as(line, Activity::Draft),
+            "question" => parse_as(line, Activity::Question),
+            "answer" => parse_as(line, Activity::Answer),
+            "lesson" => parse_as(line, Activity::Lesson),
+            "look" => parse_as(line, Activity::ExternalRead),
+            "xray" => parse_as(line, Activity::Inspection),
             _ => return None,
         })
     }
@@ -237,8 +237,8 @@ impl Activity {
             Activity::Question(question) => serde_json::to_value(question),
             Activity::Answer(answer) => serde_json::to_value(answer),
             Activity::Lesson(note) => serde_json::to_value(note),
-            Activity::Look(look) => serde_json::to_value(look),
-            Activity::Xray(look) => serde_json::to_value(look),
+            Activity::ExternalRead(look) => serde_json::to_value(look),
+            Activity::Inspection(look) => serde_json::to_value(look),
         }
     }
 }

@@ -5,7 +5,7 @@ use serde_json::Value;
 
 use super::called_tool::CalledTool;
 use super::request_id::RequestId;
-use novamind_tools::Refusal;
+use novamind_tools::Rejection;
 
 /// A tool call.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -33,7 +33,7 @@ pub enum Outcome {
     /// Accepted, with the result.
     Accepted(Value),
     /// Rejected.
-    Refused(RefusalRecord),
+    Rejected(RejectionRecord),
 }
 
 /// Source of an action.
@@ -72,7 +72,7 @@ pub enum Reversal {
 
 /// A rejection in a line.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct RefusalRecord {
+pub struct RejectionRecord {
     /// Code.
     pub code: String,
     /// Message.
@@ -85,11 +85,11 @@ pub struct RefusalRecord {
     pub results: Vec<Value>,
 }
 
-impl From<Refusal> for RefusalRecord {
-    fn from(refusal: Refusal) -> RefusalRecord {
-        let Refusal { code, message, field, results } = refusal;
+impl From<Rejection> for RejectionRecord {
+    fn from(refusal: Rejection) -> RejectionRecord {
+        let Rejection { code, message, field, results } = refusal;
         let results = results.iter().filter_map(|result| serde_json::to_value(result).ok()).collect();
-        RefusalRecord { code: code.to_owned(), message, field, results }
+        RejectionRecord { code: code.to_owned(), message, field, results }
     }
 }
 
@@ -98,10 +98,10 @@ struct CallFields {
     tool: CalledTool,
     args: Value,
     ok: bool,
-    #[serde(default, deserialize_with = "given", skip_serializing_if = "Option::is_none")]
+    #[serde(default, deserialize_with = "present_or_null", skip_serializing_if = "Option::is_none")]
     result: Option<Value>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    refusal: Option<RefusalRecord>,
+    refusal: Option<RejectionRecord>,
     via: Via,
     took_ms: f64,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -121,10 +121,10 @@ impl TryFrom<CallFields> for Call {
         if let (true, CalledTool::Unknown(name)) = (fields.ok, &fields.tool) {
             return Err(format!("unknown tool `{name}` in an accepted call"));
         }
-        let unnamed = || RefusalRecord { message: "refused".to_owned(), ..RefusalRecord::default() };
+        let unnamed = || RejectionRecord { message: "refused".to_owned(), ..RejectionRecord::default() };
         let outcome = match fields.ok {
             true => Outcome::Accepted(fields.result.unwrap_or_default()),
-            false => Outcome::Refused(fields.refusal.unwrap_or_else(unnamed)),
+            false => Outcome::Rejected(fields.refusal.unwrap_or_else(unnamed)),
         };
         let redoes = fields.redoes.map(Reversal::Redoes);
         let reversal = fields.undoes.map(Reversal::Undoes).or(redoes);
@@ -139,7 +139,7 @@ impl From<Call> for CallFields {
     fn from(call: Call) -> CallFields {
         let (ok, result, refusal) = match call.outcome {
             Outcome::Accepted(answer) => (true, Some(answer), None),
-            Outcome::Refused(refusal) => (false, None, Some(refusal)),
+            Outcome::Rejected(refusal) => (false, None, Some(refusal)),
         };
         let (undoes, redoes) = match call.reversal {
             Some(Reversal::Undoes(seq)) => (Some(seq), None),
@@ -165,6 +165,6 @@ impl From<Call> for CallFields {
 }
 
 /// Distinguishes a null field from a missing one.
-fn given<'de, D: Deserializer<'de>>(field: D) -> Result<Option<Value>, D::Error> {
+fn present_or_null<'de, D: Deserializer<'de>>(field: D) -> Result<Option<Value>, D::Error> {
     Value::deserialize(field).map(Some)
 }

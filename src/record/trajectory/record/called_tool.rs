@@ -20,7 +20,7 @@ pub enum CalledTool {
 
 impl CalledTool {
     /// Returns an unknown name as it is recorded.
-    pub fn unknown(name: &str) -> CalledTool {
+    pub fn from_unknown_name(name: &str) -> CalledTool {
         let is_long = name.chars().nth(MAX_NAME_CHARACTERS).is_some();
         CalledTool::Unknown(match is_long {
             true => name.chars().take(MAX_NAME_CHARACTERS - 1).chain(['…']).collect(),
@@ -37,7 +37,7 @@ impl CalledTool {
     }
 
     /// Returns the tool, or `None` if no tool has the name.
-    pub fn known(&self) -> Option<ToolId> {
+    pub fn tool_id(&self) -> Option<ToolId> {
         match self {
             CalledTool::Known(tool) => Some(*tool),
             CalledTool::Unknown(_) => None,
@@ -53,7 +53,7 @@ impl From<ToolId> for CalledTool {
 
 impl PartialEq<ToolId> for CalledTool {
     fn eq(&self, other: &ToolId) -> bool {
-        self.known() == Some(*other)
+        self.tool_id() == Some(*other)
     }
 }
 
@@ -81,11 +81,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn unknown_names_are_cut_at_their_bound() {
+    fn unknown_names_are_truncated() {
         let name = "ä".repeat(MAX_NAME_CHARACTERS);
-        assert_eq!(CalledTool::unknown(&name).name(), name);
-        let cut = CalledTool::unknown(&format!("{name}b"));
+        assert_eq!(CalledTool::from_unknown_name(&name).name(), name);
+        let cut = CalledTool::from_unknown_name(&format!("{name}b"));
         assert_eq!(cut.name().chars().count(), MAX_NAME_CHARACTERS);
-        assert!(cut.name().ends_with("ä…") && cut.known().is_none());
+        assert!(cut.name().ends_with("ä…") && cut.tool_id().is_none());
     }
 }

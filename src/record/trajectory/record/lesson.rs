@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::shortest_if_any;
+use super::serialize_shortest_option;
 
 /// An event of a lesson.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -18,10 +18,10 @@ pub struct LessonNote {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
     /// Guessed or measured value; for choices the number of the choice, from 1.
-    #[serde(default, serialize_with = "shortest_if_any", skip_serializing_if = "Option::is_none")]
+    #[serde(default, serialize_with = "serialize_shortest_option", skip_serializing_if = "Option::is_none")]
     pub value: Option<f64>,
     /// Value to reach.
-    #[serde(default, serialize_with = "shortest_if_any", skip_serializing_if = "Option::is_none")]
+    #[serde(default, serialize_with = "serialize_shortest_option", skip_serializing_if = "Option::is_none")]
     pub bound: Option<f64>,
     /// Whether the goal was reached, or the guess was correct.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -48,7 +48,7 @@ pub enum LessonEvent {
 
 impl LessonNote {
     /// Returns an event of a step without further fields.
-    pub fn about(event: LessonEvent, step: u32) -> LessonNote {
+    pub fn new(event: LessonEvent, step: u32) -> LessonNote {
         LessonNote { event, step, number: None, name: None, value: None, bound: None, met: None }
     }
 }

@@ -4,12 +4,12 @@
 //! copies of it are complete.
 
 mod activity;
-mod answers;
 mod call;
 mod called_tool;
 mod lesson;
 mod notes;
 mod presence;
+mod questions;
 mod request_id;
 mod start;
 mod voice;
@@ -18,22 +18,23 @@ mod week;
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value};
 
-use novamind_base::notation::json_number;
+use novamind_base::formatting::json_number;
 
 pub use activity::{
-    Activity, DialogOutcome, DialogStep, DialogUse, Draft, DraftOutcome, Help, Look, Select, View, XrayLook,
+    Activity, DialogOutcome, DialogStep, DialogUse, ExternalRead, HelpRequest, Inspection, ObjectSelection,
+    ScreenView, TextEdit, TextEditOutcome,
 };
-pub use answers::{Answered, Asked};
-pub use call::{Call, Outcome, RefusalRecord, Reversal, Via};
+pub use call::{Call, Outcome, RejectionRecord, Reversal, Via};
 pub use called_tool::CalledTool;
 pub use lesson::{LessonEvent, LessonNote};
 pub use notes::{Memo, Note, Query, QuerySource};
 pub use presence::{Clock, ClockEvent, LeavingCause, Limit, LimitEvent, LimitScope, Presence, PresenceEvent};
+pub use questions::{QuestionAnswer, QuestionShown};
 pub use request_id::RequestId;
 pub(crate) use start::first_mechanics;
 pub use start::{Parent, Start};
-pub use voice::{AskedOfModel, FailedAnswer, JudgedPost, VoiceAnswer, WordedPost, WordedPosts};
-pub use week::{Advance, Branch, Calculated, Closing, End, Ended, FiledForecast, Override};
+pub use voice::{FailedAnswer, JudgedPost, ModelTask, VoiceAnswer, WordedPost, WordedPosts};
+pub use week::{Advance, Branch, CalculationOutput, Closing, End, FiledForecast, Override, RunEndReason};
 
 /// An event of a trajectory.
 #[derive(Debug, Clone, PartialEq)]
@@ -90,7 +91,7 @@ impl Record {
     }
 
     /// Parses a line of a kind.
-    pub fn read(kind: &str, line: &[u8]) -> serde_json::Result<Record> {
+    pub fn parse(kind: &str, line: &[u8]) -> serde_json::Result<Record> {
         Ok(match kind {
             "start" => Record::Start(serde_json::from_slice(line)?),
             "call" => Record::Call(serde_json::from_slice(line)?),
@@ -104,7 +105,7 @@ impl Record {
             "override" => Record::Override(serde_json::from_slice(line)?),
             "branch" => Record::Branch(serde_json::from_slice(line)?),
             "end" => Record::End(serde_json::from_slice(line)?),
-            other => match Activity::read(other, line) {
+            other => match Activity::parse(other, line) {
                 Some(activity) => Record::Activity(activity?),
                 None => Record::Unknown(other.to_owned()),
             },
@@ -162,10 +163,10 @@ impl Record {
 }
 
 /// Serializes whole amounts without a decimal point.
-fn shortest<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+fn serialize_shortest<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S::Error> {
     json_number(*number).serialize(serializer)
 }
 
-fn shortest_if_any<S: Serializer>(number: &Option<f64>, serializer: S) -> Result<S::Ok, S::Error> {
+fn serialize_shortest_option<S: Serializer>(number: &Option<f64>, serializer: S) -> Result<S::Ok, S::Error> {
     number.map(json_number).serialize(serializer)
 }

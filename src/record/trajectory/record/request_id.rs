@@ -19,7 +19,7 @@ pub struct RequestId {
 
 impl RequestId {
     /// Returns the id together with the digest of a call.
-    pub fn of(id: &str, tool: &str, args: &Value) -> RequestId {
+    pub fn new(id: &str, tool: &str, args: &Value) -> RequestId {
         let mut sorted = args.clone();
         sorted.sort_all_objects();
         let hash = blake3::hash(format!("{tool}\n{sorted}").as_bytes()).to_hex();
@@ -33,8 +33,8 @@ mod tests {
     use serde_json::json;
 
     #[test]
-    fn digests_ignore_the_order_of_keys_only() {
-        let digest = |tool: &str, args: &Value| RequestId::of("x", tool, args).digest;
+    fn digest_ignores_key_order_only() {
+        let digest = |tool: &str, args: &Value| RequestId::new("x", tool, args).digest;
         let first = digest("set_prices", &json!({ "A": 1, "B": { "c": [1, 2], "d": null } }));
         assert_eq!(first, digest("set_prices", &json!({ "B": { "d": null, "c": [1, 2] }, "A": 1 })));
         assert_ne!(first, digest("set_prices", &json!({ "A": 1, "B": { "c": [2, 1], "d": null } })));

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use toml::Table;
 
-use super::shortest;
+use super::serialize_shortest;
 use crate::consent::Consent;
 use crate::mode::Mode;
 use crate::rules::SessionRules;
@@ -30,7 +30,7 @@ pub struct Start {
     /// Last day.
     pub days: u32,
     /// Cash on day 0, dollars.
-    #[serde(serialize_with = "shortest")]
+    #[serde(serialize_with = "serialize_shortest")]
     pub cash: f64,
     /// Scenario.
     pub scenario: String,

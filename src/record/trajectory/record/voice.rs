@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::shortest;
+use super::serialize_shortest;
 use novamind_voice::model::scoring::ModelScore;
 
 /// A response of a language model, or its failure.
@@ -32,7 +32,7 @@ pub struct JudgedPost {
     /// One score for each group that was known.
     pub scores: Vec<ModelScore>,
     /// Duration of the response in milliseconds.
-    #[serde(serialize_with = "shortest")]
+    #[serde(serialize_with = "serialize_shortest")]
     pub took_ms: f64,
 }
 
@@ -42,7 +42,7 @@ pub struct WordedPosts {
     /// Number and text of each.
     pub posts: Vec<WordedPost>,
     /// Duration of the response in milliseconds.
-    #[serde(serialize_with = "shortest")]
+    #[serde(serialize_with = "serialize_shortest")]
     pub took_ms: f64,
 }
 
@@ -59,18 +59,18 @@ pub struct WordedPost {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FailedAnswer {
     /// Requested response.
-    pub asked: AskedOfModel,
+    pub asked: ModelTask,
     /// The problem.
     pub problem: String,
     /// Duration in milliseconds.
-    #[serde(serialize_with = "shortest")]
+    #[serde(serialize_with = "serialize_shortest")]
     pub took_ms: f64,
 }
 
 /// Task of a model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum AskedOfModel {
+pub enum ModelTask {
     /// Scores for a post of the player.
     Scores,
     /// Texts for posts of other authors.

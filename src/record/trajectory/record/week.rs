@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 use super::call::Via;
 use super::request_id::RequestId;
 use super::start::Parent;
-use super::{shortest, shortest_if_any};
+use super::{serialize_shortest, serialize_shortest_option};
 use novamind_tools::Forecast;
 
 /// The submission before a week.
@@ -22,7 +22,7 @@ pub struct Advance {
     pub via: Via,
     /// Outputs of the registered calculations.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub calculations: Vec<Calculated>,
+    pub calculations: Vec<CalculationOutput>,
     /// Request id that the client sent.
     #[serde(flatten)]
     pub request: Option<RequestId>,
@@ -30,7 +30,7 @@ pub struct Advance {
 
 impl Advance {
     /// Returns whether at least one forecast was filled in by the naive projection, or `None` without forecasts.
-    pub fn filled_naively(&self) -> Option<bool> {
+    pub fn has_naive_forecasts(&self) -> Option<bool> {
         let any = self.forecasts.iter().any(|forecast| forecast.filled_naively);
         (!self.forecasts.is_empty()).then_some(any)
     }
@@ -42,13 +42,13 @@ pub struct FiledForecast {
     /// Days ahead.
     pub horizon_days: u32,
     /// Most likely value, dollars.
-    #[serde(serialize_with = "shortest")]
+    #[serde(serialize_with = "serialize_shortest")]
     pub point: f64,
     /// Lower end of the 95 % interval, dollars.
-    #[serde(serialize_with = "shortest")]
+    #[serde(serialize_with = "serialize_shortest")]
     pub lower: f64,
     /// Upper end of the 95 % interval, dollars.
-    #[serde(serialize_with = "shortest")]
+    #[serde(serialize_with = "serialize_shortest")]
     pub upper: f64,
     /// Whether the naive projection filled it in, completely or partly.
     #[serde(default)]
@@ -57,7 +57,7 @@ pub struct FiledForecast {
 
 impl FiledForecast {
     /// Returns the forecast.
-    pub fn said(self) -> Forecast {
+    pub fn to_forecast(self) -> Forecast {
         let FiledForecast { horizon_days, point, lower, upper, .. } = self;
         Forecast { horizon_days, point, lower, upper }
     }
@@ -71,7 +71,7 @@ pub struct Closing {
     /// Figures by name.
     pub figures: Map<String, Value>,
     /// Cash after them, dollars.
-    #[serde(serialize_with = "shortest")]
+    #[serde(serialize_with = "serialize_shortest")]
     pub cash: f64,
     /// State hash.
     pub state_hash: String,
@@ -97,14 +97,14 @@ pub struct Override {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Branch {
     /// Parent run and its last copied line.
-    #[serde(deserialize_with = "may_be_null")]
+    #[serde(deserialize_with = "required_nullable")]
     pub from: Option<Parent>,
 }
 
 /// Reason of the end of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Ended {
+pub enum RunEndReason {
     /// The last day was reached.
     Horizon,
     /// Cash fell below zero.
@@ -115,14 +115,14 @@ pub enum Ended {
     Lesson,
 }
 
-impl Ended {
+impl RunEndReason {
     /// Returns the name in trajectories.
     pub fn id(self) -> &'static str {
         match self {
-            Ended::Horizon => "horizon",
-            Ended::Bankruptcy => "bankruptcy",
-            Ended::Abandoned => "abandoned",
-            Ended::Lesson => "lesson",
+            RunEndReason::Horizon => "horizon",
+            RunEndReason::Bankruptcy => "bankruptcy",
+            RunEndReason::Abandoned => "abandoned",
+            RunEndReason::Lesson => "lesson",
         }
     }
 }
@@ -131,23 +131,23 @@ impl Ended {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct End {
     /// Reason.
-    pub reason: Ended,
+    pub reason: RunEndReason,
     /// Cash, dollars.
-    #[serde(serialize_with = "shortest")]
+    #[serde(serialize_with = "serialize_shortest")]
     pub cash: f64,
     /// Score; `None` for an abandoned run or a lesson.
-    #[serde(serialize_with = "shortest_if_any")]
+    #[serde(serialize_with = "serialize_shortest_option")]
     pub score: Option<f64>,
 }
 
 /// Accepts null, but not a missing field.
-fn may_be_null<'de, D: Deserializer<'de>>(field: D) -> Result<Option<Parent>, D::Error> {
+fn required_nullable<'de, D: Deserializer<'de>>(field: D) -> Result<Option<Parent>, D::Error> {
     Option::deserialize(field)
 }
 
 /// The output of a calculation before a week.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Calculated {
+pub struct CalculationOutput {
     /// Name.
     pub name: String,
     /// Output, cut to what the dashboard shows.

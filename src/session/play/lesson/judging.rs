@@ -1,15 +1,15 @@
 //! Judgement of a step: measurements of goals, guesses and pitfalls, and the reference play that goals are compared
 //! with.
 
-use super::conduct::weeks_passed;
-use super::reference::{PartPlay, answers_companies, play_part};
-use crate::play::{AnswersCompanies, Session};
+use super::progress::weeks_passed;
+use super::reference::{PartPlay, play_part, uses_rules};
+use crate::play::{RuleEvaluator, Session};
 use novamind_database::Cell;
 use novamind_record::lesson::{
-    Guess, GuessForm, GuessTold, LessonGoal, LessonStanding, Measurement, Pitfall,
+    Guess, GuessForm, LessonGoal, LessonProgress, Measurement, OutcomeTiming, Pitfall,
 };
 use novamind_record::trajectory::record::{LessonEvent, LessonNote};
-use novamind_tools::Refusal;
+use novamind_tools::Rejection;
 
 /// Returns the value of a measurement over the weeks that end after `from_day`; `None` if it has no value.
 ///
@@ -21,13 +21,13 @@ pub fn measure(
     from_day: u32,
 ) -> Result<Option<f64>, String> {
     match measurement.statement(from_day + 1, session.day()) {
-        Some(sql) => answer(session, &sql),
-        None => Ok(measurement.of_weeks(session.weeks().iter().filter(|week| week.day > from_day))),
+        Some(sql) => query_number(session, &sql),
+        None => Ok(measurement.aggregate(session.weeks().iter().filter(|week| week.day > from_day))),
     }
 }
 
-fn answer(session: &mut Session, sql: &str) -> Result<Option<f64>, String> {
-    let rows = session.look_into_database(sql).map_err(|refusal| refusal.message)?;
+fn query_number(session: &mut Session, sql: &str) -> Result<Option<f64>, String> {
+    let rows = session.query_unrecorded(sql).map_err(|refusal| refusal.message)?;
     match rows.rows.as_slice() {
         [row] if row.len() == 1 => Ok(match &row[0] {
             Cell::Integer(number) => Some(*number as f64),
@@ -41,10 +41,10 @@ fn answer(session: &mut Session, sql: &str) -> Result<Option<f64>, String> {
 impl Session {
     /// Sets the function that evaluates rules, needed for goals relative to a reference play with rules. Judges a
     /// step that has waited for it.
-    pub fn answer_companies_by(&mut self, answers: AnswersCompanies) {
-        self.company_answers = Some(answers);
+    pub fn set_rule_evaluator(&mut self, answers: RuleEvaluator) {
+        self.rule_evaluator = Some(answers);
         if self.log().is_written() && self.awaits_judgement() {
-            self.settle_lesson();
+            self.finish_lesson_week();
         }
     }
 
@@ -53,53 +53,59 @@ impl Session {
         let Some(standing) = self.lesson.as_deref().filter(|_| self.ended().is_none()) else {
             return false;
         };
-        let (part, weeks) = (standing.own_part(), weeks_passed(self));
+        let (part, weeks) = (standing.current_part(), weeks_passed(self));
         let step = weeks.checked_sub(1).and_then(|before| part.step_after(before));
         step.is_some_and(|step| {
-            standing.has_begun(step) && !standing.has_begun(step + 1) && weeks == part.weeks_of(step).1
+            standing.has_started(step) && !standing.has_started(step + 1) && weeks == part.step_weeks(step).1
         })
     }
 
     /// Whether judging a step needs a function that evaluates rules, and none is set.
-    pub(super) fn lacks_answers(&self, standing: &LessonStanding, step: usize) -> bool {
+    pub(super) fn lacks_rule_evaluator(&self, standing: &LessonProgress, step: usize) -> bool {
         let is_relative = |goal: &LessonGoal| goal.bound.is_relative();
-        self.company_answers.is_none()
+        self.rule_evaluator.is_none()
             && standing.step(step).is_some_and(|own| own.goals.iter().any(is_relative))
-            && answers_companies(&standing.lesson.plan.good.plays)
+            && uses_rules(&standing.lesson.plan.good.plays)
     }
 
     /// Records the pitfalls that occurred in the last week for the first time.
-    pub(super) fn note_pitfalls(&mut self, standing: &LessonStanding, step: usize, weeks: u32) {
-        let met = standing.pitfalls();
+    pub(super) fn record_pitfalls(&mut self, standing: &LessonProgress, step: usize, weeks: u32) {
+        let met = standing.met_pitfalls();
         let own = |pitfall: &&Pitfall| pitfall.part == standing.part && !met.contains(&pitfall.name.as_str());
         let from = weeks.saturating_sub(1) * self.params().run.days_per_week;
         for pitfall in standing.lesson.plan.pitfalls.iter().filter(own) {
             let value = measure(&pitfall.measurement, self, from).ok().flatten();
-            if value.is_some_and(|value| pitfall.bound.is_met_by(value)) {
-                let about = LessonNote::about(LessonEvent::Pitfall, step as u32 + 1);
+            if value.is_some_and(|value| pitfall.bound.is_exceeded_by(value)) {
+                let about = LessonNote::new(LessonEvent::Pitfall, step as u32 + 1);
                 let (name, bound) = (Some(pitfall.name.clone()), Some(pitfall.bound.limit()));
-                let _ = self.note_lesson(LessonNote { name, value, bound, ..about });
+                let _ = self.record_lesson_event(LessonNote { name, value, bound, ..about });
             }
         }
     }
 
     /// Records the outcomes of guesses of a completed step; at the end of the part also of guesses that wait for it.
-    pub(super) fn judge_guesses(&mut self, standing: &LessonStanding, step: usize, is_over: bool) {
-        let part = standing.own_part();
+    pub(super) fn judge_guesses(&mut self, standing: &LessonProgress, step: usize, is_over: bool) {
+        let part = standing.current_part();
         let is_last = is_over || step + 1 == part.steps.len();
         for (at, own) in part.steps.iter().enumerate().take(step + 1) {
             let Some(guess) = own.guess.as_ref().filter(|_| standing.outcome(at).is_none()) else { continue };
-            let is_due = if guess.told == GuessTold::Part { is_last } else { at == step };
+            let is_due = if guess.told == OutcomeTiming::Part { is_last } else { at == step };
             if is_due {
-                let from = part.weeks_of(at).0 * self.params().run.days_per_week;
-                let outcome = self.outcome_of(standing, guess, at, from);
-                let _ = self.note_lesson(outcome);
+                let from = part.step_weeks(at).0 * self.params().run.days_per_week;
+                let outcome = self.guess_outcome(standing, guess, at, from);
+                let _ = self.record_lesson_event(outcome);
             }
         }
     }
 
-    fn outcome_of(&mut self, standing: &LessonStanding, guess: &Guess, step: usize, from: u32) -> LessonNote {
-        let about = LessonNote::about(LessonEvent::Outcome, step as u32 + 1);
+    fn guess_outcome(
+        &mut self,
+        standing: &LessonProgress,
+        guess: &Guess,
+        step: usize,
+        from: u32,
+    ) -> LessonNote {
+        let about = LessonNote::new(LessonEvent::Outcome, step as u32 + 1);
         match &guess.form {
             GuessForm::Number { outcome, .. } => {
                 LessonNote { value: measure(outcome, self, from).ok().flatten(), ..about }
@@ -112,26 +118,26 @@ impl Session {
         }
     }
 
-    pub(super) fn judge_goals(&mut self, standing: &LessonStanding, step: usize, begin: u32) {
+    pub(super) fn judge_goals(&mut self, standing: &LessonProgress, step: usize, begin: u32) {
         let Some(own) = standing.step(step) else { return };
         let from = begin * self.params().run.days_per_week;
-        let judged = standing.goals(step).len();
-        let mut good = self.good_play(standing, step);
+        let judged = standing.goal_results(step).len();
+        let mut good = self.reference_play(standing, step);
         for (number, goal) in own.goals.iter().enumerate().skip(judged) {
             let value = measure(&goal.measurement, self, from).ok().flatten();
             let good = good.as_mut().filter(|_| goal.bound.is_relative());
             let good = good.and_then(|play| measure(&goal.measurement, play, from).ok().flatten());
             let bound = goal.bound.value(good);
             let met = value.zip(bound).is_some_and(|(value, bound)| goal.bound.is_reached(value, bound));
-            let about = LessonNote::about(LessonEvent::Goal, step as u32 + 1);
+            let about = LessonNote::new(LessonEvent::Goal, step as u32 + 1);
             let number = Some(number as u32 + 1);
-            let _ = self.note_lesson(LessonNote { number, value, bound, met: Some(met), ..about });
+            let _ = self.record_lesson_event(LessonNote { number, value, bound, met: Some(met), ..about });
         }
     }
 
     /// Returns the reference play on the seed of this run, up to the end of a step. `None` if no goal of the step
     /// depends on it, or if it cannot be played.
-    fn good_play(&self, standing: &LessonStanding, step: usize) -> Option<Session> {
+    fn reference_play(&self, standing: &LessonProgress, step: usize) -> Option<Session> {
         let goals = &standing.step(step)?.goals;
         let mut relative = goals.iter().filter(|goal| goal.bound.is_relative()).peekable();
         relative.peek()?;
@@ -139,13 +145,13 @@ impl Session {
             lesson: &standing.lesson,
             part: standing.part,
             seed: Some(self.manifest().seed),
-            plays: &standing.lesson.plan.good.plays,
-            weeks: Some(standing.own_part().weeks_of(step).1),
+            scheduled_calls: &standing.lesson.plan.good.plays,
+            weeks: Some(standing.current_part().step_weeks(step).1),
             // Judging its goals would need the reference play again.
             is_judged: false,
-            asks_database: relative.any(|goal| goal.measurement.needs_database()),
+            needs_database: relative.any(|goal| goal.measurement.needs_database()),
         };
-        let refuses: AnswersCompanies = |_, _| Err(Refusal::new("not_possible", "rules are not available"));
-        play_part(&play, self.company_answers.unwrap_or(refuses)).ok()
+        let refuses: RuleEvaluator = |_, _| Err(Rejection::new("not_possible", "rules are not available"));
+        play_part(&play, self.rule_evaluator.unwrap_or(refuses)).ok()
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! The definition of lessons is in `novamind-record`; pages, answers and debriefs are in `novamind-course`.
 
-mod beginning;
-pub(crate) mod conduct;
 pub(crate) mod judging;
+pub(crate) mod progress;
 pub(crate) mod reference;
+mod start;

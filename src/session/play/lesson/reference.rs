@@ -1,17 +1,17 @@
 //! Reference plays: scheduled calls of a lesson, played in memory.
 
-use super::conduct::lesson_step;
+use super::progress::lesson_step;
 use std::sync::Arc;
 
 use crate::create::NewRun;
 use crate::create::lesson_entry::LessonEntry;
-use crate::play::{AnswersCompanies, Session};
+use crate::play::{RuleEvaluator, Session};
 use novamind_record::error::RunError;
 use novamind_record::folder::configuration::Configuration;
 use novamind_record::lesson::{Lesson, LessonCall, ScheduledCalls};
 use novamind_record::mode::Mode;
 use novamind_record::trajectory::record::{LessonEvent, LessonNote, Via};
-use novamind_tools::Refusal;
+use novamind_tools::Rejection;
 
 /// A scheduled play of a part.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,16 +23,16 @@ pub struct PartPlay<'a> {
     /// The seed; by default that of the part.
     pub seed: Option<u64>,
     /// Scheduled calls.
-    pub plays: &'a [ScheduledCalls],
+    pub scheduled_calls: &'a [ScheduledCalls],
     /// Number of weeks after which the play stops; by default at the end of the part.
     pub weeks: Option<u32>,
     /// Whether goals and pitfalls are checked.
     pub is_judged: bool,
     /// Whether it needs a database.
-    pub asks_database: bool,
+    pub needs_database: bool,
 }
 
-pub(super) fn answers_companies(plays: &[ScheduledCalls]) -> bool {
+pub(super) fn uses_rules(plays: &[ScheduledCalls]) -> bool {
     let is_rules = |call: &LessonCall| matches!(call, LessonCall::Rules(_));
     plays.iter().any(|play| play.calls.iter().any(is_rules))
 }
@@ -41,8 +41,8 @@ pub(super) fn answers_companies(plays: &[ScheduledCalls]) -> bool {
 ///
 /// # Errors
 /// The part cannot start, or a call is rejected.
-pub fn play_part(play: &PartPlay<'_>, answers: AnswersCompanies) -> Result<Session, RunError> {
-    play_part_watched(play, answers, &mut |_| {}, &mut |_, _| Ok(()))
+pub fn play_part(play: &PartPlay<'_>, answers: RuleEvaluator) -> Result<Session, RunError> {
+    play_part_with_hooks(play, answers, &mut |_| {}, &mut |_, _| Ok(()))
 }
 
 /// Like [`play_part`]. `before_week` is called before each week, after its calls. `after_week` is called with the
@@ -50,9 +50,9 @@ pub fn play_part(play: &PartPlay<'_>, answers: AnswersCompanies) -> Result<Sessi
 ///
 /// # Errors
 /// As [`play_part`], and the errors of `after_week`.
-pub fn play_part_watched(
+pub fn play_part_with_hooks(
     play: &PartPlay<'_>,
-    answers: AnswersCompanies,
+    answers: RuleEvaluator,
     before_week: &mut dyn FnMut(&Session),
     after_week: &mut dyn FnMut(&mut Session, u32) -> Result<(), RunError>,
 ) -> Result<Session, RunError> {
@@ -63,11 +63,11 @@ pub fn play_part_watched(
         seed: play.seed,
         lesson: Some(entry),
         // Rules query the database for open threads.
-        projection: play.asks_database || answers_companies(play.plays),
+        projection: play.needs_database || uses_rules(play.scheduled_calls),
         ..NewRun::default()
     };
-    let mut session = Session::create(new, &Configuration::shipped())?;
-    session.company_answers = Some(answers);
+    let mut session = Session::create(new, &Configuration::bundled())?;
+    session.rule_evaluator = Some(answers);
     let last = play.weeks.unwrap_or(part.weeks()).min(part.weeks());
     for week in part.start_weeks..last {
         if session.ended().is_some() {
@@ -76,7 +76,7 @@ pub fn play_part_watched(
         let made = play_week(&mut session, play, week, answers, before_week);
         made.map_err(|refusal| {
             let name = &play.lesson.name;
-            RunError::NotPossible(format!("lesson {name}, part {}, week {week}: {refusal}", play.part + 1))
+            RunError::InvalidRequest(format!("lesson {name}, part {}, week {week}: {refusal}", play.part + 1))
         })?;
         after_week(&mut session, week + 1)?;
     }
@@ -87,10 +87,10 @@ fn play_week(
     session: &mut Session,
     play: &PartPlay<'_>,
     week: u32,
-    answers: AnswersCompanies,
+    answers: RuleEvaluator,
     before_week: &mut dyn FnMut(&Session),
-) -> Result<(), Refusal> {
-    let due = play.plays.iter().filter(|own| own.are_due(play.part, week));
+) -> Result<(), Rejection> {
+    let due = play.scheduled_calls.iter().filter(|own| own.are_due(play.part, week));
     for call in due.flat_map(|own| &own.calls) {
         match call {
             LessonCall::Tool(tool, args) => {
@@ -106,8 +106,8 @@ fn play_week(
     before_week(session);
     let awaits = |step: &usize| session.lesson().is_some_and(|own| own.awaits_guess(*step));
     if let Some(step) = lesson_step(session).filter(awaits) {
-        let about = LessonNote::about(LessonEvent::Guess, step as u32 + 1);
-        session.note_lesson(LessonNote { value: Some(1.0), ..about })?;
+        let about = LessonNote::new(LessonEvent::Guess, step as u32 + 1);
+        session.record_lesson_event(LessonNote { value: Some(1.0), ..about })?;
     }
     let forecasts = session.company().naive_forecasts();
     session.advance("reference play", &forecasts, Via::Script, &mut |_| {}).map(|_| ())

@@ -1,19 +1,19 @@
 use ratatui::symbols::Marker;
 
 use super::*;
-use crate::painted;
+use crate::render_rows;
 
 fn drawn(plot: &Plot<'_>, width: u16, height: u16, marker: Marker) -> Vec<String> {
-    painted(width, height, |canvas, area| {
+    render_rows(width, height, |canvas, area| {
         canvas.marker = marker;
         plot.draw(canvas, area);
     })
 }
 
-fn plot<'a>(lines: &'a [Line], band: Option<&'a Band>) -> Plot<'a> {
-    let x = &Axis { write: &day, holds: &[] };
-    let y = &Side { unit: Unit::Dollars, holds: &[] };
-    Plot { lines, band, mark: None, x, y }
+fn plot<'a>(lines: &'a [Curve], band: Option<&'a Band>) -> Plot<'a> {
+    let x = &XAxis { format: &day, required_values: &[] };
+    let y = &YAxis { unit: AxisUnit::Dollars, required_values: &[] };
+    Plot { curves: lines, band, marked_x: None, x, y }
 }
 
 fn day(day: f64) -> String {
@@ -21,9 +21,9 @@ fn day(day: f64) -> String {
 }
 
 #[test]
-fn labels_are_round_lie_on_the_axis_and_end_with_the_data() {
+fn axis_labels_are_round_and_within_the_data() {
     let rising: Vec<f64> = (0..=252).map(|day| f64::from(day) * 40_000.0).collect();
-    let lines = [Line::of(&rising, Role::Text).named("cash")];
+    let lines = [Curve::from_values(&rising, Role::Text).with_name("cash")];
     let picture = drawn(&plot(&lines, None), 60, 14, Marker::Braille);
     let text = picture.join("\n");
     let days =
@@ -39,7 +39,7 @@ fn labels_are_round_lie_on_the_axis_and_end_with_the_data() {
 
 #[test]
 fn every_marker_draws_the_same_curve() {
-    let lines = [Line::of(&[0.0, 1.0], Role::Text)];
+    let lines = [Curve::from_values(&[0.0, 1.0], Role::Text)];
     for (marker, glyphs) in
         [(Marker::Braille, "⡠⠊⠔⠁⢀⠈⠑⠤⠒⡔⠜⠎"), (Marker::HalfBlock, "▀▄█"), (Marker::Dot, "•")]
     {
@@ -50,12 +50,12 @@ fn every_marker_draws_the_same_curve() {
 }
 
 #[test]
-fn a_band_is_shaded_where_it_is_and_names_never_share_a_row() {
+fn bands_are_shaded_and_names_have_separate_rows() {
     let lines = [
-        Line::of(&[1.0, 2.0, 3.0], Role::Text).named("one"),
-        Line::of(&[1.0, 2.0, 3.0], Role::Text).named("two"),
+        Curve::from_values(&[1.0, 2.0, 3.0], Role::Text).with_name("one"),
+        Curve::from_values(&[1.0, 2.0, 3.0], Role::Text).with_name("two"),
     ];
-    let band = Band { ends: vec![(1.0, 1.0, 2.0), (2.0, 2.0, 4.0)], name: "95 %" };
+    let band = Band { bounds: vec![(1.0, 1.0, 2.0), (2.0, 2.0, 4.0)], name: "95 %" };
     let picture = drawn(&plot(&lines, Some(&band)), 60, 12, Marker::Braille);
     let text = picture.join("\n");
     assert!(picture.iter().any(|line| line.contains("░░░")), "{text}");
@@ -63,26 +63,31 @@ fn a_band_is_shaded_where_it_is_and_names_never_share_a_row() {
     for name in ["one", "two", "95 %"] {
         assert_eq!(picture.iter().filter(|line| line.ends_with(name)).count(), 1, "{text}");
     }
-    assert_eq!((band.at(0.5), band.at(1.5), band.at(2.5)), (None, Some((1.5, 3.0)), None));
+    assert_eq!(
+        (band.bounds_at(0.5), band.bounds_at(1.5), band.bounds_at(2.5)),
+        (None, Some((1.5, 3.0)), None)
+    );
 }
 
 #[test]
-fn nothing_is_drawn_without_points_and_no_value_is_too_strange() {
+fn charts_accept_no_points_and_extreme_values() {
     let nothing = drawn(&plot(&[], None), 60, 8, Marker::Braille);
     assert!(nothing[0].starts_with("no data"));
-    let one = drawn(&plot(&[Line::of(&[5.0], Role::Text)], None), 60, 8, Marker::Braille).join("\n");
+    let one =
+        drawn(&plot(&[Curve::from_values(&[5.0], Role::Text)], None), 60, 8, Marker::Braille).join("\n");
     assert!(one.contains('•') && one.contains("$0┤"), "{one}");
-    let zeros = drawn(&plot(&[Line::of(&[0.0; 9], Role::Text)], None), 60, 8, Marker::Braille).join("\n");
+    let zeros =
+        drawn(&plot(&[Curve::from_values(&[0.0; 9], Role::Text)], None), 60, 8, Marker::Braille).join("\n");
     assert!(zeros.contains("$0┤") && zeros.contains("$1┤") && !zeros.contains('-'), "{zeros}");
     for values in [[f64::NAN, 1.0, 1.0], [1e300, -1e300, 0.0], [0.0, 1e-300, 0.0], [5.0, 5.0, 5.0]] {
         for (width, height) in [(16, 4), (17, 5), (60, 20), (300, 60)] {
-            drawn(&plot(&[Line::of(&values, Role::Text)], None), width, height, Marker::Braille);
+            drawn(&plot(&[Curve::from_values(&values, Role::Text)], None), width, height, Marker::Braille);
         }
     }
 }
 
 #[test]
-fn a_chart_in_words_says_as_much_as_has_room() {
+fn summary_is_as_long_as_its_width_allows() {
     let values = [3.0, 1.0, 2.0];
     let write = |value: f64| format!("{value:.0}");
     assert_eq!(summary(&values, &write, 80), "2 ▲ 1 · min 1 · max 3");
@@ -92,9 +97,9 @@ fn a_chart_in_words_says_as_much_as_has_room() {
 }
 
 #[test]
-fn a_steep_band_is_connected() {
-    let lines = [Line::of(&[0.0; 2], Role::Text)];
-    let band = Band { ends: vec![(0.0, 0.0, 0.0), (20.0, 0.9e6, 1.0e6), (22.0, 0.1e6, 0.2e6)], name: "" };
+fn steep_bands_have_no_gaps() {
+    let lines = [Curve::from_values(&[0.0; 2], Role::Text)];
+    let band = Band { bounds: vec![(0.0, 0.0, 0.0), (20.0, 0.9e6, 1.0e6), (22.0, 0.1e6, 0.2e6)], name: "" };
     let picture = drawn(&plot(&lines, Some(&band)), 40, 20, Marker::Braille);
     let cell = |column: usize, row: usize| picture[row].chars().nth(column) == Some('░');
     let rows = |column: usize| (0..18).filter(|row| cell(column, *row)).collect::<Vec<_>>();

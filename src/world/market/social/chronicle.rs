@@ -47,7 +47,7 @@ canonical! {
 
 impl Chronicle {
     /// Returns the record of day 0.
-    pub fn opening(settings: &Settings) -> Chronicle {
+    pub fn initial(settings: &Settings) -> Chronicle {
         let page = Page {
             day: 0,
             bonus: ByGroup::default(),
@@ -63,7 +63,7 @@ impl Chronicle {
     }
 
     /// Appends a page at the end of a day and removes the oldest if necessary.
-    pub fn write(&mut self, day: u32, service: &ServiceDay, settings: &Settings, product: &Product) {
+    pub fn append_day(&mut self, day: u32, service: &ServiceDay, settings: &Settings, product: &Product) {
         let surplus = (self.days.len()).saturating_sub(MEMORY_DAYS);
         self.days.drain(..surplus);
         self.days.push(Page {
@@ -90,17 +90,17 @@ impl Chronicle {
     }
 
     /// Returns the newest pages, newest first.
-    pub fn last(&self, days: usize) -> impl Iterator<Item = &Page> {
+    pub fn newest_first(&self, days: usize) -> impl Iterator<Item = &Page> {
         self.days.iter().rev().take(days)
     }
 
     /// Returns all pages with their predecessors, newest first.
-    pub fn steps(&self) -> impl Iterator<Item = (&Page, &Page)> {
+    pub fn consecutive_pages(&self) -> impl Iterator<Item = (&Page, &Page)> {
         self.days.windows(2).rev().map(|pair| (&pair[0], &pair[1]))
     }
 
     /// Returns the change of a group's quality over the recorded days.
-    pub fn progress(&self, group: Group) -> f64 {
+    pub fn quality_change(&self, group: Group) -> f64 {
         self.today().bonus[group] - self.oldest().bonus[group]
     }
 }
@@ -111,19 +111,22 @@ mod tests {
     use crate::params::Params;
 
     #[test]
-    fn four_weeks_are_remembered() {
-        let params = Params::shipped();
-        let (mut settings, mut product) = (Settings::opening(&params), Product::opening(&params));
-        let mut chronicle = Chronicle::opening(&settings);
+    fn chronicle_keeps_four_weeks() {
+        let params = Params::bundled();
+        let (mut settings, mut product) = (Settings::initial(&params), Product::initial(&params));
+        let mut chronicle = Chronicle::initial(&settings);
         let group = Group::at(0).expect("S1");
         for day in 1..=40 {
             settings.core.prices.0[0] = f64::from(day);
             product.group_bonus[group] += 0.5;
-            chronicle.write(day, &ServiceDay::quiet(), &settings, &product);
+            chronicle.append_day(day, &ServiceDay::without_load(), &settings, &product);
         }
         assert_eq!((chronicle.oldest().day, chronicle.today().day), (12, 40));
-        assert_eq!(chronicle.progress(group), 14.0);
-        assert_eq!(chronicle.last(14).last().map(|page| page.day), Some(27));
-        assert_eq!(chronicle.steps().next().map(|(before, after)| (before.day, after.day)), Some((39, 40)));
+        assert_eq!(chronicle.quality_change(group), 14.0);
+        assert_eq!(chronicle.newest_first(14).last().map(|page| page.day), Some(27));
+        assert_eq!(
+            chronicle.consecutive_pages().next().map(|(before, after)| (before.day, after.day)),
+            Some((39, 40))
+        );
     }
 }

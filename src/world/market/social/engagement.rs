@@ -77,8 +77,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn engagement_follows_its_draws() {
-        let law = Params::shipped().social;
+    fn engagement_matches_its_draws() {
+        let law = Params::bundled().social;
         for (tone, likes, shares, [factor, spike, a, b, c], expected) in [
             (Sentiment::Negative, 40, 10, [0.4, 0.5, 0.0, 0.0, 0.0], (76, 19, 1.0)),
             (Sentiment::Positive, 40, 9, [0.4, 0.5, 0.0, 0.0, 0.0], (48, 10, 0.468)),
@@ -94,15 +94,15 @@ mod tests {
     }
 
     #[test]
-    fn discoverable_companies_count_as_individuals() {
-        let params = Params::shipped();
+    fn discoverable_enterprises_use_individual_ranges() {
+        let params = Params::bundled();
         assert_eq!(engagement_ranges("E1", &params), [(5, 49), (0, 9)]);
         assert_eq!(engagement_ranges("D_E01", &params), [(1, 99), (0, 29)]);
     }
 
     #[test]
-    fn means_of_engagement_are_those_of_the_release() {
-        let params = Params::shipped();
+    fn mean_engagement_matches_the_release() {
+        let params = Params::bundled();
         let mut stream = crate::random::Streams::new(5).open(crate::random::Part::CustomerPosts, [1]);
         for (sentiment, id, likes, shares) in [
             (Sentiment::Positive, "S1", 65.9, Some(18.2)),

@@ -1,23 +1,23 @@
 //! Social media: posts of customers, the press, and the player's posts (docs/mechanics/market/social/README.md).
 //!
 //! Posts of others have no effect; they are information. The player's posts affect leads after the judge of
-//! the `voice` crate has determined the reaction of each group ([`reach::receive`]).
+//! the `voice` crate has determined the reaction of each group ([`reach::apply_reactions`]).
 
 pub mod chronicle;
-pub mod crowd;
 pub mod engagement;
 pub mod opinions;
-pub mod own;
+pub mod own_posts;
+pub mod post_lottery;
 pub mod press;
 pub mod reach;
 pub mod sentiment;
 pub mod weights;
 
 use crate::canonical::canonical;
-use crate::events::{Engagement, Facts, Matter, Post, PostAuthor, Sentiment};
+use crate::events::{Engagement, Facts, Post, PostAuthor, PostSubject, Sentiment};
 use crate::settings::Settings;
 use chronicle::Chronicle;
-use own::OwnPost;
+use own_posts::OwnPost;
 
 /// The state of social media.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,8 +36,8 @@ canonical! { Social { next_post, own, next_round, chronicle } }
 
 impl Social {
     /// Returns the state on day 0.
-    pub fn opening(settings: &Settings) -> Social {
-        Social { next_post: 1, own: Vec::new(), next_round: None, chronicle: Chronicle::opening(settings) }
+    pub fn initial(settings: &Settings) -> Social {
+        Social { next_post: 1, own: Vec::new(), next_round: None, chronicle: Chronicle::initial(settings) }
     }
 
     /// Returns whether a post by others has this number.
@@ -51,7 +51,7 @@ impl Social {
         author: Option<PostAuthor>,
         sentiment: Sentiment,
         engagement: Engagement,
-        matter: Matter,
+        matter: PostSubject,
         facts: &mut Facts,
     ) -> u32 {
         let post = self.next_post;

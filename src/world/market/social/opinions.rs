@@ -2,24 +2,24 @@
 //! (docs/mechanics/market/social/opinions.md).
 
 use super::chronicle::Chronicle;
-use super::weights::Loudness;
+use super::weights::PostWeightInputs;
 use crate::context::DayContext;
 use crate::customers::columns::Block;
-use crate::events::{Cause, Opinion, Theme, Troubles};
+use crate::events::{Opinion, PostCause, Theme, Troubles};
 use crate::identifiers::Group;
 use crate::params::SocialParams;
 use crate::quality::{quota_demand, quota_factor, relationship_as_read, relationship_bonus, service_penalty};
 
 /// Shared inputs of today's opinions.
 #[derive(Clone, Copy)]
-pub struct Scene<'a> {
+pub struct OpinionContext<'a> {
     /// The day.
     pub day: &'a DayContext<'a>,
     /// Record of the last four weeks.
     pub chronicle: &'a Chronicle,
 }
 
-impl Scene<'_> {
+impl OpinionContext<'_> {
     #[inline]
     fn quota_factor(&self, block: &Block, at: usize) -> f64 {
         let rate = block.usage_rate[at];
@@ -40,9 +40,9 @@ impl Scene<'_> {
 
     /// Returns the inputs of a row's post weight; `before` is its satisfaction before today's update.
     #[inline]
-    pub fn loudness(&self, group: Group, block: &Block, at: usize, before: f64) -> Loudness {
+    pub fn weight_inputs(&self, group: Group, block: &Block, at: usize, before: f64) -> PostWeightInputs {
         let satisfaction = block.satisfaction[at];
-        Loudness {
+        PostWeightInputs {
             satisfaction,
             change: satisfaction - before,
             influencer: self.day.params.group(group).influencer,
@@ -59,14 +59,14 @@ impl Scene<'_> {
         let troubles = self.troubles(block, at);
         let change = block.satisfaction[at] - before;
         let worths = if block.satisfaction[at] < 0.0 {
-            self.complaints(group, block, at)
+            self.complaint_weights(group, block, at)
         } else {
-            self.praises(group, block, at)
+            self.praise_weights(group, block, at)
         };
         Opinion {
-            cause: cause(troubles, change, &self.day.params.social),
+            cause: post_cause(troubles, change, &self.day.params.social),
             troubles,
-            theme: theme(&worths, u),
+            theme: pick_theme(&worths, u),
             days_subscribed: self.day.day() - block.start_day[at],
             plan: Some(block.plan[at]),
             price: block.effective_price[at],
@@ -77,10 +77,10 @@ impl Scene<'_> {
     }
 
     /// Returns a row's complaints with the quality that each costs.
-    fn complaints(&self, group: Group, block: &Block, at: usize) -> Vec<(Theme, f64)> {
+    fn complaint_weights(&self, group: Group, block: &Block, at: usize) -> Vec<(Theme, f64)> {
         let quality = &self.day.params.quality;
         let delivered = self.day.morning.delivered(group, block.plan[at]);
-        let (needed, share) = self.price_of_quality(block, at);
+        let (needed, share) = self.required_quality_and_budget_share(block, at);
         let shortage = (block.q_min[at] - delivered).max(0.0);
         let relationship = self.relationship(block, at);
         let issues = quality.issue_penalty_per_open_day * f64::from(block.open_issue_days[at]);
@@ -97,11 +97,11 @@ impl Scene<'_> {
     }
 
     /// Returns what a row values, with the quality that each adds.
-    fn praises(&self, group: Group, block: &Block, at: usize) -> Vec<(Theme, f64)> {
+    fn praise_weights(&self, group: Group, block: &Block, at: usize) -> Vec<(Theme, f64)> {
         let quality = &self.day.params.quality;
         let delivered = self.day.morning.delivered(group, block.plan[at]);
         let surplus = (delivered - block.q_min[at]).max(0.0);
-        let (_, share) = self.price_of_quality(block, at);
+        let (_, share) = self.required_quality_and_budget_share(block, at);
         // The quality that bad service would have cost minus the quality it did cost in recent weeks.
         let calm = (quality.service_overload_weight - self.mean_penalty()).max(0.0);
         vec![
@@ -109,13 +109,13 @@ impl Scene<'_> {
             (Theme::Quality, surplus * share),
             (Theme::Service, calm),
             (Theme::Support, self.relationship(block, at).max(0.0)),
-            (Theme::Progress, self.chronicle.progress(group).max(0.0)),
+            (Theme::Progress, self.chronicle.quality_change(group).max(0.0)),
             (Theme::Habit, self.day.tenure.bonus(self.day.day() - block.start_day[at])),
         ]
     }
 
     /// Returns the quality that the price of a row requires, and the share of its budget that the price takes, 0..=1.
-    fn price_of_quality(&self, block: &Block, at: usize) -> (f64, f64) {
+    fn required_quality_and_budget_share(&self, block: &Block, at: usize) -> (f64, f64) {
         let needed = (block.required[at] - block.q_min[at]).max(0.0);
         let budget = block.effective_c_max[at];
         let share = if budget > 0.0 { block.effective_price[at] / budget } else { 1.0 };
@@ -131,7 +131,7 @@ impl Scene<'_> {
     fn mean_penalty(&self) -> f64 {
         const DAYS: usize = 14;
         let penalty = |overload, outage| service_penalty(overload, outage, &self.day.params.quality);
-        let pages = self.chronicle.last(DAYS);
+        let pages = self.chronicle.newest_first(DAYS);
         let (sum, count) = pages
             .fold((0.0, 0.0), |(sum, count), page| (sum + penalty(page.overload, page.outage), count + 1.0));
         sum / count
@@ -139,20 +139,20 @@ impl Scene<'_> {
 }
 
 /// Returns the cause of a post: the first problem, otherwise a change of satisfaction, otherwise general.
-pub fn cause(troubles: Troubles, change: f64, law: &SocialParams) -> Cause {
+pub fn post_cause(troubles: Troubles, change: f64, law: &SocialParams) -> PostCause {
     match troubles {
-        Troubles { overload: true, .. } => Cause::Overload,
-        Troubles { outage: true, .. } => Cause::Outage,
-        Troubles { issue: true, .. } => Cause::Issue,
-        Troubles { quota: true, .. } => Cause::Quota,
-        _ if change.abs() < law.satisfaction_change_threshold => Cause::General,
-        _ if change > 0.0 => Cause::Improved,
-        _ => Cause::Declined,
+        Troubles { overload: true, .. } => PostCause::Overload,
+        Troubles { outage: true, .. } => PostCause::Outage,
+        Troubles { issue: true, .. } => PostCause::Issue,
+        Troubles { quota: true, .. } => PostCause::Quota,
+        _ if change.abs() < law.satisfaction_change_threshold => PostCause::General,
+        _ if change > 0.0 => PostCause::Improved,
+        _ => PostCause::Declined,
     }
 }
 
 /// Picks a theme by weight; quality if all weights are zero.
-pub fn theme(worths: &[(Theme, f64)], u: f64) -> Theme {
+pub fn pick_theme(worths: &[(Theme, f64)], u: f64) -> Theme {
     let total: f64 = worths.iter().map(|(_, worth)| worth).sum();
     let mut left = u * total;
     for (theme, worth) in worths {
@@ -170,30 +170,30 @@ mod tests {
     use crate::params::Params;
 
     #[test]
-    fn troubles_come_before_moods_and_overload_before_all() {
-        let law = Params::shipped().social;
+    fn troubles_precede_satisfaction_changes() {
+        let law = Params::bundled().social;
         let none = Troubles::default();
         let all = Troubles { overload: true, outage: true, issue: true, quota: true };
         for (troubles, change, expected) in [
-            (all, 0.5, Cause::Overload),
-            (Troubles { overload: false, ..all }, 0.5, Cause::Outage),
-            (Troubles { issue: true, quota: true, ..none }, 0.0, Cause::Issue),
-            (Troubles { quota: true, ..none }, -0.5, Cause::Quota),
-            (none, 0.02, Cause::Improved),
-            (none, -0.02, Cause::Declined),
-            (none, 0.019, Cause::General),
+            (all, 0.5, PostCause::Overload),
+            (Troubles { overload: false, ..all }, 0.5, PostCause::Outage),
+            (Troubles { issue: true, quota: true, ..none }, 0.0, PostCause::Issue),
+            (Troubles { quota: true, ..none }, -0.5, PostCause::Quota),
+            (none, 0.02, PostCause::Improved),
+            (none, -0.02, PostCause::Declined),
+            (none, 0.019, PostCause::General),
         ] {
-            assert_eq!(cause(troubles, change, &law), expected, "{troubles:?} {change}");
+            assert_eq!(post_cause(troubles, change, &law), expected, "{troubles:?} {change}");
         }
         assert_eq!(all.count(), 4);
     }
 
     #[test]
-    fn themes_are_drawn_by_their_worth() {
+    fn themes_are_picked_by_weight() {
         let worths = [(Theme::Price, 0.1), (Theme::Rivals, 0.0), (Theme::Quality, 0.3)];
-        assert_eq!(theme(&worths, 0.0), Theme::Price);
-        assert_eq!(theme(&worths, 0.24), Theme::Price);
-        assert_eq!(theme(&worths, 0.26), Theme::Quality);
-        assert_eq!(theme(&[(Theme::Ads, 0.0)], 0.5), Theme::Quality);
+        assert_eq!(pick_theme(&worths, 0.0), Theme::Price);
+        assert_eq!(pick_theme(&worths, 0.24), Theme::Price);
+        assert_eq!(pick_theme(&worths, 0.26), Theme::Quality);
+        assert_eq!(pick_theme(&[(Theme::Ads, 0.0)], 0.5), Theme::Quality);
     }
 }

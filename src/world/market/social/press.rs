@@ -1,14 +1,14 @@
 //! Press posts about competitors and the economy (docs/mechanics/market/social/press.md).
 
 use super::Social;
-use crate::events::{Engagement, Facts, Matter, Reading, Sentiment, Severity, Trend};
+use crate::events::{Engagement, Facts, PostSubject, Reading, Sentiment, Severity, Trend};
 use crate::market::competitors::{Event, severity};
 use crate::market::economy::Economy;
 use crate::params::{Competitor, MacroEconomy, Params};
 use crate::random::{Part, Stream, Streams};
 
 /// Returns the event that the press covers: the oldest one still within its coverage period.
-pub fn topic<'a>(day: u32, events: &'a [Event], law: &Competitor) -> Option<&'a Event> {
+pub fn current_event<'a>(day: u32, events: &'a [Event], law: &Competitor) -> Option<&'a Event> {
     events.iter().find(|event| event.day + law.competitor_event_post_days >= day)
 }
 
@@ -18,7 +18,7 @@ pub fn estimated_boost(boost: f64, u: f64) -> f64 {
 }
 
 /// Returns views, likes and shares of a post about a competitor: int(base (1 + U)), int(views ratio (1 + U)).
-pub fn rival_engagement(
+pub fn competitor_engagement(
     severity: Severity,
     [views, likes, shares]: [f64; 3],
     law: &Competitor,
@@ -39,7 +39,7 @@ pub fn rival_engagement(
 }
 
 /// Writes today's posts about competitors.
-pub fn write_about_rivals(
+pub fn write_competitor_posts(
     day: u32,
     events: &[Event],
     social: &mut Social,
@@ -48,7 +48,7 @@ pub fn write_about_rivals(
     facts: &mut Facts,
 ) {
     let law = &params.competitor;
-    let Some(event) = topic(day, events, law) else { return };
+    let Some(event) = current_event(day, events, law) else { return };
     let mut stream = streams.open(Part::CompetitorPosts, [u64::from(day)]);
     let u = stream.between(law.competitor_post_boost_noise_min, law.competitor_post_boost_noise_max);
     let estimate = estimated_boost(event.boost, u);
@@ -57,8 +57,8 @@ pub fn write_about_rivals(
         let name = stream.index(law.competitor_names.len()) as u8;
         let perspective = stream.index(law.post_perspective_count as usize) as u8;
         let draws = [stream.uniform(), stream.uniform(), stream.uniform()];
-        let engagement = rival_engagement(severity, draws, law);
-        let matter = Matter::Rival { name, perspective, severity, estimate };
+        let engagement = competitor_engagement(severity, draws, law);
+        let matter = PostSubject::CompetitorEvent { name, perspective, severity, estimate };
         social.publish(None, Sentiment::Neutral, engagement, matter, facts);
     }
 }
@@ -85,7 +85,7 @@ pub fn economy_engagement([views, likes, shares]: [f64; 3], law: &MacroEconomy) 
 
 /// Writes today's posts about the economy: one for each published reading, and at intervals a round of
 /// opinions about its current state.
-pub fn write_about_the_economy(
+pub fn write_economy_posts(
     day: u32,
     economy: &Economy,
     social: &mut Social,
@@ -101,7 +101,7 @@ pub fn write_about_the_economy(
     };
     let news = |reading: &&Reading| reading.measured_day + law.macro_pmi_publication_delay_days == day;
     if let Some(reading) = economy.published.as_ref().filter(news) {
-        write(social, &mut stream, reading.trend, Matter::Reading(*reading));
+        write(social, &mut stream, reading.trend, PostSubject::Reading(*reading));
     }
     let next = *social.next_round.get_or_insert_with(|| {
         let mut first = streams.open(Part::MacroPosts, [0]);
@@ -112,10 +112,10 @@ pub fn write_about_the_economy(
     }
     let pause = stream.integer(law.macro_social_post_interval_min, law.macro_social_post_interval_max);
     social.next_round = Some(day + pause);
-    let trend = Trend::of(economy.pmi, law);
+    let trend = Trend::from_index(economy.pmi, law);
     for _ in 0..stream.integer(law.macro_social_post_count_min, law.macro_social_post_count_max) {
         let perspective = stream.index(law.post_perspective_count as usize) as u8;
-        write(social, &mut stream, trend, Matter::Economy { trend, pmi: economy.pmi, perspective });
+        write(social, &mut stream, trend, PostSubject::Economy { trend, pmi: economy.pmi, perspective });
     }
 }
 
@@ -130,18 +130,18 @@ mod tests {
 
     /// Estimate, likes and shares of two posts for given draws.
     fn posts(events: &[Event], day: u32, u: f64) -> (f64, Vec<(u32, u32)>) {
-        let law = Params::shipped().competitor;
-        let event = topic(day, events, &law).expect("a topic");
+        let law = Params::bundled().competitor;
+        let event = current_event(day, events, &law).expect("a topic");
         let estimate = estimated_boost(event.boost, u);
         let engagement = |draws| {
-            let own = rival_engagement(severity(estimate, &law), draws, &law);
+            let own = competitor_engagement(severity(estimate, &law), draws, &law);
             (own.likes, own.shares)
         };
         (estimate, vec![engagement([0.5, 0.5, 0.5]), engagement([0.25, 0.75, 0.1])])
     }
 
     #[test]
-    fn posts_on_rivals_take_the_oldest_event_and_its_estimated_severity() {
+    fn competitor_posts_cover_the_oldest_event() {
         assert_eq!(posts(&[event(100, 0.09)], 100, 0.0), (0.09, vec![(22, 9), (21, 5)]));
         let (estimate, engagement) = posts(&[event(100, 0.09)], 100, 0.25);
         assert!((estimate - 0.1125).abs() < 1e-12);
@@ -150,23 +150,23 @@ mod tests {
         assert_eq!(posts(&over, 100, 0.0), (0.25, vec![(112, 45), (109, 27)]));
         let older = [event(98, 0.02), event(100, 0.25)];
         assert_eq!(posts(&older, 100, 0.0), (0.02, vec![(5, 2), (5, 1)]));
-        assert_eq!(topic(104, &[event(100, 0.1)], &Params::shipped().competitor), None);
+        assert_eq!(current_event(104, &[event(100, 0.1)], &Params::bundled().competitor), None);
     }
 
     #[test]
-    fn rounds_come_at_intervals_and_readings_on_their_day() {
-        let params = Params::shipped();
+    fn economy_posts_follow_intervals_and_readings() {
+        let params = Params::bundled();
         let streams = Streams::new(9);
-        let mut social = Social::opening(&Settings::opening(&params));
-        let mut economy = Economy::opening(&params);
+        let mut social = Social::initial(&Settings::initial(&params));
+        let mut economy = Economy::initial(&params);
         let (mut rounds, mut readings) = (Vec::new(), 0);
         for day in 1..=500 {
             let mut facts = Facts::default();
-            facts.begin(day);
+            facts.start_day(day);
             crate::market::economy::step(day, &mut economy, false, &params, &streams, &mut facts);
-            write_about_the_economy(day, &economy, &mut social, &params, &streams, &mut facts);
+            write_economy_posts(day, &economy, &mut social, &params, &streams, &mut facts);
             let published =
-                facts.posts.iter().filter(|post| matches!(post.matter, Matter::Reading(_))).count();
+                facts.posts.iter().filter(|post| matches!(post.matter, PostSubject::Reading(_))).count();
             assert_eq!(published, facts.readings.len());
             readings += published;
             let voices = facts.posts.len() - published;
@@ -183,17 +183,17 @@ mod tests {
 
     /// Renewal theory: by day 60 there are 60/12.5 - 0.39 rounds of 5 posts, and one reading.
     #[test]
-    fn the_first_sixty_days_bring_23_posts_on_average() {
-        let params = Params::shipped();
+    fn first_sixty_days_average_23_economy_posts() {
+        let params = Params::bundled();
         let seeds = 300;
         let mut count = 0.0;
         for seed in 0..seeds {
             let (streams, mut facts) = (Streams::new(seed), Facts::default());
-            let mut social = Social::opening(&Settings::opening(&params));
-            let mut economy = Economy::opening(&params);
+            let mut social = Social::initial(&Settings::initial(&params));
+            let mut economy = Economy::initial(&params);
             for day in 1..=60 {
                 crate::market::economy::step(day, &mut economy, false, &params, &streams, &mut facts);
-                write_about_the_economy(day, &economy, &mut social, &params, &streams, &mut facts);
+                write_economy_posts(day, &economy, &mut social, &params, &streams, &mut facts);
             }
             count += f64::from(social.next_post - 1);
         }

@@ -2,16 +2,16 @@
 //! (docs/mechanics/market/social/reach.md).
 
 use super::Social;
-use super::crowd::author_of;
+use super::post_lottery::post_author;
 use crate::customers::Customers;
-use crate::events::{Engagement, Facts, Matter, Notice, OwnPostSeen, PostAuthor, Reaction, Sentiment};
+use crate::events::{Engagement, Facts, Notice, OwnPostSeen, PostAuthor, PostSubject, Reaction, Sentiment};
 use crate::identifiers::{ByGroup, Group};
 use crate::params::{CeoPosts, Params};
 use crate::random::{Part, Stream, Streams};
 
 /// The reactions of groups to a post of the player.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Verdict {
+pub struct PostReactions {
     /// Number of the post, from 1.
     pub post: u32,
     /// Reactions of the known groups, -1..=1, in group order.
@@ -33,10 +33,10 @@ pub fn expected_views(effect: f64, subscribers: u32, law: &CeoPosts) -> f64 {
 }
 
 /// Applies reactions to posts, and creates views, comments and notifications.
-pub fn receive(
+pub fn apply_reactions(
     social: &mut Social,
     customers: &Customers,
-    verdicts: &[Verdict],
+    verdicts: &[PostReactions],
     params: &Params,
     streams: &Streams,
     facts: &mut Facts,
@@ -44,21 +44,21 @@ pub fn receive(
     for verdict in verdicts {
         let known = |post: u32| post >= 1 && post as usize <= social.own.len();
         if known(verdict.post) {
-            receive_one(social, customers, verdict, params, streams, facts);
+            apply_post_reactions(social, customers, verdict, params, streams, facts);
         }
     }
 }
 
-fn receive_one(
+fn apply_post_reactions(
     social: &mut Social,
     customers: &Customers,
-    verdict: &Verdict,
+    verdict: &PostReactions,
     params: &Params,
     streams: &Streams,
     facts: &mut Facts,
 ) {
     let law = &params.ceo_posts;
-    let subscribers = customers.active();
+    let subscribers = customers.active_by_group();
     let (mut views, mut comments) = (0, Vec::new());
     let mut effects = ByGroup::from_fn(|_| 0.0);
     for &(group, effect) in &verdict.effects {
@@ -77,7 +77,7 @@ fn receive_one(
                 shares: stream.integer(law.reply_shares_low, law.reply_shares_high_exclusive - 1),
                 virality: effect.abs(),
             };
-            let matter = Matter::Comment { own_post: verdict.post, group, effect };
+            let matter = PostSubject::Comment { own_post: verdict.post, group, effect };
             comments.push(social.publish(author, sentiment, engagement, matter, facts));
         }
     }
@@ -96,7 +96,7 @@ fn pick_author(
     stream: &mut Stream,
 ) -> Option<PostAuthor> {
     let own = &customers.groups[group];
-    let active = own.active() as usize;
+    let active = own.active_count() as usize;
     if active == 0 {
         return None;
     }
@@ -104,14 +104,14 @@ fn pick_author(
     for block in &own.blocks {
         if at < block.len() {
             let seats = block.seats[at] as u32;
-            return Some(author_of(block.customer[at], group, block.n[at], seats, params, streams));
+            return Some(post_author(block.customer[at], group, block.n[at], seats, params, streams));
         }
         at -= block.len();
     }
     None
 }
 
-fn reaction(verdict: &Verdict, views: u64, law: &CeoPosts) -> Reaction {
+fn reaction(verdict: &PostReactions, views: u64, law: &CeoPosts) -> Reaction {
     let judged = verdict.effects.len().max(1) as f64;
     let mean = verdict.effects.iter().map(|(_, effect)| effect).sum::<f64>() / judged;
     let mut sorted = verdict.effects.clone();
@@ -124,7 +124,7 @@ fn reaction(verdict: &Verdict, views: u64, law: &CeoPosts) -> Reaction {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::market::social::own::OwnPost;
+    use crate::market::social::own_posts::OwnPost;
     use crate::state::World;
 
     fn group(id: &str) -> Group {
@@ -132,8 +132,8 @@ mod tests {
     }
 
     #[test]
-    fn views_grow_linearly_to_the_threshold_and_exponentially_beyond() {
-        let law = Params::shipped().ceo_posts;
+    fn views_grow_linearly_then_exponentially() {
+        let law = Params::bundled().ceo_posts;
         for (effect, expected) in
             [(0.3, 100.0), (0.6, 150.0), (0.7, 360.421712), (0.8, 866.025404), (1.0, 5000.0), (-0.3, 100.0)]
         {
@@ -144,12 +144,12 @@ mod tests {
     }
 
     #[test]
-    fn strong_reactions_bring_comments_and_the_inbox_names_three_groups() {
-        let (params, streams) = (Params::shipped(), Streams::new(4));
+    fn strong_reactions_cause_comments_and_a_notice() {
+        let (params, streams) = (Params::bundled(), Streams::new(4));
         let mut facts = Facts::default();
-        let mut world = World::open(500, 1_000_000.0, &params, &mut facts);
+        let mut world = World::new(500, 1_000_000.0, &params, &mut facts);
         world.market.social.own.push(OwnPost::new(0, "Hello.", None));
-        facts.begin(1);
+        facts.start_day(1);
         let effects = vec![
             (group("S1"), 0.2),
             (group("S2"), -0.7),
@@ -157,8 +157,8 @@ mod tests {
             (group("E1"), 0.0),
             (group("E2"), -0.2),
         ];
-        let verdict = Verdict { post: 1, effects };
-        receive(
+        let verdict = PostReactions { post: 1, effects };
+        apply_reactions(
             &mut world.market.social,
             &world.customers,
             std::slice::from_ref(&verdict),
@@ -181,10 +181,10 @@ mod tests {
         let mut again = world.clone();
         again.market.social.next_post = 1;
         let mut other = Facts::default();
-        receive(
+        apply_reactions(
             &mut again.market.social,
             &again.customers,
-            &[verdict, Verdict { post: 9, effects: Vec::new() }],
+            &[verdict, PostReactions { post: 9, effects: Vec::new() }],
             &params,
             &streams,
             &mut other,

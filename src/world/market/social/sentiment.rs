@@ -32,8 +32,8 @@ mod tests {
     use crate::params::Params;
 
     #[test]
-    fn sentiment_follows_the_bands() {
-        let law = Params::shipped().social;
+    fn sentiment_matches_its_band() {
+        let law = Params::bundled().social;
         for (satisfaction, u, expected) in [
             (0.2, 0.69, Sentiment::Positive),
             (0.2, 0.71, Sentiment::Neutral),

@@ -4,7 +4,7 @@ use crate::params::SocialParams;
 
 /// Inputs of a subscriber's post weight.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Loudness {
+pub struct PostWeightInputs {
     /// Satisfaction after today's update.
     pub satisfaction: f64,
     /// Its change today.
@@ -23,7 +23,7 @@ pub struct Loudness {
 
 /// Returns the weight of a subscriber.
 #[inline]
-pub fn post_weight(voice: &Loudness, law: &SocialParams) -> f64 {
+pub fn post_weight(voice: &PostWeightInputs, law: &SocialParams) -> f64 {
     let s = voice.satisfaction;
     let mut weight = 1.0 + law.weight_abs_satisfaction_coef * s.abs();
     if s < 0.0 {
@@ -44,22 +44,25 @@ pub fn post_weight(voice: &Loudness, law: &SocialParams) -> f64 {
     if voice.contract_locked {
         weight *= law.contract_dissatisfaction_reputation_multiplier;
     }
-    finite(weight * voice.seats.max(1.0), law)
+    replace_nonfinite(weight * voice.seats.max(1.0), law)
 }
 
 /// Returns the weight of an individual who cancelled today.
 pub fn cancelled_weight(satisfaction: f64, seats: f64, law: &SocialParams) -> f64 {
     let bad = satisfaction.min(0.0).abs();
-    finite(law.churn_weight_base * seats * (1.0 + law.churn_weight_negative_satisfaction_coef * bad), law)
+    replace_nonfinite(
+        law.churn_weight_base * seats * (1.0 + law.churn_weight_negative_satisfaction_coef * bad),
+        law,
+    )
 }
 
 /// Returns the weight of an enterprise that was lost today.
 pub fn lost_company_weight(seats: f64, law: &SocialParams) -> f64 {
-    finite(law.enterprise_churn_weight_base * seats.max(1.0), law)
+    replace_nonfinite(law.enterprise_churn_weight_base * seats.max(1.0), law)
 }
 
 #[inline]
-fn finite(weight: f64, law: &SocialParams) -> f64 {
+fn replace_nonfinite(weight: f64, law: &SocialParams) -> f64 {
     if weight.is_finite() { weight } else { law.weight_nonfinite_replacement }
 }
 
@@ -68,7 +71,7 @@ mod tests {
     use super::*;
     use crate::params::Params;
 
-    const PLAIN: Loudness = Loudness {
+    const PLAIN: PostWeightInputs = PostWeightInputs {
         satisfaction: 0.0,
         change: 0.0,
         influencer: false,
@@ -79,24 +82,36 @@ mod tests {
     };
 
     #[test]
-    fn weights_multiply_what_makes_somebody_loud() {
-        let law = Params::shipped().social;
+    fn post_weight_multiplies_its_factors() {
+        let law = Params::bundled().social;
         for (voice, expected) in [
             (PLAIN, 1.0),
-            (Loudness { satisfaction: 0.3, ..PLAIN }, 4.0),
-            (Loudness { satisfaction: -0.3, ..PLAIN }, 11.2),
-            (Loudness { satisfaction: -0.3, influencer: true, days_subscribed: 10, ..PLAIN }, 33.6),
-            (Loudness { satisfaction: 0.1, change: 0.02, ..PLAIN }, 2.8),
-            (Loudness { satisfaction: 0.1, change: -0.05, events: 2, ..PLAIN }, 44.0),
+            (PostWeightInputs { satisfaction: 0.3, ..PLAIN }, 4.0),
+            (PostWeightInputs { satisfaction: -0.3, ..PLAIN }, 11.2),
+            (PostWeightInputs { satisfaction: -0.3, influencer: true, days_subscribed: 10, ..PLAIN }, 33.6),
+            (PostWeightInputs { satisfaction: 0.1, change: 0.02, ..PLAIN }, 2.8),
+            (PostWeightInputs { satisfaction: 0.1, change: -0.05, events: 2, ..PLAIN }, 44.0),
             (
-                Loudness { satisfaction: -0.25, events: 1, contract_locked: true, seats: 80.0, ..PLAIN },
+                PostWeightInputs {
+                    satisfaction: -0.25,
+                    events: 1,
+                    contract_locked: true,
+                    seats: 80.0,
+                    ..PLAIN
+                },
                 5670.0,
             ),
             (
-                Loudness { satisfaction: 0.2, influencer: true, days_subscribed: 30, seats: 500.0, ..PLAIN },
+                PostWeightInputs {
+                    satisfaction: 0.2,
+                    influencer: true,
+                    days_subscribed: 30,
+                    seats: 500.0,
+                    ..PLAIN
+                },
                 4500.0,
             ),
-            (Loudness { satisfaction: -40.0, ..PLAIN }, 12_832_401.0),
+            (PostWeightInputs { satisfaction: -40.0, ..PLAIN }, 12_832_401.0),
         ] {
             let weight = post_weight(&voice, &law);
             assert!((weight / expected - 1.0).abs() < 1e-12, "{voice:?}: got {weight}, expected {expected}");
@@ -105,6 +120,6 @@ mod tests {
         assert_eq!(cancelled_weight(0.3, 1.0, &law), 5.0);
         assert_eq!(lost_company_weight(120.0, &law), 960.0);
         assert_eq!(lost_company_weight(0.0, &law), 8.0);
-        assert_eq!(post_weight(&Loudness { satisfaction: f64::INFINITY, ..PLAIN }, &law), 1e6);
+        assert_eq!(post_weight(&PostWeightInputs { satisfaction: f64::INFINITY, ..PLAIN }, &law), 1e6);
     }
 }

@@ -2,40 +2,41 @@
 
 use ratatui::layout::Rect;
 
-use super::{Below, ClassPage};
-use novamind_base::notation::{compact, short_dollars};
+use super::{ClassPage, LowerPane};
+use novamind_base::formatting::{compact_number, short_dollars};
 use novamind_report::class::{
-    AskedClass, ClassView, RankedStudent, StudentPoints, asked, curves, pitfalls, ranked, scatter,
-    score_in_words, state_in_words,
+    ClassQuestion, ClassView, RankedStudent, StudentPoints, class_questions, describe_state, format_score,
+    pitfall_counts, rank_students, scatter, student_curves,
 };
-use novamind_report::count;
-use novamind_tui::canvas::{Align, Canvas, Click, rows_of};
-use novamind_tui::text::wrapped;
+use novamind_report::pluralize;
+use novamind_tui::canvas::{Align, Canvas, Click, row_rects};
+use novamind_tui::text::wrap;
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::chart::{Axis, Line, Plot, Side, Sign, zero_if_near};
-use novamind_tui::widgets::scale::Unit;
-use novamind_tui::widgets::table::first_row;
+use novamind_tui::widgets::chart::{Curve, Plot, PointLabel, XAxis, YAxis, zero_if_near};
+use novamind_tui::widgets::scale::AxisUnit;
+use novamind_tui::widgets::table::first_visible_row;
 
 /// Width of the ranking in small and in wide windows.
-const RANKING: (u16, u16) = (29, 52);
+const RANKING_WIDTH: (u16, u16) = (29, 52);
 /// Minimum width for tries, hints and pitfalls.
-const WIDE: u16 = 110;
+const MIN_WIDE_RANKING_WIDTH: u16 = 110;
 /// Minimum height for separate guesses and pitfalls.
-const HIGH: u16 = 34;
-const LIT: &str = "◆";
+const MIN_HEIGHT_FOR_ALL_PANES: u16 = 34;
+const HIGHLIGHT_SYMBOL: &str = "◆";
 
 impl ClassPage {
     pub(in crate::screens::menu) fn draw(&self, canvas: &mut Canvas<'_>, area: Rect) {
         let view = self.view();
-        let ranking = ranked(&view);
+        let ranking = rank_students(&view);
         let title =
             Rect { x: area.x + 1, width: area.width.saturating_sub(2), height: 1.min(area.height), ..area };
-        canvas.text(title, &format!("{} · {}", view.title(), state_in_words(&view)), Role::Title);
+        canvas.draw_text(title, &format!("{} · {}", view.title(), describe_state(&view)), Role::Title);
         let body = Rect { y: area.y + 1, height: area.height.saturating_sub(1), ..area };
-        let width = if area.width >= WIDE { RANKING.1 } else { RANKING.0 }.min(body.width);
+        let width = if area.width >= MIN_WIDE_RANKING_WIDTH { RANKING_WIDTH.1 } else { RANKING_WIDTH.0 }
+            .min(body.width);
         self.draw_ranking(canvas, Rect { width, ..body }, &view, &ranking);
         let right = Rect { x: body.x + width, width: body.width - width, ..body };
-        let parts = if body.height >= HIGH { 3 } else { 2 };
+        let parts = if body.height >= MIN_HEIGHT_FOR_ALL_PANES { 3 } else { 2 };
         let height = right.height / parts;
         let at = |number: u16| {
             let height = if number + 1 == parts { right.height - number * height } else { height };
@@ -43,10 +44,10 @@ impl ClassPage {
         };
         self.draw_curves(canvas, at(0), &view, &ranking);
         if parts == 2 {
-            return match self.below {
-                Below::Scatter => self.draw_scatter(canvas, at(1), &view, &ranking),
-                Below::Guesses => self.draw_guesses(canvas, at(1), &view, &ranking),
-                Below::Pitfalls => draw_pitfalls(canvas, at(1), &view),
+            return match self.lower_pane {
+                LowerPane::Scatter => self.draw_scatter(canvas, at(1), &view, &ranking),
+                LowerPane::Guesses => self.draw_guesses(canvas, at(1), &view, &ranking),
+                LowerPane::Pitfalls => draw_pitfalls(canvas, at(1), &view),
             };
         }
         self.draw_scatter(canvas, at(1), &view, &ranking);
@@ -64,22 +65,22 @@ impl ClassPage {
         ranking: &[RankedStudent<'_>],
     ) {
         let note = format!("{} of {}", ranking.len(), view.class.students.len());
-        let inside = canvas.pane(area, "Ranking", &note, true);
-        let is_wide = area.width == RANKING.1;
-        let mut rows = rows_of(inside);
+        let inside = canvas.draw_pane_frame(area, "Ranking", &note, true);
+        let is_wide = area.width == RANKING_WIDTH.1;
+        let mut rows = row_rects(inside);
         let score = if view.lesson.is_some() { "of ref." } else { "cash" };
         if let Some(row) = rows.next() {
             draw_cells(canvas, row, ["", "student", score, "goals", "tries", "hints"], is_wide, Role::Header);
         }
-        let lit = self.lit(ranking);
-        let measure = wrapped(&format!("by {}", view.measure()), inside.width as usize);
+        let lit = self.highlighted_index(ranking);
+        let measure = wrap(&format!("by {}", view.describe_measure()), inside.width as usize);
         // The measure of the ranking is shown below if the list leaves enough rows.
         let room = inside.height.saturating_sub(1);
         let for_measure = (measure.len() as u16 + 1).min(room.saturating_sub(ranking.len() as u16));
         let for_measure = if for_measure > measure.len() as u16 { for_measure } else { 0 };
         let shown = (room - for_measure) as usize;
-        canvas.page = shown as u16;
-        let from = first_row(lit.unwrap_or(0), shown, ranking.len());
+        canvas.page_rows = shown as u16;
+        let from = first_visible_row(lit.unwrap_or(0), shown, ranking.len());
         for (row, (at, student)) in rows.take(shown).zip(ranking.iter().enumerate().skip(from)) {
             let here = lit == Some(at);
             if here {
@@ -89,30 +90,39 @@ impl ClassPage {
                 (at + 1).to_string(),
                 student.name.clone(),
                 match view.lesson {
-                    Some(_) => score_in_words(view, student),
+                    Some(_) => format_score(view, student),
                     None => short_dollars(student.score),
                 },
-                student.goals(),
-                student.tries().to_string(),
-                student.hints().to_string(),
+                student.format_goals(),
+                student.max_attempt().to_string(),
+                student.hint_count().to_string(),
             ];
             let cells: [&str; 6] = std::array::from_fn(|at| cells[at].as_str());
             draw_cells(canvas, row, cells, is_wide, if here { Role::Selection } else { Role::Text });
-            canvas.click(row, Click::Row(0, at));
+            canvas.register_click(row, Click::Row(0, at));
         }
         if ranking.is_empty() {
             let row = Rect { y: inside.y + 1, height: room.min(1), ..inside };
-            canvas.text(row, " No student has finished", Role::Dim);
+            canvas.draw_text(row, " No student has finished", Role::Dim);
         }
         let below = Rect { y: inside.bottom() - for_measure, height: for_measure, ..inside };
-        for (row, line) in rows_of(below).skip(1).zip(&measure) {
-            canvas.text(Rect { x: row.x + 1, width: row.width.saturating_sub(1), ..row }, line, Role::Dim);
+        for (row, line) in row_rects(below).skip(1).zip(&measure) {
+            canvas.draw_text(
+                Rect { x: row.x + 1, width: row.width.saturating_sub(1), ..row },
+                line,
+                Role::Dim,
+            );
         }
     }
 
     /// Returns the part title and selected student, for the note of a pane.
-    fn note(&self, view: &ClassView<'_>, ranking: &[RankedStudent<'_>], sign: &str) -> String {
-        let lit = self.lit(ranking).map(|at| format!("{} {sign}", ranking[at].name));
+    fn highlighted_student_text(
+        &self,
+        view: &ClassView<'_>,
+        ranking: &[RankedStudent<'_>],
+        sign: &str,
+    ) -> String {
+        let lit = self.highlighted_index(ranking).map(|at| format!("{} {sign}", ranking[at].name));
         let part = view.part_title(self.part).map(str::to_owned);
         part.into_iter().chain(lit).collect::<Vec<_>>().join(" · ")
     }
@@ -124,30 +134,41 @@ impl ClassPage {
         view: &ClassView<'_>,
         ranking: &[RankedStudent<'_>],
     ) {
-        let inside = canvas.pane(area, "Cash by day", &self.note(view, ranking, "selected"), false);
-        let all = curves(view, ranking, self.part);
-        let mut lines: Vec<(u8, Line)> = all
+        let inside = canvas.draw_pane_frame(
+            area,
+            "Cash by day",
+            &self.highlighted_student_text(view, ranking, "selected"),
+            false,
+        );
+        let all = student_curves(view, ranking, self.part);
+        let mut lines: Vec<(u8, Curve)> = all
             .iter()
             .map(|own| {
-                let line = |role| Line::through(own.points.clone(), role);
+                let line = |role| Curve::from_points(own.points.clone(), role);
                 match own.label {
-                    None => (1, line(Role::Series(1)).named("reference")),
-                    label if label == self.shown.lit.as_deref() => {
-                        (2, line(Role::Series(0)).named("selected"))
+                    None => (1, line(Role::Series(1)).with_name("reference")),
+                    label if label == self.shown.highlighted_student.as_deref() => {
+                        (2, line(Role::Series(0)).with_name("selected"))
                     }
                     Some(_) => (0, line(Role::Dim)),
                 }
             })
             .collect();
         lines.sort_by_key(|(place, _)| *place);
-        let lines: Vec<Line> = lines.into_iter().map(|(_, line)| line).collect();
+        let lines: Vec<Curve> = lines.into_iter().map(|(_, line)| line).collect();
         if lines.is_empty() {
-            return canvas.text(inside, " No student has finished this part", Role::Dim);
+            return canvas.draw_text(inside, " No student has finished this part", Role::Dim);
         }
         let zero = zero_if_near(lines.iter().flat_map(|line| line.points.iter().map(|point| point.1)));
-        let x = Axis { write: &|day| format!("day {day:.0}"), holds: &[0.0] };
-        Plot { lines: &lines, band: None, mark: None, x: &x, y: &Side { unit: Unit::Dollars, holds: zero } }
-            .draw(canvas, inside);
+        let x = XAxis { format: &|day| format!("day {day:.0}"), required_values: &[0.0] };
+        Plot {
+            curves: &lines,
+            band: None,
+            marked_x: None,
+            x: &x,
+            y: &YAxis { unit: AxisUnit::Dollars, required_values: zero },
+        }
+        .draw(canvas, inside);
     }
 
     /// Draws the points of all students, with a mark for the selected one.
@@ -156,20 +177,21 @@ impl ClassPage {
         canvas: &mut Canvas<'_>,
         area: Rect,
         points: &[StudentPoints<'_>],
-        units: (&dyn Fn(f64) -> String, Unit),
+        units: (&dyn Fn(f64) -> String, AxisUnit),
         diagonal: Option<[(f64, f64); 2]>,
     ) {
-        let lit = |own: &&StudentPoints<'_>| own.label == self.shown.lit.as_deref();
+        let lit = |own: &&StudentPoints<'_>| own.label == self.shown.highlighted_student.as_deref();
         let others = points.iter().filter(|own| !lit(own)).flat_map(|own| own.points.clone()).collect();
         let mine: Vec<(f64, f64)> = points.iter().filter(lit).flat_map(|own| own.points.clone()).collect();
-        let scattered = |points, role| Line { scattered: true, ..Line::through(points, role) };
+        let scattered = |points, role| Curve { is_scatter: true, ..Curve::from_points(points, role) };
         let mut lines = vec![scattered(others, Role::Text), scattered(mine.clone(), Role::Series(0))];
-        lines.extend(diagonal.map(|ends| Line::through(ends.to_vec(), Role::Dim)));
-        let sign = |(x, y): (f64, f64)| Sign { x, y, text: LIT, role: Role::Series(0) };
-        let signs: Vec<Sign> = mine.into_iter().map(sign).collect();
-        let x = Axis { write: units.0, holds: &[] };
-        let y = Side { unit: units.1, holds: &[] };
-        Plot { lines: &lines, band: None, mark: None, x: &x, y: &y }.draw_with(canvas, area, &signs);
+        lines.extend(diagonal.map(|ends| Curve::from_points(ends.to_vec(), Role::Dim)));
+        let sign = |(x, y): (f64, f64)| PointLabel { x, y, text: HIGHLIGHT_SYMBOL, role: Role::Series(0) };
+        let signs: Vec<PointLabel> = mine.into_iter().map(sign).collect();
+        let x = XAxis { format: units.0, required_values: &[] };
+        let y = YAxis { unit: units.1, required_values: &[] };
+        Plot { curves: &lines, band: None, marked_x: None, x: &x, y: &y }
+            .draw_with_labels(canvas, area, &signs);
     }
 
     fn draw_scatter(
@@ -184,13 +206,18 @@ impl ClassPage {
             Some(own) => format!("{} by {}", own.figure, own.decision),
             None => "Decisions".to_owned(),
         };
-        let inside = canvas.pane(area, &title, &self.note(view, ranking, LIT), false);
+        let inside = canvas.draw_pane_frame(
+            area,
+            &title,
+            &self.highlighted_student_text(view, ranking, HIGHLIGHT_SYMBOL),
+            false,
+        );
         match found.filter(|own| !own.points.is_empty()) {
             Some(own) => {
-                let unit = if own.figure == "cash" { Unit::Dollars } else { Unit::Number };
-                self.draw_points(canvas, inside, &own.points, (&compact, unit), None);
+                let unit = if own.figure == "cash" { AxisUnit::Dollars } else { AxisUnit::Number };
+                self.draw_points(canvas, inside, &own.points, (&compact_number, unit), None);
             }
-            None => canvas.text(inside, " All students made the same decisions", Role::Dim),
+            None => canvas.draw_text(inside, " All students made the same decisions", Role::Dim),
         }
     }
 
@@ -201,42 +228,49 @@ impl ClassPage {
         view: &ClassView<'_>,
         ranking: &[RankedStudent<'_>],
     ) {
-        let all: Vec<AskedClass<'_>> =
-            asked(view).into_iter().filter(|own| own.part == self.part && !own.answers.is_empty()).collect();
-        let inside = canvas.pane(area, "Guesses", &self.note(view, ranking, LIT), false);
+        let all: Vec<ClassQuestion<'_>> = class_questions(view)
+            .into_iter()
+            .filter(|own| own.part == self.part && !own.answers.is_empty())
+            .collect();
+        let inside = canvas.draw_pane_frame(
+            area,
+            "Guesses",
+            &self.highlighted_student_text(view, ranking, HIGHLIGHT_SYMBOL),
+            false,
+        );
         let Some(own) = all.get(self.question.min(all.len().saturating_sub(1))) else {
-            return canvas.text(inside, " No guesses", Role::Dim);
+            return canvas.draw_text(inside, " No guesses", Role::Dim);
         };
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         let number = match all.len() {
             1 => String::new(),
             all => format!("{}/{all} ", self.question + 1),
         };
-        let question = wrapped(&format!("{number}{}", own.question), inside.width as usize);
+        let question = wrap(&format!("{number}{}", own.question), inside.width as usize);
         let rows = (question.len() as u16).min(inside.height);
-        for (row, line) in rows_of(inside).zip(&question) {
-            canvas.text(row, line, Role::Strong);
+        for (row, line) in row_rects(inside).zip(&question) {
+            canvas.draw_text(row, line, Role::Strong);
         }
         let rest = Rect { y: inside.y + rows, height: inside.height - rows, ..inside };
         if own.choices.is_empty() {
-            self.draw_numbers(canvas, rest, own);
+            self.draw_numeric_guesses(canvas, rest, own);
         } else {
-            draw_choices(canvas, rest, own);
+            draw_choice_counts(canvas, rest, own);
         }
     }
 
     /// Draws guesses on the x axis and outcomes on the y axis.
-    fn draw_numbers(&self, canvas: &mut Canvas<'_>, area: Rect, own: &AskedClass<'_>) {
+    fn draw_numeric_guesses(&self, canvas: &mut Canvas<'_>, area: Rect, own: &ClassQuestion<'_>) {
         let points = own.points();
         let both = || own.answers.iter().flat_map(|answer| [answer.1, answer.2]);
         let (least, most) = both().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| {
             (least.min(value), most.max(value))
         });
         let head = Rect { height: 1.min(area.height), ..area };
-        canvas.text(head, "x: guess, y: outcome; points on the line were exact", Role::Dim);
+        canvas.draw_text(head, "x: guess, y: outcome; points on the line were exact", Role::Dim);
         let chart = Rect { y: area.y + head.height, height: area.height - head.height, ..area };
         let diagonal = (most > least).then_some([(least, least), (most, most)]);
-        self.draw_points(canvas, chart, &points, (&compact, Unit::Number), diagonal);
+        self.draw_points(canvas, chart, &points, (&compact_number, AxisUnit::Number), diagonal);
     }
 }
 
@@ -252,45 +286,45 @@ fn draw_cells(canvas: &mut Canvas<'_>, row: Rect, cells: [&str; 6], is_wide: boo
     ];
     for ((x, width, align), cell) in columns.into_iter().zip(cells).take(if is_wide { 6 } else { 4 }) {
         let place = Rect { x: row.x + x, width: width.min(row.width.saturating_sub(x)), ..row };
-        canvas.aligned(place, cell, role, align);
+        canvas.draw_aligned(place, cell, role, align);
     }
 }
 
-fn draw_choices(canvas: &mut Canvas<'_>, area: Rect, own: &AskedClass<'_>) {
-    let mut rows = rows_of(area);
+fn draw_choice_counts(canvas: &mut Canvas<'_>, area: Rect, own: &ClassQuestion<'_>) {
+    let mut rows = row_rects(area);
     for (number, choice) in (1..).zip(own.choices) {
         let taken = own.answers.iter().filter(|answer| answer.1 == f64::from(number)).count();
         let is_right = own.answers.iter().any(|answer| answer.2 == f64::from(number));
         let (sign, role) = if is_right { (" ✓", Role::Good) } else { ("", Role::Text) };
-        let lines = wrapped(&format!("{choice}{sign}"), area.width.saturating_sub(5) as usize);
+        let lines = wrap(&format!("{choice}{sign}"), area.width.saturating_sub(5) as usize);
         for (at, line) in lines.iter().enumerate() {
             let Some(row) = rows.next() else { return };
             if at == 0 {
-                canvas.aligned(
+                canvas.draw_aligned(
                     Rect { width: 3.min(row.width), ..row },
                     &taken.to_string(),
                     role,
                     Align::Right,
                 );
             }
-            canvas.text(Rect { x: row.x + 5, width: row.width.saturating_sub(5), ..row }, line, role);
+            canvas.draw_text(Rect { x: row.x + 5, width: row.width.saturating_sub(5), ..row }, line, role);
         }
     }
 }
 
 /// Draws the most common pitfall, and the number of students by pitfall.
 fn draw_pitfalls(canvas: &mut Canvas<'_>, area: Rect, view: &ClassView<'_>) {
-    let met = pitfalls(view);
-    let inside = canvas.pane(area, "Most common pitfall", "", false);
+    let met = pitfall_counts(view);
+    let inside = canvas.draw_pane_frame(area, "Most common pitfall", "", false);
     let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
     let Some((most, others)) = met.split_first() else {
-        return canvas.text(inside, "No pitfalls", Role::Dim);
+        return canvas.draw_text(inside, "No pitfalls", Role::Dim);
     };
-    let head = format!("{}, by {}", most.name, count(most.students as u32, "student"));
+    let head = format!("{}, by {}", most.name, pluralize(most.students as u32, "student"));
     let mut lines = vec![(head, Role::Strong)];
-    lines.extend(wrapped(&most.say, inside.width as usize).into_iter().map(|line| (line, Role::Text)));
+    lines.extend(wrap(&most.explanation, inside.width as usize).into_iter().map(|line| (line, Role::Text)));
     lines.extend(others.iter().map(|own| (format!("{:>3}  {}", own.students, own.name), Role::Dim)));
-    for (row, (line, role)) in rows_of(inside).zip(&lines) {
-        canvas.text(row, line, *role);
+    for (row, (line, role)) in row_rects(inside).zip(&lines) {
+        canvas.draw_text(row, line, *role);
     }
 }

@@ -5,18 +5,18 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::*;
-use crate::test_kit::painted;
+use crate::test_kit::render_rows;
 use novamind_course::{
-    Class, ClassCollection, ClassRun, Evidence, Lesson, RunVerdict, StepEvidence, ToHandOut,
+    Class, ClassCollection, ClassRun, Evidence, HandoutSource, Lesson, RunVerdict, StepEvidence,
 };
 
 /// Returns a class of a lesson whose students have set prices of 10 and more; the last one has not finished.
-fn collected(students: u32) -> CollectedClass {
+fn collected_class(students: u32) -> CollectedClass {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/three-weeks.toml");
-    let lesson = Arc::new(Lesson::of_file(&path).expect("a lesson"));
+    let lesson = Arc::new(Lesson::from_file(&path).expect("a lesson"));
     let place = tempfile::tempdir().expect("a folder");
     let folder = place.path().join("class");
-    let class = Class::create(&folder, &ToHandOut::Lesson(lesson.clone()), students).expect("a class");
+    let class = Class::create(&folder, &HandoutSource::Lesson(lesson.clone()), students).expect("a class");
     let runs = class.students.iter().enumerate().map(|(at, student)| {
         let evidence = evidence(&lesson, at);
         let verdict =
@@ -77,83 +77,86 @@ fn evidence(lesson: &Lesson, at: usize) -> Evidence {
 }
 
 fn page(students: u32) -> ClassPage {
-    ClassPage::new(collected(students), Shown::default())
+    ClassPage::new(collected_class(students), ClassDisplayOptions::default())
 }
 
-fn shown(page: &ClassPage, width: u16, height: u16) -> String {
-    painted(width, height, |canvas, area| page.draw(canvas, area)).join("\n")
+fn page_text(page: &ClassPage, width: u16, height: u16) -> String {
+    render_rows(width, height, |canvas, area| page.draw(canvas, area)).join("\n")
 }
 
 #[test]
-fn up_and_down_light_another_student() {
+fn up_and_down_highlight_another_student() {
     let mut page = page(12);
-    let first = shown(&page, 120, 39);
+    let first = page_text(&page, 120, 39);
     for part in
         ["Ranking", "11 of 12", "S01 selected", "cash by price A", "S01 ◆", "Guesses", "Most common pitfall"]
     {
         assert!(first.contains(part), "{part} is missing in\n{first}");
     }
-    page.act(Action::Down);
-    assert!(shown(&page, 120, 39).contains("S02 selected"));
-    page.act(Action::Last);
-    assert!(shown(&page, 120, 39).contains("S11 selected"), "S12 has not finished");
-    page.act(Action::Down);
-    assert!(shown(&page, 120, 39).contains("S11 selected"));
-    page.act(Action::PageUp);
-    assert!(shown(&page, 120, 39).contains("S01 selected"));
-    page.light(4);
-    assert_eq!(page.shown.lit.as_deref(), Some("S05"));
+    page.handle_action(Action::Down);
+    assert!(page_text(&page, 120, 39).contains("S02 selected"));
+    page.handle_action(Action::Last);
+    assert!(page_text(&page, 120, 39).contains("S11 selected"), "S12 has not finished");
+    page.handle_action(Action::Down);
+    assert!(page_text(&page, 120, 39).contains("S11 selected"));
+    page.handle_action(Action::PageUp);
+    assert!(page_text(&page, 120, 39).contains("S01 selected"));
+    page.highlight(4);
+    assert_eq!(page.shown.highlighted_student.as_deref(), Some("S05"));
 }
 
 #[test]
-fn keys_choose_decision_and_figure_among_those_that_differ() {
+fn keys_cycle_through_differing_decisions_and_figures() {
     let mut page = page(6);
-    page.act(Action::ClassDecision);
-    page.act(Action::ClassFigure);
-    assert!(shown(&page, 120, 39).contains("subscribers by price B"));
-    page.act(Action::ClassDecision);
-    page.act(Action::ClassFigure);
-    assert!(shown(&page, 120, 39).contains("cash by price A"), "price C and R&D are equal for all students");
+    page.handle_action(Action::ClassDecision);
+    page.handle_action(Action::ClassFigure);
+    assert!(page_text(&page, 120, 39).contains("subscribers by price B"));
+    page.handle_action(Action::ClassDecision);
+    page.handle_action(Action::ClassFigure);
+    assert!(
+        page_text(&page, 120, 39).contains("cash by price A"),
+        "price C and R&D are equal for all students"
+    );
 }
 
 #[test]
-fn hidden_names_are_nowhere_on_the_screen() {
+fn hidden_names_are_not_drawn() {
     for (width, height) in [(80, 23), (120, 39)] {
         let mut page = page(12);
-        assert!(shown(&page, width, height).contains("S03"));
-        page.act(Action::HideNames);
+        assert!(page_text(&page, width, height).contains("S03"));
+        page.handle_action(Action::HideNames);
         for _ in 0..3 {
-            let hidden = shown(&page, width, height);
+            let hidden = page_text(&page, width, height);
             assert!(!hidden.contains("S0") && !hidden.contains("S1"), "{hidden}");
             assert!(hidden.contains("no. 3"), "{hidden}");
-            page.act(Action::ClassView);
+            page.handle_action(Action::ClassView);
         }
-        page.act(Action::HideNames);
-        assert!(shown(&page, width, height).contains("S03"));
+        page.handle_action(Action::HideNames);
+        assert!(page_text(&page, width, height).contains("S03"));
     }
 }
 
 #[test]
-fn a_small_window_shows_one_after_the_other_below_the_curves() {
+fn small_window_shows_one_lower_pane_at_a_time() {
     let mut page = page(12);
     for part in ["cash by price A", "Guesses", "Most common pitfall", "cash by price A"] {
-        let screen = shown(&page, 80, 23);
+        let screen = page_text(&page, 80, 23);
         assert!(screen.contains(part) && screen.contains("Cash by day"), "{part} is missing in\n{screen}");
-        page.act(Action::ClassView);
+        page.handle_action(Action::ClassView);
     }
 }
 
 #[test]
-fn every_window_has_its_page() {
+fn page_is_drawn_at_every_size() {
     for students in [1, 2, 30] {
         let mut page = page(students);
         for below in 0..3 {
             for width in (0..140).step_by(33) {
                 for height in (0..50).step_by(7) {
-                    shown(&page, width, height);
+                    page_text(&page, width, height);
                 }
             }
-            page.act(Action::ClassView);
+            page.handle_action(Action::ClassView);
             page.question = below;
         }
     }

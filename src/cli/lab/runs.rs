@@ -1,0 +1,40 @@
+//! Reads the runs that a command names.
+
+use std::collections::BTreeMap;
+
+use crate::cli::run::progress_bar;
+use crate::cli::{Context, Failure};
+use crate::record::folder::manifest::Manifest;
+use crate::record::folder::runs::find_run_to_read;
+use crate::record::trajectory::Trajectory;
+use crate::session::Session;
+
+/// Reads each named run with `read`, and records with the run that it was read.
+///
+/// # Errors
+/// A run is missing, damaged, not accessible, or named twice.
+pub fn map_runs<T>(
+    names: &[String],
+    command: &str,
+    context: &Context,
+    of: impl Fn(&Session, &Trajectory) -> T,
+) -> Result<Vec<T>, Failure> {
+    let folder = context.runs_folder()?;
+    let progress = progress_bar(names.len() as u64, "runs");
+    let mut read = Vec::new();
+    let mut known = BTreeMap::new();
+    for name in names {
+        let own = find_run_to_read(&folder, name)?;
+        // Copies of a folder contain runs with the same id.
+        if let Some(before) = known.insert(Manifest::read(&own)?.id, name) {
+            let message = format!("{before} and {name} are the same run; name each run once");
+            return Err(Failure::usage(message));
+        }
+        context.authorize_view(&own, command, &names.join(" "))?;
+        let session = Session::open_to_read(&own, true)?;
+        read.push(of(&session, &Trajectory::read(&own.join("trajectory.jsonl"))?));
+        progress.inc(1);
+    }
+    progress.finish_and_clear();
+    Ok(read)
+}

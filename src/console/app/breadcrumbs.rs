@@ -1,0 +1,93 @@
+//! Breadcrumbs: the places from which the current one was opened, and the way back.
+
+use super::{App, Run, Stage};
+use crate::action::Action;
+use crate::context::{ScreenContext, ScreenId};
+
+const MAX_BREADCRUMBS: usize = 8;
+
+/// A place from which the user opened something on another screen.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Breadcrumb {
+    screen: ScreenId,
+    pane: usize,
+    open_item: Option<String>,
+    /// Escape depth of the next screen when it was opened.
+    escape_depth: usize,
+}
+
+impl Run {
+    /// Returns the titles of the breadcrumbs, and of the open item if it covers its list.
+    pub fn breadcrumb_titles(&self, look: &ScreenContext<'_>) -> Vec<String> {
+        let mut path = Vec::new();
+        for stop in &self.breadcrumbs {
+            path.push(stop.screen.action().entry().title.to_owned());
+            path.extend(stop.open_item.clone());
+        }
+        let screen = self.screens.get(self.screen);
+        if !screen.covers_list() {
+            return path;
+        }
+        if self.breadcrumbs.last().is_none_or(|stop| screen.escape_depth() > stop.escape_depth) {
+            path.push(self.screen.action().entry().title.to_owned());
+        }
+        path.extend(screen.open_item_title(look));
+        path
+    }
+
+    /// Clears the breadcrumbs, because the user navigated elsewhere.
+    pub(super) fn clear_breadcrumbs(&mut self) {
+        self.breadcrumbs.clear();
+    }
+}
+
+impl App {
+    /// Shows a place on another screen that was opened from the current one.
+    pub(super) fn open_linked_screen(&mut self, screen: ScreenId, prepare: impl FnOnce(&mut Run)) {
+        if self.reject_closed_screen(screen) {
+            return;
+        }
+        let Stage::Run(run) = &mut self.stage else { return };
+        let company = run.company.clone();
+        let look = ScreenContext { company: &company, keys: &self.keys, page_rows: self.page_rows };
+        let from = run.screens.get(run.screen);
+        let mut stop = Breadcrumb {
+            screen: run.screen,
+            pane: from.focused_index(),
+            open_item: from.open_item_title(&look),
+            escape_depth: 0,
+        };
+        prepare(run);
+        if stop.screen != screen {
+            // A place that is already among the breadcrumbs is returned to.
+            if let Some(at) = run.breadcrumbs.iter().position(|own| own.screen == screen) {
+                run.breadcrumbs.truncate(at);
+            } else {
+                stop.escape_depth = run.screens.get(screen).escape_depth();
+                run.breadcrumbs.push(stop);
+            }
+            if run.breadcrumbs.len() > MAX_BREADCRUMBS {
+                run.breadcrumbs.remove(0);
+            }
+        }
+        self.show_screen(screen);
+    }
+
+    /// Returns to the last breadcrumb if escape has nothing to close here. Returns whether it did.
+    pub(super) fn go_back_to_breadcrumb(&mut self, action: Action) -> bool {
+        let Stage::Run(run) = &mut self.stage else { return false };
+        if action != Action::Close || run.screens.sql.is_running() {
+            return false;
+        }
+        let depth = run.screens.get(run.screen).escape_depth();
+        let Some(stop) = run.breadcrumbs.pop_if(|stop| depth <= stop.escape_depth) else { return false };
+        if run.back_history.last() == Some(&stop.screen) {
+            run.back_history.pop();
+            run.forward_history.push(run.screen);
+        }
+        self.switch_screen(stop.screen);
+        self.request_screen_data();
+        self.with_screen(|screen, _| screen.set_focus(stop.pane));
+        true
+    }
+}

@@ -1,0 +1,144 @@
+//! Leaving a run: open views are recorded as left, the run is saved and closed, then the menu or the shell follows.
+
+use super::{App, BusyState, Order, Stage};
+use crate::context::ScreenId;
+use crate::dialogs::confirm::ConfirmDialog;
+use crate::effect::Effect;
+use crate::screens::menu::StartMenu;
+use novamind_record::trajectory::record::LeavingCause;
+use novamind_session::Access;
+use novamind_worker::Job;
+use novamind_worker::request::Request;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum ExitTarget {
+    /// The start menu, or the participant's next page.
+    Menu,
+    Shell,
+    /// Exit because of a signal, with its number.
+    Signal(i32),
+}
+
+impl ExitTarget {
+    fn leaving_cause(self) -> LeavingCause {
+        const HANGUP: i32 = 1;
+        match self {
+            ExitTarget::Menu | ExitTarget::Shell => LeavingCause::Quit,
+            ExitTarget::Signal(HANGUP) => LeavingCause::Hangup,
+            ExitTarget::Signal(_) => LeavingCause::Signal,
+        }
+    }
+
+    fn exit_code(self) -> u8 {
+        match self {
+            ExitTarget::Menu | ExitTarget::Shell => 0,
+            ExitTarget::Signal(number) => 128u8.saturating_add(number as u8),
+        }
+    }
+}
+
+const DRAFTS_KEPT: &str = "A form, the notes, a post or the next-week dialog has unsent text. It is saved with the run and \
+                          offered when you open the run again.";
+/// Nothing can be sent after the run has ended.
+const DRAFTS_DISCARDED: &str = "The notes have unsaved text. The run has ended; the text will be lost.";
+const OFFERS_DISCARDED: &str = "Unsent offers in the inbox will be lost.";
+
+impl App {
+    /// Describes what happens to drafts and asks whether to leave the run. Returns `None` if there are no drafts.
+    fn draft_warning(&self) -> Option<String> {
+        let run = self.run().filter(|run| run.playback.is_none())?;
+        let holds = |screen: &ScreenId| run.screens.get(*screen).has_unsent_text();
+        let (offers, texts): (Vec<ScreenId>, Vec<ScreenId>) =
+            ScreenId::ALL.into_iter().filter(holds).partition(|screen| *screen == ScreenId::Inbox);
+        let mut sentences = Vec::new();
+        if run.next_week.has_draft() || !texts.is_empty() {
+            sentences.push(if run.company.is_running() { DRAFTS_KEPT } else { DRAFTS_DISCARDED });
+        }
+        if !offers.is_empty() {
+            sentences.push(OFFERS_DISCARDED);
+        }
+        let question = || format!("{} Leave this run now?", sentences.join(" "));
+        (!sentences.is_empty()).then(question)
+    }
+
+    pub(super) fn quit(&mut self) {
+        match self.draft_warning() {
+            Some(question) => self.open_dialog(ConfirmDialog::new("Leave", question, vec![Effect::LeaveNow])),
+            None => self.exit_run(ExitTarget::Shell),
+        }
+    }
+
+    pub(super) fn open_other_run(&mut self, id: String) {
+        let is_open =
+            self.run().is_some_and(|run| run.playback.is_none() && run.company.observation.run == id);
+        if is_open {
+            return self.show_error(format!("run {id} is already open"));
+        }
+        if self.busy.is_some() {
+            return self.show_error("days are running; try again when they are done");
+        }
+        let open = Effect::Request(Request::Open(id.clone(), Access::Write));
+        match self.draft_warning() {
+            Some(question) => {
+                self.open_dialog(ConfirmDialog::new(format!("open run {id}"), question, vec![open]))
+            }
+            None => self.follow(vec![open]),
+        }
+    }
+
+    pub(super) fn exit_run(&mut self, closing: ExitTarget) {
+        if self.exit_target.is_some_and(|planned| planned != ExitTarget::Menu) {
+            return;
+        }
+        self.stop_seeking();
+        // Leaving a run returns a participant to the study.
+        let at_study = self.has_participant() && matches!(self.stage, Stage::Run(_));
+        let quits = closing == ExitTarget::Shell;
+        let closing = if at_study && quits { ExitTarget::Menu } else { closing };
+        self.detach_from_run();
+        self.exit_target = Some(closing);
+        match &self.stage {
+            Stage::Run(_) => {
+                self.busy = Some(BusyState { is_stopping_script: true, ..BusyState::new("saving") });
+                self.orders.push(Order::CancelQuery);
+                self.orders.push(Order::Job(Job::Close(closing.leaving_cause())));
+            }
+            Stage::Menu(_) | Stage::Study(_) => self.on_run_closed(None),
+        }
+    }
+
+    pub(super) fn on_run_closed(&mut self, problem: Option<String>) {
+        self.busy = None;
+        let was_replay = self.is_playback();
+        let code = match self.exit_target.take() {
+            Some(closing @ (ExitTarget::Shell | ExitTarget::Signal(_))) => closing.exit_code(),
+            Some(ExitTarget::Menu) | None if self.has_participant() => {
+                return self.continue_after_run(problem);
+            }
+            Some(ExitTarget::Menu) | None => {
+                self.close_layers();
+                self.stage = Stage::Menu(Box::new(StartMenu::new(&self.configuration)));
+                self.orders.push(Order::Job(Job::Execute(Request::ListRuns)));
+                match problem {
+                    Some(problem) => self.show_error(problem),
+                    None if was_replay => self.show_status("replay closed; nothing changed"),
+                    None => self.show_status("run saved"),
+                }
+                return;
+            }
+        };
+        let farewell = self.run().filter(|run| run.playback.is_none()).map(|run| {
+            let company = &run.company.observation;
+            let end = match company.ended {
+                Some(_) => "It has ended.".to_owned(),
+                None => format!("Resume it with `{}`.", self.resume_command),
+            };
+            format!("Run {} is saved at day {}. {end}", company.run, company.day)
+        });
+        let text = match problem {
+            Some(problem) => Some(problem),
+            None => farewell,
+        };
+        self.orders.push(Order::Exit(code, text));
+    }
+}

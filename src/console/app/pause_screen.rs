@@ -1,0 +1,129 @@
+//! The pause screen: the run is hidden until the clock is started again.
+
+use crossterm::event::{Event, KeyEvent, KeyEventKind};
+use ratatui::layout::Rect;
+use unicode_width::UnicodeWidthStr;
+
+use super::{App, ExitTarget, Order, Stage};
+use crate::action::{Action, Scope};
+use crate::dialogs::pause_reason::PauseReasonDialog;
+use crate::keys::KeyBindings;
+use novamind_tui::canvas::Canvas;
+use novamind_tui::chord::Chord;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::TextField;
+use novamind_worker::Job;
+
+/// The screen shown while the clock is stopped.
+pub struct PauseScreen {
+    /// The experimenter's code being typed, if starting the clock requires one.
+    code: Option<TextField>,
+    is_wrong_code: bool,
+    by_limit: bool,
+}
+
+impl App {
+    /// Stops the clock; asks for a reason first if the study requires one.
+    pub(super) fn request_clock_stop(&mut self) {
+        let asks = self.run().is_some_and(|run| run.company.rules.pause_reason);
+        if self.is_playback() {
+            return self.show_error("there is no clock in a replay");
+        }
+        if asks {
+            return self.open_dialog(PauseReasonDialog::default());
+        }
+        self.stop_clock(None, false);
+    }
+
+    pub(super) fn stop_clock(&mut self, reason: Option<String>, by_limit: bool) {
+        if self.pause_screen.is_some() || !matches!(self.stage, Stage::Run(_)) {
+            return;
+        }
+        self.save_drafts();
+        self.record_view();
+        self.stopwatch.halt();
+        self.status = None;
+        self.pending_chords.clear();
+        let code = self.code_check.as_ref().filter(|_| by_limit).map(|_| TextField::default());
+        self.pause_screen = Some(PauseScreen { code, is_wrong_code: false, by_limit });
+        // The screen is hidden already; a failed write does not undo that.
+        self.record(move |session| drop(session.activity().stop_clock(reason.as_deref())));
+    }
+
+    fn start_clock(&mut self) {
+        self.pause_screen = None;
+        self.stopwatch.resume();
+        self.orders.push(Order::Job(Job::StartClock));
+        self.show_status("clock started");
+    }
+
+    pub(super) fn handle_paused_event(&mut self, event: Event) {
+        match event {
+            Event::Key(key) if key.kind != KeyEventKind::Release => self.handle_paused_key(&key),
+            _ => {}
+        }
+    }
+
+    fn handle_paused_key(&mut self, key: &KeyEvent) {
+        let chord = Chord::from_event(key);
+        match self.keys.action(&[Scope::Paused], chord) {
+            Some(Action::StartClock) => return self.try_start_clock(),
+            Some(Action::QuitWhilePaused) => return self.exit_run(ExitTarget::Shell),
+            _ => {}
+        }
+        if self.keys.action(&[Scope::Global], chord) == Some(Action::Redraw) {
+            return self.orders.push(Order::Redraw);
+        }
+        if let Some(cover) = &mut self.pause_screen
+            && let Some(code) = &mut cover.code
+        {
+            code.handle_key(key);
+            cover.is_wrong_code = false;
+        }
+    }
+
+    fn try_start_clock(&mut self) {
+        let Some(cover) = &mut self.pause_screen else { return };
+        let right = match (&cover.code, &self.code_check) {
+            (Some(code), Some(check)) => check(code.text().trim()),
+            _ => true,
+        };
+        if right {
+            return self.start_clock();
+        }
+        (cover.code, cover.is_wrong_code) = (Some(TextField::default()), true);
+    }
+}
+
+impl PauseScreen {
+    /// Draws the pause screen over the whole window.
+    pub fn draw(&self, keys: &KeyBindings, canvas: &mut Canvas<'_>, area: Rect) {
+        let key = |action| keys.label(action).unwrap_or_default();
+        let (start, quit) = (key(Action::StartClock), key(Action::QuitWhilePaused));
+        let why = match self.by_limit {
+            true => "The time limit is reached.",
+            false => "The clock is stopped.",
+        };
+        let next = match (&self.code, self.is_wrong_code) {
+            (None, _) => format!("{start} starts the clock · {quit} saves and quits"),
+            (Some(_), false) => {
+                format!("The experimenter can start the clock with a code · {quit} saves and quits")
+            }
+            (Some(_), true) => format!("Wrong code, try again · {quit} saves and quits"),
+        };
+        let row = Rect { y: area.y + area.height / 2, height: 1, ..area };
+        draw_centered_text(canvas, Rect { y: row.y - 2, ..row }, why, Role::Header);
+        draw_centered_text(canvas, row, &next, Role::Text);
+        if let Some(code) = &self.code {
+            let width = 20.min(area.width);
+            let field = Rect { x: area.x + (area.width - width) / 2, y: row.y + 2, width, height: 1 };
+            // The participant must not read the code.
+            TextField::with_text("•".repeat(code.text().chars().count())).draw(canvas, field);
+        }
+    }
+}
+
+fn draw_centered_text(canvas: &mut Canvas<'_>, row: Rect, text: &str, role: Role) {
+    let width = (text.width() as u16).min(row.width);
+    canvas.draw_text(Rect { x: row.x + (row.width - width) / 2, width, ..row }, text, role);
+}

@@ -1,0 +1,422 @@
+//! Responses of the worker.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::lesson::LessonState;
+use super::{App, Layer, Order, Run, Stage};
+use crate::action::Action;
+use crate::context::{ScreenContext, ScreenId};
+use crate::dialogs::final_page::FinalPage;
+use crate::dialogs::next_week::NextWeekDialog;
+use crate::dialogs::week_report::WeekReportDialog;
+use crate::effect::Effect;
+use crate::playback::PlaybackViewer;
+use crate::screens::Screens;
+use crate::tour::Tour;
+use novamind_base::formatting::{dollars, signed_dollars};
+use novamind_course::CollectedClass;
+use novamind_report::RunReport;
+use novamind_report::class::ClassDisplayOptions;
+use novamind_session::{SettingChange, WeekResult};
+use novamind_tools::Rejection;
+use novamind_tui::text::format_number;
+use novamind_worker::company::DisplayedCompany;
+use novamind_worker::message::{DebugRunResult, OpenFallback, Response};
+use novamind_worker::question::Pending;
+use novamind_worker::request::Request;
+
+impl App {
+    pub(super) fn news(&mut self, news: Response) {
+        match news {
+            Response::Runs(done, list) => {
+                match done {
+                    Some(Ok(text)) => self.show_status(text),
+                    Some(Err(problem)) => self.show_error(problem),
+                    None => {}
+                }
+                if let Stage::Menu(menu) = &mut self.stage {
+                    let effects = menu.set_runs(list);
+                    self.follow(effects);
+                }
+            }
+            Response::ClassRead(read) => self.class_was_read(*read),
+            Response::HandoutOpened(label) => self.resume_command = as_student(&self.resume_command, &label),
+            Response::Opened(company) => self.opened(company, None),
+            Response::PlaybackOpened(company, place) => {
+                self.opened(company, Some(PlaybackViewer::new(*place)))
+            }
+            Response::RunChanged(company) => self.changed(company),
+            Response::SeekResult(arrival) => self.handle_arrival(*arrival, true),
+            Response::PlaybackAdvanced(arrival) => self.handle_arrival(*arrival, false),
+            Response::NotOpened(problem, instead) => {
+                (self.busy, self.initial_screen) = (None, None);
+                self.starts_tour = false;
+                let asked = matches!(instead, Some(OpenFallback::AskConsent(..)));
+                if let Stage::Menu(menu) = &mut self.stage {
+                    menu.show_open_error(problem.clone(), instead);
+                }
+                if !asked && !self.show_page_error(problem.clone()) {
+                    self.show_error(problem);
+                }
+            }
+            Response::DaySimulated(day, told) => {
+                if let Some(days) = self.busy.as_mut().and_then(|busy| busy.progress.as_mut()) {
+                    (days.current, days.figures) = (day, told);
+                }
+            }
+            Response::WeekAdvanced(week, company) => self.advanced(week, company),
+            Response::DebugDaysSimulated(ran, company) => self.ran(ran, company),
+            Response::Closed(problem) => self.on_run_closed(problem),
+            Response::Crashed(words) => {
+                let saved = self.run().map_or(String::new(), |run| match &run.company.folder {
+                    Some(folder) => format!(" All confirmed actions are saved in {}.", folder.display()),
+                    None => String::new(),
+                });
+                let text = format!("internal error: {words}.{saved} Resume with `{}`.", self.resume_command);
+                self.orders.push(Order::Exit(1, Some(text)));
+            }
+            Response::RecordLost(words) => self.orders.push(Order::Exit(3, Some(words))),
+            Response::QuerySaved(Ok((text, library))) => {
+                if let Stage::Run(run) = &mut self.stage {
+                    run.screens.sql.set_library(library.clone());
+                }
+                self.library = library;
+                self.show_status(text);
+            }
+            Response::TimeLeft(left) => {
+                if let Stage::Run(run) = &mut self.stage {
+                    run.time_left = left;
+                }
+            }
+            Response::Limit(limit) => self.handle_limit(&limit),
+            Response::ClockStopped => self.pause_for_limit(),
+            Response::Drafts(texts) => self.offer_drafts(*texts),
+            Response::QuerySaved(Err(problem)) => self.show_error(problem),
+            Response::DatabaseBehind(problem) => {
+                if let Stage::Run(run) = &mut self.stage {
+                    run.database_error = Some(problem);
+                }
+            }
+            Response::DatabaseCurrent => self.database_whole(),
+            Response::NotesSaved(kept, company) => {
+                match kept {
+                    Ok(()) => self.show_status("notes saved"),
+                    Err(refusal) => self.show_error(refusal.to_string()),
+                }
+                self.changed(company);
+            }
+            Response::RunReportReady(story) => self.told(&story),
+            Response::ReportFilesReady(files) => {
+                self.write(files.into_iter().map(|(name, text)| (name, text.into_bytes())).collect());
+            }
+            Response::LessonUpdated(refused, company) => self.handle_lesson_response(refused, company),
+            Response::DebriefReady(found) => self.set_debrief(found),
+            Response::FilesWritten(Ok(text)) => self.show_status(text),
+            Response::FilesWritten(Err(problem)) => self.show_error(problem),
+            Response::Study(news) => self.handle_study_response(news),
+            other => self.heard(other),
+        }
+    }
+
+    fn heard(&mut self, news: Response) {
+        if !matches!(self.stage, Stage::Run(_)) {
+            return;
+        }
+        let screen = match &news {
+            Response::ToolCalled(tool, answer, company) => {
+                // The saving label stays if the run was left in the meantime.
+                self.busy = self.busy.take().filter(|busy| !busy.is_script());
+                self.changed(company.clone());
+                match answer {
+                    Ok(_) => self.show_status(format!("{tool}: done")),
+                    Err(refusal) => self.show_error(format!("{tool}: {refusal}")),
+                }
+                ScreenId::Tools
+            }
+            Response::SettingRestored(what, changes, company) => {
+                self.changed(company.clone());
+                match changes {
+                    Ok(changes) => self.show_status(format!("{what}: {}", in_words(changes))),
+                    Err(refusal) => self.show_error(refusal.message.clone()),
+                }
+                ScreenId::Tools
+            }
+            _ => return,
+        };
+        self.tell_screens(|screens, here, look| {
+            let mut effects = screens.get_mut(screen).handle_response(&news, look);
+            if matches!(news, Response::ToolCalled(..)) && here != screen {
+                effects.extend(screens.get_mut(here).handle_response(&news, look));
+            }
+            effects
+        });
+    }
+
+    /// Updates screens and follows the effects that they return.
+    fn tell_screens(&mut self, tell: impl FnOnce(&mut Screens, ScreenId, &ScreenContext<'_>) -> Vec<Effect>) {
+        let Stage::Run(run) = &mut self.stage else { return };
+        let company = run.company.clone();
+        let look = ScreenContext { company: &company, keys: &self.keys, page_rows: self.page_rows };
+        let focus = run.screens.get(run.screen).focused_index();
+        let effects = tell(&mut run.screens, run.screen, &look);
+        // A zoomed pane keeps the focus: it shows the answer.
+        if run.zoomed && run.screens.get(run.screen).focused_index() != focus {
+            run.screens.get_mut(run.screen).set_focus(focus);
+        }
+        self.follow(effects);
+    }
+
+    pub(super) fn take_answers(&mut self) {
+        if let Stage::Menu(menu) = &mut self.stage {
+            menu.take_answers();
+        }
+        self.tell_screens(|screens, _, look| {
+            let take = |id| screens.get_mut(id).take_answers(look);
+            ScreenId::ALL.into_iter().flat_map(take).collect()
+        });
+        for layer in self.layers.iter_mut() {
+            if let Layer::Dialog(dialog) = layer {
+                dialog.take_answers();
+            }
+        }
+        self.record_dialog_step();
+        self.take_readings();
+        self.set_hidden_values();
+    }
+
+    /// Hands query results to the screens. When a screen is complete, playback may request its next week.
+    fn take_readings(&mut self) {
+        let Stage::Run(run) = &mut self.stage else { return };
+        let answers: Vec<_> = run.requested_readings.values_mut().filter_map(Pending::try_take).collect();
+        for (reading, answer) in answers {
+            match answer {
+                Ok(rows) => self.tell_screens(|screens, _, look| {
+                    for id in ScreenId::ALL {
+                        let screen = screens.get_mut(id);
+                        if screen.readings().contains(&reading) {
+                            screen.apply_rows(reading, &rows, look);
+                        }
+                    }
+                    Vec::new()
+                }),
+                Err(refusal) => self.show_error(refusal.to_string()),
+            }
+            self.request_next_week();
+        }
+    }
+
+    fn opened(&mut self, company: Arc<DisplayedCompany>, viewer: Option<PlaybackViewer>) {
+        self.busy = None;
+        // After taking over a playback, the user stays on the current screen.
+        let here =
+            self.run().filter(|run| run.playback.is_some()).map_or(ScreenId::Overview, |run| run.screen);
+        let here =
+            self.initial_screen.take().filter(|screen| screen.is_available_in(&company)).unwrap_or(here);
+        self.close_layers();
+        let over = !company.is_running() && viewer.is_none();
+        let tour = std::mem::take(&mut self.starts_tour).then(Tour::default);
+        match company.remarks.last() {
+            _ if viewer.is_some() => {
+                let help = self.keys.label(Action::Help).unwrap_or_default();
+                self.show_status(format!("replay, read-only; {help} shows the keys"));
+            }
+            Some(remark) => self.show_status(remark.clone()),
+            None if company.lesson.is_some() => {
+                let key = |action| self.keys.label(action).unwrap_or_default();
+                let (task, week) = (key(Action::LessonPage), key(Action::NextWeek));
+                self.show_status(format!("{task} shows the task, {week} runs a week"));
+            }
+            None if company.observation.day == 0 => {
+                self.show_status("a new company: 8 shows the forms, n runs a week, ? explains the keys")
+            }
+            None => self.show_status(format!("day {}: welcome back", company.observation.day)),
+        }
+        self.stage = Stage::Run(Box::new(Run {
+            company: company.clone(),
+            screen: here,
+            back_history: Vec::new(),
+            breadcrumbs: Vec::new(),
+            forward_history: Vec::new(),
+            zoomed: false,
+            shown_since: Some(self.stopwatch.elapsed()),
+            previous_screen: None,
+            selected: None,
+            screens: Screens::default(),
+            next_week: NextWeekDialog::default(),
+            story: None,
+            requested_readings: BTreeMap::new(),
+            tour,
+            playback: viewer,
+            lesson: LessonState::default(),
+            overlay: Default::default(),
+            time_left: Vec::new(),
+            database_error: None,
+        }));
+        if let Stage::Run(run) = &mut self.stage {
+            run.screens.sql.set_library(self.library.clone());
+        }
+        self.reset_drafts();
+        self.time_limit = super::time_limits::TimeLimitState::default();
+        self.attach_to_run();
+        self.renew();
+        // In a study, the final questions come first.
+        if over && !self.has_participant() {
+            self.show_end();
+        }
+        self.open_initial_lesson_page();
+    }
+
+    /// Shows the final page. Figures from the ledger follow when it was read.
+    pub(super) fn show_end(&mut self) {
+        if self.show_lesson_end() {
+            return;
+        }
+        let Stage::Run(run) = &self.stage else { return };
+        let story = run.story.clone();
+        if story.is_none() {
+            self.follow(vec![Effect::Request(Request::BuildRunReport)]);
+        }
+        let page = FinalPage::new(story);
+        let page = if self.has_participant() { page.for_participant() } else { page };
+        self.push_layer(Layer::Dialog(Box::new(page)));
+    }
+
+    fn told(&mut self, story: &Arc<RunReport>) {
+        if let Stage::Run(run) = &mut self.stage {
+            run.story = Some(story.clone());
+        }
+        for layer in self.layers.iter_mut() {
+            if let Layer::Dialog(dialog) = layer {
+                dialog.set_story(story);
+            }
+        }
+    }
+
+    pub(super) fn changed(&mut self, company: Arc<DisplayedCompany>) {
+        if let Stage::Run(run) = &mut self.stage {
+            run.set_company(company);
+            run.requested_readings.clear();
+        }
+        self.renew();
+    }
+
+    fn database_whole(&mut self) {
+        if let Stage::Run(run) = &mut self.stage {
+            run.database_error = None;
+            run.requested_readings.clear();
+        }
+        self.show_status("the database is up to date again");
+        self.request_screen_data();
+    }
+
+    pub(super) fn renew(&mut self) {
+        if let Stage::Run(run) = &mut self.stage {
+            let company = run.company.clone();
+            let look = ScreenContext { company: &company, keys: &self.keys, page_rows: self.page_rows };
+            for id in ScreenId::ALL {
+                run.screens.get_mut(id).on_company_change(&look);
+            }
+        }
+        self.request_screen_data();
+    }
+
+    fn advanced(&mut self, week: Result<Box<WeekResult>, Rejection>, company: Arc<DisplayedCompany>) {
+        self.busy = None;
+        let now = self.stopwatch.elapsed();
+        let before = self.run().and_then(|run| run.company.lesson.clone());
+        if let Stage::Run(run) = &mut self.stage {
+            run.resume_view_timer(now);
+        }
+        self.changed(company);
+        let week = match week {
+            Ok(week) => week,
+            Err(refusal) => {
+                let text = refusal.to_string();
+                if let Stage::Run(run) = &mut self.stage {
+                    run.next_week.show_rejection(text.clone());
+                    self.push_layer(Layer::NextWeek);
+                }
+                return self.show_error(text);
+            }
+        };
+        let figures = &week.figures;
+        let text = format!(
+            "day {}: cash {} ({})",
+            figures.day,
+            dollars(figures.cash),
+            signed_dollars(figures.cash_change)
+        );
+        if let Stage::Run(run) = &mut self.stage {
+            run.next_week = NextWeekDialog::default();
+        }
+        let ended = week.ended;
+        let unfiled = self.take_week_draft_notice();
+        let remark = [unfiled, week.remark].into_iter().flatten().collect::<Vec<_>>().join(" ");
+        let hides_result = self.run().is_some_and(|run| run.company.rules.hides_result(ended.is_some()));
+        self.show_status(if hides_result { "the run has ended".to_owned() } else { text });
+        match ended {
+            Some(_) => self.show_end(),
+            None if self.show_lesson_week(before.as_ref()) => {}
+            None => {
+                let remark = (!remark.is_empty()).then_some(remark);
+                self.push_layer(Layer::Dialog(Box::new(WeekReportDialog::new(remark))));
+            }
+        }
+    }
+}
+
+impl App {
+    fn ran(&mut self, ran: Result<DebugRunResult, Rejection>, company: Arc<DisplayedCompany>) {
+        self.busy = None;
+        let now = self.stopwatch.elapsed();
+        if let Stage::Run(run) = &mut self.stage {
+            run.resume_view_timer(now);
+            if let Ok(ran) = &ran {
+                run.screens.xray.show_run_result(ran);
+            }
+        }
+        self.changed(company);
+        match ran {
+            Ok(ran) => {
+                self.show_status(ran.lines.first().cloned().unwrap_or_default());
+                if ran.has_ended {
+                    self.show_end();
+                }
+            }
+            Err(refusal) => self.show_error(refusal.to_string()),
+        }
+    }
+}
+
+impl App {
+    fn class_was_read(&mut self, read: Result<(CollectedClass, ClassDisplayOptions), String>) {
+        self.busy = None;
+        let Stage::Menu(menu) = &mut self.stage else { return };
+        match read {
+            Ok((class, shown)) => menu.show_class(class, shown),
+            Err(problem) => {
+                menu.show_open_error(problem.clone(), None);
+                self.show_error(problem);
+            }
+        }
+    }
+}
+
+fn as_student(again: &str, label: &str) -> String {
+    let head = again.strip_suffix("--run latest").unwrap_or(again);
+    let head = head.rsplit_once("--as ").map_or(head, |(before, _)| before);
+    format!("{head}--as {label} --run latest")
+}
+
+fn in_words(changes: &[SettingChange]) -> String {
+    let one = |change: &SettingChange| {
+        format!("{} {} → {}", change.setting, format_number(change.old), format_number(change.new))
+    };
+    match changes {
+        [first, second, rest @ ..] if !rest.is_empty() => {
+            format!("{}, {} and {} more", one(first), one(second), rest.len())
+        }
+        _ => changes.iter().map(one).collect::<Vec<_>>().join(", "),
+    }
+}

@@ -1,0 +1,162 @@
+//! Studies: the pages around a participant's runs, and the parts of the console that are closed to participants.
+
+use super::{App, ExitTarget, Layer, Order, Stage};
+use crate::screens::menu::StartMenu;
+use crate::study_pages::questions::QuestionPage;
+use crate::study_pages::{StudyPage, StudyState};
+use novamind_study::{NextStep, Study};
+use novamind_worker::Job;
+use novamind_worker::message::StudyResponse;
+use novamind_worker::request::{Request, StudyRequest};
+
+const PARTICIPANT_REJECTION: &str = "not available in a study: only your own session is open";
+
+impl App {
+    pub(super) fn start_study(&mut self, study: Box<Study>) {
+        let visit = StudyState::new(&study);
+        self.code_check = study.code_check();
+        self.stage = Stage::Study(Box::new(StudyPage::loading_page(&visit.title)));
+        self.study = Some(visit);
+        self.send_study_request(StudyRequest::StartStudy(study));
+    }
+
+    fn send_study_request(&mut self, request: StudyRequest) {
+        self.request(Request::Study(request));
+    }
+
+    /// Rejects a request that participants must not send. Returns whether it did.
+    pub(super) fn reject_for_participant(&mut self, request: &Request) -> bool {
+        let kept = self.study.is_some() && request.is_forbidden_for_participants();
+        if kept {
+            self.show_error(PARTICIPANT_REJECTION);
+        }
+        kept
+    }
+
+    /// Returns whether a participant uses the console and only their session is reachable.
+    pub(super) fn has_participant(&self) -> bool {
+        self.study.is_some()
+    }
+
+    pub(super) fn show_participant_error(&mut self) {
+        self.show_error(PARTICIPANT_REJECTION);
+    }
+
+    /// Returns whether the participant must answer questions before anything else.
+    pub(super) fn has_due_questions(&self) -> bool {
+        self.study.as_ref().is_some_and(|visit| !visit.due_questions.is_empty())
+    }
+
+    pub(super) fn update_study_for_request(&mut self, request: &Request) {
+        let Some(visit) = &mut self.study else { return };
+        match request {
+            Request::Study(StudyRequest::SubmitAnswers(answers)) => {
+                visit.due_questions.retain(|due| answers.iter().all(|answer| answer.due != *due));
+            }
+            Request::Study(StudyRequest::Play) => self.starts_tour = visit.has_tour(),
+            _ => {}
+        }
+    }
+
+    fn show_study_page(&mut self, page: impl FnOnce(&str) -> StudyPage) {
+        self.close_layers();
+        let Some(visit) = &self.study else { return };
+        self.stage = Stage::Study(Box::new(page(&visit.title)));
+    }
+
+    pub(super) fn handle_study_response(&mut self, news: StudyResponse) {
+        let Some(visit) = &mut self.study else { return };
+        match news {
+            StudyResponse::Ready => self.show_study_page(StudyPage::label_page),
+            StudyResponse::LabelRejected(problem) => {
+                if let Stage::Study(page) = &mut self.stage {
+                    page.reject_label(problem);
+                }
+            }
+            StudyResponse::Next(step) => {
+                visit.due_questions.clear();
+                visit.is_practice = matches!(step, NextStep::Practice { .. });
+                let opens = matches!(step, NextStep::Questions(_));
+                self.show_study_page(|title| StudyPage::from_step(title, step));
+                if opens {
+                    self.send_study_request(StudyRequest::Play);
+                }
+            }
+            StudyResponse::ConsentDeclined => self.show_study_page(StudyPage::declined_page),
+            StudyResponse::QuestionsDue(due) | StudyResponse::AnswersRecorded(due) => {
+                visit.due_questions = due
+            }
+            StudyResponse::CodeChecked(Some(true)) => {
+                self.study = None;
+                self.stage = Stage::Menu(Box::new(StartMenu::new(&self.configuration)));
+                self.orders.push(Order::Job(Job::Execute(Request::ListRuns)));
+            }
+            StudyResponse::CodeChecked(right) => {
+                let problem = match right {
+                    None => "this study has no experimenter's code",
+                    Some(_) => "this is not the experimenter's code",
+                };
+                self.show_page_error(problem.to_owned());
+            }
+            StudyResponse::Failed(problem) => {
+                self.show_page_error(problem);
+            }
+        }
+    }
+
+    /// Shows an error on the study page. Returns false if no study page is shown.
+    pub(super) fn show_page_error(&mut self, problem: String) -> bool {
+        if let Stage::Study(page) = &mut self.stage {
+            page.set_problem(problem);
+            return true;
+        }
+        false
+    }
+
+    pub(super) fn continue_after_run(&mut self, problem: Option<String>) {
+        let over = self.run().is_some_and(|run| !run.company.is_running());
+        let answered = !self.has_due_questions();
+        let Some(visit) = &mut self.study else { return };
+        if std::mem::take(&mut visit.is_withdrawing) {
+            self.show_study_page(StudyPage::withdraw_page);
+        } else if over && answered {
+            self.show_study_page(StudyPage::loading_page);
+            self.send_study_request(StudyRequest::ShowNextStep);
+        } else {
+            self.show_study_page(StudyPage::left_page);
+        }
+        if let Some(problem) = problem {
+            self.show_error(problem);
+        }
+    }
+
+    pub(super) fn leave_to_withdraw(&mut self) {
+        let Some(visit) = &mut self.study else { return self.show_error("this run is not part of a study") };
+        visit.is_withdrawing = true;
+        self.exit_run(ExitTarget::Menu);
+    }
+
+    /// Shows due questions once no dialog covers the run; leaves the run after it has ended.
+    pub(super) fn show_due_questions(&mut self) {
+        let Some(visit) = &self.study else { return };
+        let Stage::Run(run) = &self.stage else { return };
+        if !self.layers.is_empty()
+            || self.busy.is_some()
+            || self.exit_target.is_some()
+            || self.pause_screen.is_some()
+        {
+            return;
+        }
+        let over = !run.company.is_running();
+        match QuestionPage::for_due_questions(&visit.due_questions) {
+            Some((page, shown)) => {
+                // The status message refers to keys that do not work here.
+                self.status = None;
+                self.push_layer(Layer::Dialog(Box::new(page)));
+                self.follow(vec![shown]);
+            }
+            None if over => self.exit_run(ExitTarget::Menu),
+            None => {}
+        }
+    }
+}

@@ -1,0 +1,99 @@
+//! Time limits: warns the user and does what the study requires when a limit is reached.
+
+use super::App;
+use crate::effect::Effect;
+use novamind_record::rules::{DraftsKept, SessionRules};
+use novamind_record::trajectory::record::{Limit, LimitEvent, LimitScope, TextEditOutcome};
+use novamind_session::{TIME_LIMIT_RATIONALE, TimeLeft};
+use novamind_worker::request::Request;
+
+#[derive(Default)]
+pub(super) struct TimeLimitState {
+    /// The limit to show above the screen until the week has run, and whether it was reached.
+    notice: Option<(LimitScope, bool)>,
+    /// The time for the week has ended: the week is submitted as soon as nothing blocks it.
+    files_week: bool,
+    /// What happened to a text that the user was writing when the week was submitted.
+    draft_notice: Option<String>,
+}
+
+impl App {
+    pub(super) fn handle_limit(&mut self, limit: &Limit) {
+        match limit.event {
+            LimitEvent::Warned => self.time_limit.notice = Some((limit.limit, false)),
+            LimitEvent::Reminded => self.time_limit.notice = Some((limit.limit, true)),
+            LimitEvent::FiledNaively => self.time_limit.files_week = true,
+            LimitEvent::Paused => {
+                self.time_limit.notice = None;
+                self.stop_clock(Some(TIME_LIMIT_RATIONALE.to_owned()), true);
+            }
+        }
+    }
+
+    /// Stops the clock again if a limit had stopped it when the run was last open.
+    pub(super) fn pause_for_limit(&mut self) {
+        self.stop_clock(Some(TIME_LIMIT_RATIONALE.to_owned()), true);
+    }
+
+    /// Returns the notice above the screen. It takes no keys, so the user can continue typing.
+    pub fn limit_notice(&self) -> Option<String> {
+        let (scope, reached) = self.time_limit.notice?;
+        let run = self.run().filter(|run| run.company.is_running())?;
+        let left = run.time_left.iter().find(|left| left.scope == scope)?;
+        Some(match reached {
+            true => format!("{}: please finish", left.describe()),
+            false => limit_notice_text(left, &run.company.rules),
+        })
+    }
+
+    /// Submits the week when its time has ended. Questions of the study are answered first.
+    pub(super) fn enforce_week_limit(&mut self) {
+        if !self.time_limit.files_week
+            || self.has_due_questions()
+            || self.pause_screen.is_some()
+            || self.exit_target.is_some()
+        {
+            return;
+        }
+        match &self.busy {
+            // A week that is already running was submitted in time.
+            Some(busy) if busy.progress.is_some() => self.time_limit.files_week = false,
+            Some(_) => {}
+            None => self.submit_naive_week(),
+        }
+    }
+
+    /// Submits the week with the naive forecasts. Drafts are not sent.
+    fn submit_naive_week(&mut self) {
+        self.time_limit.files_week = false;
+        let Some(run) = self.run().filter(|run| run.company.is_running()) else { return };
+        let mut forecasts = run.company.naive_forecasts;
+        forecasts.filled_naively = [true; 4];
+        self.time_limit.draft_notice =
+            run.next_week.has_draft().then(|| draft_retention_text(&run.company.rules));
+        self.close_layers();
+        self.end_next_week_drafts(TextEditOutcome::Left);
+        let rationale = TIME_LIMIT_RATIONALE.to_owned();
+        self.follow(vec![Effect::Request(Request::Advance { rationale, forecasts })]);
+        self.show_status("time for this week is up; it was submitted with the projection");
+    }
+
+    /// Clears the notices of the week. Returns what happened to a draft that was not submitted.
+    pub(super) fn take_week_draft_notice(&mut self) -> Option<String> {
+        std::mem::take(&mut self.time_limit).draft_notice
+    }
+}
+
+fn limit_notice_text(left: &TimeLeft, rules: &SessionRules) -> String {
+    format!("{}; {}", left.describe(), left.describe_consequence(rules.limits.at_limit))
+}
+
+fn draft_retention_text(rules: &SessionRules) -> String {
+    let kept = match rules.drafts {
+        _ if !rules.records_activity("draft") => "it is lost",
+        DraftsKept::None => "it is lost",
+        DraftsKept::Lengths => "the record keeps its length, not its text",
+        DraftsKept::Text => "the record keeps it as a draft",
+    };
+    format!("Your draft was not submitted; {kept}.")
+}

@@ -1,0 +1,304 @@
+//! Causes of the change of a weekly figure: the equation, and a bar for each cause.
+
+use ratatui::layout::Rect;
+use ratatui::text::Line;
+
+use super::{Dialog, DialogResponse};
+use crate::action::{Action, Scope};
+use crate::context::{Figure, ScreenContext};
+use crate::effect::Effect;
+use novamind_insight::{Cause, CauseProgress, ChangeExplanation, WeekQuantity};
+use novamind_report::why::{CauseLine, cause_lines, equation, heading};
+use novamind_tools::Rejection;
+use novamind_tui::canvas::{Canvas, Click, centered_rect, row_rects, truncate_to_width};
+use novamind_tui::text::wrap;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::sparkline::bar;
+use novamind_worker::causes::CausesQuestion;
+use novamind_worker::question::{OutgoingQuestion, Pending};
+
+const MAX_PAGE_WIDTH: u16 = 110;
+/// Minimum number of visible causes below a long text.
+const MIN_LISTED_CAUSES: usize = 4;
+
+/// The dialog.
+pub struct CausesDialog {
+    /// The figure, with its source rows.
+    figure: Figure,
+    quantity: WeekQuantity,
+    week: u32,
+    asked: Pending<CausesQuestion>,
+    answer: Option<Result<ChangeExplanation, Rejection>>,
+    selected: usize,
+}
+
+impl CausesDialog {
+    /// Requests the causes of the change of a figure in a week.
+    pub fn new(figure: Figure, quantity: WeekQuantity, week: u32) -> (CausesDialog, OutgoingQuestion) {
+        let (asked, ask) = Pending::with_question(CausesQuestion { quantity, week });
+        (CausesDialog { figure, quantity, week, asked, answer: None, selected: 0 }, ask)
+    }
+
+    fn causes(&self) -> Option<&ChangeExplanation> {
+        self.answer.as_ref()?.as_ref().ok()
+    }
+
+    fn select(&mut self, to: usize) {
+        self.selected = to.min(self.causes().map_or(0, |why| why.contributions.len()));
+    }
+
+    /// Opens the form of the decision, or the source rows for other causes.
+    fn open_source(&self) -> DialogResponse {
+        let Some(why) = self.causes() else { return DialogResponse::stay() };
+        DialogResponse::confirm_with(match why.contributions.get(self.selected).map(|part| part.cause) {
+            // Closes a weekly report below.
+            Some(Cause::Calls(tool)) => vec![Effect::CloseDialogs, Effect::ShowTool(tool)],
+            _ => vec![Effect::ShowRows(self.figure.clone())],
+        })
+    }
+
+    /// Asks the same question for another week, if that week has a previous one.
+    fn change_week(&self, week: u32, look: &ScreenContext<'_>) -> DialogResponse {
+        let last = look.company.weeks.len() as u32;
+        if !(2..=last).contains(&week) {
+            return DialogResponse::stay();
+        }
+        // The source rows belong to the figure's own week.
+        let title = format!("{} in week {week}", self.quantity.name());
+        let figure =
+            Figure { title, sql: None, week_quantity: Some((self.quantity, week)), ..self.figure.clone() };
+        DialogResponse::confirm_with(vec![Effect::AskWhy(figure)])
+    }
+
+    fn progress_text(&self) -> String {
+        match self.asked.progress() {
+            None => "reading the record …".to_owned(),
+            Some(CauseProgress::Replaying(day, last)) => format!("simulating day {day} of {last} …"),
+            Some(CauseProgress::Simulated(done, all)) => {
+                format!("simulating the week without its causes: {done} of {all} …")
+            }
+        }
+    }
+
+    /// Formats a cause, its contribution and a bar, with differing inputs if they fit.
+    fn line<'a>(
+        canvas: &Canvas<'_>,
+        cause: &CauseLine,
+        most: f64,
+        widths: [usize; 3],
+        width: u16,
+        here: bool,
+    ) -> Line<'a> {
+        let [name, amount, bars] = widths;
+        let role = |own| if here { Role::Selection } else { own };
+        let share = if most > 0.0 { cause.amount.abs() / most } else { 0.0 };
+        let left = (width as usize).saturating_sub(name + amount + bars + 5);
+        let mark = if here { "›" } else { " " };
+        Line::from(vec![
+            canvas.span(
+                format!("{mark} {:<name$} {:>amount$} ", cause.name, cause.amount_text),
+                role(Role::Text),
+            ),
+            canvas.span(bar(share, bars), role(Role::Series(0))),
+            canvas.span(format!(" {}", truncate_to_width(&cause.details.join(" · "), left)), role(Role::Dim)),
+        ])
+    }
+}
+
+impl Dialog for CausesDialog {
+    fn record_name(&self) -> String {
+        format!("why {}, week {}", self.quantity.name(), self.week)
+    }
+
+    fn scopes(&self) -> Vec<Scope> {
+        vec![Scope::List, Scope::Dialog]
+    }
+
+    fn hints(&self) -> Vec<Action> {
+        match self.causes() {
+            Some(_) => vec![Action::Open, Action::Left, Action::Right, Action::Close],
+            None => vec![Action::Left, Action::Right, Action::Close],
+        }
+    }
+
+    fn handle_action(&mut self, action: Action, look: &ScreenContext<'_>) -> DialogResponse {
+        match action {
+            Action::Left => return self.change_week(self.week.saturating_sub(1), look),
+            Action::Right => return self.change_week(self.week + 1, look),
+            Action::Close | Action::Cancel => return DialogResponse::close(),
+            Action::Open | Action::Confirm => return self.open_source(),
+            Action::Down => self.select(self.selected + 1),
+            Action::Up => self.select(self.selected.saturating_sub(1)),
+            Action::First => self.select(0),
+            Action::Last => self.select(usize::MAX),
+            _ => {}
+        }
+        DialogResponse::stay()
+    }
+
+    fn take_answers(&mut self) {
+        if let Some((_, answer)) = self.asked.try_take() {
+            self.answer = Some(answer);
+        }
+    }
+
+    fn handle_click(&mut self, row: usize, _: &ScreenContext<'_>) -> DialogResponse {
+        let again = self.selected == row;
+        self.select(row);
+        if again { self.open_source() } else { DialogResponse::stay() }
+    }
+
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+        let width = MAX_PAGE_WIDTH.min(area.width.saturating_sub(2));
+        let inner = width.saturating_sub(4) as usize;
+        let (title, text, role) = match &self.answer {
+            None => (self.record_name(), self.progress_text(), Role::Warning),
+            Some(Err(refusal)) => (self.record_name(), refusal.message.clone(), Role::Bad),
+            Some(Ok(why)) => (heading(why), equation(why), Role::Strong),
+        };
+        let text = wrap(&text, inner);
+        let causes = self.causes().map(cause_lines).unwrap_or_default();
+        let room = area.height.saturating_sub(2) as usize;
+        let gap = usize::from(!causes.is_empty() && text.len() + causes.len() < room);
+        let height = (text.len() + gap + causes.len() + 2) as u16;
+        let own = centered_rect(area, width, height);
+        canvas.clear(own, Role::Text);
+        let note = match self.causes() {
+            Some(why) => format!("simulated {} times", why.simulation_count),
+            None => String::new(),
+        };
+        let inside = canvas.draw_pane_frame(own, &title, &note, true);
+        let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
+        // The list scrolls, the text does not.
+        let listed = causes.len().min(MIN_LISTED_CAUSES);
+        let shown = text.len().min((inside.height as usize).saturating_sub(listed + gap).max(1));
+        for (row, line) in row_rects(inside).zip(text.iter().take(shown)) {
+            canvas.draw_text(row, line, role);
+        }
+        let used = ((shown + gap) as u16).min(inside.height);
+        let list = Rect { y: inside.y + used, height: inside.height - used, ..inside };
+        let longest = |of: fn(&CauseLine) -> usize| causes.iter().map(of).max().unwrap_or(0);
+        let bars = if inner >= 90 { 16 } else { 8 };
+        let widths = [longest(|own| own.name.len()), longest(|own| own.amount_text.len()), bars];
+        let most = causes.iter().map(|own| own.amount.abs()).fold(0.0, f64::max);
+        let first = self.selected.saturating_sub((list.height as usize).saturating_sub(1));
+        for (row, (at, cause)) in row_rects(list).zip(causes.iter().enumerate().skip(first)) {
+            let here = at == self.selected;
+            if here {
+                canvas.clear(row, Role::Selection);
+            }
+            let line = CausesDialog::line(canvas, cause, most, widths, row.width, here);
+            canvas.draw_line(row, &line);
+            canvas.register_click(row, Click::Row(0, at));
+        }
+        let label = |action| look.keys.label(action).unwrap_or_default();
+        let weeks = format!("{} {} change week", label(Action::Left), label(Action::Right));
+        let keys = match self.causes() {
+            Some(_) => format!("{} · {weeks} · {}", look.hint(Action::Open), look.hint(Action::Close)),
+            None => format!("{weeks} · {}", look.hint(Action::Close)),
+        };
+        canvas.draw_pane_keys(own, &keys);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_kit::{dialog_action, dialog_text, new_company};
+    use novamind_insight::{CauseContribution, CauseDetail, InputDetail};
+    use novamind_record::figures::WeekFigure;
+    use novamind_tools::ToolId;
+
+    fn cancellations() -> WeekQuantity {
+        WeekQuantity::for_company(WeekFigure::Cancellations).expect("a figure of the company")
+    }
+
+    fn question_figure() -> Figure {
+        Figure { title: "cancellations".to_owned(), term: "churn", sql: None, week_quantity: None }
+    }
+
+    fn example_causes() -> ChangeExplanation {
+        let part = |cause, amount, details| CauseContribution { cause, amount, details };
+        let overload =
+            CauseDetail::Input(InputDetail { name: "peak overload", old: 0.0, new: 0.131, is_share: true });
+        ChangeExplanation {
+            week: 20,
+            quantity: cancellations(),
+            days: [7, 7],
+            before: 195.0,
+            after: 1137.0,
+            contributions: vec![
+                part(Cause::Calls(ToolId::SetPrices), 938.0, Vec::new()),
+                part(Cause::Competitors, 4.0, vec![CauseDetail::Occurred(2, "move")]),
+                part(Cause::Service, 0.0, vec![overload]),
+            ],
+            residual: 0.0,
+            simulation_count: 5,
+        }
+    }
+
+    fn dialog_with_answer(answer: Result<ChangeExplanation, Rejection>) -> CausesDialog {
+        let (mut dialog, _) = CausesDialog::new(question_figure(), cancellations(), 20);
+        dialog.asked.set_answer(answer);
+        dialog.take_answers();
+        dialog
+    }
+
+    #[test]
+    fn causes_have_bars_and_link_to_the_form_or_the_rows() {
+        let company = new_company();
+        let mut dialog = dialog_with_answer(Ok(example_causes()));
+        for (width, height) in [(60, 16), (80, 24), (120, 40), (200, 60)] {
+            let picture = dialog_text(&dialog, &company, width, height);
+            for words in ["195 → 1,137", "price", "+938", "████████", "rivals", "+4", "residual"]
+            {
+                assert!(picture.contains(words), "{words} in {picture}");
+            }
+        }
+        assert!(dialog_text(&dialog, &company, 120, 40).contains("peak overload: 0.0% → 13.1%"));
+        let first = dialog_action(&mut dialog, Action::Open, &company);
+        assert!(
+            first.closes
+                && matches!(first.effects[..], [Effect::CloseDialogs, Effect::ShowTool(ToolId::SetPrices)])
+        );
+        dialog_action(&mut dialog, Action::Down, &company);
+        let second = dialog_action(&mut dialog, Action::Open, &company);
+        assert!(matches!(&second.effects[..], [Effect::ShowRows(figure)] if figure.title == "cancellations"));
+        dialog_action(&mut dialog, Action::Last, &company);
+        assert_eq!(dialog.selected, 3);
+    }
+
+    #[test]
+    fn week_can_change_except_to_the_first() {
+        let company =
+            novamind_worker::company::DisplayedCompany::from_session(&crate::test_kit::played_session(4));
+        let (mut dialog, _) = CausesDialog::new(question_figure(), cancellations(), 3);
+        assert!(dialog_text(&dialog, &company, 80, 24).contains("change week"));
+        for (action, week) in [(Action::Left, 2), (Action::Right, 4)] {
+            let outcome = dialog_action(&mut dialog, action, &company);
+            assert!(outcome.closes, "a closed dialog takes no answer");
+            let asked = outcome.effects.first();
+            let Some(Effect::AskWhy(figure)) = asked else { panic!("nothing is asked") };
+            assert_eq!(figure.week_quantity, Some((cancellations(), week)));
+            assert!(figure.title.ends_with(&format!("in week {week}")), "{}", figure.title);
+        }
+        for (week, action) in [(2, Action::Left), (4, Action::Right)] {
+            let (mut dialog, _) = CausesDialog::new(question_figure(), cancellations(), week);
+            assert!(dialog_action(&mut dialog, action, &company).effects.is_empty());
+        }
+    }
+
+    #[test]
+    fn the_work_is_told_and_esc_closes_it() {
+        let company = new_company();
+        let (mut dialog, _) = CausesDialog::new(question_figure(), cancellations(), 9);
+        assert!(dialog_text(&dialog, &company, 60, 16).contains("reading the record"));
+        dialog.asked.set_progress(CauseProgress::Simulated(3, 16));
+        assert!(dialog_text(&dialog, &company, 60, 16).contains("3 of 16"));
+        assert!(dialog_action(&mut dialog, Action::Open, &company).effects.is_empty());
+        assert!(dialog_action(&mut dialog, Action::Close, &company).closes);
+        let refused =
+            dialog_with_answer(Err(Rejection::new("not_in_this_mode", "not in an unfinished baseline run")));
+        assert!(dialog_text(&refused, &company, 60, 16).contains("not in an unfinished baseline run"));
+    }
+}

@@ -1,0 +1,112 @@
+//! Step 3 of the next-week dialog: cash forecasts, an interval per horizon.
+
+use ratatui::layout::Rect;
+
+use super::{HORIZON_LABELS, NextWeekDialog};
+use crate::action::Action;
+use crate::context::ScreenContext;
+use crate::forecast_fan::draw_fan;
+use novamind_base::formatting::{dollars, percent};
+use novamind_session::ErrorBands;
+use novamind_tui::canvas::{Align, Canvas, Click, row_rects};
+use novamind_tui::text::wrap;
+use novamind_tui::theme::Role;
+use novamind_worker::company::DisplayedCompany;
+
+impl NextWeekDialog {
+    pub(super) fn draw_forecasts(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+        let (company, roomy) = (look.company, area.height >= 12);
+        let question = format!(
+            "Cash now: {}. Forecast it with ranges that contain the actual value 95 times in 100.",
+            dollars(company.observation.cash)
+        );
+        let asked = wrap(&question, area.width as usize);
+        let below = self.naive_forecast_text(look, area.width as usize, roomy);
+        let used = (asked.len() + 1 + HORIZON_LABELS.len() + below.len()) as u16;
+        let mut rows = row_rects(area);
+        for (line, row) in asked.iter().zip(rows.by_ref()) {
+            canvas.draw_text(row, line, Role::Text);
+        }
+        if let Some(row) = rows.next() {
+            for (at, title) in ["low", "point", "high"].into_iter().enumerate() {
+                canvas.draw_aligned(cell_area(row, at), title, Role::Header, Align::Right);
+            }
+            let record = Rect { x: row.x + 60, width: row.width.saturating_sub(60), ..row };
+            let title = if record.width < 18 { "so far" } else { "your record so far" };
+            if company.shows_calibration() {
+                canvas.draw_text(record, title, Role::Header);
+            }
+        }
+        for (at, row) in rows.by_ref().take(HORIZON_LABELS.len()).enumerate() {
+            self.draw_horizon(canvas, row, at, company);
+        }
+        for ((line, role), row) in below.iter().zip(rows) {
+            canvas.draw_text(row, line, *role);
+        }
+        let used = used + u16::from(roomy);
+        let left = Rect { y: area.y + used, height: area.height.saturating_sub(used), ..area };
+        if let Ok(forecasts) = self.parse_forecasts(company) {
+            draw_fan(canvas, left, company, company.observation.day, &forecasts.all);
+        }
+    }
+
+    /// Describes the projection, and its past coverage if the rules permit.
+    fn naive_forecast_text(
+        &self,
+        look: &ScreenContext<'_>,
+        width: usize,
+        roomy: bool,
+    ) -> Vec<(String, Role)> {
+        let filled = self.filled_naively.as_flattened().contains(&true);
+        let fills = match (filled, look.keys.label(Action::FillNaiveForecasts)) {
+            (false, Some(key)) => format!("{key} fills empty cells"),
+            _ => "marked as projection".to_owned(),
+        };
+        let said = format!("{fills}: the last four weeks continue at current costs");
+        let mut lines: Vec<(String, Role)> =
+            wrap(&said, width).into_iter().map(|line| (line, Role::Dim)).collect();
+        if filled && roomy && !look.company.is_baseline() {
+            let coverage = wrap(&ErrorBands::bundled().describe_coverage(), width);
+            lines.extend(coverage.into_iter().map(|line| (line, Role::Dim)));
+        }
+        lines
+    }
+
+    fn draw_horizon(&self, canvas: &mut Canvas<'_>, row: Rect, at: usize, company: &DisplayedCompany) {
+        canvas.draw_text(Rect { width: 9.min(row.width), ..row }, HORIZON_LABELS[at], Role::Text);
+        for (column, field) in self.cells[at].iter().enumerate() {
+            let place = cell_area(row, column).intersection(row);
+            let here = self.focus == (at, column);
+            if here && self.is_typing {
+                field.draw(canvas, place);
+                continue;
+            }
+            let role = if here { Role::Selection } else { Role::Field };
+            canvas.clear(place, role);
+            let text = if field.is_empty() { "–" } else { field.text() };
+            canvas.draw_aligned(place, text, role, Align::Right);
+            canvas.register_click(place, Click::Row(0, at * 3 + column));
+        }
+        if !company.shows_calibration() {
+            return;
+        }
+        let record = Rect { x: row.x + 60, width: row.width.saturating_sub(60), ..row };
+        let text = match company.forecast_scores.get(at) {
+            Some(score) if score.scored > 0 && record.width < 36 => {
+                format!("{} of {}", score.covered, score.scored)
+            }
+            Some(score) if score.scored > 0 => format!(
+                "in range {} of {} · typical error {}",
+                score.covered,
+                score.scored,
+                percent(score.mean_error, 1)
+            ),
+            _ => "–".to_owned(),
+        };
+        canvas.draw_text(record, &text, Role::Dim);
+    }
+}
+
+fn cell_area(row: Rect, column: usize) -> Rect {
+    Rect { x: row.x + 10 + column as u16 * 16, width: 14, ..row }
+}

@@ -1,0 +1,74 @@
+//! A text viewer: the dashboard, a full cell value, the changes of the week.
+
+use ratatui::layout::Rect;
+use ratatui::text::Line;
+
+use super::{Dialog, DialogResponse};
+use crate::action::{Action, Scope};
+use crate::context::ScreenContext;
+use novamind_tui::canvas::{Canvas, centered_rect};
+use novamind_tui::text::wrap;
+use novamind_tui::theme::Role;
+
+/// A text with a title.
+pub struct TextDialog {
+    title: String,
+    text: String,
+    first_line: usize,
+}
+
+impl TextDialog {
+    /// Shows a text.
+    pub fn new(title: impl Into<String>, text: impl Into<String>) -> TextDialog {
+        TextDialog { title: title.into(), text: text.into(), first_line: 0 }
+    }
+}
+
+impl Dialog for TextDialog {
+    fn record_name(&self) -> String {
+        format!("text {}", self.title)
+    }
+
+    fn scopes(&self) -> Vec<Scope> {
+        vec![Scope::Dialog, Scope::List]
+    }
+
+    fn hints(&self) -> Vec<Action> {
+        vec![Action::ScrollDown, Action::Cancel]
+    }
+
+    fn handle_action(&mut self, action: Action, look: &ScreenContext<'_>) -> DialogResponse {
+        let last = self.text.lines().count().saturating_sub(1);
+        match action {
+            Action::Cancel | Action::Close => return DialogResponse::close(),
+            Action::ScrollUp => self.first_line = self.first_line.saturating_sub(1),
+            Action::ScrollDown => self.first_line = (self.first_line + 1).min(last),
+            Action::PageUp => self.first_line = self.first_line.saturating_sub(look.page_rows as usize),
+            Action::PageDown => self.first_line = (self.first_line + look.page_rows as usize).min(last),
+            Action::First => self.first_line = 0,
+            Action::Last => self.first_line = last,
+            _ => {}
+        }
+        DialogResponse::stay()
+    }
+
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+        let width = area.width.saturating_sub(6).clamp(1, 110);
+        let lines = wrap(&self.text, width as usize);
+        let own = centered_rect(area, width + 4, (lines.len() as u16).saturating_add(2));
+        canvas.clear(own, Role::Text);
+        let inside = canvas.draw_pane_frame(own, &self.title, "", true);
+        let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
+        let from = self.first_line.min(lines.len().saturating_sub(inside.height as usize));
+        canvas.page_rows = inside.height.max(1);
+        let shown = lines.iter().skip(from).take(inside.height as usize);
+        let shown: Vec<Line<'_>> =
+            shown.map(|line| Line::from(canvas.span(line.as_str(), Role::Text))).collect();
+        canvas.draw_lines(inside, &shown);
+        let more = lines.len() > inside.height as usize;
+        canvas.draw_pane_keys(
+            own,
+            &if more { look.hints(&[Action::ScrollDown, Action::Cancel]) } else { look.hint(Action::Cancel) },
+        );
+    }
+}

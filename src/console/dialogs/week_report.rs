@@ -1,0 +1,505 @@
+//! The weekly report: cash and its components, unusual changes, decisions, news, due forecasts, and what needs
+//! attention.
+
+use ratatui::layout::Rect;
+use ratatui::text::Line;
+use unicode_width::UnicodeWidthStr;
+
+use super::{Dialog, DialogResponse};
+use crate::action::{Action, Scope};
+use crate::context::{Figure, ScreenContext, ScreenId};
+use crate::effect::Effect;
+use crate::screens::overview::figures::{self, METRICS};
+use crate::screens::overview::needs::screen_of;
+use novamind_base::formatting::{dollars, grouped_number, short_dollars, signed_dollars};
+use novamind_record::figures::WeekFigure;
+use novamind_report::WeekReport;
+use novamind_report::action_items::ActionItem;
+use novamind_report::week::MovedFigure;
+use novamind_session::{IntervalPosition, ScoredForecast};
+use novamind_tools::Forecast;
+use novamind_tui::canvas::{Canvas, Click, centered_rect, truncate_to_width};
+use novamind_tui::text::{format_change, join_into_lines, wrap};
+use novamind_tui::theme::Role;
+use novamind_worker::company::DisplayedCompany;
+
+const MAX_PAGE_WIDTH: u16 = 116;
+/// Minimum width for comments next to the figures; in narrower windows they are below.
+const MIN_WIDTH_FOR_SIDE_TEXT: u16 = 100;
+const MOVES_SECTION: usize = 2;
+
+/// The report of the last week.
+pub struct WeekReportDialog {
+    remark: Option<String>,
+    /// The selected line: cash first, then the most unusual changes.
+    selected: usize,
+}
+
+impl WeekReportDialog {
+    /// Opens the report, with a remark on how the week was saved.
+    pub fn new(remark: Option<String>) -> WeekReportDialog {
+        WeekReportDialog { remark, selected: 0 }
+    }
+
+    fn select(&mut self, to: usize, look: &ScreenContext<'_>) -> DialogResponse {
+        self.selected = to.min(usize::from(look.page_rows).saturating_sub(1));
+        DialogResponse::stay()
+    }
+
+    fn figure(&self, look: &ScreenContext<'_>) -> Option<Figure> {
+        let name = match self.selected.checked_sub(1) {
+            None => METRICS.first()?.name,
+            Some(at) => look.company.last_week.as_ref()?.moved_figures.get(at)?.name,
+        };
+        let figure = WeekFigure::parse_label(name)?;
+        let metric = METRICS.iter().find(|metric| WeekFigure::parse_label(metric.name) == Some(figure))?;
+        Some(figures::figure(metric, 0, look.company))
+    }
+}
+
+type Section<'a> = Vec<Line<'a>>;
+
+impl Dialog for WeekReportDialog {
+    fn record_name(&self) -> String {
+        "week report".to_owned()
+    }
+
+    fn scopes(&self) -> Vec<Scope> {
+        vec![Scope::Dialog, Scope::Global]
+    }
+
+    fn hints(&self) -> Vec<Action> {
+        vec![Action::Cancel, Action::NextWeek]
+    }
+
+    fn overrides_dialog_keys(&self, action: Action) -> bool {
+        action == Action::NextWeek
+    }
+
+    fn handle_action(&mut self, action: Action, look: &ScreenContext<'_>) -> DialogResponse {
+        match action {
+            Action::Cancel | Action::Report => DialogResponse::close(),
+            Action::NextWeek => DialogResponse::confirm_with(vec![Effect::Do(action)]),
+            Action::ScrollUp => self.select(self.selected.saturating_sub(1), look),
+            Action::ScrollDown => self.select(self.selected + 1, look),
+            Action::Why => {
+                DialogResponse::stay_with(self.figure(look).map(Effect::AskWhy).into_iter().collect())
+            }
+            Action::Rows => {
+                DialogResponse::stay_with(self.figure(look).map(Effect::ShowRows).into_iter().collect())
+            }
+            _ => DialogResponse::stay(),
+        }
+    }
+
+    fn handle_click(&mut self, row: usize, look: &ScreenContext<'_>) -> DialogResponse {
+        self.select(row, look)
+    }
+
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+        let Some(told) = &look.company.last_week else { return };
+        let width = MAX_PAGE_WIDTH.min(area.width);
+        let (lines, places) =
+            self.lines(canvas, told, look, width.saturating_sub(4), area.height.saturating_sub(2));
+        canvas.page_rows = places.len().max(1) as u16;
+        let own = centered_rect(area, width, lines.len() as u16 + 2);
+        canvas.clear(own, Role::Text);
+        let title = format!("Week {} · day {}", told.week.day.div_ceil(7), told.week.day);
+        let inside = canvas.draw_pane_frame(own, &title, "", true);
+        canvas.draw_lines(Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside }, &lines);
+        canvas.register_click(own, Click::Command(Action::Cancel.into()));
+        for (at, place) in places.iter().enumerate().filter(|(_, place)| **place < usize::from(inside.height))
+        {
+            let row = Rect { y: inside.y + *place as u16, height: 1, ..inside };
+            canvas.register_click(row, Click::Row(0, at));
+        }
+        let close = look.hint(Action::Cancel);
+        // The change of the first week has no explanation: there is no previous week.
+        let why = match look.company.can_explain_causes() && look.company.weeks.len() > 1 {
+            true => format!(" · {}", look.hint(Action::Why)),
+            false => String::new(),
+        };
+        let again =
+            look.keys.label(Action::Report).map_or(String::new(), |key| format!(" · {key} reopens it"));
+        canvas.draw_pane_keys(own, &format!("{close}{why}{again}"));
+    }
+}
+
+impl WeekReportDialog {
+    /// Returns the lines that fit into a height, and the positions of selectable lines. Optional lines are dropped
+    /// first.
+    fn lines<'a>(
+        &self,
+        canvas: &Canvas<'_>,
+        told: &WeekReport,
+        look: &ScreenContext<'_>,
+        width: u16,
+        height: u16,
+    ) -> (Vec<Line<'a>>, Vec<usize>) {
+        let height = height as usize;
+        let head = self.header_section(canvas, told, width, if height >= 26 { 4 } else { 1 });
+        let needs = &look.company.action_items;
+        let notices = &look.company.notices;
+        let news = news_section(canvas, told, width, look);
+        let decided = decisions_section(canvas, told, width, if height >= 26 { 6 } else { 2 });
+        // Headings and blank lines between five sections.
+        let airy = height >= 24;
+        let fixed = head.len() + decided.len() + news.len() + 2 + if airy { 4 } else { 0 };
+        let room = height.saturating_sub(fixed);
+        let shown_needs = needs.len().min((room / 5).max(1)).max(1);
+        let coming =
+            next_steps_section(canvas, &needs[..shown_needs.min(needs.len())], width, height >= 26, look);
+        let taken = coming.len() + usize::from(!notices.is_empty());
+        let (moves, starts) = self.moves_section(canvas, told, width, room.saturating_sub(taken));
+        let left = room.saturating_sub(coming.len() + moves.len());
+        let parts: [Section<'a>; 5] = [
+            head,
+            decided,
+            with_heading(canvas, &moves_heading(told), moves),
+            news.into_iter().chain(notices_section(canvas, look.company, width, left.min(8))).collect(),
+            with_heading(canvas, "Action needed", coming),
+        ];
+        let (mut lines, mut places) = (Vec::new(), vec![0]);
+        for (at, part) in parts.into_iter().enumerate() {
+            if at > 0 && airy {
+                lines.push(Line::default());
+            }
+            if at == MOVES_SECTION {
+                // Below the heading.
+                places.extend(starts.iter().map(|start| lines.len() + 1 + start));
+            }
+            lines.extend(part);
+        }
+        lines.truncate(height);
+        places.retain(|place| *place < height);
+        (lines, places)
+    }
+
+    fn header_section<'a>(
+        &self,
+        canvas: &Canvas<'_>,
+        told: &WeekReport,
+        width: u16,
+        forecasts: usize,
+    ) -> Section<'a> {
+        let change = told.week.cash_change;
+        let role = if change < 0.0 { Role::Bad } else { Role::Good };
+        let mut lines = vec![Line::from(vec![
+            canvas.span(format!("Cash {}  ", dollars(told.week.cash)), self.role_of(0, Role::Strong)),
+            canvas.span(format_change(change, &dollars(change.abs())), role),
+            canvas.span(" this week", Role::Dim),
+        ])];
+        let parts: Vec<String> = told
+            .cash_components
+            .iter()
+            .map(|(name, amount)| format!("{name} {}", signed_dollars(*amount)))
+            .collect();
+        let parts = join_into_lines(&parts, width as usize).into_iter();
+        lines.extend(parts.map(|line| Line::from(canvas.span(line, Role::Text))));
+        let remark = self.remark.iter().flat_map(|remark| wrap(remark, width as usize));
+        lines.extend(remark.map(|line| Line::from(canvas.span(line, Role::Warning))));
+        if told.was_filed_at_limit() {
+            let text = "The time for this week ran out: it was submitted with the projection.";
+            let said = wrap(text, width as usize).into_iter();
+            lines.extend(said.map(|line| Line::from(canvas.span(line, Role::Warning))));
+        }
+        let due = told.due_forecasts.iter().take(forecasts);
+        lines.extend(due.map(|due| forecast_line(canvas, due, told.was_forecast_filed_at_limit(due), width)));
+        // Forecasts that do not fit are counted; the journal lists them.
+        let left_out = told.due_forecasts.len().saturating_sub(forecasts);
+        if let (Some(last), true) = (lines.last_mut(), left_out > 0) {
+            last.spans.push(canvas.span(format!(" · {left_out} more"), Role::Dim));
+        }
+        lines
+    }
+}
+
+impl WeekReportDialog {
+    /// Returns the style of a line's name. Lines without an explanation cannot be selected.
+    fn role_of(&self, line: usize, own: Role) -> Role {
+        if self.selected == line { Role::Selection } else { own }
+    }
+
+    /// Returns the most unusual changes that fit, and the line at which each starts.
+    fn moves_section<'a>(
+        &self,
+        canvas: &Canvas<'_>,
+        told: &WeekReport,
+        width: u16,
+        room: usize,
+    ) -> (Section<'a>, Vec<usize>) {
+        if told.moved_figures.is_empty() {
+            return (vec![Line::from(canvas.span("  none", Role::Dim))], Vec::new());
+        }
+        let (mut lines, mut starts) = (Vec::new(), Vec::new());
+        for (at, own) in told.moved_figures.iter().enumerate() {
+            let of_one = move_lines(canvas, own, width, self.role_of(at + 1, Role::Text));
+            if lines.len() + of_one.len() > room {
+                break;
+            }
+            starts.push(lines.len());
+            lines.extend(of_one);
+        }
+        (lines, starts)
+    }
+}
+
+/// Names the reference of the changes if the two weeks differ in length.
+fn moves_heading(told: &WeekReport) -> String {
+    match &told.short_week_note {
+        Some(short) => format!("Most unusual changes · a week {short}"),
+        None => "Most unusual changes".to_owned(),
+    }
+}
+
+fn with_heading<'a>(canvas: &Canvas<'_>, heading: &str, lines: Section<'a>) -> Section<'a> {
+    std::iter::once(Line::from(canvas.span(heading.to_owned(), Role::Header))).chain(lines).collect()
+}
+
+/// Describes a due forecast and the actual value. With `of_limit`, the program submitted it when time ran out.
+fn forecast_line<'a>(canvas: &Canvas<'_>, due: &ScoredForecast, of_limit: bool, width: u16) -> Line<'a> {
+    let weeks = due.forecast.horizon_days / 7;
+    let ago = if weeks == 1 { "a week ago".to_owned() } else { format!("{weeks} weeks ago") };
+    let who = match (of_limit, width) {
+        (false, _) => "you",
+        (true, 90..) => "the projection submitted at the limit",
+        (true, _) => "the projection at the limit",
+    };
+    let said = |write: fn(f64) -> String| {
+        let Forecast { point, lower, upper, .. } = due.forecast;
+        format!("{ago} {who} forecast {}, {} to {}: ", write(point), write(lower), write(upper))
+    };
+    // The symbol makes the verdict readable without color.
+    let (verdict, role) = match due.interval_position() {
+        Some(IntervalPosition::Inside) => ("✓ in range", Role::Good),
+        Some(IntervalPosition::Above) => ("▲ actual above range", Role::Warning),
+        Some(IntervalPosition::Below) => ("▼ actual below range", Role::Warning),
+        None => ("open", Role::Dim),
+    };
+    let miss = due.describe_error().map_or(String::new(), |miss| format!(", forecast {miss}"));
+    // Rounded bounds could seem to contain the actual value: exact dollars are used if they fit.
+    let exact = said(dollars);
+    let fits = exact.width() + verdict.width() + miss.width() <= usize::from(width);
+    let said = if fits { exact } else { said(short_dollars) };
+    Line::from(vec![canvas.span(said, Role::Dim), canvas.span(verdict, role), canvas.span(miss, Role::Dim)])
+}
+
+/// Lists the decisions before the week in at most `most` lines.
+fn decisions_section<'a>(canvas: &Canvas<'_>, told: &WeekReport, width: u16, most: usize) -> Section<'a> {
+    let lines = |pieces: &[String]| join_into_lines(pieces, (width as usize).saturating_sub(9));
+    let mut shown = told.decisions.len();
+    let mut found = lines(&told.decisions);
+    while found.len() > most && shown > 0 {
+        shown -= 1;
+        let more = format!("and {} more", told.decisions.len() - shown);
+        found = lines(&[&told.decisions[..shown], &[more]].concat());
+    }
+    if found.is_empty() {
+        found.push("nothing".to_owned());
+    }
+    let line = |(at, text): (usize, String)| {
+        let heading = if at == 0 { "Decided  " } else { "         " };
+        Line::from(vec![canvas.span(heading, Role::Header), canvas.span(text, Role::Text)])
+    };
+    found.into_iter().enumerate().map(line).collect()
+}
+
+/// Formats a change in one or two lines; the selected one is marked.
+fn move_lines<'a>(canvas: &Canvas<'_>, own: &MovedFigure, width: u16, name: Role) -> Section<'a> {
+    let role = match own.is_favorable {
+        Some(true) => Role::Good,
+        Some(false) => Role::Bad,
+        None => Role::Text,
+    };
+    let glyph = if own.is_increase { "▲" } else { "▼" };
+    let share = own.format_size().unwrap_or_default();
+    let mark = if name == Role::Selection { "›" } else { " " };
+    let mut line = vec![
+        canvas.span(format!("{mark} {:<17}", own.name), name),
+        canvas.span(format!("{:>12} → ", own.old), Role::Dim),
+        canvas.span(format!("{:>12}", own.new), Role::Strong),
+        canvas.span(format!("  {glyph} {share:<7}"), role),
+    ];
+    let split =
+        own.category_changes.iter().map(|(name, dollars)| format!("{name} {}", signed_dollars(*dollars)));
+    let said: Vec<String> =
+        [own.change.describe_rarity()].into_iter().filter(|text| !text.is_empty()).chain(split).collect();
+    let said = said.join(" · ");
+    if said.is_empty() {
+        return vec![Line::from(line)];
+    }
+    let used: usize = line.iter().map(|span| span.content.width()).sum();
+    if width >= MIN_WIDTH_FOR_SIDE_TEXT && used + 2 + said.width() <= width as usize {
+        line.push(canvas.span(format!("  {said}"), Role::Dim));
+        return vec![Line::from(line)];
+    }
+    let below = truncate_to_width(&said, (width as usize).saturating_sub(6));
+    vec![Line::from(line), Line::from(canvas.span(format!("      {below}"), Role::Dim))]
+}
+
+/// Lists what is new, with the keys of the screens.
+fn news_section<'a>(
+    canvas: &Canvas<'_>,
+    told: &WeekReport,
+    width: u16,
+    look: &ScreenContext<'_>,
+) -> Section<'a> {
+    let kinds: [(u32, &str, &str, Option<ScreenId>); 6] = [
+        (told.week.threads_opened, "thread", "threads", Some(ScreenId::Inbox)),
+        (told.week.replies, "reply", "replies", Some(ScreenId::Inbox)),
+        (told.customer_posts, "post", "posts", Some(ScreenId::Social)),
+        (told.comments, "comment on our posts", "comments on our posts", Some(ScreenId::Social)),
+        (told.news_items, "news item", "news items", Some(ScreenId::Social)),
+        (
+            told.week.research_finished,
+            "completed project or study",
+            "completed projects and studies",
+            // The notices below name them; projects and studies are on different screens.
+            None,
+        ),
+    ];
+    let found: Vec<_> = kinds.into_iter().filter(|(count, ..)| *count > 0).collect();
+    let mut lines = vec![vec![canvas.span("New  ", Role::Header)]];
+    let mut used = 5;
+    for (at, (count, one, more, screen)) in found.iter().enumerate() {
+        let dot = if at > 0 { " · " } else { "" };
+        let text =
+            format!("{dot}{} {}", grouped_number(f64::from(*count), 0), if *count == 1 { one } else { more });
+        // Consecutive items of a screen share its key.
+        let last = found.get(at + 1).is_none_or(|next| next.3 != *screen);
+        let key = screen
+            .filter(|_| last)
+            .and_then(|screen| look.keys.label(screen.action()))
+            .map_or(String::new(), |key| format!(" [{key}]"));
+        if used + text.width() + key.width() > width as usize {
+            lines.push(vec![canvas.span("   ", Role::Text)]);
+            used = 3;
+        }
+        used += text.width() + key.width();
+        if let Some(line) = lines.last_mut() {
+            line.extend([canvas.span(text, Role::Text), canvas.span(key, Role::Key)]);
+        }
+    }
+    if found.is_empty() {
+        lines.push(vec![canvas.span("  nothing", Role::Dim)]);
+    }
+    lines.into_iter().map(Line::from).collect()
+}
+
+/// Lists the latest notices that fit; repeated ones are counted.
+fn notices_section<'a>(
+    canvas: &Canvas<'_>,
+    company: &DisplayedCompany,
+    width: u16,
+    room: usize,
+) -> Section<'a> {
+    let mut told: Vec<(u32, String, u32)> = Vec::new();
+    for (day, text) in company.notices.iter().rev() {
+        match told.iter().position(|(_, known, _)| known == text) {
+            Some(at) => told[at].2 += 1,
+            None if told.len() < room => told.push((*day, text.clone(), 1)),
+            None => {}
+        }
+    }
+    let line = |(day, text, times): (u32, String, u32)| {
+        let times = if times > 1 { format!(" ({times} times)") } else { String::new() };
+        let before = format!("  day {day:<4} ");
+        let left = usize::from(width).saturating_sub(before.len() + times.len());
+        let text = company.company_names.insert_names(&text.split_whitespace().collect::<Vec<_>>().join(" "));
+        Line::from(vec![
+            canvas.span(before, Role::Dim),
+            canvas.span(truncate_to_width(&text, left), Role::Text),
+            canvas.span(times, Role::Dim),
+        ])
+    };
+    told.into_iter().rev().map(line).collect()
+}
+
+/// Lists action items in at most two rows each, and the key that continues. Suggestions are included if there is
+/// space.
+fn next_steps_section<'a>(
+    canvas: &Canvas<'_>,
+    needs: &[ActionItem],
+    width: u16,
+    roomy: bool,
+    look: &ScreenContext<'_>,
+) -> Section<'a> {
+    if needs.is_empty() && !look.company.is_running() {
+        let (page, others) =
+            (look.keys.label(Action::NextWeek).unwrap_or_default(), [Action::Branches, Action::WriteReport]);
+        let text = format!("  the run has ended: {page} final page · {}", look.hints(&others));
+        return vec![Line::from(canvas.span(text, Role::Dim))];
+    }
+    if needs.is_empty() {
+        let key = look.keys.label(Action::NextWeek).unwrap_or_default();
+        let text = format!("  nothing needs attention; {key} starts the next week");
+        return vec![Line::from(canvas.span(text, Role::Dim))];
+    }
+    let lines = |need: &ActionItem| {
+        let key = look.keys.label(screen_of(need).action()).map_or(String::new(), |key| format!(" [{key}]"));
+        let (sign, role) = if need.is_urgent { ("!", Role::Warning) } else { ("·", Role::Text) };
+        let room = (width as usize).saturating_sub(4 + key.width());
+        let proposed = wrap(&need.describe(), room);
+        let rows = if roomy && proposed.len() <= 2 { proposed } else { wrap(&need.text, room) };
+        let first = rows.first().cloned().unwrap_or_default();
+        let rest = rows.get(1..).unwrap_or_default().join(" ");
+        let mut lines = vec![Line::from(vec![
+            canvas.span(format!("  {sign} {first}"), role),
+            canvas.span(key, Role::Key),
+        ])];
+        if !rest.is_empty() {
+            let rest = truncate_to_width(&rest, (width as usize).saturating_sub(4));
+            lines.push(Line::from(canvas.span(format!("    {rest}"), role)));
+        }
+        lines
+    };
+    needs.iter().flat_map(lines).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dialogs::dialog_text;
+    use crate::test_kit;
+    use novamind_worker::company::DisplayedCompany;
+
+    #[test]
+    fn report_adapts_to_the_window_size() {
+        let company = DisplayedCompany::from_session(&test_kit::played_session(8));
+        let report = WeekReportDialog::new(None);
+        let small = dialog_text(&report, &company, 80, 21);
+        let large = dialog_text(&report, &company, 120, 37);
+        for (text, name) in [(&small, "80×24"), (&large, "120×40")] {
+            for part in [
+                "Week 8 · day 56",
+                "Cash $",
+                "payments +$",
+                "a week ago you forecast",
+                "Most unusual changes",
+                "New  ",
+                "Action needed",
+            ] {
+                assert!(text.contains(part), "{part} is missing at {name}:\n{text}");
+            }
+        }
+        assert!(large.matches(" → ").count() > small.matches(" → ").count(), "{large}");
+        assert!(large.contains("4 weeks ago you forecast"), "{large}");
+    }
+
+    #[test]
+    fn a_remark_about_the_disk_is_shown() {
+        let company = DisplayedCompany::from_session(&test_kit::played_session(1));
+        let report = WeekReportDialog::new(Some("the disk is full".to_owned()));
+        assert!(dialog_text(&report, &company, 80, 21).contains("the disk is full"));
+    }
+
+    #[test]
+    fn report_is_drawn_at_every_size() {
+        let company = DisplayedCompany::from_session(&test_kit::played_session(3));
+        for (width, height) in
+            (0..90).step_by(21).flat_map(|width| (0..30).step_by(4).map(move |height| (width, height)))
+        {
+            dialog_text(&WeekReportDialog::new(Some("x ".repeat(99))), &company, width, height);
+        }
+    }
+}

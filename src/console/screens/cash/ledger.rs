@@ -1,0 +1,143 @@
+//! The ledger of a week: every category with its change, mean and share.
+
+use ratatui::layout::Rect;
+
+use super::model::{Amounts, WeeklyLedger, CATEGORIES, LedgerSubject, days_of_week, format_money, sum_side};
+use super::{Cash, SelectedSubject, ledger_rows};
+use crate::action::Action;
+use crate::context::{Figure, ScreenContext};
+use crate::effect::Effect;
+use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
+use novamind_base::formatting::{compact_number, dollars, percent, short_dollars};
+use novamind_tui::canvas::Canvas;
+use novamind_tui::text::format_change;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::{TableCell, TableColumn, Table};
+use novamind_worker::company::DisplayedCompany;
+
+pub struct LedgerPane;
+
+impl Pane<Cash> for LedgerPane {
+    fn table<'a>(&self, cash: &'a Cash) -> Option<&'a Table> {
+        Some(&cash.table)
+    }
+
+    fn table_mut<'a>(&self, cash: &'a mut Cash) -> Option<&'a mut Table> {
+        Some(&mut cash.table)
+    }
+
+    fn hints(&self, _: &Cash) -> Vec<Action> {
+        vec![Action::Open, Action::Sort, Action::Filter]
+    }
+
+    fn figure(&self, cash: &Cash, _: &ScreenContext<'_>) -> Option<Figure> {
+        cash.figure_of(selected(cash))
+    }
+
+    fn handle_action(&self, cash: &mut Cash, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+        match action {
+            Action::Open => return ledger_rows(selected(cash)),
+            Action::Close if cash.selected_week.is_some() => {
+                cash.handle_week_action(action);
+            }
+            action => {
+                cash.table.handle_action(action, look.page_rows);
+            }
+        }
+        Vec::new()
+    }
+
+    fn border(&self, cash: &Cash, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
+        let open = look.keys.label(Action::Open).unwrap_or_default();
+        PaneBorder {
+            title: format!("Ledger of {}", week_label(cash.week(), look.company)),
+            note: match cash.table.summary() {
+                note if note.is_empty() => format!("{} now", dollars(look.company.observation.cash)),
+                note => note,
+            },
+            keys: format!("{open} ledger rows · {}", look.hint(Action::Sort)),
+            ..PaneBorder::default()
+        }
+    }
+
+    fn draw(&self, cash: &Cash, canvas: &mut Canvas<'_>, seat: PanePlacement, _: &ScreenContext<'_>) {
+        cash.table.draw(canvas, seat.area, seat.focused, seat.index);
+    }
+}
+
+/// Returns the subject of the selected row, in the weeks of the selected column.
+fn selected(cash: &Cash) -> Option<SelectedSubject> {
+    let (subject, week) = (cash.subject()?, cash.week());
+    let weeks = match cash.table.selected_column() {
+        2 | 3 if week < 2 => return None,
+        2 => (week - 1, week),
+        3 => (week - 1, week - 1),
+        4 => (week.saturating_sub(3).max(1.min(week)), week),
+        5 => (1, cash.ledger.open_week()),
+        _ => (week, week),
+    };
+    Some((subject, weeks))
+}
+
+fn week_label(week: u32, company: &DisplayedCompany) -> String {
+    let (from, to) = days_of_week(week);
+    format!("week {week} · days {from} to {}", to.min(company.observation.day.max(from)))
+}
+
+/// Returns the table of a week: columns, subjects of the rows, rows.
+pub fn table_of(books: &WeeklyLedger, week: u32) -> (Vec<TableColumn>, Vec<LedgerSubject>, Vec<Vec<TableCell>>) {
+    let before = week.saturating_sub(1);
+    let columns = vec![
+        TableColumn::text("category").with_max_width(14),
+        TableColumn::numeric(format!("week {week}")),
+        TableColumn::numeric("change"),
+        TableColumn::numeric(format!("week {before}")),
+        TableColumn::numeric("4-wk mean"),
+        TableColumn::numeric("run total"),
+        TableColumn::numeric("share"),
+    ];
+    // Sums come before their parts, because small windows cut the end.
+    let mut subjects = vec![LedgerSubject::Net];
+    for income in [true, false] {
+        let used = |at: &usize| CATEGORIES[*at].is_income == income && books.is_used(*at);
+        subjects.push(if income { LedgerSubject::Income } else { LedgerSubject::Costs });
+        subjects.extend((0..CATEGORIES.len()).filter(used).map(LedgerSubject::Category));
+    }
+    let all = [books.week(week), books.week(before), books.mean_of_four(week), books.total()];
+    let rows = subjects.iter().map(|subject| row_of(subject, &all, week)).collect();
+    (columns, subjects, rows)
+}
+
+fn row_of(subject: &LedgerSubject, all: &[Amounts; 4], week: u32) -> Vec<TableCell> {
+    let [now, before, mean, total] = [0, 1, 2, 3].map(|at| subject.amount(&all[at]));
+    let name = subject.name();
+    let (income, role) = match subject {
+        LedgerSubject::Category(at) => (CATEGORIES[*at].is_income, Role::Text),
+        LedgerSubject::Costs => (false, Role::Strong),
+        LedgerSubject::Income | LedgerSubject::Net => (true, Role::Strong),
+    };
+    // The change of a cost refers to its absolute value.
+    let change = if income { now - before } else { before - now };
+    let change_role = match change {
+        0.0 => Role::Dim,
+        change if (change > 0.0) == income => Role::Good,
+        _ => Role::Bad,
+    };
+    let whole = sum_side(&all[0], income).abs();
+    let share = if *subject == LedgerSubject::Net || whole <= 0.0 { None } else { Some(now.abs() / whole) };
+    let amount = |value: f64| TableCell::from_number(value, if value == 0.0 { "–".to_owned() } else { format_money(value) });
+    let moved = if week < 2 { "–".to_owned() } else { format_change(change, &compact_number(change.abs())) };
+    vec![
+        TableCell::from_text(match subject {
+            LedgerSubject::Category(_) => format!("  {name}"),
+            _ => name.to_owned(),
+        })
+        .with_role(role),
+        amount(now).with_role(role),
+        TableCell::from_number(change, moved).with_role(change_role),
+        amount(before).with_role(Role::Dim),
+        amount(mean).with_role(Role::Dim),
+        TableCell::from_number(total, short_dollars(total)),
+        share.map_or(TableCell::from_text("–"), |share| TableCell::from_number(share, percent(share, 1))),
+    ]
+}

@@ -1,0 +1,102 @@
+//! Selection and layout of an open group.
+
+use ratatui::layout::{Constraint, Layout, Rect};
+
+use super::cohorts;
+use super::facts::FactsPane;
+use super::fit::FitPane;
+use super::quality::QualityByWeekPane;
+use super::group_actions::ACTION_COUNT;
+use super::{Customers, CustomersPane};
+use crate::context::ScreenContext;
+use crate::screens::panes::{Pane, PanePlacement, draw_pane};
+use novamind_tui::canvas::Canvas;
+
+#[derive(Debug)]
+pub struct OpenGroupState {
+    pub focus: CustomersPane,
+    /// Selected link.
+    pub action: usize,
+    pub fact_line: usize,
+    /// Weeks before the last one.
+    pub weeks_back: u32,
+    /// Selected flow: leads, new or cancelled.
+    pub flow: usize,
+    /// Selected cell of the cohorts.
+    pub cohort: cohorts::CohortCell,
+    pub fit_line: usize,
+    pub study_line: usize,
+}
+
+impl Default for OpenGroupState {
+    fn default() -> OpenGroupState {
+        let focus = CustomersPane::Actions;
+        let cohort = cohorts::CohortCell::default();
+        OpenGroupState { focus, action: 0, fact_line: 0, weeks_back: 0, flow: 0, cohort, fit_line: 0, study_line: 0 }
+    }
+}
+
+const FIT_ROWS: u16 = 24;
+
+pub fn draw_open_group(customers: &Customers, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    use CustomersPane::{Cohorts, Facts, Fit, Quality, Study, Actions, Weeks};
+    let mut draw = |area: Rect, pane: CustomersPane| draw_pane(customers, pane, canvas, area, look);
+    let split = |area: Rect, first: u16| {
+        Layout::vertical([Constraint::Length(first), Constraint::Min(0)]).areas::<2>(area)
+    };
+    let columns = |constraints: [Constraint; 3]| Layout::horizontal(constraints).areas::<3>(area);
+    let (ways, focus) = (ACTION_COUNT as u16 + 2, customers.group_state.focus);
+    if area.width >= 150 && area.height >= 30 {
+        let [left, middle, right] =
+            columns([Constraint::Percentage(40), Constraint::Min(0), Constraint::Length(44)]);
+        let [fit, weeks] = split(left, FIT_ROWS.min(area.height / 2));
+        let [quality, rest] = split(middle, area.height / 3);
+        let [cohorts, study] = split(rest, rest.height / 2);
+        let [facts, go] = split(right, area.height - ways);
+        for (area, pane) in [(fit, Fit), (weeks, Weeks), (quality, Quality), (cohorts, Cohorts)] {
+            draw(area, pane);
+        }
+        for (area, pane) in [(study, Study), (facts, Facts), (go, Actions)] {
+            draw(area, pane);
+        }
+    } else if area.width >= 104 && area.height >= 30 {
+        let [left, _, right] = columns([Constraint::Min(0), Constraint::Length(0), Constraint::Length(44)]);
+        let [above, below] = split(left, FIT_ROWS.min(area.height * 3 / 5));
+        let [facts, go] = split(right, area.height - ways);
+        draw(above, if focus == Weeks { Weeks } else { Fit });
+        draw(below, if matches!(focus, Study | Cohorts) { focus } else { Quality });
+        draw(facts, Facts);
+        draw(go, Actions);
+    } else if matches!(focus, Cohorts | Fit | Quality) {
+        // The triangle, bars and curves need the full width.
+        draw(area, focus);
+    } else if area.width < 70 {
+        // Texts side by side would be cut.
+        let [above, below] = split(area, area.height.saturating_sub(6));
+        draw(above, if matches!(focus, Study | Weeks) { focus } else { Fit });
+        draw(below, if focus == Facts { Facts } else { Actions });
+    } else {
+        let [left, _, right] =
+            columns([Constraint::Min(0), Constraint::Length(0), Constraint::Percentage(50)]);
+        let [facts, go] = split(right, area.height.saturating_sub(ways));
+        draw(left, if matches!(focus, Study | Weeks) { focus } else { Fit });
+        draw(facts, Facts);
+        draw(go, Actions);
+    }
+}
+
+/// Draws a preview of the selected group below the list. It is not clickable.
+pub fn draw_preview(customers: &Customers, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    let middle = if area.width >= 150 { area.width * 3 / 10 } else { 0 };
+    let right = Constraint::Length(46.min(area.width / 2));
+    let [fit, curves, side] =
+        Layout::horizontal([Constraint::Min(0), Constraint::Length(middle), right]).areas(area);
+    let clicks = canvas.clicks.len();
+    let seat = |area: Rect| PanePlacement { area, focused: false, index: 0 };
+    FitPane.draw_with_border(customers, canvas, seat(fit), look);
+    if middle > 0 {
+        QualityByWeekPane.draw_with_border(customers, canvas, seat(curves), look);
+    }
+    FactsPane.draw_with_border(customers, canvas, seat(side), look);
+    canvas.clicks.truncate(clicks);
+}

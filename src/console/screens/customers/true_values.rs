@@ -1,0 +1,49 @@
+//! True values of groups in the table, if the x-ray is open.
+
+use novamind_base::formatting::grouped_number;
+use novamind_insight::TrueGroupValues;
+use novamind_session::identifiers::Group;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::TableCell;
+use novamind_worker::company::DisplayedCompany;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TrueValue {
+    Satisfaction,
+    Reputation,
+    Leads,
+    Market,
+}
+
+impl TrueValue {
+    /// Returns the name in titles, such as `true satisfaction`.
+    pub fn title(self) -> &'static str {
+        match self {
+            TrueValue::Satisfaction => "true satisfaction",
+            TrueValue::Reputation => "true reputation",
+            TrueValue::Leads => "true expected leads",
+            TrueValue::Market => "true market cap",
+        }
+    }
+
+    pub fn cell(self, group: Group, company: &DisplayedCompany) -> TableCell {
+        let value = company.hidden_values.as_ref().and_then(|hidden| self.value_and_text(&hidden.groups[group]));
+        let cell = match value {
+            Some((value, text)) => TableCell::from_number(value, text),
+            None => TableCell::from_text("–"),
+        };
+        cell.with_role(Role::Changed)
+    }
+
+    fn value_and_text(self, own: &TrueGroupValues) -> Option<(f64, String)> {
+        match self {
+            TrueValue::Satisfaction => own.satisfaction.map(|value| (value, grouped_number(value, 3))),
+            TrueValue::Reputation => Some((own.reputation, grouped_number(own.reputation, 3))),
+            TrueValue::Leads => own.is_known.then(|| (own.expected_leads, grouped_number(own.expected_leads, 1))),
+            TrueValue::Market => Some(match own.market_cap {
+                cap if cap > 0.0 => (cap, grouped_number(cap, 0)),
+                _ => (f64::INFINITY, "no limit".to_owned()),
+            }),
+        }
+    }
+}

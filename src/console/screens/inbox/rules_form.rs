@@ -1,0 +1,205 @@
+//! Editor for rules, with a preview of their effect on every waiting thread. Sending needs confirmation.
+
+use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
+use ratatui::layout::{Constraint, Layout, Rect};
+use serde_json::Value;
+
+use super::estimate::rules_market;
+use super::{Inbox, InboxPane};
+use crate::context::ScreenContext;
+use crate::effect::Effect;
+use crate::screens::panes::{PaneBorder, PanePlacement, draw_pane};
+use novamind_base::formatting::{cents, json_number};
+use novamind_rules::{ThreadContext, RuleBatch, RuleError, RuleOutcome};
+use novamind_session::identifiers::Plan;
+use novamind_tools::ToolId;
+use novamind_tui::canvas::{Canvas, row_rects};
+use novamind_tui::text::wrap;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::TextField;
+use novamind_worker::company::DisplayedCompany;
+
+/// Returns the initial rules: accept any request for a plan at its list price or more. Plans without a price
+/// are left out.
+fn default_rules(company: &DisplayedCompany) -> String {
+    let rule = |plan: Plan| {
+        let list = company.setting(ToolId::SetPrices, plan.id());
+        (list > 0.0).then(|| format!("accept asked_plan = {plan} and asked >= {}", json_number(list)))
+    };
+    Plan::ALL.into_iter().filter_map(rule).collect::<Vec<_>>().join("; ")
+}
+
+/// Rules being edited, with their effect.
+#[derive(Debug, Clone)]
+pub struct RulesForm {
+    pub field: TextField,
+    /// Whether keys type into the field.
+    pub is_typing: bool,
+    /// Their effect, or the error in the text.
+    batch: Result<RuleBatch, RuleError>,
+}
+
+impl RulesForm {
+    /// Starts with the last rules, otherwise with rules from the list prices.
+    pub fn new(before: Option<&str>, threads: &[ThreadContext], company: &DisplayedCompany, inbox: &Inbox) -> RulesForm {
+        let mut ruling = RulesForm {
+            field: TextField::with_text(before.map_or_else(|| default_rules(company), str::to_owned)),
+            is_typing: true,
+            batch: Err(RuleError { text: String::new(), column: 1 }),
+        };
+        ruling.evaluate(threads, company, inbox);
+        ruling
+    }
+
+    /// Applies the rules to the waiting threads again.
+    pub fn evaluate(&mut self, threads: &[ThreadContext], company: &DisplayedCompany, inbox: &Inbox) {
+        self.batch = novamind_rules::parse(self.field.text())
+            .map(|rules| RuleBatch::new(rules, threads.to_vec(), &rules_market(company, &inbox.usage)));
+    }
+
+    /// Returns the threads that match a rule.
+    fn matched_threads(&self) -> impl Iterator<Item = &RuleOutcome> {
+        let all = self.batch.as_ref().map_or(&[][..], |batch| batch.threads.as_slice());
+        all.iter().filter(|ruled| ruled.rule_index.is_some())
+    }
+}
+
+/// Draws the layout for small windows: the preview above the rules.
+pub fn draw_small_layout(inbox: &Inbox, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    let [above, below] = Layout::vertical([Constraint::Percentage(45), Constraint::Min(0)]).areas(area);
+    draw_pane(inbox, InboxPane::Thread, canvas, above, look);
+    draw_pane(inbox, InboxPane::Offer, canvas, below, look);
+}
+
+impl Inbox {
+    pub(super) fn open_rules(&mut self, company: &DisplayedCompany) -> Vec<Effect> {
+        let threads = self.waiting_threads(company);
+        if threads.is_empty() {
+            return vec![Effect::Complain("No thread is waiting for an answer".to_owned())];
+        }
+        self.rules_form = Some(RulesForm::new(self.last_rules.as_deref(), &threads, company, self));
+        self.focus = InboxPane::Offer;
+        self.scroll = 0;
+        Vec::new()
+    }
+
+    pub(super) fn edit_rules(&mut self, company: &DisplayedCompany, edit: &mut dyn FnMut(&mut TextField)) {
+        let Some(mut ruling) = self.rules_form.take() else { return };
+        edit(&mut ruling.field);
+        ruling.evaluate(&self.waiting_threads(company), company, self);
+        self.rules_form = Some(ruling);
+    }
+
+    pub(super) fn handle_rules_key(&mut self, key: &KeyEvent, company: &DisplayedCompany) {
+        let ctrl = key.modifiers.contains(KeyModifiers::CONTROL);
+        self.edit_rules(company, &mut |field| match key.code {
+            // Clears the field, as in the SQL editor.
+            KeyCode::Char('n') if ctrl => *field = TextField::default(),
+            _ => {
+                field.handle_key(key);
+            }
+        });
+    }
+
+    /// Asks for confirmation to send the answers of the rules.
+    pub(super) fn send_rule_answers(&mut self, company: &DisplayedCompany) -> Vec<Effect> {
+        let Some(ruling) = &self.rules_form else { return Vec::new() };
+        if !company.is_running() {
+            return vec![Effect::Complain("The run is over; offers get no answer".to_owned())];
+        }
+        let batch = match &ruling.batch {
+            Ok(batch) => batch,
+            Err(problem) => {
+                return vec![Effect::Complain(format!("{} (column {})", problem.text, problem.column))];
+            }
+        };
+        let calls = batch.tool_calls();
+        if calls.is_empty() {
+            return vec![Effect::Complain("These rules match no waiting thread".to_owned())];
+        }
+        let text = batch.summary().join("\n");
+        self.last_rules = Some(ruling.field.text().to_owned());
+        vec![Effect::ConfirmCalls { calls, text }]
+    }
+
+    /// Returns whether rules have been sent in this session.
+    pub fn has_sent_rules(&self) -> bool {
+        self.last_rules.is_some()
+    }
+
+    /// Returns the tool calls of the last rules for the threads that wait now, and a summary; `None` if there
+    /// are none.
+    pub fn last_rule_answers(&self, company: &DisplayedCompany) -> Option<(Vec<(ToolId, Value)>, String)> {
+        let rules = novamind_rules::parse(self.last_rules.as_deref()?).ok()?;
+        let batch = RuleBatch::new(rules, self.waiting_threads(company), &rules_market(company, &self.usage));
+        let calls = batch.tool_calls();
+        (!calls.is_empty()).then(|| (calls, batch.summary().join("\n")))
+    }
+
+    pub(super) fn rules_border(&self, look: &ScreenContext<'_>) -> PaneBorder {
+        use crate::action::Action::{Discard, SendOffer};
+        let keys = format!("{} · ctrl-n clear the line · {}", look.hint(SendOffer), look.hint(Discard));
+        PaneBorder {
+            title: "Rules".to_owned(),
+            note: "first match applies".to_owned(),
+            keys,
+            ..PaneBorder::default()
+        }
+    }
+
+    /// Draws the field, and a line for each rule or the error.
+    pub(super) fn draw_rules(&self, ruling: &RulesForm, canvas: &mut Canvas<'_>, seat: PanePlacement) {
+        let mut rows = row_rects(seat.area);
+        let Some(first) = rows.next() else { return };
+        match ruling.is_typing {
+            true => ruling.field.draw(canvas, first),
+            false => canvas.draw_text(first, ruling.field.text(), Role::Strong),
+        }
+        rows.next();
+        let width = seat.area.width as usize;
+        let (lines, role) = match &ruling.batch {
+            Ok(batch) => (batch.summary(), Role::Text),
+            Err(problem) => (vec![format!("column {}: {}", problem.column, problem.text)], Role::Warning),
+        };
+        for (row, line) in rows.zip(lines.iter().flat_map(|line| wrap(line, width))) {
+            canvas.draw_text(row, &line, role);
+        }
+    }
+
+    pub(super) fn rules_preview_border(&self, ruling: &RulesForm) -> PaneBorder {
+        let title = format!("Preview for {}", ruling.matched_threads().count());
+        PaneBorder { title, note: "rule: asked → sent".to_owned(), ..PaneBorder::default() }
+    }
+
+    pub(super) fn draw_rules_preview(
+        &self,
+        ruling: &RulesForm,
+        canvas: &mut Canvas<'_>,
+        seat: PanePlacement,
+        look: &ScreenContext<'_>,
+    ) {
+        let (inside, count) = (seat.area, ruling.matched_threads().count());
+        if seat.focused {
+            canvas.page_rows = inside.height.max(1);
+        }
+        let from = (self.scroll as usize).min(count.saturating_sub(inside.height as usize));
+        for (row, ruled) in row_rects(inside).zip(ruling.matched_threads().skip(from)) {
+            draw_rule_match(canvas, row, ruled, look);
+        }
+    }
+}
+
+fn draw_rule_match(canvas: &mut Canvas<'_>, row: Rect, ruled: &RuleOutcome, look: &ScreenContext<'_>) {
+    let own = &ruled.thread.waiting;
+    let rule = ruled.rule_index.map_or(0, |at| at + 1);
+    let asked = own.asked.map_or("–".to_owned(), cents);
+    let words = format!(
+        "{rule}  #{} {}  {asked} → {}  {}",
+        own.customer,
+        own.group,
+        ruled.describe_reply(),
+        look.company.company_names.name(own.customer)
+    );
+    let role = if ruled.reply.is_ok() { Role::Text } else { Role::Warning };
+    canvas.draw_text(row, &words, role);
+}

@@ -1,0 +1,188 @@
+//! Sends offers and rejections, and handles the answers.
+
+use std::collections::BTreeSet;
+
+use serde_json::{Value, json};
+
+use super::model::{ThreadState, Thread};
+use super::offer::format_offers;
+use super::{Inbox, list_prices};
+use crate::context::Figure;
+use crate::effect::Effect;
+use novamind_base::formatting::dollars;
+use novamind_session::identifiers::Plan;
+use novamind_tools::{Answer, DealResult, ToolId};
+use novamind_tui::text::format_count;
+use novamind_worker::company::DisplayedCompany;
+use novamind_worker::request::Request;
+
+const SEND_TOOL: ToolId = ToolId::SendEnterpriseDeal;
+const REJECT_TOOL: ToolId = ToolId::RejectEnterpriseDeal;
+
+/// A thread with its planned offer, or the reason why nothing is sent.
+pub(super) type PlannedOffer<'a> = (&'a Thread, Result<Vec<(Plan, f64)>, String>);
+
+/// Returns the query for the rows of a thread.
+pub(super) fn statement(thread: &Thread) -> Effect {
+    Effect::EditSql(format!(
+        "SELECT day, turn_number, sender, message_text, offer_json, seat_count, close_reason\n\
+         FROM enterprise_turns WHERE thread_id = {} ORDER BY message_id",
+        thread.number
+    ))
+}
+
+/// Returns a figure of a thread, with a query for its turns.
+pub(super) fn figure(thread: &Thread, what: &str, term: &'static str) -> Figure {
+    let sql = match statement(thread) {
+        Effect::EditSql(sql) => Some(sql),
+        _ => None,
+    };
+    Figure { title: format!("{what} {}", thread.customer_label()), term, sql, week_quantity: None }
+}
+
+/// Returns the usage of the group on the last day, the basis of the compute estimate.
+pub(super) fn usage_figure(thread: &Thread) -> Figure {
+    let group = &thread.group;
+    Figure {
+        title: format!("estimated usage of a seat in {group}"),
+        term: "usage",
+        sql: Some(format!(
+            "SELECT u.day, u.customer_id, s.plan, s.seat_count AS seats, u.usage_units AS units\n\
+             FROM daily_usage u JOIN subscriptions s USING (customer_id) JOIN customers c USING (customer_id)\n\
+             WHERE c.group_id = '{group}' AND s.status = 'subscribed'\n    \
+             AND u.day = (SELECT max(day) FROM service_day) ORDER BY units DESC"
+        )),
+        week_quantity: None,
+    }
+}
+
+/// Returns the maximum payment of an enterprise for an offer, $ per month.
+pub(super) fn max_monthly_revenue(thread: &Thread, offers: &[(Plan, f64)]) -> f64 {
+    offers.iter().map(|(_, price)| price * thread.seats).fold(0.0, f64::max)
+}
+
+impl Inbox {
+    /// Returns the planned offer of every recipient.
+    pub(super) fn planned_offers(&self, company: &DisplayedCompany) -> Vec<PlannedOffer<'_>> {
+        let (offer, lists) = (self.current_offer(), list_prices(company));
+        self.targets().into_iter().map(|thread| (thread, offer.resolve(thread, lists))).collect()
+    }
+
+    /// Sends the offer, after confirmation if necessary.
+    pub(super) fn send_offers(&self, company: &DisplayedCompany) -> Vec<Effect> {
+        if !company.is_running() {
+            return vec![Effect::Complain("The run is over; offers get no answer".to_owned())];
+        }
+        let planned = self.planned_offers(company);
+        let sent: Vec<(&Thread, &Vec<(Plan, f64)>)> =
+            planned.iter().filter_map(|(thread, offers)| Some((*thread, offers.as_ref().ok()?))).collect();
+        let Some((first, offers)) = sent.first() else {
+            let why = planned.first().map(|(_, offers)| offers.clone());
+            let why = match why {
+                Some(Err(why)) => format!("Nothing to send: {why}"),
+                _ => "No thread is selected. Press o for other threads.".to_owned(),
+            };
+            return vec![Effect::Complain(why)];
+        };
+        let deal = |(thread, offers): &(&Thread, &Vec<(Plan, f64)>)| {
+            let offers: Vec<Value> = offers.iter().map(|(plan, price)| json!([plan.id(), price])).collect();
+            json!([thread.customer, offers])
+        };
+        let arguments = json!({ "deals": sent.iter().map(deal).collect::<Vec<_>>() });
+        let text = if sent.len() == 1 {
+            let to = format!("{} ({})", first.customer_label(), format_count(first.seats, "seat"));
+            match first.state {
+                ThreadState::WaitingForPlayer(_) => return vec![Effect::Request(Request::Call { tool: SEND_TOOL, arguments })],
+                ThreadState::WaitingForCustomer => format!(
+                    "{to} has not answered your last offer yet. This one, {}, replaces it and uses another \
+                     turn of its patience.",
+                    format_offers(offers)
+                ),
+                _ => format!(
+                    "This thread with {to} is closed. If it subscribes, {} opens a new thread; if the enterprise declines, it leaves.",
+                    format_offers(offers)
+                ),
+            }
+        } else {
+            summary(&planned) + " Each offer uses up a turn."
+        };
+        vec![Effect::ConfirmCall { tool: SEND_TOOL, arguments, text }]
+    }
+
+    /// Asks for confirmation to end the threads.
+    pub(super) fn confirm_rejection(&self, company: &DisplayedCompany) -> Vec<Effect> {
+        let open: Vec<&Thread> = self.targets().into_iter().filter(|thread| thread.state.is_open()).collect();
+        if !company.is_running() || open.is_empty() {
+            return vec![Effect::Complain("No open thread to end".to_owned())];
+        }
+        let leads = open.iter().filter(|thread| thread.kind == "new_lead");
+        let (leads, seats) = leads.fold((0, 0.0), |(count, seats), thread| (count + 1, seats + thread.seats));
+        let mut text = String::new();
+        if leads > 0 {
+            text += &format!(
+                "{} with {} {} lost for good and will not ask again. ",
+                format_count(leads as f64, "new lead"),
+                format_count(seats, "seat"),
+                if leads == 1 { "is" } else { "are" },
+            );
+        }
+        let others = open.len() - leads;
+        if others > 0 {
+            text += &format!(
+                "{others} subscriber{} on the current terms; you can open a new thread from the next day.",
+                if others == 1 { " stays" } else { "s stay" }
+            );
+        }
+        let deals: Vec<Value> = open.iter().map(|thread| json!({ "customer_id": thread.customer })).collect();
+        let arguments = json!({ "deals": deals });
+        vec![Effect::ConfirmCall { tool: REJECT_TOOL, arguments, text: text.trim_end().to_owned() }]
+    }
+
+    /// Clears drafts and marks of the processed threads.
+    pub(super) fn handle_sent(&mut self, answer: &Answer) -> Vec<Effect> {
+        let (offered, results) = match answer {
+            Answer::SendEnterpriseDeal(answer) => (true, &answer.results),
+            Answer::RejectEnterpriseDeal(answer) => (false, &answer.results),
+            _ => return Vec::new(),
+        };
+        let done: BTreeSet<u32> = results.iter().filter_map(DealResult::sent_customer).collect();
+        if offered && self.marked.is_empty() && self.current_offer().is_reusable() {
+            self.last_offer =
+                self.selected_thread().and_then(|thread| self.drafts.get(&thread.number)).cloned().or(self.last_offer.take());
+        }
+        let of_done = self.threads.threads.iter().filter(|thread| done.contains(&thread.customer));
+        for number in of_done.map(|thread| thread.number).collect::<Vec<_>>() {
+            self.marked.remove(&number);
+            self.drafts.remove(&number);
+        }
+        let failed = results.len() - done.len();
+        let what = if offered { "offered" } else { "ended" };
+        match failed {
+            0 => vec![Effect::Say(format!("{} {what}", done.len()))],
+            _ => vec![Effect::Complain(format!(
+                "{} {what}, {failed} rejected. Press 0 for the reasons.",
+                done.len()
+            ))],
+        }
+    }
+}
+
+pub(super) fn summary(planned: &[PlannedOffer<'_>]) -> String {
+    let sent = planned.iter().filter_map(|(thread, offers)| Some((*thread, offers.as_ref().ok()?)));
+    let (mut companies, mut seats, mut worth) = (0, 0.0, 0.0);
+    for (thread, offers) in sent {
+        companies += 1;
+        seats += thread.seats;
+        worth += max_monthly_revenue(thread, offers);
+    }
+    let skipped = match planned.len() - companies {
+        0 => String::new(),
+        skipped => format!(" {skipped} skipped."),
+    };
+    let noun = if companies == 1 { "enterprise" } else { "enterprises" };
+    format!(
+        "{companies} {noun}, {}, at most {} a month if all agree.{skipped}",
+        format_count(seats, "seat"),
+        dollars(worth)
+    )
+}

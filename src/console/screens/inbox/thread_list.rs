@@ -1,0 +1,208 @@
+//! List of threads.
+
+use ratatui::layout::Rect;
+
+use super::model::{ThreadState, Thread};
+use super::offer::format_offers;
+use super::{Inbox, InboxPane, InboxView, sending};
+use crate::action::{Action, Scope};
+use crate::context::{Figure, ScreenContext};
+use crate::effect::Effect;
+use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
+use novamind_base::formatting::grouped_number;
+use novamind_tui::canvas::{Canvas, row_rects};
+use novamind_tui::text::{format_count, wrap};
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::{TableCell, TableColumn, Table};
+
+/// Width of names in a narrow list; the number next to the name identifies the enterprise.
+const NAME_WIDTH: u16 = 14;
+
+pub struct ThreadListPane;
+
+impl Pane<Inbox> for ThreadListPane {
+    fn table<'a>(&self, inbox: &'a Inbox) -> Option<&'a Table> {
+        Some(&inbox.table)
+    }
+
+    fn table_mut<'a>(&self, inbox: &'a mut Inbox) -> Option<&'a mut Table> {
+        Some(&mut inbox.table)
+    }
+
+    fn scopes(&self, inbox: &Inbox) -> Vec<Scope> {
+        match inbox.table.is_filter_open() {
+            true => vec![Scope::Field, Scope::List],
+            false => vec![Scope::Inbox, Scope::List],
+        }
+    }
+
+    fn hints(&self, inbox: &Inbox) -> Vec<Action> {
+        if inbox.table.is_filter_open() {
+            return vec![Action::Commit, Action::Discard];
+        }
+        vec![
+            Action::Open,
+            Action::SendOffer,
+            Action::MatchAskedPrice,
+            Action::Mark,
+            Action::MarkAll,
+            Action::RejectOffer,
+            Action::InboxRules,
+            Action::InboxOutcomes,
+            Action::NextThreadView,
+            Action::Filter,
+            Action::Sort,
+            Action::InboxGroup,
+            Action::InboxSql,
+        ]
+    }
+
+    fn figure(&self, inbox: &Inbox, _: &ScreenContext<'_>) -> Option<Figure> {
+        let thread = inbox.selected_thread()?;
+        Some(match inbox.table.selected_column() {
+            5 => sending::figure(thread, "seats of", "seats"),
+            6 => sending::figure(thread, "price asked by", "offer"),
+            _ => sending::figure(thread, "thread with", "thread"),
+        })
+    }
+
+    fn handle_action(&self, inbox: &mut Inbox, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+        if action == Action::Open {
+            inbox.focus = InboxPane::Offer;
+        } else {
+            inbox.scroll = 0;
+            inbox.table.handle_action(action, look.page_rows);
+        }
+        Vec::new()
+    }
+
+    fn handle_click(&self, inbox: &mut Inbox, row: usize, _: &ScreenContext<'_>) -> Vec<Effect> {
+        inbox.table.select_visible_row(row);
+        inbox.scroll = 0;
+        Vec::new()
+    }
+
+    fn border(&self, inbox: &Inbox, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
+        let threads = inbox.rows.len();
+        let (title, worth) = match inbox.view {
+            InboxView::WaitingForPlayer => (format!("{threads} waiting for you"), true),
+            InboxView::WaitingForCustomer => (format!("{threads} waiting for them"), true),
+            InboxView::Closed => (format!("{threads} ended"), false),
+        };
+        let all = inbox.rows.iter().filter_map(|at| inbox.threads.threads.get(*at));
+        let seats: f64 = all.map(|thread| thread.seats).sum();
+        let mut note = inbox.table.summary();
+        if note.is_empty() && worth && threads > 0 {
+            note = format_count(seats, "seat");
+        }
+        if !inbox.marked.is_empty() {
+            note = format!("{} marked · {note}", inbox.marked.len());
+        }
+        let keys = look.hints(&[Action::Mark, Action::MarkAll, Action::Filter, Action::NextThreadView]);
+        PaneBorder { title, note, keys, ..PaneBorder::default() }
+    }
+
+    fn draw(&self, inbox: &Inbox, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
+        if inbox.rows.is_empty() {
+            draw_empty_state(inbox, canvas, seat.area, look);
+        } else {
+            inbox.table.draw(canvas, seat.area, seat.focused, seat.index);
+        }
+    }
+}
+
+fn draw_empty_state(inbox: &Inbox, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    let inside = Rect { x: area.x + 1, width: area.width.saturating_sub(2), ..area };
+    let mut lines = wrap(&empty_text(inbox, look), inside.width as usize);
+    if lines.len() > inside.height as usize {
+        let zoom = look.keys.label(Action::Zoom).unwrap_or_default();
+        lines.truncate((inside.height as usize).saturating_sub(1));
+        lines.push(format!("… {zoom} shows more"));
+    }
+    for (row, line) in row_rects(inside).zip(lines) {
+        canvas.draw_text(row, &line, Role::Dim);
+    }
+}
+
+fn empty_text(inbox: &Inbox, look: &ScreenContext<'_>) -> String {
+    let key = |action: Action| look.keys.label(action).unwrap_or_default();
+    if !inbox.threads.threads.is_empty() {
+        return format!("No threads here. {} shows others.", key(Action::NextThreadView));
+    }
+    let funnels: Vec<String> =
+        look.company.funnels.iter().map(|own| format!("· {}", own.describe())).collect();
+    format!(
+        "No enterprise has asked for an offer yet. Advertise to enterprise groups ({} set_targeted_ad_spend). A higher \
+         model tier, development for their group and a quota for all seats make a plan more attractive.\n\n{}",
+        key(Action::Tools),
+        funnels.join("\n")
+    )
+}
+
+pub(super) fn columns(view: InboxView) -> Vec<TableColumn> {
+    let day = if view == InboxView::WaitingForPlayer { "left" } else { "since" };
+    vec![
+        TableColumn::text("✓"),
+        TableColumn::numeric(day),
+        TableColumn::text("enterprise").with_min_width(NAME_WIDTH),
+        TableColumn::numeric("no."),
+        TableColumn::text("group"),
+        TableColumn::numeric("seats"),
+        TableColumn::numeric("their ask"),
+        TableColumn::text("kind"),
+        TableColumn::text(if view == InboxView::Closed { "end" } else { "your offer" }).with_max_width(34),
+        TableColumn::numeric("offers"),
+        TableColumn::numeric("needs quota"),
+    ]
+}
+
+fn number_cell(value: Option<f64>) -> TableCell {
+    match value {
+        Some(value) => TableCell::from_number(value, grouped_number(value, 0)),
+        None => TableCell::from_text("–").with_role(Role::Dim),
+    }
+}
+
+pub(super) fn row_of(thread: &Thread, marked: bool) -> Vec<TableCell> {
+    let day = match (thread.state, thread.messages.last()) {
+        (ThreadState::WaitingForPlayer(left), _) => {
+            let (mark, role) = match left {
+                0..=2 => ("! ", Role::Bad),
+                3..=5 => ("", Role::Warning),
+                _ => ("", Role::Text),
+            };
+            TableCell::from_number(f64::from(left), format!("{mark}{left} d")).with_role(role)
+        }
+        (_, Some(turn)) => TableCell::from_number(f64::from(turn.day), format!("day {}", turn.day)).with_role(Role::Dim),
+        (_, None) => TableCell::from_text("–").with_role(Role::Dim),
+    };
+    let asked = match (thread.asked_price(), thread.asked_plan()) {
+        (Some((_, price)), plan) => {
+            let plan = plan.map_or(String::new(), |plan| format!("{plan} "));
+            TableCell::from_number(price, format!("{plan}${}", grouped_number(price, 2)))
+        }
+        (None, Some(plan)) => TableCell::from_text(format!("plan {plan}")),
+        (None, None) => TableCell::from_text("–").with_role(Role::Dim),
+    };
+    let end = match thread.state {
+        state if !state.is_open() => {
+            let role = if state == ThreadState::Accepted { Role::Good } else { Role::Dim };
+            TableCell::from_text(state.label()).with_role(role)
+        }
+        _ if thread.last_offer().is_empty() => TableCell::from_text("–").with_role(Role::Dim),
+        _ => TableCell::from_text(format_offers(thread.last_offer())),
+    };
+    vec![
+        TableCell::from_text(if marked { "●" } else { "" }).with_role(Role::Changed),
+        day,
+        TableCell::from_text(&thread.name),
+        TableCell::from_number(f64::from(thread.customer), format!("#{}", thread.customer)),
+        TableCell::from_text(&thread.group).with_role(Role::Strong),
+        TableCell::from_number(thread.seats, grouped_number(thread.seats, 0)),
+        asked,
+        TableCell::from_text(thread.kind_label()),
+        end,
+        number_cell(thread.waiting_thread.as_ref().map(|own| f64::from(own.waiting.offers_so_far))),
+        number_cell(thread.waiting_thread.as_ref().and_then(|own| own.required_quota)),
+    ]
+}

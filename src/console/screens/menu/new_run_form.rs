@@ -1,0 +1,272 @@
+//! Form for a new run.
+
+use crossterm::event::KeyEvent;
+use ratatui::layout::Rect;
+
+use crate::effect::Effect;
+use novamind_base::formatting::{dollars, parse_number};
+use novamind_record::folder::configuration::{Configuration, DEFAULT_SCENARIO};
+use novamind_record::mode::Mode;
+use novamind_session::NewRun;
+use novamind_tui::canvas::{Canvas, Click, row_rects};
+use novamind_tui::text::wrap;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::TextField;
+use novamind_worker::request::Request;
+
+pub(super) struct NewRunForm {
+    /// Names and descriptions of the scenarios.
+    scenarios: Vec<(String, String)>,
+    scenario: usize,
+    /// Days and starting cash of the selected scenario in the selected mode, if it can be read.
+    scenario_terms: Option<(u32, f64)>,
+    mode: usize,
+    seed: TextField,
+    days: TextField,
+    cash: TextField,
+    participant: TextField,
+    pub(super) selected_row: usize,
+    pub(super) rejection: Option<String>,
+}
+
+/// Rows of the form: label and description.
+pub(super) const FORM_ROWS: [(&str, &str); 7] = [
+    ("Mode", "Purpose of the run; left and right change it. Fixed once the run starts."),
+    ("Scenario", "Parameters of the market; left and right change it."),
+    ("Seed", "The same seed gives the same random events."),
+    ("Days", "Last day of the run, at least 7. Published results ran for 500."),
+    ("Starting cash", "Dollars on day 0."),
+    ("Participant", "A label for the record; a baseline run needs one."),
+    ("Start", "Start the run (enter)"),
+];
+
+const VALUE_COLUMN: u16 = 17;
+const FIELD_WIDTH: u16 = 18;
+
+impl NewRunForm {
+    pub(super) fn new(configuration: &Configuration) -> NewRunForm {
+        let told = |name: &String| {
+            configuration.load_scenario(name).map_or_else(|error| error.to_string(), |own| own.description)
+        };
+        let scenarios: Vec<(String, String)> =
+            configuration.scenario_names().into_iter().map(|name| (name.clone(), told(&name))).collect();
+        let scenario = scenarios.iter().position(|(name, _)| name == DEFAULT_SCENARIO).unwrap_or(0);
+        NewRunForm {
+            scenarios,
+            scenario,
+            scenario_terms: None,
+            mode: Mode::SELECTABLE.iter().position(|mode| *mode == Mode::Sandbox).unwrap_or(0),
+            seed: TextField::with_selected_text("42"),
+            days: TextField::default(),
+            cash: TextField::default(),
+            participant: TextField::default(),
+            selected_row: FORM_ROWS.len() - 1,
+            rejection: None,
+        }
+    }
+
+    /// Reads days and cash of the selected scenario.
+    pub(super) fn read_terms(&mut self, configuration: &Configuration) {
+        let name = self.scenarios.get(self.scenario).map_or(DEFAULT_SCENARIO, |own| own.0.as_str());
+        let own = Mode::SELECTABLE[self.mode] != Mode::Baseline;
+        let scenario = configuration.load_scenario(name);
+        self.scenario_terms = scenario.and_then(|scenario| configuration.days_and_cash(&scenario, own)).ok();
+    }
+
+    /// Returns whether the selected row accepts text.
+    pub(super) fn is_typing(&self) -> bool {
+        (2..=5).contains(&self.selected_row)
+    }
+
+    fn field(&mut self) -> Option<&mut TextField> {
+        match self.selected_row {
+            2 => Some(&mut self.seed),
+            3 => Some(&mut self.days),
+            4 => Some(&mut self.cash),
+            5 => Some(&mut self.participant),
+            _ => None,
+        }
+    }
+
+    pub(super) fn handle_key(&mut self, key: &KeyEvent) {
+        self.rejection = None;
+        if let Some(field) = self.field() {
+            field.handle_key(key);
+        }
+    }
+
+    pub(super) fn paste(&mut self, text: &str) {
+        if let Some(field) = self.field() {
+            field.insert(text.trim());
+        }
+    }
+
+    pub(super) fn change_choice(&mut self, forward: bool) {
+        let step = |at: usize, count: usize| {
+            let count = count.max(1);
+            if forward { (at + 1) % count } else { (at + count - 1) % count }
+        };
+        match self.selected_row {
+            0 => self.mode = step(self.mode, Mode::SELECTABLE.len()),
+            1 => self.scenario = step(self.scenario, self.scenarios.len()),
+            _ => {}
+        }
+    }
+
+    /// Moves to the next row. In the last row, starts the run if the form is valid.
+    pub(super) fn accept_row(&mut self) -> Vec<Effect> {
+        if self.selected_row < FORM_ROWS.len() - 1 {
+            self.selected_row += 1;
+            return Vec::new();
+        }
+        match (0..FORM_ROWS.len()).find(|row| self.problem(*row).is_some()) {
+            Some(row) => {
+                self.selected_row = row;
+                Vec::new()
+            }
+            None => {
+                self.rejection = None;
+                vec![Effect::Request(Request::Create(Box::new(self.new_run())))]
+            }
+        }
+    }
+
+    fn problem(&self, row: usize) -> Option<&'static str> {
+        let whole = |field: &TextField, least: f64| {
+            let fits = |number: f64| number >= least && number.fract() == 0.0 && number < 9e15;
+            field.text().trim().is_empty() || parse_number(field.text()).is_some_and(fits)
+        };
+        match row {
+            2 if !whole(&self.seed, 0.0) => Some("enter a whole number of at least 0"),
+            3 if !whole(&self.days, 7.0) => Some("enter a whole number of at least 7"),
+            4 if !self.cash.text().trim().is_empty()
+                && parse_number(self.cash.text()).is_none_or(|cash| cash <= 0.0) =>
+            {
+                Some("enter dollars above 0, such as 500k")
+            }
+            _ => None,
+        }
+    }
+
+    fn new_run(&self) -> NewRun {
+        let participant = self.participant.text().trim();
+        NewRun {
+            seed: parse_number(self.seed.text()).map(|seed| seed as u64),
+            days: parse_number(self.days.text()).map(|days| days.min(f64::from(u32::MAX)) as u32),
+            cash: parse_number(self.cash.text()),
+            scenario: self
+                .scenarios
+                .get(self.scenario)
+                .map_or(DEFAULT_SCENARIO, |own| own.0.as_str())
+                .to_owned(),
+            mode: Mode::SELECTABLE[self.mode],
+            participant: (!participant.is_empty()).then(|| participant.to_owned()),
+            ..NewRun::default()
+        }
+    }
+
+    fn value(&self, row: usize) -> (String, Role) {
+        let or = |field: &TextField, empty: &str| match field.text() {
+            "" => (empty.to_owned(), Role::Dim),
+            text => (text.to_owned(), Role::Text),
+        };
+        match row {
+            0 => (format!("‹ {} ›", Mode::SELECTABLE[self.mode].id()), Role::Text),
+            1 => {
+                let chosen = self.scenarios.get(self.scenario);
+                (chosen.map_or(String::new(), |(name, _)| format!("‹ {name} ›")), Role::Text)
+            }
+            2 => or(&self.seed, "random"),
+            3 => or(&self.days, &default_text(self.scenario_terms.map(|(days, _)| format_days(days)))),
+            4 => or(&self.cash, &default_text(self.scenario_terms.map(|(_, cash)| dollars(cash)))),
+            5 => or(&self.participant, "none"),
+            // The start row shows the selected mode.
+            _ => (format!("a {} run", Mode::SELECTABLE[self.mode].id()), Role::Text),
+        }
+    }
+
+    pub(super) fn draw(&self, canvas: &mut Canvas<'_>, area: Rect) {
+        let inside = canvas.draw_pane_frame(area, "New run", "", true);
+        let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
+        // A blank row before the last one, if it fits.
+        let gap = usize::from(inside.height as usize > FORM_ROWS.len() + 6);
+        for at in 0..FORM_ROWS.len() {
+            let y = inside.y + (at + if at + 1 == FORM_ROWS.len() { gap } else { 0 }) as u16;
+            if y < inside.bottom() {
+                self.draw_row(canvas, Rect { y, height: 1, ..inside }, at);
+            }
+        }
+        let used = (FORM_ROWS.len() + gap + 1) as u16;
+        let below = Rect { y: inside.y + used, height: inside.height.saturating_sub(used), ..inside };
+        let mut lines: Vec<(String, Role)> = Vec::new();
+        let mut say = |text: &str, role: Role| {
+            lines.extend(wrap(text, below.width.min(100) as usize).into_iter().map(|line| (line, role)));
+        };
+        match &self.rejection {
+            Some(problem) => say(&format!("! {problem}"), Role::Bad),
+            None => say(FORM_ROWS[self.selected_row].1, Role::Text),
+        }
+        let mode = Mode::SELECTABLE[self.mode];
+        let scenario = self.scenarios.get(self.scenario).map_or("", |own| own.1.as_str());
+        say("", Role::Dim);
+        say(&format!("{}: {}. {}", mode.id(), mode.purpose(), mode_description(mode)), Role::Text);
+        say(&format!("scenario: {scenario}"), Role::Text);
+        for (row, (line, role)) in row_rects(below).zip(&lines) {
+            canvas.draw_text(row, line, *role);
+        }
+    }
+
+    fn draw_row(&self, canvas: &mut Canvas<'_>, row: Rect, at: usize) {
+        let here = at == self.selected_row;
+        let name = Rect { width: 15.min(row.width), ..row };
+        let role = if here { Role::Selection } else { Role::Text };
+        let mark = if here { "›" } else { " " };
+        canvas.draw_text(name, &format!("{mark}{:<14}", FORM_ROWS[at].0), role);
+        let place = Rect { x: row.x + VALUE_COLUMN, width: row.width.saturating_sub(VALUE_COLUMN), ..row };
+        let field = match at {
+            2 => Some(&self.seed),
+            3 => Some(&self.days),
+            4 => Some(&self.cash),
+            5 => Some(&self.participant),
+            _ => None,
+        };
+        let (value, role) = self.value(at);
+        match field {
+            Some(field) if here => field.draw(canvas, Rect { width: FIELD_WIDTH.min(place.width), ..place }),
+            _ => canvas.draw_text(place, &value, role),
+        }
+        if let Some(problem) = self.problem(at) {
+            let right = Rect {
+                x: place.x + FIELD_WIDTH + 1,
+                width: place.width.saturating_sub(FIELD_WIDTH + 1),
+                ..place
+            };
+            canvas.draw_text(right, &format!("! {problem}"), Role::Bad);
+        }
+        canvas.register_click(row, Click::Row(0, at));
+    }
+}
+
+fn format_days(days: u32) -> String {
+    novamind_base::formatting::grouped_number(f64::from(days), 0)
+}
+
+/// Returns the placeholder of an empty field.
+fn default_text(value: Option<String>) -> String {
+    value.map_or("scenario default".to_owned(), |value| format!("scenario default: {value}"))
+}
+
+/// Returns the permissions of a mode.
+fn mode_description(mode: Mode) -> &'static str {
+    match mode {
+        Mode::Baseline => {
+            "No branches, no rewinding, no tour; rationale and forecasts are your own. The result can be compared with \
+             published ones."
+        }
+        Mode::Sandbox => {
+            "Everything in baseline, plus branches from any earlier week; forecasts may be filled in."
+        }
+        Mode::Lesson => "Everything in sandbox; the record says it was played to learn.",
+        Mode::Debug => "Everything in sandbox, plus hidden state; not comparable with other runs.",
+    }
+}

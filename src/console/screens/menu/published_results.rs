@@ -1,0 +1,152 @@
+//! Published results, ranked, together with the finished runs on this machine.
+
+use ratatui::layout::Rect;
+
+use super::StartMenu;
+use novamind_base::formatting::{compact_number, dollars};
+use novamind_record::folder::runs::RunSummary;
+use novamind_record::mode::Mode;
+use novamind_record::trajectory::record::RunEndReason;
+use novamind_report::ranking::{describe_published_conditions, published_results};
+use novamind_report::ranking_eligibility::{RankingCriteria, RankingObstacle, describe_not_ranked};
+use novamind_tui::canvas::{Align, Canvas, row_rects};
+use novamind_tui::text::wrap;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::table::first_visible_row;
+
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct RankedResult {
+    name: String,
+    cash: f64,
+    note: String,
+    is_own: bool,
+}
+
+/// Returns all results, best first.
+pub(super) fn ranked(runs: &[RunSummary]) -> Vec<RankedResult> {
+    let paper = published_results();
+    let baseline = RankedResult {
+        name: "Rule-based baseline".to_owned(),
+        cash: paper.rule_based_baseline,
+        note: String::new(),
+        is_own: false,
+    };
+    let mut results = vec![baseline];
+    results.extend(paper.agent.iter().map(|agent| RankedResult {
+        name: agent.name.clone(),
+        cash: agent.best_cash,
+        note: format!("{} of {} bankrupt", agent.bankruptcies, agent.runs),
+        is_own: false,
+    }));
+    results.extend(runs.iter().filter(|run| obstacles(run).is_some_and(|own| own.is_empty())).map(|run| {
+        RankedResult {
+            name: format!("You · {}", run.id),
+            cash: if run.ended == Some(RunEndReason::Bankruptcy) { 0.0 } else { run.cash },
+            note: format!("{} · seed {}", run.mode.map_or("", Mode::id), run.seed),
+            is_own: true,
+        }
+    }));
+    results.sort_by(|left, right| right.cash.total_cmp(&left.cash).then_with(|| left.name.cmp(&right.name)));
+    results
+}
+
+/// Returns the reasons why a run is not ranked; `None` if the run has no score.
+fn obstacles(run: &RunSummary) -> Option<Vec<RankingObstacle>> {
+    let has_score =
+        matches!(run.ended, Some(RunEndReason::Horizon | RunEndReason::Bankruptcy | RunEndReason::Lesson));
+    (has_score && run.problem.is_none()).then(|| RankingCriteria::from_summary(run).obstacles())
+}
+
+impl StartMenu {
+    pub(super) fn draw_published_results(&self, canvas: &mut Canvas<'_>, area: Rect) {
+        let results = ranked(self.runs());
+        let own = results.iter().filter(|result| result.is_own).count();
+        let note = if own > 0 { format!("{own} of yours") } else { String::new() };
+        let inside = canvas.draw_pane_frame(area, "Published results and yours", &note, true);
+        let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
+        let lines =
+            wrap(&format!("{}\n{}", self.own_results_text(own), source_text()), inside.width as usize);
+        let list = Rect { height: inside.height.saturating_sub(lines.len() as u16 + 1), ..inside };
+        let most = results.first().map_or(1.0, |result| result.cash.max(1.0));
+        let from = first_visible_row(self.selected, list.height as usize, results.len());
+        for (row, (at, result)) in row_rects(list).zip(results.iter().enumerate().skip(from)) {
+            draw_result(canvas, row, at, result, most);
+        }
+        let used = list.height + 1;
+        let below = Rect { y: inside.y + used, height: inside.height.saturating_sub(used), ..inside };
+        for (row, line) in row_rects(below).zip(lines) {
+            canvas.draw_text(row, &line, Role::Dim);
+        }
+    }
+
+    /// Explains which runs are ranked, and why others are not.
+    fn own_results_text(&self, ranked: usize) -> String {
+        let finished: Vec<Vec<RankingObstacle>> = self.runs().iter().filter_map(obstacles).collect();
+        match (ranked, describe_not_ranked(&finished)) {
+            (_, Some(left_out)) => left_out,
+            (0, None) => "Finish a 500-day run to appear here.".to_owned(),
+            (_, None) => "Yours are marked; a bankrupt run counts as $0.".to_owned(),
+        }
+    }
+}
+
+/// Returns the source of the published results.
+fn source_text() -> String {
+    let bound = compact_number(published_results().estimated_upper_bound);
+    format!(
+        "{}, best cash of three runs each. Estimated upper bound: ${bound}.",
+        describe_published_conditions()
+    )
+}
+
+fn draw_result(canvas: &mut Canvas<'_>, row: Rect, at: usize, result: &RankedResult, most: f64) {
+    let role = if result.is_own { Role::Key } else { Role::Text };
+    let place =
+        |x: u16, width: u16| Rect { x: row.x + x, width: width.min(row.width.saturating_sub(x)), ..row };
+    let mark = if result.is_own { "▌" } else { " " };
+    canvas.draw_text(place(0, 1), mark, role);
+    canvas.draw_aligned(place(1, 2), &(at + 1).to_string(), Role::Dim, Align::Right);
+    canvas.draw_text(place(4, 22), &result.name, role);
+    canvas.draw_aligned(place(27, 13), &dollars(result.cash), role, Align::Right);
+    canvas.draw_text(place(41, 20), &result.note, Role::Dim);
+    let room = row.width.saturating_sub(62);
+    let length = (f64::from(room) * (result.cash / most).clamp(0.0, 1.0)).round() as usize;
+    let bar = "█".repeat(length.max(usize::from(result.cash > 0.0)));
+    canvas.draw_text(place(62, room), &bar, if result.is_own { Role::Key } else { Role::Series(0) });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::screens::menu::tests::summary;
+
+    #[test]
+    fn own_runs_are_ranked_by_cash() {
+        let finished = |id: &str, cash: f64, days: u32, ended: Option<RunEndReason>| RunSummary {
+            cash,
+            days,
+            day: days,
+            ended,
+            ..summary(id)
+        };
+        let runs = [
+            finished("rich", 1e9, 500, Some(RunEndReason::Horizon)),
+            finished("short", 1e9, 70, Some(RunEndReason::Horizon)),
+            RunSummary { starting_cash: 2e6, ..finished("gift", 1e9, 500, Some(RunEndReason::Horizon)) },
+            RunSummary {
+                scenario: "competitor-off".to_owned(),
+                ..finished("alone", 1e9, 500, Some(RunEndReason::Horizon))
+            },
+            finished("open", 1e9, 500, None),
+            finished("ruin", -5.0, 500, Some(RunEndReason::Bankruptcy)),
+        ];
+        let results = ranked(&runs);
+        let why: Vec<Option<usize>> = runs.iter().map(|run| obstacles(run).map(|own| own.len())).collect();
+        assert_eq!(why, [Some(0), Some(1), Some(1), Some(1), None, Some(0)]);
+        assert_eq!((results[0].name.as_str(), results[0].is_own), ("You · rich", true));
+        assert_eq!(results.iter().filter(|result| result.is_own).count(), 2);
+        let ruin = results.iter().find(|result| result.name == "You · ruin").expect("the bankrupt run");
+        assert!(ruin.cash.abs() < 1e-9);
+        assert!(results.is_sorted_by(|left, right| left.cash >= right.cash));
+    }
+}

@@ -1,0 +1,85 @@
+//! Text rows that link to a screen, used for action items and news.
+
+use ratatui::layout::Rect;
+use unicode_width::UnicodeWidthStr;
+
+use crate::action::Action;
+use crate::context::ScreenId;
+use crate::screens::panes::PanePlacement;
+use novamind_tui::canvas::{Align, Canvas, Click, truncate_to_width};
+use novamind_tui::text::wrap;
+use novamind_tui::theme::Role;
+
+pub fn move_selection(selected: &mut usize, rows: usize, action: Action) {
+    let last = rows.saturating_sub(1);
+    *selected = match action {
+        Action::Up => selected.saturating_sub(1),
+        Action::Down => (*selected + 1).min(last),
+        Action::First => 0,
+        Action::Last => last,
+        _ => *selected,
+    };
+}
+
+/// A text row that links to a screen.
+pub struct LinkedRow {
+    text: String,
+    urgent: bool,
+    destination: String,
+}
+
+impl LinkedRow {
+    pub fn new(screen: ScreenId, text: String, urgent: bool) -> LinkedRow {
+        LinkedRow { text, urgent, destination: format!("→ {}", screen.action().entry().title) }
+    }
+
+    /// Returns the wrapped text, with room for the name of the screen in the first line.
+    pub fn lines(&self, width: u16) -> Vec<String> {
+        let room = (width as usize).saturating_sub(self.destination.width() + 4);
+        wrap(&self.text, room.max(12))
+    }
+}
+
+/// Draws the rows, starting where the selected row is completely visible.
+pub fn draw(canvas: &mut Canvas<'_>, seat: PanePlacement, rows: &[LinkedRow], selected: usize) {
+    let area = seat.area;
+    let all: Vec<Vec<String>> = rows.iter().map(|row| row.lines(area.width)).collect();
+    let mut from = 0;
+    let height = |from: usize| all[from..].iter().take(selected + 1 - from).map(Vec::len).sum::<usize>();
+    while from < selected && height(from) > area.height as usize {
+        from += 1;
+    }
+    let mut y = area.y;
+    for (at, lines) in all.iter().enumerate().skip(from) {
+        if y >= area.bottom() {
+            break;
+        }
+        let place = Rect { y, height: lines.len() as u16, ..area }.intersection(area);
+        draw_row(canvas, place, &rows[at], lines, seat.focused && at == selected);
+        canvas.register_click(place, Click::Row(seat.index, at));
+        y += lines.len() as u16;
+    }
+}
+
+fn draw_row(canvas: &mut Canvas<'_>, area: Rect, row: &LinkedRow, lines: &[String], selected: bool) {
+    let role = match (selected, row.urgent) {
+        (true, _) => Role::Selection,
+        (false, true) => Role::Warning,
+        (false, false) => Role::Text,
+    };
+    canvas.clear(area, if selected { role } else { Role::Text });
+    for (at, (line, y)) in lines.iter().zip(area.top()..area.bottom()).enumerate() {
+        let mark = match (at, row.urgent) {
+            (0, true) => "!",
+            (0, false) => "·",
+            _ => " ",
+        };
+        let more = lines.get(at + 1).filter(|_| y + 1 == area.bottom());
+        let way = if at == 0 { row.destination.width() + 1 } else { 0 };
+        let room = (area.width as usize).saturating_sub(2 + way);
+        let shown = more.map_or_else(|| line.clone(), |more| truncate_to_width(&format!("{line} {more}"), room));
+        canvas.draw_text(Rect { y, height: 1, ..area }, &format!("{mark} {shown}"), role);
+    }
+    let way = if selected { role } else { Role::Dim };
+    canvas.draw_aligned(Rect { height: area.height.min(1), ..area }, &row.destination, way, Align::Right);
+}

@@ -1,0 +1,84 @@
+//! Table of the player's posts with views and comments.
+
+use ratatui::layout::Rect;
+
+use super::Social;
+use crate::action::{Action, Scope};
+use crate::context::{Figure, ScreenContext};
+use crate::effect::Effect;
+use crate::screens::panes::{PaneBorder, Pane, PanePlacement};
+use novamind_base::formatting::grouped_number;
+use novamind_tui::canvas::Canvas;
+use novamind_tui::theme::Role;
+use novamind_tui::widgets::Table;
+
+pub struct OwnPostsPane;
+
+impl Pane<Social> for OwnPostsPane {
+    fn table<'a>(&self, social: &'a Social) -> Option<&'a Table> {
+        Some(&social.table)
+    }
+
+    fn table_mut<'a>(&self, social: &'a mut Social) -> Option<&'a mut Table> {
+        Some(&mut social.table)
+    }
+
+    fn scopes(&self, social: &Social) -> Vec<Scope> {
+        if social.table.is_filter_open() { vec![Scope::Field] } else { vec![Scope::Social, Scope::List] }
+    }
+
+    fn hints(&self, _: &Social) -> Vec<Action> {
+        vec![Action::Open, Action::Compose, Action::Sort, Action::Filter]
+    }
+
+    fn figure(&self, social: &Social, _: &ScreenContext<'_>) -> Option<Figure> {
+        let post = social.selected_own_post()?;
+        if social.table.selected_column() != 2 {
+            return Some(super::figure_of(post));
+        }
+        let number = post.number;
+        let sql = format!(
+            "SELECT post_id, day, content FROM social_media_posts WHERE reply_to_agent_post_id = {number}"
+        );
+        Some(Figure {
+            title: format!("comments on your post {number}"),
+            term: "comment",
+            sql: Some(sql),
+            week_quantity: None,
+        })
+    }
+
+    fn handle_action(&self, social: &mut Social, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+        let action = match action {
+            Action::Open => return social.open_post(social.selected_own_post().cloned(), look.company),
+            // Tab ends typing here.
+            Action::CommitNext | Action::CommitPrevious => Action::Commit,
+            other => other,
+        };
+        social.table.handle_action(action, look.page_rows);
+        Vec::new()
+    }
+
+    fn border(&self, social: &Social, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
+        let views: u32 = social.own_posts.iter().map(|post| post.views).sum();
+        let note = match social.table.summary() {
+            note if !note.is_empty() => note,
+            _ if social.own_posts.is_empty() => String::new(),
+            _ => format!("{} · {} views", social.own_posts.len(), grouped_number(f64::from(views), 0)),
+        };
+        let keys = match social.own_posts.is_empty() {
+            true => String::new(),
+            false => look.hints(&[Action::Open, Action::Sort, Action::Filter]),
+        };
+        PaneBorder { title: "Your posts".to_owned(), note, keys, ..PaneBorder::default() }
+    }
+
+    fn draw(&self, social: &Social, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
+        if social.own_posts.is_empty() {
+            let key = look.keys.label(Action::Compose).unwrap_or_default();
+            canvas.draw_text(seat.area, &format!("None yet. Write one with {key}."), Role::Dim);
+            return;
+        }
+        social.table.draw(canvas, seat.area, seat.focused, seat.index);
+    }
+}

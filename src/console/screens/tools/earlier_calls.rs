@@ -1,0 +1,56 @@
+//! Earlier calls of a tool in this run.
+
+use serde_json::Value;
+
+use crate::screens::journal::entries::format_arguments;
+use novamind_report::deals::describe_deals;
+use novamind_session::JournalEntry;
+use novamind_tools::ToolId;
+use novamind_worker::company::DisplayedCompany;
+
+pub const MAX_EARLIER_CALLS: usize = 10;
+
+/// Calls of a tool, newest first: decision day and arguments, without consecutive duplicates.
+pub fn earlier_calls(tool: ToolId, company: &DisplayedCompany, most: usize) -> Vec<(u32, String)> {
+    let calls = company.journal.iter().rev().filter_map(|entry| match entry {
+        JournalEntry::Call { day, tool: own, args, .. } if *own == tool => Some((*day, args)),
+        _ => None,
+    });
+    let mut told: Vec<(u32, &Value)> = Vec::new();
+    for (day, arguments) in calls {
+        let full = told.len() == most;
+        match told.last_mut() {
+            Some((first, known)) if *known == arguments => *first = day,
+            _ if full => break,
+            _ => told.push((day, arguments)),
+        }
+    }
+    let words = |arguments: &Value| {
+        describe_deals(tool, arguments, &company.company_names).unwrap_or_else(|| format_arguments(arguments))
+    };
+    told.into_iter().map(|(day, arguments)| (day, words(arguments))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_kit::played_session;
+
+    #[test]
+    fn newest_call_is_first() {
+        let mut session = played_session(1);
+        for price in [14, 14] {
+            let arguments = serde_json::json!({ "A": price });
+            session
+                .call("set_prices", &arguments, novamind_record::trajectory::record::Via::Form)
+                .expect("a price");
+        }
+        let company = DisplayedCompany::from_session(&session);
+        assert_eq!(
+            earlier_calls(ToolId::SetPrices, &company, 9),
+            [(7, "A 14".to_owned()), (0, "A 12 B 25 C 55".to_owned())]
+        );
+        assert_eq!(earlier_calls(ToolId::SetPrices, &company, 1).len(), 1);
+        assert_eq!(earlier_calls(ToolId::SetPromotion, &company, 9), []);
+    }
+}

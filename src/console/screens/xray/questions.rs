@@ -1,0 +1,77 @@
+//! Queue of questions: one is answered at a time, and results are stored.
+
+use super::{InspectionResult, Xray};
+use crate::effect::Effect;
+use novamind_tools::Rejection;
+use novamind_worker::inspection::{BreakpointCommand, InspectionAnswer, InspectionQuestion};
+
+impl Xray {
+    pub(super) fn send_question(&mut self, question: InspectionQuestion) -> Vec<Effect> {
+        vec![Effect::Ask(self.asked.ask(question))]
+    }
+
+    /// Sends a question at once or after the current one. A new read-only command replaces waiting ones.
+    pub(super) fn enqueue_question(&mut self, question: InspectionQuestion) -> Vec<Effect> {
+        if !self.asked.is_waiting() {
+            return self.send_question(question);
+        }
+        self.queued.retain(|own| !is_read_only(own));
+        self.queued.push_back(question);
+        Vec::new()
+    }
+
+    /// Queues a change of breakpoints.
+    pub(super) fn send_breakpoint_work(&mut self, work: BreakpointCommand) -> Vec<Effect> {
+        self.enqueue_question(InspectionQuestion::Breakpoints(work))
+    }
+
+    pub(super) fn pending_command(&self) -> Option<&str> {
+        self.queued.iter().rev().chain(self.asked.question()).find_map(|question| match question {
+            InspectionQuestion::Command(words, _) => Some(words.as_str()),
+            _ => None,
+        })
+    }
+
+    pub(super) fn handle_answer(&mut self, question: InspectionQuestion, found: Result<InspectionAnswer, Rejection>) -> Vec<Effect> {
+        let shown = self.store_answer(question, found);
+        match self.queued.pop_front() {
+            Some(next) => self.send_question(next),
+            None if shown => Vec::new(),
+            None => self.request_inspection(),
+        }
+    }
+
+    /// Stores an answer; returns true if the current view shows it.
+    fn store_answer(&mut self, mut question: InspectionQuestion, found: Result<InspectionAnswer, Rejection>) -> bool {
+        let found = found.map_err(|refusal| refusal.message);
+        if let InspectionQuestion::Command(_, asked) = &question {
+            if asked.changes_run() {
+                self.inspection = None;
+            }
+            self.command_output = Some(InspectionResult { question, found });
+            return false;
+        }
+        if let InspectionQuestion::Breakpoints(work) = &mut question {
+            // Show the result like the list, and do not repeat the change.
+            *work = BreakpointCommand::List;
+            if let Ok(found) = &found {
+                self.breakpoints = found.breakpoints.clone();
+                self.fill_breakpoints();
+            }
+        }
+        let is_wanted = self.wanted_question().as_ref() == Some(&question);
+        if is_wanted {
+            self.inspection = Some(InspectionResult { question, found });
+        }
+        is_wanted
+    }
+}
+
+/// Returns whether a question changes nothing.
+fn is_read_only(question: &InspectionQuestion) -> bool {
+    match question {
+        InspectionQuestion::Command(_, asked) => !asked.changes_run(),
+        InspectionQuestion::Breakpoints(work) => matches!(work, BreakpointCommand::List | BreakpointCommand::History),
+        _ => true,
+    }
+}

@@ -1,0 +1,164 @@
+//! Drawing of the study pages.
+
+use ratatui::layout::Rect;
+
+use super::{StudyPage, StudyPageKind, WITHDRAW};
+use crate::action::Action;
+use crate::keys::KeyBindings;
+use novamind_study::DECLINED_NOTICE;
+use novamind_tui::canvas::{Canvas, centered_rect, row_rects};
+use novamind_tui::text::wrap;
+use novamind_tui::theme::Role;
+
+const MAX_PAGE_WIDTH: u16 = 84;
+
+impl StudyPage {
+    /// Draws the page below the title of the study.
+    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, keys: &KeyBindings) {
+        let head = Rect { x: area.x + 2, width: area.width.saturating_sub(4), height: 1, ..area };
+        canvas.draw_text(head, &self.title, Role::Title);
+        let body = Rect { y: area.y + 1, height: area.height.saturating_sub(1), ..area };
+        let key = |action: Action| keys.label(action).unwrap_or_default();
+        if let StudyPageKind::Consent(text) = &self.kind {
+            let agree = format!("{} I agree", key(Action::Agree));
+            let decline = format!("{} I do not agree", key(Action::Decline));
+            return text.draw(canvas, body, "Consent", &agree, &decline);
+        }
+        let (title, said) = self.title_and_text(&key);
+        let width = MAX_PAGE_WIDTH.min(body.width);
+        let mut lines: Vec<(String, Role)> = Vec::new();
+        for (text, role) in said {
+            if !lines.is_empty() {
+                lines.push((String::new(), Role::Text));
+            }
+            let told = wrap(&text, width.saturating_sub(4) as usize);
+            lines.extend(told.into_iter().map(|line| (line, role)));
+        }
+        // In small windows, blank lines are dropped first.
+        if lines.len() + 2 > body.height as usize {
+            lines.retain(|(line, _)| !line.is_empty());
+        }
+        let own = centered_rect(body, width, (lines.len() as u16 + 6).max(9));
+        let inside = canvas.draw_pane_frame(own, title, "", true);
+        let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
+        let text = Rect { y: inside.y + u16::from(inside.height > 10), ..inside }.intersection(inside);
+        for (row, (line, role)) in row_rects(text).zip(&lines) {
+            canvas.draw_text(row, line, *role);
+        }
+        let used = text.y - inside.y + lines.len() as u16 + 1;
+        let below = Rect { y: inside.y + used, height: inside.height.saturating_sub(used), ..inside };
+        self.draw_field(canvas, below);
+        if let Some(problem) = &self.problem {
+            let below = Rect { y: below.y + 2, height: below.height.saturating_sub(2), ..below };
+            let lines = wrap(&format!("! {problem}"), below.width as usize);
+            for (row, line) in row_rects(below).zip(lines) {
+                canvas.draw_text(row, &line, Role::Bad);
+            }
+        }
+    }
+
+    fn draw_field(&self, canvas: &mut Canvas<'_>, below: Rect) {
+        let row = Rect { width: 32.min(below.width), height: below.height.min(1), ..below };
+        match &self.kind {
+            StudyPageKind::Label(field) | StudyPageKind::Withdraw(Some(field)) => field.draw(canvas, row),
+            StudyPageKind::Code(field) => field.masked().draw(canvas, row),
+            _ => {}
+        }
+    }
+
+    fn title_and_text(&self, key: &dyn Fn(Action) -> String) -> (&'static str, Vec<(String, Role)>) {
+        let text = |words: &str| (words.to_owned(), Role::Text);
+        let strong = |words: String| (words, Role::Strong);
+        let go = key(Action::Continue);
+        let next_person = strong(format!("{go} next participant"));
+        match &self.kind {
+            StudyPageKind::Label(_) => {
+                ("Label", vec![strong("Type the label that the experimenter gave you.".to_owned())])
+            }
+            StudyPageKind::Code(_) => ("Experimenter", vec![strong("The experimenter's code:".to_owned())]),
+            StudyPageKind::Loading | StudyPageKind::Consent(_) => ("", vec![text("One moment …")]),
+            StudyPageKind::Practice { resumed, may_pass } => {
+                let first = match resumed {
+                    false => "First comes a practice company, to learn the controls. It does not count.",
+                    true => "The practice continues where you left it. It does not count.",
+                };
+                let mut said = vec![text(first)];
+                said.push(text(
+                    "It ends automatically after its last day. The session then starts with a new company.",
+                ));
+                said.push(strong(format!("{go} starts the practice")));
+                if *may_pass {
+                    let pass = key(Action::SkipPractice);
+                    said.push(strong(format!("{pass} skips it and continues with the session")));
+                }
+                ("Practice", said)
+            }
+            StudyPageKind::Session { resumed } => {
+                let first = match resumed {
+                    false => "The session starts now.",
+                    true => "The session continues where you left it.",
+                };
+                let kept = "Everything you confirm is saved. You can leave at any time and continue later with your label.";
+                let palette = key(Action::Palette);
+                let withdraw = format!(
+                    "You can withdraw at any time ({palette} {}). That erases everything you did in this study.",
+                    Action::Withdraw.entry().title
+                );
+                let pause = format!(
+                    "For a break, {} stops the clock: the screen is hidden, and the time does not count.",
+                    key(Action::StopClock)
+                );
+                let goes = strong(format!("{go} {}", if *resumed { "continues" } else { "starts" }));
+                ("Session", vec![text(first), text(kept), text(&pause), text(&withdraw), goes])
+            }
+            StudyPageKind::Left => (
+                "Left",
+                vec![
+                    text(
+                        "Everything is saved. To continue later, return to this computer and enter your label again.",
+                    ),
+                    next_person,
+                ],
+            ),
+            StudyPageKind::Withdraw(None) => {
+                let (yes, no) = (key(Action::Confirm), key(Action::Cancel));
+                let erased =
+                    "Withdrawing permanently erases everything you did in this study. It cannot be undone.";
+                (
+                    "Withdraw",
+                    vec![
+                        text(erased),
+                        strong(format!("{yes} withdraw, after one more question")),
+                        strong(format!("{no} continue the study")),
+                    ],
+                )
+            }
+            StudyPageKind::Withdraw(Some(_)) => (
+                "Withdraw",
+                vec![strong(format!("Type {WITHDRAW} to erase everything you did in this study."))],
+            ),
+            StudyPageKind::Declined => (
+                "Not agreed",
+                vec![text(DECLINED_NOTICE), text("Please tell the experimenter."), next_person],
+            ),
+            StudyPageKind::Withdrawn(kept) => (
+                "Withdrawn",
+                vec![
+                    text("You have withdrawn from this study."),
+                    text(kept),
+                    text("Please tell the experimenter."),
+                    next_person,
+                ],
+            ),
+            StudyPageKind::Thanks => (
+                "Thank you",
+                vec![
+                    text(
+                        "You have finished. Thank you for taking part. Everything is recorded; please tell the experimenter.",
+                    ),
+                    next_person,
+                ],
+            ),
+        }
+    }
+}

@@ -1,0 +1,288 @@
+//! The pages of a participant's session: label, consent, practice, session, questions, thanks.
+//!
+//! No other part of the console is reachable meanwhile; the experimenter's code opens the rest.
+
+mod answer;
+mod draw;
+pub mod questions;
+
+use crossterm::event::{KeyCode, KeyEvent};
+
+use super::action::{Action, Scope};
+use super::consent::{ConsentText, UNREAD_ERROR};
+use super::effect::Effect;
+use novamind_study::{DueQuestion, NextStep, Study};
+use novamind_tui::widgets::TextField;
+use novamind_worker::request::{Request, StudyRequest};
+
+/// Study state of the console, on pages and in runs.
+pub struct StudyState {
+    /// Title of the study for participants.
+    pub title: String,
+    /// Whether the practice includes the tour.
+    has_practice_tour: bool,
+    /// Due questions without an answer.
+    pub due_questions: Vec<DueQuestion>,
+    /// Whether the current run is the practice.
+    pub is_practice: bool,
+    /// Whether the participant left the run to withdraw.
+    pub is_withdrawing: bool,
+}
+
+impl StudyState {
+    /// Returns the state before the first participant.
+    pub fn new(study: &Study) -> StudyState {
+        StudyState {
+            title: study.protocol.title.clone(),
+            has_practice_tour: study.protocol.session.tour,
+            due_questions: Vec::new(),
+            is_practice: false,
+            is_withdrawing: false,
+        }
+    }
+
+    /// Returns whether the current run includes the tour.
+    pub fn has_tour(&self) -> bool {
+        self.has_practice_tour && self.is_practice
+    }
+}
+
+/// A page outside of a run.
+pub struct StudyPage {
+    title: String,
+    kind: StudyPageKind,
+    problem: Option<String>,
+    /// Number of rejected labels on this page.
+    rejected_labels: u32,
+}
+
+enum StudyPageKind {
+    /// The participant enters their label.
+    Label(TextField),
+    /// The experimenter enters the code.
+    Code(TextField),
+    /// Waiting for a response.
+    Loading,
+    /// The participant agrees or declines.
+    Consent(ConsentText),
+    /// The practice comes next.
+    Practice { resumed: bool, may_pass: bool },
+    /// The session comes next.
+    Session { resumed: bool },
+    /// The participant has left a run that has not ended.
+    Left,
+    /// The participant withdraws: confirmed once, then by typing a word.
+    Withdraw(Option<TextField>),
+    /// The participant declined.
+    Declined,
+    /// The participant has withdrawn; describes what is kept.
+    Withdrawn(String),
+    /// The participant has finished.
+    Thanks,
+}
+
+const WITHDRAW: &str = "withdraw";
+
+impl StudyPage {
+    fn new(title: &str, kind: StudyPageKind) -> StudyPage {
+        StudyPage { title: title.to_owned(), kind, problem: None, rejected_labels: 0 }
+    }
+
+    /// Returns the page that asks for a label.
+    pub fn label_page(title: &str) -> StudyPage {
+        StudyPage::new(title, StudyPageKind::Label(TextField::default()))
+    }
+
+    /// Returns the page shown while waiting.
+    pub fn loading_page(title: &str) -> StudyPage {
+        StudyPage::new(title, StudyPageKind::Loading)
+    }
+
+    /// Returns the page after a run was left before its end.
+    pub fn left_page(title: &str) -> StudyPage {
+        StudyPage::new(title, StudyPageKind::Left)
+    }
+
+    /// Returns the withdrawal page.
+    pub fn withdraw_page(title: &str) -> StudyPage {
+        StudyPage::new(title, StudyPageKind::Withdraw(None))
+    }
+
+    /// Returns the page after a participant declined.
+    pub fn declined_page(title: &str) -> StudyPage {
+        StudyPage::new(title, StudyPageKind::Declined)
+    }
+
+    /// Returns the page of the next step.
+    pub fn from_step(title: &str, step: NextStep) -> StudyPage {
+        let kind = match step {
+            NextStep::Consent(text) => StudyPageKind::Consent(ConsentText::new(text.text)),
+            NextStep::Practice { unfinished, may_skip: may_pass } => {
+                StudyPageKind::Practice { resumed: unfinished.is_some(), may_pass }
+            }
+            NextStep::Session(unfinished) => StudyPageKind::Session { resumed: unfinished.is_some() },
+            // The run opens automatically, with the questions over it.
+            NextStep::Questions(_) => StudyPageKind::Loading,
+            NextStep::Thanks => StudyPageKind::Thanks,
+            NextStep::Withdrawn(kept) => StudyPageKind::Withdrawn(kept),
+        };
+        StudyPage::new(title, kind)
+    }
+
+    /// Shows why a label was rejected, and counts it.
+    pub fn reject_label(&mut self, problem: String) {
+        self.rejected_labels += 1;
+        let field = TextField::default();
+        (self.kind, self.problem) = (StudyPageKind::Label(field), Some(problem));
+    }
+
+    /// Shows an error.
+    pub fn set_problem(&mut self, problem: String) {
+        self.problem = Some(problem);
+    }
+
+    /// Returns the scopes of the page.
+    pub fn scopes(&self) -> Vec<Scope> {
+        match self.kind {
+            StudyPageKind::Label(_) | StudyPageKind::Code(_) | StudyPageKind::Withdraw(Some(_)) => {
+                vec![Scope::Field, Scope::Study]
+            }
+            StudyPageKind::Consent(_) => vec![Scope::Study, Scope::List],
+            StudyPageKind::Withdraw(None) => vec![Scope::Dialog],
+            _ => vec![Scope::Study],
+        }
+    }
+
+    /// Returns the actions for the footer, without the experimenter's action.
+    pub fn hints(&self) -> Vec<Action> {
+        match &self.kind {
+            StudyPageKind::Label(_) => vec![Action::Continue],
+            StudyPageKind::Code(_) => vec![Action::Continue, Action::Discard],
+            StudyPageKind::Loading => Vec::new(),
+            StudyPageKind::Consent(text) if text.consent().is_none() => vec![Action::Down, Action::Decline],
+            StudyPageKind::Consent(_) => vec![Action::Agree, Action::Decline],
+            StudyPageKind::Practice { may_pass: true, .. } => {
+                vec![Action::Continue, Action::SkipPractice, Action::Withdraw]
+            }
+            StudyPageKind::Practice { .. }
+            | StudyPageKind::Session { .. }
+            | StudyPageKind::Left
+            | StudyPageKind::Thanks => {
+                vec![Action::Continue, Action::Withdraw]
+            }
+            StudyPageKind::Withdraw(None) => vec![Action::Confirm, Action::Cancel],
+            StudyPageKind::Withdraw(Some(_)) => vec![Action::Continue, Action::Discard],
+            StudyPageKind::Declined | StudyPageKind::Withdrawn(_) => vec![Action::Continue],
+        }
+    }
+
+    /// Handles an action.
+    pub fn handle_action(&mut self, action: Action) -> Vec<Effect> {
+        let withdraws = action == Action::Withdraw && self.hints().contains(&action);
+        match (&mut self.kind, action) {
+            (StudyPageKind::Consent(text), Action::Agree) => match text.consent() {
+                Some(given) => self.send_request(StudyRequest::Agree(given)),
+                None => vec![Effect::Complain(UNREAD_ERROR.to_owned())],
+            },
+            (StudyPageKind::Consent(_), Action::Decline) => self.send_request(StudyRequest::Decline),
+            (StudyPageKind::Consent(text), _) => {
+                text.handle_scroll(action);
+                Vec::new()
+            }
+            (StudyPageKind::Practice { may_pass: true, .. }, Action::SkipPractice) => {
+                self.send_request(StudyRequest::SkipPractice)
+            }
+            (StudyPageKind::Label(_), Action::Experimenter) => {
+                self.show_page(StudyPageKind::Code(TextField::default()))
+            }
+            (StudyPageKind::Withdraw(None), Action::Confirm) => {
+                self.show_page(StudyPageKind::Withdraw(Some(TextField::default())))
+            }
+            (StudyPageKind::Withdraw(None), Action::Cancel) => self.send_request(StudyRequest::ShowNextStep),
+            (StudyPageKind::Withdraw(Some(_)), Action::Discard) => {
+                self.send_request(StudyRequest::ShowNextStep)
+            }
+            (StudyPageKind::Code(_), Action::Discard) => {
+                self.show_page(StudyPageKind::Label(TextField::default()))
+            }
+            _ if withdraws => self.show_page(StudyPageKind::Withdraw(None)),
+            (_, Action::Continue | Action::Commit | Action::CommitNext) => self.continue_to_next(),
+            _ => Vec::new(),
+        }
+    }
+
+    fn show_page(&mut self, kind: StudyPageKind) -> Vec<Effect> {
+        (self.kind, self.problem) = (kind, None);
+        Vec::new()
+    }
+
+    fn continue_to_next(&mut self) -> Vec<Effect> {
+        match &self.kind {
+            StudyPageKind::Label(field) if !field.text().trim().is_empty() => {
+                let (label, refused) = (field.text().trim().to_owned(), self.rejected_labels);
+                vec![Effect::Request(Request::Study(StudyRequest::IdentifyParticipant {
+                    label,
+                    rejected_labels: refused,
+                }))]
+            }
+            StudyPageKind::Code(field) => {
+                let code = field.text().to_owned();
+                vec![Effect::Request(Request::Study(StudyRequest::CheckCode(code)))]
+            }
+            StudyPageKind::Practice { .. } | StudyPageKind::Session { .. } => {
+                vec![Effect::Request(Request::Study(StudyRequest::Play))]
+            }
+            StudyPageKind::Withdraw(Some(field)) if field.text().trim() == WITHDRAW => {
+                self.send_request(StudyRequest::Withdraw)
+            }
+            StudyPageKind::Withdraw(Some(_)) => {
+                self.problem = Some(format!("nothing was erased: type {WITHDRAW}, or press esc to continue"));
+                Vec::new()
+            }
+            // The next participant.
+            StudyPageKind::Left
+            | StudyPageKind::Declined
+            | StudyPageKind::Withdrawn(_)
+            | StudyPageKind::Thanks => {
+                self.rejected_labels = 0;
+                self.show_page(StudyPageKind::Label(TextField::default()))
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// Sends a request and shows the waiting page.
+    fn send_request(&mut self, request: StudyRequest) -> Vec<Effect> {
+        self.show_page(StudyPageKind::Loading);
+        vec![Effect::Request(Request::Study(request))]
+    }
+
+    fn field(&mut self) -> Option<&mut TextField> {
+        match &mut self.kind {
+            StudyPageKind::Label(field)
+            | StudyPageKind::Code(field)
+            | StudyPageKind::Withdraw(Some(field)) => Some(field),
+            _ => None,
+        }
+    }
+
+    /// Handles a typed key.
+    pub fn handle_key(&mut self, key: &KeyEvent) -> Vec<Effect> {
+        match self.field() {
+            Some(field) => {
+                field.handle_key(key);
+                self.problem = None;
+            }
+            None if key.code == KeyCode::Char('q') => return vec![Effect::Do(Action::Quit)],
+            None => {}
+        }
+        Vec::new()
+    }
+
+    /// Handles pasted text.
+    pub fn paste(&mut self, text: &str) {
+        if let Some(field) = self.field() {
+            field.insert(text.trim());
+        }
+    }
+}

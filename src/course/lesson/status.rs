@@ -1,0 +1,208 @@
+//! The lesson page of a student: task, goals with current values, hints, pitfalls.
+
+use serde::Serialize;
+
+use super::debrief::{DebriefStep, step_result};
+
+use novamind_record::lesson::{GoalBound, GuessForm, LessonGoal, LessonProgress, OutcomeTiming};
+use novamind_record::trajectory::record::LessonNote;
+use novamind_session::{Session, lesson_step, measure, weeks_passed};
+use novamind_tools::ToolId;
+
+/// The lesson page of a student.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LessonStatus {
+    /// Title of the lesson.
+    pub title: String,
+    /// Title of the part, if the lesson has several parts.
+    pub part: Option<String>,
+    /// The current step, counted from 0; the last one if the part has ended.
+    pub step: usize,
+    /// Number of steps of the part.
+    pub steps: usize,
+    /// Title of the step.
+    pub step_title: String,
+    /// Text of the step.
+    pub text: String,
+    /// Completed weeks of the step, and its number of weeks.
+    pub weeks: (u32, u32),
+    /// Number of the try of the step, counted from 1.
+    pub try_number: u32,
+    /// The question of the step.
+    pub question: Option<LessonQuestion>,
+    /// The goals of the step.
+    pub goals: Vec<GoalStatus>,
+    /// Hints that were taken.
+    pub hints: Vec<String>,
+    /// Number of hints of the step.
+    pub hint_count: usize,
+    /// Day and text of each pitfall that was met.
+    pub pitfalls: Vec<(u32, String)>,
+    /// Results of the previous step, until a week of this one has passed.
+    pub previous_step: Option<DebriefStep>,
+    /// Whether the part has ended.
+    pub is_finished: bool,
+    /// Number of the next part, counted from 1, if this part has ended and is not the last one.
+    pub next_part: Option<u32>,
+    /// Whether opponents can play the same world from day 0: the lesson has ended, and its last part starts with an empty
+    /// company and sets no parameters.
+    pub has_opponents: bool,
+    /// Names of the available screens besides the Overview; `None` for all screens.
+    pub screens: Option<Vec<String>>,
+    /// The available tools; `None` for all tools.
+    pub tools: Option<Vec<ToolId>>,
+    /// Whether the student can run a week without entering forecasts or a rationale.
+    pub skips_forecasts: bool,
+}
+
+/// The question of a step.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LessonQuestion {
+    /// Text of the question.
+    pub text: String,
+    /// The choices; empty if the question asks for a number.
+    pub choices: Vec<String>,
+    /// Unit of a number.
+    pub unit: String,
+    /// The guess; for choices the number of the selected one, counted from 1.
+    pub guess: Option<f64>,
+    /// The outcome, if known.
+    pub outcome: Option<f64>,
+    /// Whether the outcome is shown at the end of the part instead of the step.
+    #[serde(skip)]
+    pub told_at_end: bool,
+}
+
+/// A goal and its current value.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct GoalStatus {
+    /// Text of the goal.
+    pub text: String,
+    /// Current value; `None` if there is none yet.
+    pub value: Option<f64>,
+    /// Value to reach; `None` if it is relative to the reference play and not judged yet.
+    pub bound: Option<f64>,
+    /// Whether `bound` is a maximum.
+    #[serde(skip)]
+    pub wants_least: bool,
+    /// Required share of the reference play's value, if the goal is relative to it.
+    #[serde(skip)]
+    pub of_good_play: Option<f64>,
+    /// Whether the value is in dollars.
+    #[serde(skip)]
+    pub in_dollars: bool,
+    /// Whether the goal was reached; `None` before it is judged.
+    pub met: Option<bool>,
+}
+
+impl LessonStatus {
+    /// Returns the page of a run, or `None` if the run does not belong to a lesson.
+    pub fn from_session(session: &mut Session) -> Option<LessonStatus> {
+        let standing = session.lesson()?.clone();
+        let part = standing.current_part();
+        let going = lesson_step(session);
+        let step = going.unwrap_or_else(|| standing.last_started_step());
+        let own = part.steps.get(step)?;
+        let (begin, end) = part.step_weeks(step);
+        let passed = weeks_passed(session).clamp(begin, end) - begin;
+        let plan = &standing.lesson.plan;
+        let filled = |text: &String| standing.lesson.fill_figures(text);
+        let next_part = (standing.part as u32 + 2, plan.parts.len() as u32);
+        Some(LessonStatus {
+            title: plan.title.clone(),
+            part: (plan.parts.len() > 1).then(|| part.title.clone()),
+            step,
+            steps: part.steps.len(),
+            step_title: own.title.clone(),
+            text: filled(&own.text),
+            weeks: (passed, own.weeks),
+            try_number: standing.attempt(step),
+            question: step_question(&standing, step),
+            goals: goal_statuses(session, &standing, step, (begin, passed)),
+            hints: own.hints.iter().take(standing.hint_count(step)).map(filled).collect(),
+            hint_count: own.hints.len(),
+            pitfalls: triggered_pitfalls(&standing),
+            previous_step: step
+                .checked_sub(1)
+                .filter(|_| passed == 0)
+                .and_then(|before| step_result(&standing, before)),
+            is_finished: going.is_none(),
+            has_opponents: going.is_none()
+                && next_part.0 > next_part.1
+                && standing.current_part().starts_empty(),
+            next_part: (going.is_none() && next_part.0 <= next_part.1).then_some(next_part.0),
+            screens: plan.access.screens.clone(),
+            tools: plan.access.tools.clone(),
+            skips_forecasts: plan.access.uses_naive_forecasts() && plan.access.is_rationale_off(),
+        })
+    }
+}
+
+/// Returns the goals of a step. Goals that are not judged yet have the value up to the current week.
+fn goal_statuses(
+    session: &mut Session,
+    standing: &LessonProgress,
+    step: usize,
+    (begin, passed): (u32, u32),
+) -> Vec<GoalStatus> {
+    let from = begin * session.params().run.days_per_week;
+    let goals = standing.step(step).map(|own| own.goals.clone()).unwrap_or_default();
+    let judged = standing.goal_results(step);
+    let page = |(at, goal): (usize, LessonGoal)| {
+        let note = judged.get(at).copied();
+        let page = GoalStatus::new(standing, &goal, note);
+        let is_open = note.is_none() && passed > 0;
+        let so_far = is_open.then(|| measure(&goal.measurement, session, from).ok().flatten()).flatten();
+        GoalStatus { value: page.value.or(so_far), ..page }
+    };
+    goals.into_iter().enumerate().map(page).collect()
+}
+
+impl GoalStatus {
+    /// Creates the view of a goal, with its result if it is judged.
+    pub(super) fn new(
+        standing: &LessonProgress,
+        goal: &LessonGoal,
+        judged: Option<&LessonNote>,
+    ) -> GoalStatus {
+        let of_good_play = match goal.bound {
+            GoalBound::RelativeToReferencePlay(share) => Some(share),
+            GoalBound::AtLeast(_) | GoalBound::AtMost(_) => None,
+        };
+        GoalStatus {
+            text: standing.lesson.fill_figures(&goal.text),
+            value: judged.and_then(|note| note.value),
+            bound: goal.bound.value(None).or(judged.and_then(|note| note.bound)),
+            wants_least: matches!(goal.bound, GoalBound::AtMost(_)),
+            of_good_play,
+            in_dollars: goal.in_dollars,
+            met: judged.and_then(|note| note.met),
+        }
+    }
+}
+
+pub(super) fn step_question(standing: &LessonProgress, step: usize) -> Option<LessonQuestion> {
+    let guess = standing.step(step)?.guess.as_ref()?;
+    let (choices, unit) = match &guess.form {
+        GuessForm::Number { unit, .. } => (Vec::new(), unit.clone()),
+        GuessForm::Choice { choices, .. } => (choices.clone(), String::new()),
+    };
+    let outcome = standing.outcome(step).and_then(|note| note.value);
+    Some(LessonQuestion {
+        text: guess.question.clone(),
+        choices,
+        unit,
+        guess: standing.guess(step),
+        outcome,
+        told_at_end: guess.told == OutcomeTiming::Part,
+    })
+}
+
+pub(super) fn triggered_pitfalls(standing: &LessonProgress) -> Vec<(u32, String)> {
+    let said = |(day, note): &(u32, LessonNote)| {
+        let name = note.name.as_deref()?;
+        let pitfall = standing.lesson.plan.pitfalls.iter().find(|own| own.name == name)?;
+        Some((*day, standing.lesson.fill_figures(&pitfall.say)))
+    };
+    standing.events.iter().filter_map(said).collect()
+}

@@ -1,0 +1,127 @@
+//! Interrupting queries: on request, and at their limits of time, steps and memory.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+use super::memory::bytes_in_use;
+
+/// Steps of SQLite's virtual machine between checks of time and memory. Few, because each can process two megabytes.
+pub(super) const STEPS_BETWEEN_CHECKS: u32 = 250;
+
+/// Maximum additional memory of a query, in bytes: sorting and recursion keep their rows in memory.
+const MAX_QUERY_MEMORY_BYTES: u64 = 512 << 20;
+
+/// Stops a running query from another thread, or at its limits.
+#[derive(Debug, Clone)]
+pub struct Interrupt(Arc<InterruptState>);
+
+/// Identifies a query from the moment of its request. A caller on another thread takes the ticket first, so that a stop before
+/// the start of the query is not lost.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct QueryTicket(u64);
+
+#[derive(Debug)]
+struct InterruptState {
+    /// Number of issued tickets.
+    issued: AtomicU64,
+    /// The newest stopped ticket; all older ones are stopped, too.
+    stopped: AtomicU64,
+    /// Ticket of the running or last query.
+    running: AtomicU64,
+    started: Instant,
+    /// Deadline of the running query, milliseconds after `started`.
+    deadline: AtomicU64,
+    /// Remaining checks of the running query.
+    remaining_checks: AtomicU64,
+    /// Maximum bytes in use while it runs.
+    max_memory_bytes: AtomicU64,
+    cause: AtomicU64,
+}
+
+/// Why a query was stopped.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum StopCause {
+    /// A request.
+    Request,
+    /// The limit of time or steps.
+    Time,
+    /// The limit of memory.
+    Memory,
+}
+
+impl Interrupt {
+    pub(super) fn new() -> Interrupt {
+        Interrupt(Arc::new(InterruptState {
+            issued: AtomicU64::new(0),
+            stopped: AtomicU64::new(0),
+            running: AtomicU64::new(0),
+            started: Instant::now(),
+            deadline: AtomicU64::new(u64::MAX),
+            remaining_checks: AtomicU64::new(u64::MAX),
+            max_memory_bytes: AtomicU64::new(u64::MAX),
+            cause: AtomicU64::new(0),
+        }))
+    }
+
+    /// Returns a ticket for a later query.
+    pub fn ticket(&self) -> QueryTicket {
+        QueryTicket(self.0.issued.fetch_add(1, Ordering::Relaxed) + 1)
+    }
+
+    /// Stops every query whose ticket was issued before, whether it has started or not.
+    pub fn stop(&self) {
+        self.0.stopped.fetch_max(self.0.issued.load(Ordering::Relaxed), Ordering::Relaxed);
+    }
+
+    /// Returns whether the query with a ticket was stopped.
+    pub fn is_ticket_stopped(&self, ticket: QueryTicket) -> bool {
+        self.0.stopped.load(Ordering::Relaxed) >= ticket.0
+    }
+
+    /// Starts a query or a script with limits of time and steps.
+    pub(super) fn begin(&self, ticket: QueryTicket, time: Duration, steps: Option<u64>) {
+        self.0.running.store(ticket.0, Ordering::Relaxed);
+        self.0
+            .max_memory_bytes
+            .store(bytes_in_use().saturating_add(MAX_QUERY_MEMORY_BYTES), Ordering::Relaxed);
+        self.0.cause.store(0, Ordering::Relaxed);
+        self.begin_statement(time, steps);
+    }
+
+    /// Starts the next statement of a script.
+    pub(super) fn begin_statement(&self, time: Duration, steps: Option<u64>) {
+        let deadline = self.0.started.elapsed() + time;
+        self.0.deadline.store(deadline.as_millis() as u64, Ordering::Relaxed);
+        let looks = steps.map_or(u64::MAX, |steps| steps / u64::from(STEPS_BETWEEN_CHECKS));
+        self.0.remaining_checks.store(looks, Ordering::Relaxed);
+    }
+
+    /// Returns why the query was stopped.
+    pub(super) fn cause(&self) -> StopCause {
+        match self.0.cause.load(Ordering::Relaxed) {
+            _ if self.is_stop_requested() => StopCause::Request,
+            1 => StopCause::Memory,
+            _ => StopCause::Time,
+        }
+    }
+
+    /// Returns whether the running query was stopped on request.
+    pub(super) fn is_stop_requested(&self) -> bool {
+        self.0.stopped.load(Ordering::Relaxed) >= self.0.running.load(Ordering::Relaxed)
+    }
+
+    /// Returns whether the running query must end now.
+    pub(super) fn should_stop(&self) -> bool {
+        let own = &self.0;
+        if bytes_in_use() > own.max_memory_bytes.load(Ordering::Relaxed) {
+            own.cause.store(1, Ordering::Relaxed);
+            return true;
+        }
+        let looks = own.remaining_checks.load(Ordering::Relaxed);
+        own.remaining_checks.store(looks.saturating_sub(1), Ordering::Relaxed);
+        looks == 0
+            || self.is_stop_requested()
+            || own.started.elapsed().as_millis() as u64 > own.deadline.load(Ordering::Relaxed)
+    }
+}

@@ -1,0 +1,107 @@
+//! Query plans for users, without the names of internal tables.
+
+use super::catalogue::{table, tables};
+use super::guard::visible_table_of;
+use super::query_result::{Cell, text_at};
+use super::tokens::tokenize;
+
+/// Column of a plan with the number of the parent step; the first column is the number of the step.
+const PARENT_COLUMN: usize = 1;
+
+const DETAIL_COLUMN: usize = 3;
+
+/// Replacement of internal names.
+const MASK: &str = "\u{2026}";
+
+const LOWERCASE_WORDS: [&str; 3] = ["rowid", "subquery", "join"];
+
+/// Masks the plan of a statement. Removes the lookups of words, which are internal.
+pub(super) fn mask_plan(plan: &mut Vec<Vec<Cell>>, sql: &str) {
+    for row in plan.iter_mut() {
+        if let Some(Cell::Text(detail)) = row.get_mut(DETAIL_COLUMN) {
+            *detail = mask_detail(detail, sql);
+        }
+    }
+    let of_inside = |row: &Vec<Cell>| {
+        let detail = text_at(row, DETAIL_COLUMN);
+        let looked_up = detail.strip_prefix("SEARCH ").or(detail.strip_prefix("SCAN "));
+        looked_up.is_some_and(|rest| rest.starts_with(MASK))
+    };
+    let (inside, mut rest): (Vec<_>, Vec<_>) = plan.drain(..).partition(of_inside);
+    let parents: Vec<&Cell> = inside.iter().filter_map(|row| row.get(PARENT_COLUMN)).collect();
+    let still: Vec<Cell> = rest.iter().filter_map(|row| row.get(PARENT_COLUMN).cloned()).collect();
+    rest.retain(|row| row.first().is_none_or(|own| !parents.contains(&own) || still.contains(own)));
+    *plan = rest;
+}
+
+fn mask_detail(detail: &str, sql: &str) -> String {
+    // The index text of a virtual table is internal.
+    let detail = detail.split_once(" VIRTUAL TABLE INDEX").map_or(detail, |(before, _)| before);
+    let mut text = String::new();
+    for word in detail.split_inclusive(|letter: char| !is_word_character(letter)) {
+        let name = word.trim_end_matches(|letter| !is_word_character(letter));
+        let shown = if name.is_empty() { "" } else { mask_word(name, sql) };
+        // The name of an index is omitted: its columns follow.
+        let is_index = shown == MASK && text.ends_with("INDEX ");
+        text += if is_index { "" } else { shown };
+        text += if is_index { word[name.len()..].trim_start() } else { &word[name.len()..] };
+    }
+    text.trim_end().to_owned()
+}
+
+fn is_word_character(letter: char) -> bool {
+    letter.is_alphanumeric() || letter == '_'
+}
+
+/// Returns the shown form of a word of a plan.
+fn mask_word<'a>(word: &'a str, sql: &str) -> &'a str {
+    let language = word.chars().all(|letter| letter.is_ascii_uppercase() || letter.is_ascii_digit());
+    let column = || {
+        let mut columns = tables().iter().flat_map(|table| &table.columns);
+        columns.any(|column| column.name.eq_ignore_ascii_case(word))
+    };
+    let asked = || {
+        let mut contents = tokenize(sql).into_iter().map(|token| token.unquoted());
+        contents.any(|content| content.split(|letter| !is_word_character(letter)).any(|own| own == word))
+    };
+    if language || LOWERCASE_WORDS.contains(&word) || table(word).is_some() || column() || asked() {
+        return word;
+    }
+    visible_table_of(word).unwrap_or(MASK)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn masked_plan_names_only_visible_tables() {
+        let sql = "SELECT * FROM customers c JOIN issues mine USING (customer_id)";
+        for (detail, expected) in [
+            ("SCAN c", "SCAN c"),
+            ("SCAN customer_rows", "SCAN customers"),
+            (
+                "SEARCH issues USING INDEX issues_of_customers (customer_id=?)",
+                "SEARCH issues USING INDEX (customer_id=?)",
+            ),
+            (
+                "SCAN subscription_rows USING COVERING INDEX of_days",
+                "SCAN subscriptions USING COVERING INDEX",
+            ),
+            (
+                "SEARCH mine USING INTEGER PRIMARY KEY (rowid>?)",
+                "SEARCH mine USING INTEGER PRIMARY KEY (rowid>?)",
+            ),
+            (
+                "SEARCH words USING PRIMARY KEY (axis=? AND n=?)",
+                "SEARCH \u{2026} USING PRIMARY KEY (\u{2026}=? AND \u{2026}=?)",
+            ),
+            ("CO-ROUTINE inner_0f_customers", "CO-ROUTINE \u{2026}"),
+            ("SCAN daily_usage VIRTUAL TABLE INDEX 0:=c", "SCAN daily_usage"),
+            ("SCAN (subquery-3)", "SCAN (subquery-3)"),
+            ("USE TEMP B-TREE FOR GROUP BY", "USE TEMP B-TREE FOR GROUP BY"),
+        ] {
+            assert_eq!(mask_detail(detail, sql), expected);
+        }
+    }
+}

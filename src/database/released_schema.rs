@@ -1,0 +1,259 @@
+//! The empty tables of the released simulator, without internal tables.
+//!
+//! Every statement is compiled against them first. Error messages and column names come from this compilation, so they never
+//! mention internal names. Spellings that only ordinary tables support (`rowid`, `main.ledger`) are replaced if both spellings
+//! compile to the same program.
+
+use std::collections::BTreeSet;
+
+use rusqlite::fallible_iterator::FallibleIterator;
+use rusqlite::hooks::{AuthContext, Authorization};
+use rusqlite::types::Value;
+use rusqlite::{Batch, Connection, Statement};
+
+use super::catalogue::{Scope, Table, table, tables};
+use super::guard::{CUSTOMER_ID, ColumnReads, ColumnsByTable, Guard, LastRejection, set_limits};
+use super::hidden_schema;
+use super::math_functions::register_mathematics;
+use super::query::QueryFault;
+use super::tokens::{Token, tokenize};
+
+const MAX_SPELLINGS: usize = 200;
+
+const ROWID_NAMES: [&str; 3] = ["rowid", "oid", "_rowid_"];
+
+/// The table with lookups by customer but without an index.
+const ISSUES: &str = "issues";
+
+/// The released schema.
+pub(super) struct ReleasedSchema {
+    connection: Connection,
+    last_rejection: LastRejection,
+    reads: ColumnReads,
+}
+
+/// A statement that compiles against the released schema.
+#[derive(Debug)]
+pub(super) struct CheckedStatement {
+    /// Text to run.
+    pub sql: String,
+    /// Names of the result columns.
+    pub columns: Vec<String>,
+    /// Whether it is an EXPLAIN QUERY PLAN.
+    pub is_plan: bool,
+    /// Columns of tables that are copied for it, with an index by customer. All tables for a RIGHT or FULL JOIN, because the
+    /// engine cannot search a view there. `issues` for a correlated subquery, because a stored index of issues would slow down
+    /// every week.
+    pub copied: ColumnsByTable,
+    /// Tables that it names.
+    pub tables: Vec<String>,
+}
+
+/// The compiled program of a statement. It depends on the resolved columns, but not on their names.
+type Program = Vec<Vec<Value>>;
+
+impl ReleasedSchema {
+    /// Creates the tables in memory, with the hidden ones if statements may name them.
+    pub fn open(scope: Scope) -> rusqlite::Result<ReleasedSchema> {
+        let mut connection = Connection::open_in_memory()?;
+        if scope == Scope::Hidden {
+            hidden_schema::create_hidden_tables(&connection)?;
+        }
+        let declarations: Vec<String> = tables().iter().map(Table::create_statement).collect();
+        connection.execute_batch(&declarations.join(";\n"))?;
+        register_mathematics(&connection)?;
+        connection.pragma_update(None, "query_only", true)?;
+        set_limits(&connection)?;
+        let guard = Guard::for_ordinary_tables(&connection, scope)?;
+        let (objections, reads) = (guard.last_rejection(), guard.reads());
+        connection.authorizer(Some(move |context: AuthContext<'_>| -> Authorization {
+            guard.authorize(&context)
+        }))?;
+        Ok(ReleasedSchema { connection, last_rejection: objections, reads })
+    }
+
+    /// Returns the rejection reasons.
+    pub fn last_rejection(&self) -> &LastRejection {
+        &self.last_rejection
+    }
+
+    /// Returns the statements of a text, compiled one by one.
+    pub fn statements<'a>(&'a self, sql: &'a str) -> Statements<'a> {
+        Statements { released: self, batch: Batch::new(&self.connection, sql) }
+    }
+
+    fn check_statement(&self, statement: &Statement<'_>) -> Result<CheckedStatement, QueryFault> {
+        if statement.is_explain() == 1 {
+            return Err(QueryFault::MachineCode);
+        }
+        if !statement.readonly() {
+            return Err(QueryFault::Write);
+        }
+        if statement.parameter_count() > 0 {
+            return Err(QueryFault::Parameters);
+        }
+        let sql = statement.expanded_sql().ok_or(QueryFault::TooLarge)?;
+        let columns = statement.column_names().map(str::to_owned).collect();
+        let mut copied = self.reads.take();
+        let tables = copied.keys().cloned().collect();
+        if !has_right_join(&sql) {
+            let looked_up =
+                |table: &str, columns: &BTreeSet<String>| table == ISSUES && columns.contains(CUSTOMER_ID);
+            copied.retain(|table, columns| looked_up(table, columns));
+            if !copied.is_empty() && !self.has_correlated_subquery(&sql) {
+                copied.clear();
+            }
+        }
+        let is_plan = statement.is_explain() == 2;
+        Ok(CheckedStatement { sql: self.rewrite_for_views(sql), columns, is_plan, copied, tables })
+    }
+
+    /// Returns whether the statement has a correlated subquery.
+    fn has_correlated_subquery(&self, sql: &str) -> bool {
+        let plan = self
+            .explain_rows(&format!("EXPLAIN QUERY PLAN {}", strip_explain_query_plan(sql)))
+            .unwrap_or_default();
+        // The engine converts some EXISTS to joins and marks the table.
+        let again = |step: &str| step.starts_with("CORRELATED") || step.contains(" EXISTS");
+        plan.iter().flatten().any(|cell| matches!(cell, Value::Text(step) if again(step)))
+    }
+
+    /// Replaces `main.` and rowids in a statement, where that does not change the program.
+    fn rewrite_for_views(&self, sql: String) -> String {
+        let own = tokenize(&sql);
+        let places: Vec<ReplaceableName> =
+            (0..own.len()).filter_map(|at| ReplaceableName::at_token(&own, at)).collect();
+        let Some(program) = self.program(&sql).filter(|_| !places.is_empty()) else { return sql };
+        let qualifiers = qualifiers(&own);
+        let mut spelled = sql.clone();
+        let mut attempts = 0;
+        // From the end, so that earlier offsets stay valid.
+        for place in places.iter().rev() {
+            for other in place.spellings(&qualifiers) {
+                attempts += 1;
+                if attempts > MAX_SPELLINGS {
+                    return spelled;
+                }
+                let attempt = format!("{}{other}{}", &spelled[..place.start], &spelled[place.end..]);
+                if self.program(&attempt).as_ref() == Some(&program) {
+                    spelled = attempt;
+                    break;
+                }
+            }
+        }
+        spelled
+    }
+
+    /// Compiles a statement. Returns `None` if it does not compile.
+    fn program(&self, sql: &str) -> Option<Program> {
+        self.explain_rows(&format!("EXPLAIN {}", strip_explain_query_plan(sql)))
+    }
+
+    fn explain_rows(&self, explanation: &str) -> Option<Program> {
+        let mut statement = self.connection.prepare(explanation).ok()?;
+        let width = statement.column_count();
+        let steps = statement
+            .query_map([], |row| (0..width).map(|at| row.get(at)).collect::<rusqlite::Result<Vec<Value>>>());
+        steps.ok()?.collect::<rusqlite::Result<_>>().ok()
+    }
+}
+
+/// Iterator over the statements of a text.
+pub(super) struct Statements<'a> {
+    released: &'a ReleasedSchema,
+    batch: Batch<'a, 'a>,
+}
+
+impl Statements<'_> {
+    /// Returns the next statement, or `None` after the last one.
+    pub fn next(&mut self) -> Result<Option<CheckedStatement>, QueryFault> {
+        self.released.reads.take();
+        match self.batch.next()? {
+            Some(statement) => self.released.check_statement(&statement).map(Some),
+            None => Ok(None),
+        }
+    }
+}
+
+/// A place in a statement that only ordinary tables support.
+struct ReplaceableName {
+    start: usize,
+    end: usize,
+    kind: ReplaceableKind,
+}
+
+#[derive(PartialEq)]
+enum ReplaceableKind {
+    Main,
+    RowNumber { qualified: bool },
+}
+
+impl ReplaceableName {
+    fn at_token(tokens: &[Token<'_>], at: usize) -> Option<ReplaceableName> {
+        let token = &tokens[at];
+        let dot =
+            |at: Option<usize>| at.and_then(|at| tokens.get(at)).is_some_and(|token| token.is_symbol("."));
+        if !token.can_be_name() {
+            return None;
+        }
+        let (name, place) = (token.unquoted(), token.range());
+        if name.eq_ignore_ascii_case("main") && dot(Some(at + 1)) {
+            let end = tokens.get(at + 2)?.offset;
+            return Some(ReplaceableName { start: place.start, end, kind: ReplaceableKind::Main });
+        }
+        let is_number = ROWID_NAMES.iter().any(|number| name.eq_ignore_ascii_case(number));
+        let qualified = dot(at.checked_sub(1));
+        is_number.then_some(ReplaceableName {
+            start: place.start,
+            end: place.end,
+            kind: ReplaceableKind::RowNumber { qualified },
+        })
+    }
+
+    /// Returns possible replacements, most likely first.
+    fn spellings(&self, qualifiers: &[&str]) -> Vec<String> {
+        let keys = || tables().iter().filter_map(Table::row_number_column);
+        match self.kind {
+            ReplaceableKind::Main => vec![String::new()],
+            ReplaceableKind::RowNumber { qualified: true } => keys().map(str::to_owned).collect(),
+            ReplaceableKind::RowNumber { qualified: false } => {
+                let with =
+                    qualifiers.iter().flat_map(|table| keys().map(move |key| format!("{table}.{key}")));
+                keys().map(str::to_owned).chain(with).collect()
+            }
+        }
+    }
+}
+
+/// Returns possible qualifiers of columns: table names and the words after them.
+fn qualifiers<'a>(tokens: &[Token<'a>]) -> Vec<&'a str> {
+    let mut found: Vec<&str> = Vec::new();
+    for (at, token) in tokens.iter().enumerate() {
+        if !token.can_be_name() || table(&token.unquoted()).is_none() {
+            continue;
+        }
+        let after: Vec<&Token<'a>> =
+            tokens[at + 1..].iter().filter(|next| !next.is_word("AS")).take(1).collect();
+        let names = after.into_iter().chain([token]).filter(|name| name.can_be_name());
+        found.extend(names.map(|name| name.text));
+    }
+    found.dedup();
+    found
+}
+
+/// Returns whether a statement has a RIGHT or FULL JOIN.
+fn has_right_join(sql: &str) -> bool {
+    let own = tokenize(sql);
+    own.windows(2).any(|pair| {
+        (pair[0].is_word("RIGHT") || pair[0].is_word("FULL"))
+            && (pair[1].is_word("JOIN") || pair[1].is_word("OUTER"))
+    })
+}
+
+/// Returns a statement without a leading `EXPLAIN FIGURE_NAME_PREFIX LESSON_TOML`.
+pub(super) fn strip_explain_query_plan(sql: &str) -> &str {
+    let own = tokenize(sql);
+    let head = ["EXPLAIN", "QUERY", "PLAN"];
+    let explains = own.len() > head.len() && own.iter().zip(head).all(|(token, word)| token.is_word(word));
+    if explains { &sql[own[head.len()].offset..] } else { sql }
+}

@@ -1,0 +1,218 @@
+//! The causes of a change, with contributions from simulations without them.
+
+use super::CauseProgressFn;
+use super::cause::{Cause, CauseDetail};
+use super::question::WeekQuantity;
+use super::shapley::shapley_values;
+use super::visibility::InputVisibility;
+use super::week_resimulation::{Candidate, ExcludedCauses, WeekResimulation};
+use novamind_record::figures::SimulatedWeek;
+use novamind_tools::Rejection;
+
+/// Maximum number of separate causes, which limits the number of simulations.
+const MAX_VALUED_CAUSES: usize = 6;
+
+/// Why a figure changed in a week.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ChangeExplanation {
+    /// The week.
+    pub week: u32,
+    /// The figure.
+    pub quantity: WeekQuantity,
+    /// Number of days of the week before and of the week; the last week of a run can be shorter.
+    pub days: [u32; 2],
+    /// Value in the week before.
+    pub before: f64,
+    /// Value in the week.
+    pub after: f64,
+    /// Contributions of causes, the largest first.
+    pub contributions: Vec<CauseContribution>,
+    /// Residual that no cause explains: composition and chance.
+    pub residual: f64,
+    /// Number of re-simulated weeks.
+    pub simulation_count: usize,
+}
+
+impl ChangeExplanation {
+    /// Returns the change between the two weeks.
+    pub fn change(&self) -> f64 {
+        self.after - self.before
+    }
+}
+
+/// The contribution of a cause.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CauseContribution {
+    /// The cause.
+    pub cause: Cause,
+    /// Contribution to the change, in the unit of the figure.
+    pub amount: f64,
+    /// Differences of the cause.
+    pub details: Vec<CauseDetail>,
+}
+
+/// Causes that are evaluated together.
+#[derive(Clone)]
+struct CauseGroup {
+    cause: Cause,
+    /// Their indices in the laboratory, one bit for each.
+    members: u32,
+    details: Vec<CauseDetail>,
+}
+
+impl WeekResimulation {
+    /// Explains why a figure changed. Returns `None` if stopped.
+    ///
+    /// # Errors
+    /// `no_value` if the figure has no value in one of the two weeks.
+    pub(super) fn explain(
+        &mut self,
+        quantity: WeekQuantity,
+        progress: CauseProgressFn<'_>,
+    ) -> Result<Option<ChangeExplanation>, Rejection> {
+        let after = self.week_without(ExcludedCauses { calls: 0, inputs: 0 });
+        let values = (quantity.value_in(self.week_before()), quantity.value_in(after));
+        if values.0.is_nan() || values.1.is_nan() {
+            let message = format!(
+                "{} has no value in one of the two weeks, because there was nothing to count",
+                quantity.name()
+            );
+            return Err(Rejection::for_field("figure", "no_value", message));
+        }
+        let (mut calls, mut inputs) = (singleton_groups(&self.calls), self.input_groups());
+        let joined = self.merge_smallest_groups(quantity, &mut calls, &mut inputs, progress);
+        let Some(mut parts) = joined.and_then(|()| self.contributions(quantity, &calls, &inputs, progress))
+        else {
+            return Ok(None);
+        };
+        let all_calls = ExcludedCauses { calls: all_members(&calls), inputs: all_members(&inputs) };
+        // One-time payments of the week before do not recur in this week.
+        let earlier = value_or_zero(quantity, &self.week_before().without_purchases()) - values.0;
+        if earlier != 0.0 {
+            let cause = Cause::EarlierPurchases;
+            parts.push(CauseContribution { cause, amount: earlier, details: Vec::new() });
+        }
+        parts.sort_by(|left, right| right.amount.abs().total_cmp(&left.amount.abs()));
+        let rest = value_or_zero(quantity, self.week_without(all_calls)) - values.0 - earlier;
+        let simulations = self.simulation_count();
+        let (before, after) = values;
+        let (week, days) = (self.week(), self.days());
+        Ok(Some(ChangeExplanation {
+            week,
+            quantity,
+            days,
+            before,
+            after,
+            contributions: parts,
+            residual: rest,
+            simulation_count: simulations,
+        }))
+    }
+
+    /// Returns the inputs in the permitted level of detail.
+    fn input_groups(&self) -> Vec<CauseGroup> {
+        let all = singleton_groups(&self.inputs);
+        if self.visibility == InputVisibility::EveryInput {
+            return all;
+        }
+        let (service, hidden): (Vec<CauseGroup>, Vec<CauseGroup>) =
+            all.into_iter().partition(|group| group.cause == Cause::Service);
+        let market = CauseGroup { cause: Cause::Market, members: all_members(&hidden), details: Vec::new() };
+        (!hidden.is_empty()).then_some(market).into_iter().chain(service).collect()
+    }
+
+    /// Joins the causes with the smallest contributions until the maximum number is reached.
+    fn merge_smallest_groups(
+        &mut self,
+        quantity: WeekQuantity,
+        calls: &mut Vec<CauseGroup>,
+        inputs: &mut Vec<CauseGroup>,
+        progress: CauseProgressFn<'_>,
+    ) -> Option<()> {
+        if calls.len() + inputs.len() <= MAX_VALUED_CAUSES {
+            return Some(());
+        }
+        let all_calls = all_members(calls);
+        let of_call = |group: &CauseGroup| ExcludedCauses { calls: group.members, inputs: 0 };
+        let of_input = |group: &CauseGroup| ExcludedCauses { calls: all_calls, inputs: group.members };
+        let undone = ExcludedCauses { calls: all_calls, inputs: 0 };
+        let wanted: Vec<ExcludedCauses> =
+            calls.iter().map(of_call).chain(inputs.iter().map(of_input)).chain([undone]).collect();
+        self.simulate_missing(&wanted, progress)?;
+        let value = |without| value_or_zero(quantity, self.week_without(without));
+        let actual = value(ExcludedCauses { calls: 0, inputs: 0 });
+        let by_size = |groups: &mut Vec<CauseGroup>, size: &dyn Fn(&CauseGroup) -> f64| {
+            groups.sort_by(|left, right| size(right).abs().total_cmp(&size(left).abs()));
+        };
+        by_size(calls, &|group| actual - value(of_call(group)));
+        by_size(inputs, &|group| value(undone) - value(of_input(group)));
+        while calls.len() + inputs.len() > MAX_VALUED_CAUSES {
+            if calls.len() >= inputs.len() {
+                merge_last_two(calls, Cause::OtherCalls);
+            } else {
+                merge_last_two(inputs, Cause::OtherInputs);
+            }
+        }
+        Some(())
+    }
+
+    fn contributions(
+        &mut self,
+        quantity: WeekQuantity,
+        calls: &[CauseGroup],
+        inputs: &[CauseGroup],
+        progress: CauseProgressFn<'_>,
+    ) -> Option<Vec<CauseContribution>> {
+        let all_calls = all_members(calls);
+        // Sets contain the active causes; all others are removed.
+        let of_calls = |acting: u32| ExcludedCauses { calls: excluded_members(calls, acting), inputs: 0 };
+        let of_inputs =
+            |acting: u32| ExcludedCauses { calls: all_calls, inputs: excluded_members(inputs, acting) };
+        let sets = |groups: &[CauseGroup]| 0..1u32 << groups.len();
+        let wanted: Vec<ExcludedCauses> =
+            sets(calls).map(of_calls).chain(sets(inputs).map(of_inputs)).collect();
+        self.simulate_missing(&wanted, progress)?;
+        let values_of_calls =
+            shapley_values(calls.len(), |set| value_or_zero(quantity, self.week_without(of_calls(set))));
+        let values_of_inputs =
+            shapley_values(inputs.len(), |set| value_or_zero(quantity, self.week_without(of_inputs(set))));
+        let groups = calls.iter().zip(values_of_calls).chain(inputs.iter().zip(values_of_inputs));
+        let part = |(group, amount): (&CauseGroup, f64)| CauseContribution {
+            cause: group.cause,
+            amount,
+            details: group.details.clone(),
+        };
+        Some(groups.map(part).collect())
+    }
+}
+
+/// Returns a figure of a simulated week; 0 instead of NaN, for example a share of zero.
+fn value_or_zero(quantity: WeekQuantity, week: &SimulatedWeek) -> f64 {
+    let value = quantity.value_in(week);
+    if value.is_nan() { 0.0 } else { value }
+}
+
+fn singleton_groups(candidates: &[Candidate]) -> Vec<CauseGroup> {
+    let group = |(at, own): (usize, &Candidate)| CauseGroup {
+        cause: own.cause,
+        members: 1 << at,
+        details: own.details.clone(),
+    };
+    candidates.iter().enumerate().map(group).collect()
+}
+
+fn all_members(groups: &[CauseGroup]) -> u32 {
+    groups.iter().fold(0, |all, group| all | group.members)
+}
+
+/// Returns the members of all groups that are not in a set.
+fn excluded_members(groups: &[CauseGroup], acting: u32) -> u32 {
+    let without = groups.iter().enumerate().filter(|(at, _)| acting & (1 << at) == 0);
+    without.fold(0, |all, (_, group)| all | group.members)
+}
+
+fn merge_last_two(groups: &mut Vec<CauseGroup>, cause: Cause) {
+    let (Some(last), Some(before)) = (groups.pop(), groups.pop()) else { return };
+    let details = before.details.into_iter().chain(last.details).collect();
+    groups.push(CauseGroup { cause, members: before.members | last.members, details });
+}

@@ -1,0 +1,113 @@
+//! World inputs that differ between two weeks, and their fixed values.
+
+use super::cause::{Cause, CauseDetail, InputDetail};
+use crate::counterfactual::branch::BranchOutcome;
+use crate::counterfactual::memory_snapshot::MemorySnapshot;
+use novamind_world::events::DayFigures;
+use novamind_world::fixed_inputs::FixedInputs;
+use novamind_world::market::surges::surge_factor;
+use novamind_world::product::service::FixedService;
+
+/// Two consecutive recorded weeks: the state between them, and the results of both.
+pub(super) struct WeekPair<'a> {
+    pub start: &'a MemorySnapshot,
+    pub before: &'a BranchOutcome,
+    pub after: &'a BranchOutcome,
+}
+
+impl WeekPair<'_> {
+    fn days(&self) -> impl Iterator<Item = u32> + use<> {
+        self.start.world.day + 1..=self.after.final_state.world.day
+    }
+
+    /// Returns the demand surge factor on the days of the week and of the week before.
+    fn surge_factors(&self) -> (Vec<f64>, Vec<f64>) {
+        let start = self.start.params.fidelity.surge_start;
+        let factor = |day, moment: &MemorySnapshot| surge_factor(day, &moment.world.market.surges, start);
+        let week = self.start.params.run.days_per_week;
+        let now = self.days().map(|day| factor(day, &self.after.final_state)).collect();
+        (now, self.days().map(|day| factor(day - week, self.start)).collect())
+    }
+
+    /// Returns the day-of-month factor on the days of the week and of the week before.
+    fn month_day_factors(&self) -> (Vec<f64>, Vec<f64>) {
+        let calendar = &self.start.params.calendar.monthly;
+        let factor = |day: u32| calendar[day as usize % calendar.len()];
+        let week = self.start.params.run.days_per_week;
+        (self.days().map(factor).collect(), self.days().map(|day| factor(day - week)).collect())
+    }
+
+    pub(super) fn differing_inputs(&self) -> Vec<(Cause, Vec<CauseDetail>)> {
+        let (eve, end) = (&self.start.world.market, &self.after.final_state.world.market);
+        let mut found = Vec::new();
+        let mut note = |cause, differs: bool, details: Vec<CauseDetail>| {
+            if differs {
+                found.push((cause, details));
+            }
+        };
+        let input = |name, old, new| CauseDetail::Input(InputDetail { name, old, new, is_share: false });
+        let share = |name, old, new| CauseDetail::Input(InputDetail { name, old, new, is_share: true });
+        let moves = end.competitors.len() - eve.competitors.len();
+        note(Cause::Competitors, moves > 0, vec![CauseDetail::Occurred(moves, "move")]);
+        let law = &self.start.params.drift;
+        let drift = self.days().any(|day| novamind_world::customers::drift::is_drift_day(day, law));
+        note(Cause::Drift, drift, vec![CauseDetail::Occurred(1, "step")]);
+        note(Cause::Yields, end.yields != eve.yields, Vec::new());
+        let index = input("index", eve.economy.pmi, end.economy.pmi);
+        note(Cause::Economy, eve.economy.pmi != end.economy.pmi, vec![index]);
+        let (now, before) = self.surge_factors();
+        note(Cause::Surges, now != before, vec![input("mean factor", mean(&before), mean(&now))]);
+        let (now, before) = self.month_day_factors();
+        note(Cause::Calendar, now != before, vec![input("mean factor", mean(&before), mean(&now))]);
+        let service =
+            |of: &BranchOutcome, read: fn(&DayFigures) -> f64| of.days.iter().map(read).fold(0.0, f64::max);
+        let both = |read| (service(self.before, read), service(self.after, read));
+        let (overload, outage) = (both(|day| day.overload), both(|day| f64::from(day.downtime_minutes)));
+        let details = vec![
+            share("peak overload", overload.0, overload.1),
+            input("longest outage, minutes", outage.0, outage.1),
+        ];
+        note(Cause::Service, true, details);
+        found
+    }
+
+    /// Fixes inputs at their values of the week before. Utilization is relative to days without the player's changes.
+    pub(super) fn held_inputs(
+        &self,
+        causes: impl Iterator<Item = Cause>,
+        undone: &[DayFigures],
+    ) -> FixedInputs {
+        let mut held = FixedInputs { from: self.start.world.day + 1, ..FixedInputs::default() };
+        for cause in causes {
+            match cause {
+                Cause::Competitors => held.competitors = true,
+                Cause::Drift => held.drift = true,
+                Cause::Yields => held.yields = true,
+                Cause::Economy => held.economy = true,
+                Cause::Surges => held.surges = self.surge_factors().1,
+                Cause::Calendar => held.month_days = self.month_day_factors().1,
+                Cause::Service => held.service = self.held_service(undone),
+                _ => {}
+            }
+        }
+        held
+    }
+
+    /// Returns the utilization for the usage of the week before, with the random draws of that day.
+    fn held_service(&self, undone: &[DayFigures]) -> Vec<FixedService> {
+        let week = self.start.params.run.days_per_week;
+        let used = |days: &[DayFigures], wanted: u32| {
+            days.iter().find(|day| day.day == wanted).map_or(0, |day| day.total_usage)
+        };
+        let on = |day: u32| {
+            let (before, now) = (used(&self.before.days, day - week), used(undone, day));
+            let load = if now == 0 { 1.0 } else { before as f64 / now as f64 };
+            FixedService { load_factor: load, draw_day: day - week }
+        };
+        self.days().map(on).collect()
+    }
+}
+
+fn mean(factors: &[f64]) -> f64 {
+    factors.iter().sum::<f64>() / factors.len().max(1) as f64
+}

@@ -1,0 +1,160 @@
+//! Causes of a weekly change: re-simulates the week without each cause, with the same random draws.
+//!
+//! A cause is a difference from the week before: settings and calls of the player, by tool, and world inputs that the company does
+//! not control. The contribution of a cause is its Shapley value. Inputs are evaluated without the player's changes, and the
+//! player's changes in the recorded world. Therefore a single change contributes exactly the difference to a branch without it.
+//! The residual is composition and chance: other customers have their billing day, and every day has new random draws.
+
+mod attribution;
+mod cause;
+mod inputs;
+mod question;
+mod shapley;
+#[cfg(test)]
+mod tests;
+mod visibility;
+mod week_resimulation;
+
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+pub use attribution::{CauseContribution, ChangeExplanation};
+pub use cause::{Cause, CauseDetail, InputDetail};
+pub use question::{WeekQuantity, WeekQuestion};
+
+use crate::counterfactual::analysis_cache::RecordAnalysis;
+use crate::counterfactual::recorded_run::RecordedRun;
+use novamind_record::lesson::is_lesson_over;
+use novamind_session::{InspectionPermit, Session, unreadable_record};
+use novamind_tools::Rejection;
+pub(crate) use visibility::{InputVisibility, input_visibility};
+use week_resimulation::WeekResimulation;
+
+/// The progress of an answer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CauseProgress {
+    /// Simulating days up to the week: the current day, and the last one.
+    Replaying(u32, u32),
+    /// Number of re-simulated weeks, and the minimum total.
+    Simulated(usize, usize),
+}
+
+/// Receives the progress. Can stop the work.
+pub type CauseProgressFn<'a> = &'a (dyn Fn(CauseProgress) -> ControlFlow<()> + Sync);
+
+/// Explains changes of weekly figures of a run. Caches simulations for the next question.
+pub struct CauseAnalysis {
+    run: RecordedRun,
+    visibility: InputVisibility,
+    last_week: Option<WeekResimulation>,
+}
+
+impl RecordAnalysis for CauseAnalysis {
+    /// # Errors
+    /// `not_in_this_mode` for an unfinished baseline run, `unreadable_record`.
+    fn open(folder: &Path) -> Result<CauseAnalysis, Rejection> {
+        let past = RecordedRun::open(folder).map_err(|error| unreadable_record(&error))?;
+        let sight = input_visibility(&past.manifest, past.is_ended)?;
+        Ok(CauseAnalysis { run: past, visibility: sight, last_week: None })
+    }
+
+    fn refresh(&mut self) -> Result<(), Rejection> {
+        self.run.refresh().map_err(|error| unreadable_record(&error))?;
+        let sight = input_visibility(&self.run.manifest, self.run.is_ended)?;
+        if sight != self.visibility {
+            (self.visibility, self.last_week) = (sight, None);
+        }
+        Ok(())
+    }
+}
+
+impl CauseAnalysis {
+    /// Explains why a figure changed in a week, by default the last completed one. Returns `None` if stopped.
+    ///
+    /// # Errors
+    /// `not_in_this_mode` for a figure that the player may not see; `unknown_group_rejection` for a group that the player did not know;
+    /// `week_unknown` for a week that has not run, the first week, and an incomplete week; `unreadable_record`; `no_value` if the figure
+    /// has no value in one of the two weeks.
+    pub fn explain(
+        &mut self,
+        asked: WeekQuestion,
+        progress: CauseProgressFn<'_>,
+    ) -> Result<Option<ChangeExplanation>, Rejection> {
+        let WeekQuestion { quantity, week } = asked;
+        visibility::check_figure_visible(quantity, self.visibility)?;
+        let week = self.resolve_week(week)?;
+        if self.last_week.as_ref().is_none_or(|latest| latest.week() != week) {
+            let made = WeekResimulation::new(&mut self.run, self.visibility, week, progress);
+            self.last_week = made.map_err(|error| unreadable_record(&error))?;
+        }
+        let Some(laboratory) = &mut self.last_week else { return Ok(None) };
+        match quantity.group().filter(|group| {
+            self.visibility == InputVisibility::MarketAsOne && !laboratory.is_group_known(*group)
+        }) {
+            Some(group) => Err(visibility::unknown_group_rejection(group, week)),
+            None => laboratory.explain(quantity, progress),
+        }
+    }
+
+    /// Returns the number of a week that can be explained.
+    fn resolve_week(&self, week: Option<u32>) -> Result<u32, Rejection> {
+        let days = self.run.days_per_week();
+        let last = self.run.last_day().min(self.run.manifest.days).div_ceil(days);
+        let whole = |week: u32| self.run.has_boundary_on((week * days).min(self.run.manifest.days));
+        let last = if whole(last) { last } else { last.saturating_sub(1) };
+        let asked = week.unwrap_or(last);
+        if (2..=last).contains(&asked) && whole(asked) && whole(asked - 1) {
+            return Ok(asked);
+        }
+        let message = match last {
+            0 | 1 => "why compares a week with the week before. Run two weeks first".to_owned(),
+            last => {
+                format!(
+                    "week {asked} cannot be compared with the week before; choose a week from 2 to {last}"
+                )
+            }
+        };
+        Err(Rejection::for_field("week", "week_unknown", message))
+    }
+}
+
+/// Prepares a question. Records an inspection first if the figure is hidden in unfinished runs. Returns the folder for
+/// [`CauseAnalysis::read`].
+///
+/// # Errors
+/// `not_in_this_mode`, `not_possible`, `day_unknown`, `not_saved`.
+pub fn begin_cause_analysis(run: &mut Session, asked: &WeekQuestion) -> Result<PathBuf, Rejection> {
+    let folder = cause_analysis_folder(run)?;
+    record_figure_inspection(run, asked)?;
+    Ok(folder)
+}
+
+/// Records an inspection if the figure is hidden in unfinished runs.
+///
+/// # Errors
+/// `not_in_this_mode`, `day_unknown`, `not_saved`.
+pub fn record_figure_inspection(run: &mut Session, asked: &WeekQuestion) -> Result<(), Rejection> {
+    let WeekQuestion { quantity, week } = asked;
+    if !quantity.is_hidden() {
+        return Ok(());
+    }
+    visibility::check_figure_visible(*quantity, session_visibility(run)?)?;
+    let days = run.params().run.days_per_week;
+    let day = week.map(|week| week.saturating_mul(days).min(run.day()));
+    InspectionPermit::start(run, "why", &quantity.to_string(), day).map(drop)
+}
+
+fn session_visibility(run: &Session) -> Result<InputVisibility, Rejection> {
+    let is_over = run.ended().is_some() && is_lesson_over(run.folder(), run.manifest());
+    input_visibility(run.manifest(), is_over)
+}
+
+/// Returns the folder of this run for [`CauseAnalysis::read`].
+///
+/// # Errors
+/// `not_in_this_mode` for an unfinished baseline run, `not_possible` for a run in memory.
+pub fn cause_analysis_folder(run: &Session) -> Result<PathBuf, Rejection> {
+    session_visibility(run)?;
+    let missing = || Rejection::new("not_possible", "a run in memory has no record that can be re-simulated");
+    run.folder().map(Path::to_owned).ok_or_else(missing)
+}

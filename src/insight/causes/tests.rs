@@ -1,0 +1,417 @@
+//! Known changes are found with the effect of a branch without them; contributions add up; hidden state stays hidden.
+
+use std::ops::ControlFlow;
+
+use serde_json::json;
+
+use super::*;
+use crate::counterfactual::test_kit::{WEEKS, play_weeks};
+use novamind_record::figures::{GroupFigures, SimulatedWeek, WeekFigure, WeekGroupFigures};
+use novamind_record::mode::Mode;
+use novamind_record::trajectory::record::Via;
+use novamind_tools::ToolId;
+use novamind_world::identifiers::{ByGroup, Group};
+
+fn continue_progress(_: CauseProgress) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
+fn company_quantity(figure: WeekFigure) -> WeekQuantity {
+    WeekQuantity::for_company(figure).expect("a figure of the company")
+}
+
+fn group_quantity(figure: WeekFigure, id: &str) -> WeekQuantity {
+    let group = Group::parse(id).expect("a group");
+    WeekQuantity::for_group(figure, group).expect("a figure of a group")
+}
+
+fn open_causes(session: &Session) -> CauseAnalysis {
+    CauseAnalysis::open(&cause_analysis_folder(session).expect("a folder")).expect("causes")
+}
+
+fn explain(session: &Session, quantity: WeekQuantity) -> ChangeExplanation {
+    let asked = WeekQuestion { quantity, week: None };
+    open_causes(session).explain(asked, &continue_progress).expect("an answer").expect("it is not stopped")
+}
+
+/// Returns a week of a session, counted from 0, for comparison with re-simulations.
+fn simulated_week(session: &Session, at: usize) -> SimulatedWeek {
+    let subscribers =
+        |at: usize, group| session.company().group_weeks()[at][group].subscribers.0.iter().sum();
+    SimulatedWeek {
+        figures: session.weeks()[at],
+        satisfaction: f64::NAN,
+        groups: ByGroup::from_fn(|group| {
+            let counted = &session.company().group_weeks()[at][group];
+            WeekGroupFigures {
+                figures: GroupFigures {
+                    leads: counted.leads,
+                    signed: counted.signed,
+                    left: counted.left,
+                    usage: counted.usage.0.iter().sum(),
+                    subscribers: subscribers(at, group),
+                    ..GroupFigures::default()
+                },
+                subscribers_before: at.checked_sub(1).map_or(0, |before| subscribers(before, group)),
+            }
+        }),
+    }
+}
+
+fn last_value(session: &Session, quantity: WeekQuantity) -> f64 {
+    quantity.value_in(&simulated_week(session, session.weeks().len() - 1))
+}
+
+/// Returns every figure of the company and of some groups.
+fn all_quantities() -> Vec<WeekQuantity> {
+    let of_company =
+        WeekFigure::ALL.iter().filter(|figure| figure.has_company_value()).copied().map(company_quantity);
+    let of_group = WeekFigure::ALL.iter().filter(|figure| figure.has_group_values());
+    let of_groups = of_group.flat_map(|figure| ["S1", "S2", "E1"].map(|id| group_quantity(*figure, id)));
+    of_company.chain(of_groups).collect()
+}
+
+/// Asserts that contributions and residual add up to the change.
+fn assert_contributions_add_up(why: &ChangeExplanation) {
+    let sum = why.contributions.iter().map(|part| part.amount).sum::<f64>() + why.residual;
+    assert!((sum - why.change()).abs() < 1e-9 * why.change().abs().max(1.0), "{sum} of {}", why.change());
+}
+
+#[test]
+fn deliberate_changes_rank_first_with_their_branch_difference() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let control = play_weeks(runs.path(), Mode::Debug, 3, None);
+    for (tool, arguments, figure) in [
+        (ToolId::SetPrices, json!({"A": 24, "B": 50, "C": 110}), WeekFigure::Cancellations),
+        (ToolId::SetModelTiers, json!({"A": 4, "B": 5, "C": 5}), WeekFigure::NewSubscribers),
+        (ToolId::SetUsageQuotas, json!({"A": 20, "B": 30, "C": 40}), WeekFigure::Usage),
+        (ToolId::SetTargetedAdSpend, json!({"search_ads": {"S1": 40_000}}), WeekFigure::IndividualLeads),
+        (ToolId::SetDailySpend, json!({"development": 90_000}), WeekFigure::RunningCosts),
+        (ToolId::SetCapacityTier, json!({"capacity_tier": 0}), WeekFigure::OverloadPeak),
+        (ToolId::SetDailySpend, json!({"operations": 50_000}), WeekFigure::OpenIssues),
+        (ToolId::SetPromotion, json!({"global_promotion": 8}), WeekFigure::Payments),
+    ] {
+        let session = play_weeks(runs.path(), Mode::Debug, 3, Some((tool.name(), arguments)));
+        let quantity = company_quantity(figure);
+        let why = explain(&session, quantity);
+        assert_contributions_add_up(&why);
+        let before = quantity.value_in(&simulated_week(&session, WEEKS as usize - 1));
+        assert_eq!((why.before, why.after), (before, last_value(&session, quantity)));
+        let paired = last_value(&session, quantity) - last_value(&control, quantity);
+        let first = &why.contributions[0];
+        assert_eq!(first.cause, Cause::Calls(tool), "{figure:?}: {why:#?}");
+        assert!(
+            (first.amount - paired).abs() < 1e-9 && paired != 0.0,
+            "{figure:?}: {} of {paired}",
+            first.amount
+        );
+        assert!(matches!(first.details[0], CauseDetail::Setting(_)));
+    }
+}
+
+#[test]
+fn group_contribution_equals_branch_difference() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let control = play_weeks(runs.path(), Mode::Debug, 3, None);
+    let prices = || json!({"A": 24, "B": 50, "C": 110});
+    let session = play_weeks(runs.path(), Mode::Debug, 3, Some(("set_prices", prices())));
+    let mut causes = open_causes(&session);
+    for figure in [
+        WeekFigure::Cancellations,
+        WeekFigure::Churn,
+        WeekFigure::NewSubscribers,
+        WeekFigure::Conversion,
+        WeekFigure::Subscribers,
+        WeekFigure::Usage,
+    ] {
+        for id in ["S1", "S2"] {
+            let quantity = group_quantity(figure, id);
+            let asked = WeekQuestion { quantity, week: None };
+            let why =
+                causes.explain(asked, &continue_progress).expect("an answer").expect("it is not stopped");
+            assert_contributions_add_up(&why);
+            assert_eq!(why.after, last_value(&session, quantity), "{quantity}");
+            let paired = last_value(&session, quantity) - last_value(&control, quantity);
+            let price = why.contributions.iter().find(|part| part.cause == Cause::Calls(ToolId::SetPrices));
+            let amount = price.expect("the price is a cause").amount;
+            assert!((amount - paired).abs() < 1e-9, "{quantity}: {amount} of {paired}");
+        }
+    }
+    let churn = explain(&session, group_quantity(WeekFigure::Churn, "S1"));
+    assert_eq!(churn.contributions[0].cause, Cause::Calls(ToolId::SetPrices), "{churn:#?}");
+    assert!(churn.contributions[0].amount > 0.0);
+}
+
+#[test]
+fn group_cancellations_add_up_per_cause() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let session = play_weeks(runs.path(), Mode::Sandbox, 3, Some(("set_prices", json!({"A": 24, "B": 50}))));
+    let mut causes = open_causes(&session);
+    let mut why = |quantity| {
+        let asked = WeekQuestion { quantity, week: None };
+        causes.explain(asked, &continue_progress).expect("an answer").expect("it is not stopped")
+    };
+    for figure in [WeekFigure::Cancellations, WeekFigure::NewSubscribers, WeekFigure::Subscribers] {
+        let whole = why(company_quantity(figure));
+        let mut sums = vec![0.0; whole.contributions.len() + 1];
+        for id in ["S1", "S2", "S3"] {
+            let own = why(group_quantity(figure, id));
+            for part in &own.contributions {
+                let at = whole.contributions.iter().position(|whole| whole.cause == part.cause);
+                sums[at.expect("a cause of the company")] += part.amount;
+            }
+            sums[whole.contributions.len()] += own.residual;
+        }
+        let amounts = whole.contributions.iter().map(|part| part.amount).chain([whole.residual]);
+        for (sum, amount) in sums.iter().zip(amounts) {
+            assert!((sum - amount).abs() < 1e-9, "{figure:?}: {sums:?} of {whole:#?}");
+        }
+        assert!(whole.contributions[0].amount != 0.0, "{whole:#?}");
+    }
+}
+
+#[test]
+fn all_figures_of_a_week_share_its_simulations() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let session = play_weeks(runs.path(), Mode::Sandbox, 3, Some(("set_prices", json!({"A": 24}))));
+    let mut causes = open_causes(&session);
+    let mut simulations = Vec::new();
+    for quantity in [
+        company_quantity(WeekFigure::Churn),
+        group_quantity(WeekFigure::Leads, "S1"),
+        company_quantity(WeekFigure::Costs),
+    ] {
+        let asked = WeekQuestion { quantity, week: None };
+        let why = causes.explain(asked, &continue_progress).expect("an answer").expect("it is not stopped");
+        simulations.push(why.simulation_count);
+    }
+    assert!(simulations[0] > 0 && simulations.iter().all(|own| *own == simulations[0]), "{simulations:?}");
+}
+
+#[test]
+fn unchanged_settings_are_no_cause_and_figures_add_up() {
+    let runs = tempfile::tempdir().expect("a folder");
+    // Setting the current value is not a change.
+    let session = play_weeks(runs.path(), Mode::Debug, 5, Some(("set_prices", json!({"A": 12}))));
+    let mut causes = open_causes(&session);
+    let mut last_values = Vec::new();
+    for week in 2..=WEEKS + 1 {
+        let mut values = Vec::new();
+        for quantity in all_quantities() {
+            let why = match causes.explain(WeekQuestion { quantity, week: Some(week) }, &continue_progress) {
+                Ok(why) => why.expect("it is not stopped"),
+                Err(refusal) => {
+                    assert_eq!(refusal.code, "no_value", "{quantity}, week {week}");
+                    values.push((quantity, f64::NAN));
+                    continue;
+                }
+            };
+            assert_contributions_add_up(&why);
+            let at = week as usize - 1;
+            // Satisfaction, reputation, issues and enterprises of a group have values only in consecutive weeks.
+            let is_told = quantity
+                .group()
+                .is_none_or(|group| !group.is_enterprise() && quantity.figure() != WeekFigure::OpenIssues);
+            if is_told && !quantity.is_hidden() {
+                assert_eq!(
+                    why.before,
+                    quantity.value_in(&simulated_week(&session, at - 1)),
+                    "{quantity}, week {week}"
+                );
+                assert_eq!(
+                    why.after,
+                    quantity.value_in(&simulated_week(&session, at)),
+                    "{quantity}, week {week}"
+                );
+            }
+            if let Some((_, before)) =
+                last_values.iter().find(|(own, value): &&(_, f64)| *own == quantity && !value.is_nan())
+            {
+                assert_eq!(why.before, *before, "{quantity}, week {week}");
+            }
+            values.push((quantity, why.after));
+            assert!(
+                why.contributions.iter().all(|part| !part.cause.is_player_decision()),
+                "{quantity}, week {week}: {why:?}"
+            );
+        }
+        last_values = values;
+    }
+    let value = |quantity| last_values.iter().find(|(own, _)| *own == quantity).expect("it was asked").1;
+    let s1 = Group::parse("S1").expect("a group");
+    assert_eq!(
+        value(group_quantity(WeekFigure::Reputation, "S1")),
+        session.debug_hidden_state().expect("a debug run").world().market.reputation.get(s1)
+    );
+    let leads: f64 =
+        Group::all().map(|own| f64::from(session.company().group_weeks()[WEEKS as usize][own].leads)).sum();
+    assert_eq!(value(company_quantity(WeekFigure::Leads)), leads);
+    let mood = session.debug_hidden_state().expect("a debug run").mean_satisfaction(s1).expect("subscribers");
+    assert_eq!(value(group_quantity(WeekFigure::Satisfaction, "S1")), mood.0);
+}
+
+#[test]
+fn hidden_figures_need_a_recorded_inspection() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let hidden = [
+        company_quantity(WeekFigure::Satisfaction),
+        group_quantity(WeekFigure::Satisfaction, "S1"),
+        group_quantity(WeekFigure::Reputation, "S1"),
+    ];
+    let looks = |session: &Session| {
+        let folder = session.folder().expect("a folder").to_owned();
+        let lines =
+            ["trajectory.jsonl", "afterwards.jsonl"].map(|name| std::fs::read_to_string(folder.join(name)));
+        lines
+            .iter()
+            .flatten()
+            .flat_map(|text| text.lines())
+            .filter(|line| line.contains("\"kind\":\"xray\""))
+            .count()
+    };
+    for mode in [Mode::Sandbox, Mode::Lesson] {
+        let mut session = play_weeks(runs.path(), mode, 3, None);
+        for quantity in hidden {
+            let asked = WeekQuestion { quantity, week: None };
+            let refused = open_causes(&session).explain(asked, &continue_progress).expect_err("hidden");
+            assert_eq!(
+                (refused.code, begin_cause_analysis(&mut session, &asked).map_err(|own| own.code)),
+                ("not_in_this_mode", Err("not_in_this_mode"))
+            );
+        }
+        // A group that is not discovered has no figures.
+        let unknown = Group::all().find(|own| !own.is_initially_known()).expect("a group to find");
+        let quantity = WeekQuantity::for_group(WeekFigure::Leads, unknown).expect("a figure");
+        let refused = open_causes(&session)
+            .explain(WeekQuestion { quantity, week: None }, &continue_progress)
+            .expect_err("unknown");
+        assert_eq!(refused.code, "unknown_group");
+        assert_eq!(looks(&session), 0);
+        session.abandon().expect("it ends");
+        for (seen, quantity) in hidden.into_iter().enumerate() {
+            begin_cause_analysis(&mut session, &WeekQuestion { quantity, week: None }).expect("a folder");
+            assert_eq!(looks(&session), seen + 1);
+            assert_contributions_add_up(&explain(&session, quantity));
+        }
+        begin_cause_analysis(
+            &mut session,
+            &WeekQuestion { quantity: company_quantity(WeekFigure::Churn), week: None },
+        )
+        .expect("a folder");
+        assert_eq!(looks(&session), hidden.len(), "visible figures need no inspection");
+    }
+}
+
+#[test]
+fn interacting_changes_share_their_effect() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let mut session = play_weeks(runs.path(), Mode::Debug, 3, Some(("set_prices", json!({"A": 24}))));
+    for (tool, arguments) in [
+        ("set_prices", json!({"A": 9, "B": 20})),
+        ("set_model_tiers", json!({"A": 4})),
+        ("set_usage_quotas", json!({"A": 50, "B": 250_000, "C": 1_200_000})),
+        ("set_promotion", json!({"global_promotion": 3})),
+        ("set_daily_spend", json!({"operations": 900})),
+        ("set_ads_strength", json!({"global_strength": 0.5})),
+        ("set_capacity_tier", json!({"capacity_tier": 3})),
+        ("start_research_project", json!({"tier": 1})),
+    ] {
+        session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
+    }
+    let forecasts = session.company().naive_forecasts();
+    session.advance("on", &forecasts, Via::Script, &mut |_| {}).expect("a week");
+    for figure in [WeekFigure::Payments, WeekFigure::CashChange, WeekFigure::Cancellations] {
+        let why = explain(&session, company_quantity(figure));
+        assert_contributions_add_up(&why);
+        assert!(why.contributions.len() <= 6, "{why:#?}");
+        assert!(why.contributions.iter().any(|part| part.cause == Cause::OtherCalls));
+        assert!(why.simulation_count <= 64, "{}", why.simulation_count);
+    }
+    let cash = explain(&session, company_quantity(WeekFigure::CashChange));
+    assert_eq!(cash.contributions[0].cause, Cause::Calls(ToolId::StartResearchProject), "{cash:#?}");
+}
+
+#[test]
+fn sandbox_groups_market_inputs_and_baseline_rejects() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let change = || Some(("set_prices", json!({"A": 24})));
+    let mut sandbox = play_weeks(runs.path(), Mode::Sandbox, 3, change());
+    let causes =
+        |why: &ChangeExplanation| why.contributions.iter().map(|part| part.cause).collect::<Vec<_>>();
+    let seen = causes(&explain(&sandbox, company_quantity(WeekFigure::Cancellations)));
+    let allowed = [Cause::Calls(ToolId::SetPrices), Cause::Market, Cause::Service];
+    assert!(seen.iter().all(|cause| allowed.contains(cause)) && seen.len() == 3, "{seen:?}");
+    sandbox.abandon().expect("it ends");
+    let ended = causes(&explain(&sandbox, company_quantity(WeekFigure::Cancellations)));
+    assert!(ended.contains(&Cause::Economy) && !ended.contains(&Cause::Market), "{ended:?}");
+
+    let mut baseline = play_weeks(runs.path(), Mode::Baseline, 3, change());
+    let folder = baseline.folder().expect("a folder").to_owned();
+    let code = |refusal: Rejection| refusal.code;
+    assert_eq!(cause_analysis_folder(&baseline).map_err(code), Err("not_in_this_mode"));
+    assert_eq!(CauseAnalysis::open(&folder).map(drop).map_err(code), Err("not_in_this_mode"));
+    let trajectory = folder.join("trajectory.jsonl");
+    assert_eq!(CauseAnalysis::open(&trajectory).map(drop).map_err(code), Err("not_in_this_mode"));
+    baseline.abandon().expect("it ends");
+    assert_contributions_add_up(&explain(&baseline, company_quantity(WeekFigure::Cancellations)));
+}
+
+#[test]
+fn incomparable_weeks_are_rejected_and_analysis_can_be_stopped() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let session = play_weeks(runs.path(), Mode::Debug, 3, None);
+    let mut causes = open_causes(&session);
+    let usage = WeekQuestion { quantity: company_quantity(WeekFigure::Usage), week: None };
+    for week in [0, 1, WEEKS + 2, u32::MAX] {
+        let asked = WeekQuestion { week: Some(week), ..usage };
+        let refusal = causes.explain(asked, &continue_progress).expect_err("no such week");
+        assert_eq!(refusal.code, "week_unknown");
+    }
+    for stop in [CauseProgress::Replaying(20, 56), CauseProgress::Simulated(2, 0)] {
+        let mut causes = open_causes(&session);
+        let stopping = |progress| match (progress, stop) {
+            (CauseProgress::Replaying(day, _), CauseProgress::Replaying(last, _)) if day == last => {
+                ControlFlow::Break(())
+            }
+            (CauseProgress::Simulated(..), CauseProgress::Simulated(..)) => ControlFlow::Break(()),
+            _ => ControlFlow::Continue(()),
+        };
+        assert_eq!(causes.explain(usage, &stopping), Ok(None), "{stop:?}");
+        // A stopped question can be repeated.
+        assert!(causes.explain(usage, &continue_progress).expect("an answer").is_some());
+    }
+}
+
+#[test]
+fn cause_analysis_does_not_change_the_run() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let session = play_weeks(runs.path(), Mode::Sandbox, 3, None);
+    let folder = session.folder().expect("a folder").to_owned();
+    let bytes = || std::fs::read(folder.join("trajectory.jsonl")).expect("a trajectory");
+    let (before, hash) = (bytes(), session.state_hash());
+    explain(&session, company_quantity(WeekFigure::Payments));
+    assert_eq!((bytes(), session.state_hash()), (before, hash));
+}
+
+#[test]
+fn one_time_purchase_of_the_week_before_is_a_cause() {
+    let runs = tempfile::tempdir().expect("a folder");
+    let project = Some(("start_research_project", json!({"tier": 1})));
+    let mut session = play_weeks(runs.path(), Mode::Sandbox, 3, project);
+    let forecasts = session.company().naive_forecasts();
+    session.advance("on", &forecasts, Via::Script, &mut |_| {}).expect("a week");
+    let paid =
+        -session.weeks()[WEEKS as usize].booked.total_of(novamind_world::events::Category::ResearchProject);
+    assert!(paid > 0.0);
+    let earlier = |why: &ChangeExplanation| {
+        let part = why.contributions.iter().find(|part| part.cause == Cause::EarlierPurchases);
+        part.map(|part| part.amount)
+    };
+    let of_research = explain(&session, company_quantity(WeekFigure::Research));
+    assert_eq!((earlier(&of_research), of_research.residual), (Some(-paid), 0.0), "{of_research:?}");
+    let of_cash = explain(&session, company_quantity(WeekFigure::CashChange));
+    assert_contributions_add_up(&of_cash);
+    let found = earlier(&of_cash).expect("a cause");
+    assert!((found - paid).abs() < 1e-6 * paid, "{of_cash:?}");
+    assert_eq!(earlier(&explain(&session, company_quantity(WeekFigure::Leads))), None);
+}

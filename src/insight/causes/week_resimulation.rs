@@ -1,0 +1,262 @@
+//! Re-simulates a week repeatedly, each time without other causes.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use super::cause::{Cause, CauseDetail};
+use super::inputs::WeekPair;
+use super::visibility::InputVisibility;
+use super::{CauseProgress, CauseProgressFn};
+use crate::counterfactual::branch::{BranchOutcome, simulate_branch};
+use crate::counterfactual::edits::Edits;
+use crate::counterfactual::memory_snapshot::MemorySnapshot;
+use crate::counterfactual::parallel_map::parallel_map;
+use crate::counterfactual::recorded_run::RecordedRun;
+use crate::counterfactual::recorded_steps::{RecordedCall, RecordedStep};
+use novamind_record::error::RunError;
+use novamind_record::figures::{SimulatedWeek, WeekGroupFigures};
+use novamind_session::engine::setting_changes;
+use novamind_tools::ToolKind;
+use novamind_world::events::DayFigures;
+use novamind_world::fixed_inputs::FixedInputs;
+use novamind_world::identifiers::{ByGroup, Group};
+
+/// A set of removed causes: one bit for each tool and each input, by index.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct ExcludedCauses {
+    pub calls: u32,
+    pub inputs: u32,
+}
+
+/// A cause that can be removed.
+pub(super) struct Candidate {
+    pub cause: Cause,
+    pub details: Vec<CauseDetail>,
+    /// Lines of its calls; empty for an input.
+    lines: BTreeSet<u64>,
+}
+
+/// A week, the week before, and the results of simulations.
+pub(super) struct WeekResimulation {
+    week: u32,
+    start: Arc<MemorySnapshot>,
+    steps: Vec<RecordedStep>,
+    before: BranchOutcome,
+    after: BranchOutcome,
+    week_before: SimulatedWeek,
+    pub(super) visibility: InputVisibility,
+    /// Tools that the player called.
+    pub(super) calls: Vec<Candidate>,
+    pub(super) inputs: Vec<Candidate>,
+    /// Days without any call; `None` until simulated.
+    days_without_calls: Vec<DayFigures>,
+    simulated_weeks: BTreeMap<ExcludedCauses, SimulatedWeek>,
+}
+
+impl WeekResimulation {
+    /// Prepares a week of a run. Returns `None` if stopped.
+    ///
+    /// # Errors
+    /// Returns an error if the simulation does not reproduce the recorded states.
+    pub(super) fn new(
+        past: &mut RecordedRun,
+        sight: InputVisibility,
+        week: u32,
+        progress: CauseProgressFn<'_>,
+    ) -> Result<Option<WeekResimulation>, RunError> {
+        let days = past.days_per_week();
+        let [from, eve, end] = [week - 2, week - 1, week].map(|week| (week * days).min(past.manifest.days));
+        let mut reach = |day| progress(CauseProgress::Replaying(day, end));
+        let Some(start) = past.snapshot_at(from, &mut reach)? else { return Ok(None) };
+        let Some(between) = past.snapshot_at(eve, &mut reach)? else { return Ok(None) };
+        let none = Edits::default();
+        let Some(before) = simulate_branch(&start, past.steps_between(from, eve), &none, eve, &mut reach)
+        else {
+            return Ok(None);
+        };
+        let moves = past.steps_between(eve, end).to_vec();
+        let Some(after) = simulate_branch(&between, &moves, &none, end, &mut reach) else { return Ok(None) };
+        past.verify_state(end, &after.final_state)?;
+        let two = WeekPair { start: &between, before: &before, after: &after };
+        let input = |(cause, details)| Candidate { cause, details, lines: BTreeSet::new() };
+        let inputs = two.differing_inputs().into_iter().map(input).collect();
+        let mut calls = call_candidates(&between, &moves, &after);
+        calls.extend(parameter_candidate(&between, &moves, end));
+        let actual = ExcludedCauses { calls: 0, inputs: 0 };
+        let known = BTreeMap::from([(actual, last_simulated_week(&between, &after))]);
+        let week_before = last_simulated_week(&start, &before);
+        let undone = Vec::new();
+        Ok(Some(WeekResimulation {
+            week,
+            start: between,
+            steps: moves,
+            before,
+            after,
+            week_before,
+            visibility: sight,
+            calls,
+            inputs,
+            days_without_calls: undone,
+            simulated_weeks: known,
+        }))
+    }
+
+    pub(super) fn week(&self) -> u32 {
+        self.week
+    }
+
+    /// Returns the number of days of the week before and of the week.
+    pub(super) fn days(&self) -> [u32; 2] {
+        [&self.before, &self.after].map(|outcome| outcome.days.len() as u32)
+    }
+
+    pub(super) fn week_before(&self) -> &SimulatedWeek {
+        &self.week_before
+    }
+
+    /// Whether a group was discovered at the end of the week.
+    pub(super) fn is_group_known(&self, group: Group) -> bool {
+        self.after.final_state.world.market.is_known(group)
+    }
+
+    /// Returns the number of re-simulated weeks.
+    pub(super) fn simulation_count(&self) -> usize {
+        self.simulated_weeks.len() - 1
+    }
+
+    /// Returns the figures of the week without some causes, which must be simulated already.
+    pub(super) fn week_without(&self, without: ExcludedCauses) -> &SimulatedWeek {
+        &self.simulated_weeks[&without]
+    }
+
+    /// Simulates the sets that have no result yet. Returns `None` if stopped.
+    pub(super) fn simulate_missing(
+        &mut self,
+        wanted: &[ExcludedCauses],
+        progress: CauseProgressFn<'_>,
+    ) -> Option<()> {
+        // Utilization is relative to days without any call.
+        let undone = ExcludedCauses { calls: (1 << self.calls.len()) - 1, inputs: 0 };
+        if self.days_without_calls.is_empty() && wanted.iter().any(|without| without.inputs != 0) {
+            let outcome = self.simulate(undone, &mut |_| ControlFlow::Continue(()))?;
+            self.simulated_weeks.insert(undone, last_simulated_week(&self.start, &outcome));
+            self.days_without_calls = outcome.days;
+        }
+        let unknown: BTreeSet<ExcludedCauses> =
+            wanted.iter().copied().filter(|without| !self.simulated_weeks.contains_key(without)).collect();
+        let found = self.simulate_all(&unknown.into_iter().collect::<Vec<_>>(), progress)?;
+        self.simulated_weeks.extend(found);
+        Some(())
+    }
+
+    fn simulate_all(
+        &self,
+        wanted: &[ExcludedCauses],
+        progress: CauseProgressFn<'_>,
+    ) -> Option<Vec<(ExcludedCauses, SimulatedWeek)>> {
+        let done = AtomicUsize::new(0);
+        parallel_map(wanted, |without, stopped| {
+            let mut go_on = |_| match stopped.is_set() {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            };
+            let outcome = self.simulate(*without, &mut go_on)?;
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            match progress(CauseProgress::Simulated(done, wanted.len())) {
+                ControlFlow::Break(()) => None,
+                ControlFlow::Continue(()) => Some((*without, last_simulated_week(&self.start, &outcome))),
+            }
+        })
+    }
+
+    fn simulate(
+        &self,
+        without: ExcludedCauses,
+        go_on: &mut dyn FnMut(u32) -> ControlFlow<()>,
+    ) -> Option<BranchOutcome> {
+        let dropped = selected_candidates(&self.calls, without.calls)
+            .flat_map(|own| own.lines.iter().copied())
+            .collect();
+        let held = match without.inputs {
+            0 => FixedInputs::default(),
+            inputs => {
+                let two = WeekPair { start: &self.start, before: &self.before, after: &self.after };
+                two.held_inputs(
+                    selected_candidates(&self.inputs, inputs).map(|own| own.cause),
+                    &self.days_without_calls,
+                )
+            }
+        };
+        let edits = Edits { dropped_lines: dropped, held_inputs: held, ..Edits::default() };
+        let outcome =
+            simulate_branch(&self.start, &self.steps, &edits, self.after.final_state.world.day, go_on)?;
+        // The figures of a week that ends early cannot be compared with those of a complete week.
+        outcome.lead_overflow.is_none().then_some(outcome)
+    }
+}
+
+fn selected_candidates(candidates: &[Candidate], set: u32) -> impl Iterator<Item = &Candidate> {
+    candidates.iter().enumerate().filter(move |(at, _)| set & (1 << at) != 0).map(|(_, own)| own)
+}
+
+/// Returns the player's calls in the week by tool. A setting that returned to its first value counts only if days passed in between.
+fn call_candidates(eve: &MemorySnapshot, moves: &[RecordedStep], after: &BranchOutcome) -> Vec<Candidate> {
+    let set = setting_changes(&eve.world.settings, &after.final_state.world.settings);
+    let in_steps = moves.iter().filter(|step| matches!(step, RecordedStep::Days(_))).count() > 1;
+    let mut by_tool: Vec<Candidate> = Vec::new();
+    for call in moves.iter().filter_map(as_accepted_call) {
+        let cause = Cause::Calls(call.tool);
+        match by_tool.iter_mut().find(|own| own.cause == cause) {
+            Some(own) => drop(own.lines.insert(call.seq)),
+            None => {
+                let lines = BTreeSet::from([call.seq]);
+                by_tool.push(Candidate { cause, details: Vec::new(), lines });
+            }
+        }
+    }
+    by_tool.retain_mut(|own| {
+        let Cause::Calls(tool) = own.cause else { return false };
+        let changed = set.iter().filter(|change| change.setting.tool() == tool);
+        own.details = changed.map(|change| CauseDetail::Setting(*change)).collect();
+        if tool.tool().spec().kind == ToolKind::Setting {
+            return in_steps || !own.details.is_empty();
+        }
+        own.details = vec![CauseDetail::Occurred(own.lines.len(), "call")];
+        true
+    });
+    by_tool
+}
+
+/// Returns the parameters that were set in the week or took effect in it.
+fn parameter_candidate(eve: &MemorySnapshot, moves: &[RecordedStep], end: u32) -> Option<Candidate> {
+    let set = moves.iter().filter_map(|step| match step {
+        RecordedStep::Parameter(setting) => Some(&setting.change),
+        RecordedStep::Call(_) | RecordedStep::Days(_) => None,
+    });
+    let acting = eve.overrides.scheduled_changes().chain(set).filter(|change| change.from_day <= Some(end));
+    let lines: BTreeSet<u64> = acting.map(|change| change.seq).collect();
+    let details = vec![CauseDetail::Occurred(lines.len(), "setting")];
+    (!lines.is_empty()).then_some(Candidate { cause: Cause::Parameters, details, lines })
+}
+
+fn as_accepted_call(step: &RecordedStep) -> Option<&RecordedCall> {
+    match step {
+        RecordedStep::Call(call) if call.accepted => Some(call),
+        _ => None,
+    }
+}
+
+/// Returns the last week of the days after a state, which are at most one week.
+fn last_simulated_week(before: &MemorySnapshot, outcome: &BranchOutcome) -> SimulatedWeek {
+    let measured = outcome.groups.last().copied().unwrap_or_default();
+    SimulatedWeek {
+        figures: outcome.weeks.last().copied().unwrap_or_default(),
+        satisfaction: outcome.satisfaction.last().copied().unwrap_or(f64::NAN),
+        groups: ByGroup::from_fn(|group| WeekGroupFigures {
+            figures: measured[group],
+            subscribers_before: before.world.customers.groups[group].active_count(),
+        }),
+    }
+}

@@ -1,0 +1,198 @@
+//! The recorded steps of a run: calls, parameter changes and simulated days.
+
+use std::collections::BTreeMap;
+
+use serde_json::Value;
+
+use novamind_record::trajectory::record::{Call, JudgedPost, Outcome, Reversal, VoiceAnswer};
+use novamind_record::trajectory::{Line, Record};
+use novamind_session::engine::{ParameterChange, value_to_json};
+use novamind_tools::{ToolId, ToolKind};
+
+/// A recorded step that changed the company.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum RecordedStep {
+    /// A call that can change the company.
+    Call(RecordedCall),
+    /// A parameter change.
+    Parameter(RecordedSetting),
+    /// Simulated days.
+    Days(RecordedDays),
+}
+
+/// A recorded call.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RecordedCall {
+    /// Its line.
+    pub seq: u64,
+    /// Decision day.
+    pub day: u32,
+    /// Tool.
+    pub tool: ToolId,
+    /// Arguments.
+    pub args: Value,
+    /// Whether it was accepted.
+    pub accepted: bool,
+    /// Line of the call that it undid or redid. Its settings stay even if that call is edited.
+    pub reversal: Option<Reversal>,
+}
+
+/// A recorded decision.
+#[derive(Debug, Clone, PartialEq)]
+pub enum RecordedDecision {
+    /// A call.
+    Call(RecordedCall),
+    /// A parameter change.
+    Parameter {
+        /// Its line.
+        seq: u64,
+        /// Decision day.
+        day: u32,
+        /// Full key.
+        key: String,
+        /// New value.
+        value: Value,
+        /// First day that was simulated with it; `None` if it applied immediately.
+        from_day: Option<u32>,
+    },
+}
+
+impl RecordedDecision {
+    /// Its line.
+    pub fn seq(&self) -> u64 {
+        match self {
+            RecordedDecision::Call(RecordedCall { seq, .. }) | RecordedDecision::Parameter { seq, .. } => {
+                *seq
+            }
+        }
+    }
+
+    /// Decision day.
+    pub fn day(&self) -> u32 {
+        match self {
+            RecordedDecision::Call(RecordedCall { day, .. }) | RecordedDecision::Parameter { day, .. } => {
+                *day
+            }
+        }
+    }
+
+    /// Returns the call, or `None` for a parameter change.
+    pub fn call(&self) -> Option<&RecordedCall> {
+        match self {
+            RecordedDecision::Call(call) => Some(call),
+            RecordedDecision::Parameter { .. } => None,
+        }
+    }
+
+    /// Describes the status: rejected, undone or redone call, or first day of a parameter. Empty for other decisions.
+    pub fn describe_status(&self) -> String {
+        match self {
+            RecordedDecision::Call(RecordedCall { accepted: false, .. }) => "rejected".to_owned(),
+            RecordedDecision::Call(RecordedCall { reversal: Some(Reversal::Undoes(line)), .. }) => {
+                format!("undoes line {line}")
+            }
+            RecordedDecision::Call(RecordedCall { reversal: Some(Reversal::Redoes(line)), .. }) => {
+                format!("redoes line {line}")
+            }
+            RecordedDecision::Call(_) => String::new(),
+            RecordedDecision::Parameter { from_day, .. } => {
+                from_day.map_or(String::new(), |day| format!("from day {day}"))
+            }
+        }
+    }
+
+    /// Returns the decision of a step, or `None` for simulated days.
+    pub(crate) fn from_step(step: &RecordedStep) -> Option<RecordedDecision> {
+        match step {
+            RecordedStep::Call(call) => Some(RecordedDecision::Call(call.clone())),
+            RecordedStep::Parameter(RecordedSetting { day, change }) => Some(RecordedDecision::Parameter {
+                seq: change.seq,
+                day: *day,
+                key: change.key.clone(),
+                value: value_to_json(&change.value),
+                from_day: change.from_day,
+            }),
+            RecordedStep::Days(_) => None,
+        }
+    }
+}
+
+/// A recorded parameter change.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct RecordedSetting {
+    /// Day of the change.
+    pub day: u32,
+    /// The change.
+    pub change: ParameterChange,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct RecordedDays {
+    /// Last day.
+    pub until: u32,
+    /// Hash of the state at the end.
+    pub state_hash: String,
+    /// Hash of each part of the state.
+    pub parts: BTreeMap<String, String>,
+    /// Scores of the player's posts by a language model.
+    pub scores: Vec<JudgedPost>,
+}
+
+/// Returns the steps of events, in order.
+pub(crate) fn steps_of(lines: &[Line]) -> Vec<RecordedStep> {
+    let mut scores = Vec::new();
+    lines.iter().filter_map(|line| step_of(line, &mut scores)).collect()
+}
+
+/// Returns the step of an event. Scores are kept for the days in which they apply.
+fn step_of(line: &Line, scores: &mut Vec<JudgedPost>) -> Option<RecordedStep> {
+    if let Some(closing) = line.record.closing() {
+        let (state_hash, parts) = (closing.state_hash.clone(), closing.parts.clone());
+        return Some(RecordedStep::Days(RecordedDays {
+            until: line.day,
+            state_hash,
+            parts,
+            scores: std::mem::take(scores),
+        }));
+    }
+    if let Record::Voice(VoiceAnswer::Scores(judged)) = &line.record {
+        scores.push(judged.clone());
+        return None;
+    }
+    if let Record::Override(setting) = &line.record {
+        let change = ParameterChange::from_record(line.seq, setting)?;
+        return Some(RecordedStep::Parameter(RecordedSetting { day: line.day, change }));
+    }
+    let Record::Call(Call { tool, args, outcome, reversal, .. }) = &line.record else { return None };
+    let tool = tool.tool_id()?;
+    let kind = tool.spec().kind;
+    (kind.changes_company() && kind != ToolKind::Time).then(|| {
+        let accepted = matches!(outcome, Outcome::Accepted(_));
+        let (args, reversal) = (args.clone(), *reversal);
+        RecordedStep::Call(RecordedCall { seq: line.seq, day: line.day, tool, args, accepted, reversal })
+    })
+}
+
+/// Returns the steps after one day up to another. Decisions of a day follow that day.
+pub(crate) fn steps_between(moves: &[RecordedStep], from: u32, until: u32) -> &[RecordedStep] {
+    let after = |day: u32| {
+        let before = |step: &RecordedStep| match step {
+            RecordedStep::Call(call) => call.day < day,
+            RecordedStep::Parameter(setting) => setting.day < day,
+            RecordedStep::Days(days) => days.until <= day,
+        };
+        moves.partition_point(before)
+    };
+    let (first, last) = (after(from), after(until));
+    &moves[first..last.max(first)]
+}
+
+/// Whether an accepted call replies to another author's post, so that the texts of posts are needed.
+pub(crate) fn has_replies(moves: &[RecordedStep]) -> bool {
+    moves.iter().any(|step| match step {
+        RecordedStep::Call(call) => {
+            call.accepted && call.tool == ToolId::PostSocialMedia && !call.args["reply_to_post_id"].is_null()
+        }
+        RecordedStep::Parameter(_) | RecordedStep::Days(_) => false,
+    })
+}

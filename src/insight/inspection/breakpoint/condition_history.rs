@@ -1,0 +1,75 @@
+//! The history of a condition over the completed days of a run.
+
+use super::condition::{Condition, ConditionState};
+use crate::inspection::inspector::Inspector;
+use novamind_session::InspectionPermit;
+use novamind_tools::Rejection;
+
+/// The current state of a condition, and the last days in each state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ConditionHistory {
+    /// The condition.
+    pub condition: Condition,
+    /// State on the last day.
+    pub today: ConditionState,
+    /// Last day on which the condition was true.
+    pub last_true: Option<ConditionState>,
+    /// Last day on which the condition was false.
+    pub last_false: Option<ConditionState>,
+}
+
+impl ConditionHistory {
+    /// Returns the first day of the current state.
+    pub fn unchanged_since(&self) -> u32 {
+        let other = if self.today.is_true { self.last_false } else { self.last_true };
+        other.map_or(1, |other| other.day + 1)
+    }
+}
+
+impl Inspector<'_> {
+    /// Returns since when a condition is true or false. Records the inspection.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `unreadable_record`, `not_saved`.
+    pub fn condition_history(&mut self, condition: Condition) -> Result<ConditionHistory, Rejection> {
+        let all = self.evaluate_days("back", condition)?;
+        let last = |is_true: bool| all.iter().rev().find(|own| own.is_true == is_true).copied();
+        let today =
+            *all.last().ok_or_else(|| Rejection::new("not_readable", "no day could be re-simulated"))?;
+        Ok(ConditionHistory { condition, today, last_true: last(true), last_false: last(false) })
+    }
+
+    /// Calls [`Inspector::condition_history`] for each breakpoint, or for the one with a number.
+    ///
+    /// # Errors
+    /// As [`Inspector::condition_history`], and `breakpoint_unknown`.
+    pub fn breakpoint_histories(&mut self, number: Option<u32>) -> Result<Vec<ConditionHistory>, Rejection> {
+        let set = self.breakpoints()?;
+        let chosen: Vec<Condition> = set
+            .iter()
+            .filter(|own| number.is_none_or(|number| own.number == number))
+            .map(|own| own.condition)
+            .collect();
+        if let Some(number) = number.filter(|_| chosen.is_empty()) {
+            return Err(self.unknown_breakpoint_rejection(number));
+        }
+        chosen.into_iter().map(|condition| self.condition_history(condition)).collect()
+    }
+
+    /// Returns the days on which a condition became true, and those on which the first value of its figure made it true. Records
+    /// the inspection.
+    ///
+    /// # Errors
+    /// As [`Inspector::condition_history`].
+    pub fn find_condition_days(&mut self, condition: Condition) -> Result<Vec<ConditionState>, Rejection> {
+        let all = self.evaluate_days("find", condition)?;
+        Ok(all.into_iter().filter(|own| own.is_true && !own.was_true).collect())
+    }
+
+    fn evaluate_days(&mut self, what: &str, condition: Condition) -> Result<Vec<ConditionState>, Rejection> {
+        let look = InspectionPermit::start(self.run, what, &condition.to_string(), None)?;
+        let today = look.day();
+        let series = self.measured_days(&look)?;
+        Ok(series.with_days(|days| (1..=today).map(|day| condition.evaluate(days, day)).collect()))
+    }
+}

@@ -1,0 +1,51 @@
+//! The breakpoints of an open run, and the recorded figures of its days.
+
+use std::sync::Arc;
+
+use super::condition::Condition;
+use super::measured_days::MeasuredDays;
+
+/// A condition that stops a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Breakpoint {
+    /// Number, from 1; never reused.
+    pub number: u32,
+    /// The condition.
+    pub condition: Condition,
+}
+
+/// The breakpoints of an open run.
+#[derive(Debug, Default)]
+pub(crate) struct Breakpoints {
+    set: Vec<Breakpoint>,
+    last_number: u32,
+    /// Recorded figures of the days.
+    pub(crate) measured_days: Arc<MeasuredDays>,
+}
+
+impl Breakpoints {
+    pub(crate) fn all(&self) -> &[Breakpoint] {
+        &self.set
+    }
+
+    /// Sets a breakpoint, or returns the existing one with the same condition.
+    pub(crate) fn set(&mut self, condition: Condition) -> Breakpoint {
+        if let Some(known) = self.set.iter().find(|own| own.condition == condition) {
+            return *known;
+        }
+        self.last_number += 1;
+        let breakpoint = Breakpoint { number: self.last_number, condition };
+        self.set.push(breakpoint);
+        breakpoint
+    }
+
+    /// Removes the breakpoint with a number. Returns `None` if it does not exist.
+    pub(crate) fn clear(&mut self, number: u32) -> Option<Breakpoint> {
+        let at = self.set.iter().position(|own| own.number == number)?;
+        Some(self.set.remove(at))
+    }
+
+    pub(crate) fn clear_all(&mut self) -> Vec<Breakpoint> {
+        std::mem::take(&mut self.set)
+    }
+}

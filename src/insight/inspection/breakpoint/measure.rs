@@ -1,0 +1,203 @@
+//! Daily figures of the company or of a group, for conditions.
+
+use std::fmt;
+
+use super::measured_days::MeasuredDay;
+use novamind_record::figures::GroupFigures;
+use novamind_record::figures::churn;
+use novamind_world::identifiers::Group;
+
+/// The relation of a figure to time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MeasureKind {
+    /// The value at the end of a day.
+    State,
+    /// A number of a day, or its sum over several days.
+    Flow,
+    /// A share over several days, with the default number of days.
+    Share(u32),
+}
+
+// For a share, the expression is the numerator; the denominator is computed with it.
+type CompanyFigureFn = Option<fn(&MeasuredDay) -> f64>;
+type GroupFigureFn = Option<fn(&GroupFigures) -> Option<f64>>;
+
+macro_rules! measures {
+    ($($measure:ident = $id:literal, $kind:expr, $company:expr, $group:expr;)*) => {
+        /// A daily figure.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        #[allow(missing_docs)] // Each is described by its name.
+        pub enum Measure { $($measure),* }
+
+        impl Measure {
+            /// All figures.
+            pub const ALL: &'static [Measure] = &[$(Measure::$measure),*];
+
+            /// Returns the name in conditions and data.
+            pub fn id(self) -> &'static str {
+                match self { $(Measure::$measure => $id),* }
+            }
+
+            /// Returns the relation to time.
+            pub fn kind(self) -> MeasureKind {
+                match self { $(Measure::$measure => $kind),* }
+            }
+
+            fn company_figure(self) -> CompanyFigureFn {
+                match self { $(Measure::$measure => $company),* }
+            }
+
+            fn group_figure(self) -> GroupFigureFn {
+                match self { $(Measure::$measure => $group),* }
+            }
+        }
+    };
+}
+
+measures! {
+    Cash = "cash", MeasureKind::State, Some(|day| day.figures.cash), None;
+    RecurringRevenue = "recurring_revenue", MeasureKind::State, Some(|day| day.figures.mrr), None;
+    Payments = "payments", MeasureKind::Flow, Some(|day| day.figures.payments_received), None;
+    RunningCosts = "running_costs", MeasureKind::Flow, Some(|day| day.figures.total_costs), None;
+    Subscribers = "subscribers", MeasureKind::State,
+        Some(|day| day.figures.individual_subscribers.into()), Some(|own| Some(own.subscribers.into()));
+    Seats = "seats", MeasureKind::State, Some(|day| day.figures.enterprise_seats.into()), None;
+    Leads = "leads", MeasureKind::Flow,
+        Some(|day| day.figures.new_leads.into()), Some(|own| Some(own.leads.into()));
+    IndividualLeads = "individual_leads", MeasureKind::Flow,
+        Some(|day| day.figures.new_individual_leads.into()), None;
+    NewSubscribers = "new_subscribers", MeasureKind::Flow,
+        Some(|day| day.figures.new_individual_subscribers.into()), Some(|own| Some(own.signed.into()));
+    NewSeats = "new_seats", MeasureKind::Flow, Some(|day| day.figures.new_enterprise_seats.into()), None;
+    Conversion = "conversion", MeasureKind::Share(7),
+        Some(|day| day.figures.new_individual_subscribers.into()), Some(|own| Some(own.signed.into()));
+    Cancellations = "cancellations", MeasureKind::Flow,
+        Some(|day| day.figures.cancellations.into()), Some(|own| Some(own.left.into()));
+    Churn = "churn", MeasureKind::Share(30),
+        Some(|day| day.figures.cancellations.into()), Some(|own| Some(own.left.into()));
+    Upgrades = "upgrades", MeasureKind::Flow, Some(|day| day.figures.upgrades.into()), None;
+    Downgrades = "downgrades", MeasureKind::Flow, Some(|day| day.figures.downgrades.into()), None;
+    Usage = "usage", MeasureKind::Flow,
+        Some(|day| day.figures.total_usage as f64), Some(|own| Some(own.usage as f64));
+    Overload = "overload", MeasureKind::State, Some(|day| day.figures.overload), None;
+    Downtime = "downtime_minutes", MeasureKind::Flow,
+        Some(|day| day.figures.downtime_minutes.into()), None;
+    OpenIssues = "open_issues", MeasureKind::State,
+        Some(|day| day.open_issues().into()), Some(|own| Some(own.open_issues.into()));
+    Reputation = "reputation", MeasureKind::State, None, Some(|own| Some(own.reputation));
+    Satisfaction = "satisfaction", MeasureKind::State, None, Some(|own| own.satisfaction);
+    Relationship = "relationship", MeasureKind::State, None, Some(|own| own.relationship);
+}
+
+/// The reason why a figure is invalid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum QuantityError {
+    /// Only the company has the figure.
+    CompanyOnly,
+    /// Only groups have the figure.
+    GroupOnly,
+    /// The figure is a value at the end of a day and has no sum.
+    NotSummable,
+    /// The number of days is out of range.
+    DaysOutOfRange,
+}
+
+/// A figure of the company or of a group, over a number of days up to the evaluated one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Quantity {
+    measure: Measure,
+    group: Option<Group>,
+    days: u32,
+}
+
+impl Quantity {
+    /// Maximum number of days of a sum or a share.
+    pub const MAX_DAYS: u32 = 1000;
+
+    /// Creates a figure. `days`, if given, must be from 1 to [`Quantity::MAX_DAYS`].
+    pub(crate) fn new(
+        measure: Measure,
+        group: Option<Group>,
+        days: Option<u32>,
+    ) -> Result<Quantity, QuantityError> {
+        match group {
+            Some(_) if measure.group_figure().is_none() => return Err(QuantityError::CompanyOnly),
+            None if measure.company_figure().is_none() => return Err(QuantityError::GroupOnly),
+            _ => {}
+        }
+        let days = match (measure.kind(), days) {
+            (MeasureKind::State, Some(_)) => return Err(QuantityError::NotSummable),
+            (_, Some(days)) if !(1..=Quantity::MAX_DAYS).contains(&days) => {
+                return Err(QuantityError::DaysOutOfRange);
+            }
+            (_, Some(days)) => days,
+            (MeasureKind::Share(usual), None) => usual,
+            (MeasureKind::State | MeasureKind::Flow, None) => 1,
+        };
+        Ok(Quantity { measure, group, days })
+    }
+
+    /// Returns the figure.
+    pub fn measure(&self) -> Measure {
+        self.measure
+    }
+
+    /// Returns the group, or `None` for the company.
+    pub fn group(&self) -> Option<Group> {
+        self.group
+    }
+
+    /// Returns the number of days of a sum or share; 1 for a value at the end of a day.
+    pub fn days(&self) -> u32 {
+        self.days
+    }
+
+    /// Returns the explicit number of days: ` over 7`.
+    pub fn describe_days(&self) -> String {
+        match (self.measure.kind(), self.days) {
+            (MeasureKind::State, _) | (MeasureKind::Flow, 1) => String::new(),
+            (_, days) => format!(" over {days}"),
+        }
+    }
+
+    /// Returns the value on a day. `days` starts with day 1. Returns `None` if there are too few days, or if the denominator is 0.
+    pub(crate) fn value(&self, days: &[MeasuredDay], day: u32) -> Option<f64> {
+        let value = match self.measure {
+            Measure::Churn => {
+                let beginning = day.checked_sub(self.days)?;
+                let before = self.value_on_day(Measure::Subscribers, days, beginning)?;
+                churn(self.sum(self.measure, days, day)?, before)?
+            }
+            Measure::Conversion => {
+                let leads = if self.group.is_some() { Measure::Leads } else { Measure::IndividualLeads };
+                self.sum(self.measure, days, day)? / self.sum(leads, days, day)?
+            }
+            measure if measure.kind() == MeasureKind::State => self.value_on_day(measure, days, day)?,
+            measure => self.sum(measure, days, day)?,
+        };
+        value.is_finite().then_some(value)
+    }
+
+    fn sum(&self, measure: Measure, days: &[MeasuredDay], day: u32) -> Option<f64> {
+        let first = (day + 1).checked_sub(self.days)?;
+        (first..=day).map(|day| self.value_on_day(measure, days, day)).sum()
+    }
+
+    fn value_on_day(&self, measure: Measure, days: &[MeasuredDay], day: u32) -> Option<f64> {
+        let own = days.get(day.checked_sub(1)? as usize)?;
+        match self.group {
+            Some(group) => measure.group_figure()?(&own.groups[group]),
+            None => Some(measure.company_figure()?(own)),
+        }
+    }
+}
+
+/// Writes `churn(S1)` or `cash`.
+impl fmt::Display for Quantity {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.group {
+            Some(group) => write!(formatter, "{}({group})", self.measure.id()),
+            None => formatter.write_str(self.measure.id()),
+        }
+    }
+}

@@ -1,0 +1,112 @@
+//! The hidden state of competitors: what they can copy, their moves, and the next move.
+
+use super::hidden_day::QualityBanks;
+use super::inspector::Inspector;
+use novamind_session::{HiddenState, InspectionPermit};
+use novamind_tools::Rejection;
+use novamind_world::events::Severity;
+use novamind_world::identifiers::{ByGroup, Group};
+use novamind_world::market::competitors::{Event, next_move, severity};
+
+/// The next competitor move after a day.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NextCompetitorMove {
+    /// Day of the move.
+    pub day: u32,
+    /// Drawn size, after the growth over the run.
+    pub sampled_size: f64,
+    /// Share of the shared bank that can be copied.
+    pub copied_share: f64,
+    /// Share of each targeted bank at the end of the day that is copied; empty after the move.
+    pub group_shares: Vec<(Group, f64)>,
+    /// Outcome, if the day has been simulated.
+    pub outcome: Option<Event>,
+}
+
+impl NextCompetitorMove {
+    /// Returns the quality that can be copied from a shared bank. It applies if it exceeds the drawn size.
+    pub fn copied_quality(&self, bank: f64) -> f64 {
+        self.copied_share * bank
+    }
+
+    /// Returns the shared bank above which competitors copy.
+    pub fn copy_threshold(&self) -> f64 {
+        self.sampled_size / self.copied_share
+    }
+}
+
+/// Competitors at the end of a day.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CompetitorState {
+    /// The day, from 1.
+    pub day: u32,
+    /// Shared quality gain.
+    pub shared_bonus: f64,
+    /// Part of it that is not copied.
+    pub shared_bank: f64,
+    /// Targeted quality gain and the part of it that is not copied, for groups that have any.
+    pub group_banks: Vec<(Group, f64, f64)>,
+    /// Common addition to expectations by competitors and drift.
+    pub common_expectation: f64,
+    /// Past moves with their names.
+    pub moves: Vec<(Event, Severity)>,
+    /// Next move; `None` if there is none before the end of the run.
+    pub next_move: Option<NextCompetitorMove>,
+}
+
+impl Inspector<'_> {
+    /// Returns the competitors at the end of a day, by default the last one. Records the inspection.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `unreadable_record`, `not_saved`.
+    pub fn competitor_state(&mut self, day: Option<u32>) -> Result<CompetitorState, Rejection> {
+        let look = InspectionPermit::start(self.run, "rivals", "", day)?;
+        let day = look.day();
+        let seen = self.hidden_day(&look, day)?;
+        let QualityBanks { shared_bonus, shared, group_bonus, group_banks: own } = seen.banks;
+        let inside = look.hidden_state(self.run);
+        let law = &inside.params().competitor;
+        let events = inside.world().market.competitors.iter().copied();
+        let moves = events.take_while(|event| event.day <= day);
+        let improved = Group::all().filter(|group| group_bonus[*group] != 0.0 || own[*group] != 0.0);
+        Ok(CompetitorState {
+            day,
+            shared_bonus,
+            shared_bank: shared,
+            group_banks: improved.map(|group| (group, group_bonus[group], own[group])).collect(),
+            common_expectation: seen.market.drift.global_quality,
+            moves: moves.map(|event| (event, severity(event.boost, law))).collect(),
+            next_move: next_competitor_move(inside, day, &own),
+        })
+    }
+}
+
+/// Returns the next move after a day: the simulated one, or the one that follows from the current parameters.
+pub(super) fn next_competitor_move(
+    inside: HiddenState<'_>,
+    day: u32,
+    banks: &ByGroup<f64>,
+) -> Option<NextCompetitorMove> {
+    let (world, params) = (inside.world(), inside.params());
+    let events = &world.market.competitors;
+    if let Some(made) = events.iter().copied().find(|event| event.day > day) {
+        let Event { day, sampled, u, .. } = made;
+        return Some(NextCompetitorMove {
+            day,
+            sampled_size: sampled,
+            copied_share: u,
+            group_shares: Vec::new(),
+            outcome: Some(made),
+        });
+    }
+    let last_event = events.last().map(|event| event.day);
+    let next = next_move(world.day, world.total_days, last_event, params, inside.streams())?;
+    let shares = next.copied_group_shares(banks, &params.competitor);
+    Some(NextCompetitorMove {
+        day: next.day,
+        sampled_size: next.sampled,
+        copied_share: next.u,
+        group_shares: shares,
+        outcome: None,
+    })
+}

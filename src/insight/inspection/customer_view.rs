@@ -1,0 +1,31 @@
+//! The hidden state of a customer: an individual or an enterprise.
+
+use super::enterprise_view::EnterpriseView;
+use super::individual_view::IndividualView;
+use super::inspector::Inspector;
+use novamind_session::InspectionPermit;
+use novamind_tools::Rejection;
+
+/// The hidden state of a customer.
+#[derive(Debug, Clone)]
+pub enum CustomerView {
+    /// An individual.
+    Individual(Box<IndividualView>),
+    /// An enterprise.
+    Enterprise(EnterpriseView),
+}
+
+impl Inspector<'_> {
+    /// Returns a customer on a day, by default the last one. Records the inspection.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`, `day_unknown`, `customer_not_found`, `not_possible`, `unreadable_record`, `not_saved`.
+    pub fn customer_view(&mut self, customer: u32, day: Option<u32>) -> Result<CustomerView, Rejection> {
+        let (look, found, arrival) = InspectionPermit::start_for_customer(self.run, customer, day)?;
+        match found.0.is_enterprise() {
+            true => EnterpriseView::new(self.run, &look, customer, found.0).map(CustomerView::Enterprise),
+            false => IndividualView::new(self.run, &look, customer, found, arrival)
+                .map(|lens| CustomerView::Individual(Box::new(lens))),
+        }
+    }
+}

@@ -1,0 +1,40 @@
+//! Re-simulates the days of a run with their hidden state, for daily figures of any run that may be inspected.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::inspector::Inspector;
+use novamind_record::error::RunError;
+use novamind_record::folder::manifest_check::read_manifest;
+use novamind_record::mode::Mode;
+use novamind_record::trajectory::Trajectory;
+use novamind_session::{Access, DayReport, INSPECTION_REJECTED, InspectionPermit, SealKey, Session};
+use novamind_tools::Rejection;
+use novamind_world::day::observer::NoObserver;
+
+/// Opens a debug run or a finished run for inspection. Only inspections are recorded.
+///
+/// # Errors
+/// `InvalidRequest` for other runs, which are not opened; as [`Session::apply_initial_calls`].
+pub fn open_for_inspection(folder: &Path, key: SealKey) -> Result<Session, RunError> {
+    let mode = read_manifest(folder)?.mode;
+    if mode != Mode::Debug && Trajectory::read(&folder.join("trajectory.jsonl"))?.end_line().is_none() {
+        return Err(RunError::InvalidRequest(INSPECTION_REJECTED.to_owned()));
+    }
+    let session = Session::open_sealed(folder, Access::Write, false, key)?;
+    match session.check_inspection() {
+        Ok(()) => Ok(session),
+        Err(refusal) => Err(RunError::InvalidRequest(refusal.message)),
+    }
+}
+
+impl Inspector<'_> {
+    /// Re-simulates every day of the run for an observer. Records the inspection.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`, `not_possible`, `unreadable_record`, `not_saved`.
+    pub fn replay_days(&mut self, tell: &mut dyn FnMut(&DayReport<'_>)) -> Result<(), Rejection> {
+        let look = InspectionPermit::start_at_current_state(self.run, "metrics", "days", self.run.day())?;
+        look.replay(self.run, Arc::new(NoObserver))?.advance(self.run, |_| true, tell)
+    }
+}

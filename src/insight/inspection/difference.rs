@@ -1,0 +1,193 @@
+//! Comparison of two days of a run, or of one day of two runs: parts of the state, figures, customers.
+
+use std::sync::Arc;
+
+use serde_json::Value as Json;
+
+use super::day_end::{DayEnd, DayEndRecorder, StateHashRecorder};
+use super::inspector::Inspector;
+use novamind_session::engine::value_to_json;
+use novamind_session::{InspectionPermit, Session};
+use novamind_tools::Rejection;
+use novamind_world::identifiers::Group;
+
+/// Maximum number of customers with listed differences.
+const MAX_LISTED_CUSTOMERS: usize = 10;
+
+/// The comparison of the ends of two days.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DayDifference {
+    /// First and second day.
+    pub days: (u32, u32),
+    /// Simulation parameters that differ: key, first value, second value; null for a missing value.
+    pub parameters: Vec<(String, Json, Json)>,
+    /// Names of the parts of the state whose hash differs, in the order of the state; `facts`, the events of the day, is last.
+    pub differing_parts: Vec<&'static str>,
+    /// Names of the equal parts.
+    pub equal_parts: Vec<&'static str>,
+    /// Figures that differ: name, first value, second value.
+    pub figures: Vec<(String, f64, f64)>,
+    /// Number of customers that subscribe on both sides and differ.
+    pub differing_customers: usize,
+    /// Numbers of customers that subscribe only on the first side, and only on the second.
+    pub only_in_one: (usize, usize),
+    /// The first customers that differ, by customer number.
+    pub first_customers: Vec<CustomerDifference>,
+}
+
+/// The differences of a customer.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CustomerDifference {
+    /// Customer number.
+    pub customer: u32,
+    /// Group, from the first side if the customer subscribes there.
+    pub group: Group,
+    /// Whether the customer subscribes on the first side, and on the second.
+    pub subscribes: (bool, bool),
+    /// If it subscribes on both sides: column, first value, second value.
+    pub columns: Vec<(&'static str, String, String)>,
+}
+
+/// The comparison of two runs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunDifference {
+    /// Last day that both runs have.
+    pub last_day: u32,
+    /// First day on which the runs differ; `None` if they are equal on all common days.
+    pub first_day: Option<u32>,
+    /// Differences on the requested day, by default on the first day that differs; `None` without such a day.
+    pub difference: Option<DayDifference>,
+}
+
+impl DayDifference {
+    fn between(days: (u32, u32), one: &DayEnd, other: &DayEnd) -> DayDifference {
+        let pairs = || one.parts.iter().zip(&other.parts);
+        let names = |alike: bool| {
+            pairs()
+                .filter(|(own, other)| (own.hash == other.hash) == alike)
+                .map(|(own, _)| own.part)
+                .collect()
+        };
+        let figures = one.figures.iter().zip(&other.figures);
+        let figures = figures.filter(|((_, own), (_, other))| own.to_bits() != other.to_bits());
+        let all = differing_customers(one, other);
+        let count = |subscribes| all.iter().filter(|own| own.subscribes == subscribes).count();
+        let value = |value: Option<toml::Value>| value.as_ref().map_or(Json::Null, value_to_json);
+        let parameters = one.params.differences(&other.params).into_iter();
+        DayDifference {
+            days,
+            parameters: parameters.map(|own| (own.key, value(own.old), value(own.new))).collect(),
+            differing_parts: names(false),
+            equal_parts: names(true),
+            figures: figures.map(|((name, own), (_, other))| (name.clone(), *own, *other)).collect(),
+            differing_customers: count((true, true)),
+            only_in_one: (count((true, false)), count((false, true))),
+            first_customers: all.into_iter().take(MAX_LISTED_CUSTOMERS).collect(),
+        }
+    }
+
+    /// Whether there is no difference.
+    pub fn is_empty(&self) -> bool {
+        self.differing_parts.is_empty() && self.parameters.is_empty()
+    }
+}
+
+fn differing_customers(one: &DayEnd, other: &DayEnd) -> Vec<CustomerDifference> {
+    let only_in_other = other.customers.iter().filter(|(number, _)| !one.customers.contains_key(number));
+    let mut found: Vec<CustomerDifference> = only_in_other
+        .map(|(number, (group, _))| CustomerDifference {
+            customer: *number,
+            group: *group,
+            subscribes: (false, true),
+            columns: Vec::new(),
+        })
+        .collect();
+    for (number, (group, row)) in &one.customers {
+        let twin = other.customers.get(number);
+        let columns = twin.map(|(_, twin)| row.differing(twin)).unwrap_or_default();
+        if twin.is_none() || !columns.is_empty() {
+            let subscribes = (true, twin.is_some());
+            found.push(CustomerDifference { customer: *number, group: *group, subscribes, columns });
+        }
+    }
+    found.sort_by_key(|own| own.customer);
+    found
+}
+
+impl Inspector<'_> {
+    /// Compares the ends of two days. Records the inspection.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `unreadable_record`, `not_saved`.
+    pub fn compare_days(&mut self, one: u32, other: u32) -> Result<DayDifference, Rejection> {
+        self.run.check_inspection()?;
+        let (one, other) = (
+            InspectionPermit::resolve_day(self.run, Some(one))?,
+            InspectionPermit::resolve_day(self.run, Some(other))?,
+        );
+        let look =
+            InspectionPermit::start(self.run, "difference", &format!("{one} {other}"), Some(one.max(other)))?;
+        let album = Arc::new(DayEndRecorder::for_days(&[one, other]));
+        look.replay_until(self.run, one.max(other), album.clone())?;
+        let first = album.take(one).ok_or_else(day_not_reached)?;
+        if one == other {
+            return Ok(DayDifference::between((one, other), &first, &first));
+        }
+        let second = album.take(other).ok_or_else(day_not_reached)?;
+        Ok(DayDifference::between((one, other), &first, &second))
+    }
+
+    /// Compares this run with another on a day, by default on the first day that differs. Records the inspection in both.
+    ///
+    /// # Errors
+    /// As [`Inspector::compare_days`], for either run.
+    pub fn compare_with_run(
+        &mut self,
+        other: &mut Session,
+        day: Option<u32>,
+    ) -> Result<RunDifference, Rejection> {
+        let run = &mut *self.run;
+        run.check_inspection()?;
+        other.check_inspection()?;
+        let last_day = run.day().min(other.day());
+        if day.is_some() || last_day == 0 {
+            InspectionPermit::resolve_day(run, day)?;
+            InspectionPermit::resolve_day(other, day)?;
+        }
+        let (which, shown) = (|run: &Session| run.manifest().id.clone(), day.unwrap_or(last_day));
+        let names = (which(run), which(other));
+        let own_look = InspectionPermit::start_at_current_state(run, "difference", &names.1, shown)?;
+        let other_look = InspectionPermit::start_at_current_state(other, "difference", &names.0, shown)?;
+        let fingerprints = |run: &Session, look: &InspectionPermit| {
+            let seen = Arc::new(StateHashRecorder::with_ends(day.as_slice()));
+            look.replay_until(run, last_day, seen.clone()).map(|()| seen)
+        };
+        let (own, others) = (fingerprints(run, &own_look)?, fingerprints(other, &other_look)?);
+        let (days, other_days) = (own.part_hashes_by_day(), others.part_hashes_by_day());
+        let differs =
+            days.iter().zip(&other_days).take(last_day as usize).position(|(own, other)| own != other);
+        let first_day = differs.map(|at| at as u32 + 1);
+        let Some(day) = day.or(first_day) else {
+            return Ok(RunDifference { last_day, first_day, difference: None });
+        };
+        let moment = |run: &Session, look: &InspectionPermit, seen: &StateHashRecorder| {
+            // A requested day was recorded during the simulation.
+            if let Some(end) = seen.take(day) {
+                return Ok(end);
+            }
+            let album = Arc::new(DayEndRecorder::for_days(&[day]));
+            look.replay_until(run, day, album.clone())?;
+            album.take(day).ok_or_else(day_not_reached)
+        };
+        let difference = DayDifference::between(
+            (day, day),
+            &moment(run, &own_look, &own)?,
+            &moment(other, &other_look, &others)?,
+        );
+        Ok(RunDifference { last_day, first_day, difference: Some(difference) })
+    }
+}
+
+fn day_not_reached() -> Rejection {
+    Rejection::new("not_readable", "the re-simulation of the run did not reach the day")
+}

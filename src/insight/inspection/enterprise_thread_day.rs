@@ -1,0 +1,114 @@
+//! A thread from the enterprise's side at the start of a day: acceptable prices and the answer that it would give.
+
+use serde::Serialize;
+
+use novamind_world::customers::Customers;
+use novamind_world::customers::columns::Subscriber;
+use novamind_world::enterprise::messages::{late_days, late_penalty};
+use novamind_world::enterprise::{
+    Enterprise, NegotiationContext, OfferEvaluator, OfferResponse, Thread, adjust_relationship,
+    counter_price, highest_price,
+};
+use novamind_world::events::{Offering, Sender, ThreadKind};
+use novamind_world::identifiers::{ByPlan, Group};
+
+/// A plan, as an enterprise evaluates it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct EvaluatedPlan {
+    /// Perceived quality today.
+    pub quality: f64,
+    /// Perceived quality after the cost of a late answer, if the player answered today.
+    pub quality_if_answered: f64,
+    /// Upper price limit, dollars a month and seat: the enterprise accepts prices below it.
+    pub accepts_below: f64,
+    /// Whether the enterprise accepts every price, because the quality exceeds its highest requirement.
+    pub accepts_any_price: bool,
+    /// Price that the enterprise would name in its next turn, dollars a month and seat; 0 if it would not answer.
+    #[serde(rename = "would_name")]
+    pub counter: f64,
+}
+
+/// An open thread at the start of a day, before any answer.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EnterpriseThreadDay {
+    /// The day.
+    pub day: u32,
+    /// Number of the thread.
+    pub thread: u32,
+    /// Customer number.
+    pub customer: u32,
+    /// Group of the enterprise.
+    pub group: Group,
+    /// Type of the thread.
+    pub kind: ThreadKind,
+    /// Budget including the market's addition, dollars a month and seat.
+    pub budget: f64,
+    /// The plans.
+    pub plans: ByPlan<EvaluatedPlan>,
+    /// Remaining turns with an answer; at 0 the enterprise does not answer again.
+    pub remaining_turns: u32,
+    /// Relationship, 0..=1.
+    pub relationship: f64,
+    /// Change of the relationship by a late answer today; not positive.
+    pub late_penalty: f64,
+    /// Day of the enterprise's answer, if it is its turn.
+    pub reply_day: Option<u32>,
+    /// The player's newest offers, if the enterprise is to answer; empty if it is the player's turn.
+    pub offerings: Vec<Offering>,
+    /// The answer that the enterprise would give today; `None` without offers.
+    pub answer: Option<OfferResponse>,
+}
+
+/// Returns a thread at the start of the day, or `None` if it has ended.
+pub(crate) fn enterprise_thread_day(
+    thread: &Thread,
+    enterprise: &Enterprise,
+    customers: &Customers,
+    talks: &NegotiationContext<'_>,
+) -> Option<EnterpriseThreadDay> {
+    let (day, params) = (talks.day.day(), talks.day.params);
+    let turn = thread.active_turn(params.fidelity.reappearing_threads)?;
+    let row = enterprise.company(thread.customer)?.row(customers)?;
+    let judge = enterprise.offer_evaluator(thread, customers, talks)?;
+    let late_penalty = late_days(thread, day).map_or(0.0, |days| late_penalty(days, &params.enterprise));
+    let offended = match late_penalty {
+        0.0 => judge,
+        change => {
+            let relationship = adjust_relationship(row.relationship, change, &params.enterprise);
+            enterprise.offer_evaluator_for_row(thread, &Subscriber { relationship, ..row }, talks)?
+        }
+    };
+    // The answer follows the player's newest or next turn.
+    let turns = thread.last().number + u32::from(thread.last().sender != Sender::Agent);
+    let plans = ByPlan::from_fn(|plan| {
+        let OfferEvaluator { curve, quality, initial_offer_factor, .. } = offended;
+        let highest = highest_price(quality[plan], &curve, params);
+        let beyond = quality[plan] - curve.q_max > params.enterprise.accept_min_satisfaction_exclusive;
+        EvaluatedPlan {
+            quality: judge.quality[plan],
+            quality_if_answered: quality[plan],
+            accepts_below: highest,
+            accepts_any_price: beyond && !params.fidelity.deal_price_ceiling,
+            counter: counter_price(highest, initial_offer_factor, turns, params),
+        }
+    });
+    let offerings = match thread.last().sender {
+        Sender::Agent => thread.last_offerings().to_vec(),
+        _ => Vec::new(),
+    };
+    Some(EnterpriseThreadDay {
+        day,
+        thread: thread.number,
+        customer: thread.customer,
+        group: thread.group,
+        kind: thread.kind,
+        budget: judge.curve.c_max,
+        plans,
+        remaining_turns: judge.max_turns.saturating_sub(turns),
+        relationship: row.relationship,
+        late_penalty,
+        reply_day: turn.reply_day,
+        answer: (!offerings.is_empty()).then(|| judge.respond(&offerings, turns, params)),
+        offerings,
+    })
+}

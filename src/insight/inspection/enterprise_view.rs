@@ -1,0 +1,67 @@
+//! The hidden state of an enterprise: its evaluation of offers on each day with an open thread.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use super::enterprise_thread_day::{EnterpriseThreadDay, enterprise_thread_day};
+use novamind_session::{InspectionPermit, Session};
+use novamind_tools::Rejection;
+use novamind_world::customers::Customers;
+use novamind_world::day::observer::DayObserver;
+use novamind_world::enterprise::{Enterprise, NegotiationContext};
+use novamind_world::identifiers::Group;
+
+/// An enterprise, up to the shown day.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EnterpriseView {
+    /// Customer number.
+    pub customer: u32,
+    /// Group of the enterprise.
+    pub group: Group,
+    /// The shown day.
+    pub day: u32,
+    /// Threads by day.
+    pub days: Vec<EnterpriseThreadDay>,
+}
+
+impl EnterpriseView {
+    /// Returns the threads that were open on the shown day.
+    pub fn threads_of_day(&self) -> impl Iterator<Item = &EnterpriseThreadDay> {
+        self.days.iter().filter(|own| own.day == self.day)
+    }
+}
+
+impl EnterpriseView {
+    /// Returns an enterprise on a simulated day.
+    pub(super) fn new(
+        run: &Session,
+        look: &InspectionPermit,
+        customer: u32,
+        group: Group,
+    ) -> Result<EnterpriseView, Rejection> {
+        let day = look.day();
+        let diary = Arc::new(EnterpriseRecorder { customer, days: Mutex::default() });
+        look.replay_until(run, day, diary.clone())?;
+        let days = std::mem::take(&mut *diary.days.lock().unwrap_or_else(PoisonError::into_inner));
+        let days = days.into_iter().filter(|own| own.day <= day).collect();
+        Ok(EnterpriseView { customer, group, day, days })
+    }
+}
+
+/// Records the open threads of one enterprise.
+struct EnterpriseRecorder {
+    customer: u32,
+    days: Mutex<Vec<EnterpriseThreadDay>>,
+}
+
+impl DayObserver for EnterpriseRecorder {
+    fn before_negotiations(
+        &self,
+        enterprise: &Enterprise,
+        customers: &Customers,
+        talks: &NegotiationContext<'_>,
+    ) {
+        let threads = enterprise.threads.iter().filter(|thread| thread.customer == self.customer);
+        let seen = threads.filter_map(|thread| enterprise_thread_day(thread, enterprise, customers, talks));
+        self.days.lock().unwrap_or_else(PoisonError::into_inner).extend(seen);
+    }
+}

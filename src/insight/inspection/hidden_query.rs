@@ -1,0 +1,111 @@
+//! The hidden tables `hidden.*`, together with the visible tables (docs/formats/hidden-tables.md).
+
+use super::hidden_tables::{CUSTOMERS_TABLE, CustomersSnapshot, HiddenTables, THREADS_TABLE};
+use super::inspector::Inspector;
+use novamind_database::{Interrupt, QueryResult, QueryTicket, Table};
+use novamind_session::{InspectionPermit, query_rejection};
+use novamind_tools::Rejection;
+
+impl Inspector<'_> {
+    /// Runs a statement that may read hidden tables. `hidden.customers` contains one day, by default the last one; all others
+    /// contain every day. Records the inspection.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `unreadable_record`, `not_saved`, the `sql_` codes.
+    pub fn query_hidden_tables(&mut self, sql: &str, day: Option<u32>) -> Result<QueryResult, Rejection> {
+        let ticket = self.hidden_query_interrupt()?.ticket();
+        self.query_hidden_tables_with_ticket(ticket, sql, day)
+    }
+
+    /// Runs a statement like [`Inspector::query_hidden_tables`] with a ticket of [`Inspector::hidden_query_interrupt`] from the time of the request.
+    ///
+    /// # Errors
+    /// As [`Inspector::query_hidden_tables`].
+    pub fn query_hidden_tables_with_ticket(
+        &mut self,
+        ticket: QueryTicket,
+        sql: &str,
+        day: Option<u32>,
+    ) -> Result<QueryResult, Rejection> {
+        let look = InspectionPermit::start(self.run, "sql", sql, day)?;
+        // After an error, the next inspection rebuilds the tables.
+        let mut tables = self.take_hidden_tables()?;
+        let named = tables.connection().hidden_tables_in(sql);
+        // One recorder for all tables: the days are simulated only once.
+        let keeps_threads =
+            self.cache.hidden_days.keeps_threads() || named.iter().any(|table| table.name == THREADS_TABLE);
+        for table in named {
+            match table.name.as_str() {
+                CUSTOMERS_TABLE => self.fill_customers(&look, &mut tables, ticket, table)?,
+                _ => self.fill_days(&look, &mut tables, ticket, table, keeps_threads)?,
+            }
+        }
+        let limits = self.run.company().query_limits();
+        let answer = tables.connection().query_with_ticket(ticket, sql, limits);
+        self.cache.hidden_tables = Some(tables);
+        answer.map_err(query_rejection)
+    }
+
+    /// Returns a handle that stops the running statement on hidden tables.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`, or an error if the run has no database.
+    pub fn hidden_query_interrupt(&mut self) -> Result<Interrupt, Rejection> {
+        self.run.check_inspection()?;
+        let tables = self.take_hidden_tables()?;
+        Ok(self.cache.hidden_tables.insert(tables).connection().interrupt())
+    }
+
+    fn take_hidden_tables(&mut self) -> Result<HiddenTables, Rejection> {
+        // The visible tables must be complete, as for any other statement.
+        self.run.up_to_date_database()?;
+        let database = self.run.database().replacement_count();
+        match self.cache.hidden_tables.take().filter(|tables| tables.database_number() == database) {
+            Some(tables) => Ok(tables),
+            None => {
+                let tables = HiddenTables::new(InspectionPermit::open_hidden_tables(self.run)?, database);
+                if self.cache.hidden_days.keeps_threads() {
+                    // The threads of its days were moved to tables that no longer exist.
+                    self.cache.replay = None;
+                }
+                Ok(tables)
+            }
+        }
+    }
+
+    fn fill_customers(
+        &self,
+        look: &InspectionPermit,
+        tables: &mut HiddenTables,
+        ticket: QueryTicket,
+        table: &Table,
+    ) -> Result<(), Rejection> {
+        let (now, day) = (look.hidden_state(self.run).world(), look.day());
+        let is_now = day == now.day;
+        let wanted = if is_now { CustomersSnapshot::current(now) } else { CustomersSnapshot::DayEnd(day) };
+        if tables.shows_customers(wanted) {
+            return Ok(());
+        }
+        let shown = match is_now {
+            true => tables.fill_customers(ticket, table, wanted, now),
+            false => tables.fill_customers(ticket, table, wanted, &look.world_at_end_of(self.run, day)?),
+        };
+        shown.map_err(query_rejection)
+    }
+
+    fn fill_days(
+        &mut self,
+        look: &InspectionPermit,
+        tables: &mut HiddenTables,
+        ticket: QueryTicket,
+        table: &'static Table,
+        keeps_threads: bool,
+    ) -> Result<(), Rejection> {
+        let day = self.run.day();
+        if !tables.is_missing_day(table, day) {
+            return Ok(());
+        }
+        let diary = self.all_hidden_days(look, keeps_threads)?;
+        tables.fill_to(day, ticket, table, &diary).map_err(query_rejection)
+    }
+}

@@ -1,0 +1,131 @@
+//! The hidden tables of an open run: their connection, and the days that they contain.
+
+use std::collections::BTreeMap;
+
+use super::hidden_day::HiddenDayRecorder;
+use super::hidden_rows::{
+    competitor_row, customer_rows, drift_rows, factor_rows, group_rows, pmi_row, thread_row,
+};
+use novamind_database::{QueryConnection, QueryError, QueryTicket, Table};
+use novamind_world::canonical::hash_of;
+use novamind_world::state::World;
+
+/// The connection of the x-ray, the only one with hidden tables.
+pub(crate) struct HiddenTables {
+    connection: QueryConnection,
+    database_number: u32,
+    /// Last day in each table that contains every day.
+    filled_days: BTreeMap<&'static str, u32>,
+    /// Content of the customer table; `None` before its first use.
+    shown: Option<CustomersSnapshot>,
+}
+
+/// The content of the customer table.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum CustomersSnapshot {
+    /// The current state, including calls since the last day.
+    Current {
+        /// Hash of the subscriber columns.
+        customers: blake3::Hash,
+        /// Hash of enterprises and threads.
+        companies: blake3::Hash,
+    },
+    /// The state at the end of a day.
+    DayEnd(u32),
+}
+
+impl CustomersSnapshot {
+    pub(crate) fn current(world: &World) -> CustomersSnapshot {
+        CustomersSnapshot::Current {
+            customers: world.customers.hash(),
+            companies: hash_of(&world.enterprise),
+        }
+    }
+}
+
+/// The table that contains one day.
+pub(crate) const CUSTOMERS_TABLE: &str = "hidden.customers";
+/// The table whose rows are recorded only after its first use.
+pub(crate) const THREADS_TABLE: &str = "hidden.threads";
+
+impl HiddenTables {
+    /// Creates empty tables on a connection to a database of the run.
+    pub(crate) fn new(connection: QueryConnection, database: u32) -> HiddenTables {
+        HiddenTables { connection, database_number: database, filled_days: BTreeMap::new(), shown: None }
+    }
+
+    pub(crate) fn database_number(&self) -> u32 {
+        self.database_number
+    }
+
+    pub(crate) fn connection(&self) -> &QueryConnection {
+        &self.connection
+    }
+
+    /// Whether a table that contains every day lacks one.
+    pub(crate) fn is_missing_day(&self, table: &Table, day: u32) -> bool {
+        self.last_filled_day(table) < day
+    }
+
+    fn last_filled_day(&self, table: &Table) -> u32 {
+        self.filled_days.get(table.name.as_str()).copied().unwrap_or(0)
+    }
+
+    /// Whether the customer table already has this content.
+    pub(crate) fn shows_customers(&self, wanted: CustomersSnapshot) -> bool {
+        self.shown == Some(wanted)
+    }
+
+    /// Extends a table up to a day with recorded days. Takes the threads of these days.
+    pub(crate) fn fill_to(
+        &mut self,
+        day: u32,
+        ticket: QueryTicket,
+        table: &'static Table,
+        diary: &HiddenDayRecorder,
+    ) -> Result<(), QueryError> {
+        let lacking = self.last_filled_day(table) + 1..=day;
+        let own = &self.connection;
+        match table.name.as_str() {
+            "hidden.groups" => {
+                let rows = lacking.filter_map(|day| diary.with_day(day, |seen| group_rows(day, seen)));
+                own.fill_hidden_table(ticket, table, false, rows.flatten())
+            }
+            "hidden.drift" => {
+                let rows = lacking.filter_map(|day| diary.with_day(day, |seen| drift_rows(day, seen)));
+                own.fill_hidden_table(ticket, table, false, rows.flatten())
+            }
+            "hidden.factors" => {
+                let rows = lacking.filter_map(|day| diary.with_day(day, |seen| factor_rows(day, seen)));
+                own.fill_hidden_table(ticket, table, false, rows.flatten())
+            }
+            "hidden.competitors" => {
+                let rows = lacking.filter_map(|day| diary.with_day(day, |seen| competitor_row(day, seen)));
+                own.fill_hidden_table(ticket, table, false, rows)
+            }
+            "hidden.pmi" => {
+                let rows = lacking.filter_map(|day| diary.with_day(day, |seen| pmi_row(day, seen)));
+                own.fill_hidden_table(ticket, table, false, rows)
+            }
+            _ => {
+                let threads = lacking.flat_map(|day| diary.take_threads(day));
+                own.fill_hidden_table(ticket, table, false, threads.map(|own| thread_row(&own)))
+            }
+        }?;
+        self.filled_days.insert(&table.name, day);
+        Ok(())
+    }
+
+    /// Fills the customer table from a world.
+    pub(crate) fn fill_customers(
+        &mut self,
+        ticket: QueryTicket,
+        table: &Table,
+        wanted: CustomersSnapshot,
+        world: &World,
+    ) -> Result<(), QueryError> {
+        self.connection.fill_hidden_table(ticket, table, true, customer_rows(world))?;
+        self.shown = Some(wanted);
+        Ok(())
+    }
+}

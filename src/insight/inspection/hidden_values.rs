@@ -1,0 +1,89 @@
+//! True values at the end of a day, which screens show next to figures and estimates.
+
+use super::competitor_state::{NextCompetitorMove, next_competitor_move};
+use super::hidden_day::HiddenDay;
+use super::inspector::Inspector;
+use novamind_session::InspectionPermit;
+use novamind_tools::Rejection;
+use novamind_world::customers::drift::next_drift_day;
+use novamind_world::identifiers::{ByGroup, Group};
+
+/// True values of a group at the end of a day.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TrueGroupValues {
+    /// Whether the group was discovered; other groups have no leads.
+    pub is_known: bool,
+    /// Reputation.
+    pub reputation: f64,
+    /// Mean satisfaction of its subscribers; `None` without subscribers.
+    pub satisfaction: Option<f64>,
+    /// Expected leads of the day.
+    pub expected_leads: f64,
+    /// Mean budget of new customers, dollars a month (for enterprises per seat), including the market's addition.
+    pub budget: f64,
+    /// Mean quality floor of new customers, including the market's addition.
+    pub quality_floor: f64,
+    /// Market cap in customers; 0 means no limit.
+    pub market_cap: f64,
+}
+
+/// True values of groups and market at the end of a day.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HiddenValues {
+    /// The day, from 1.
+    pub day: u32,
+    /// The groups.
+    pub groups: ByGroup<TrueGroupValues>,
+    /// Shared quality that competitors have not copied.
+    pub shared_bank: f64,
+    /// Targeted quality that competitors have not copied, for groups that have any.
+    pub group_banks: Vec<(Group, f64)>,
+    /// Next competitor move; `None` if there is none before the end of the run.
+    pub next_competitor_move: Option<NextCompetitorMove>,
+    /// Common addition to expectations by competitors and drift.
+    pub common_expectation: f64,
+    /// Day of the next drift; `None` if there is none before the end of the run.
+    pub next_drift_day: Option<u32>,
+    /// Index of the economy.
+    pub pmi: f64,
+}
+
+impl Inspector<'_> {
+    /// Returns the true values at the end of a day, by default the last one. Records the inspection.
+    ///
+    /// # Errors
+    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `unreadable_record`, `not_saved`.
+    pub fn hidden_values(&mut self, day: Option<u32>) -> Result<HiddenValues, Rejection> {
+        let look = InspectionPermit::start(self.run, "values", "", day)?;
+        let day = look.day();
+        let seen = self.hidden_day(&look, day)?;
+        let own = seen.banks.group_banks;
+        let next_drift = next_drift_day(day, &look.hidden_state(self.run).params().drift);
+        Ok(HiddenValues {
+            day,
+            groups: ByGroup::from_fn(|group| true_group_values(group, &seen)),
+            shared_bank: seen.banks.shared,
+            group_banks: Group::all()
+                .map(|group| (group, own[group]))
+                .filter(|(_, bank)| *bank != 0.0)
+                .collect(),
+            next_competitor_move: next_competitor_move(look.hidden_state(self.run), day, &own),
+            common_expectation: seen.market.drift.global_quality,
+            next_drift_day: Some(next_drift).filter(|next| *next <= self.run.manifest().days),
+            pmi: seen.market.pmi,
+        })
+    }
+}
+
+fn true_group_values(group: Group, seen: &HiddenDay) -> TrueGroupValues {
+    let evening = &seen.groups[group];
+    TrueGroupValues {
+        is_known: seen.known_groups[group],
+        reputation: evening.reputation,
+        satisfaction: evening.satisfaction_moments.map(|(satisfaction, _)| satisfaction),
+        expected_leads: seen.lead_factors[group].expected(),
+        budget: evening.budget,
+        quality_floor: evening.quality_floor,
+        market_cap: evening.market_cap,
+    }
+}

@@ -1,0 +1,74 @@
+//! The hidden state of an individual: its first decision, and its evaluated decision of each day.
+
+use std::sync::Arc;
+
+use super::individual_recorder::{IndividualDay, IndividualRecorder, SignupDecision};
+use novamind_session::{InspectionPermit, Session};
+use novamind_tools::Rejection;
+use novamind_world::identifiers::Group;
+
+/// An individual, up to the shown day.
+#[derive(Debug, Clone)]
+pub struct IndividualView {
+    /// Customer number.
+    pub customer: u32,
+    /// Group of the individual.
+    pub group: Group,
+    /// The shown day.
+    pub day: u32,
+    /// Decision as a lead.
+    pub signup: SignupDecision,
+    /// Days as a subscriber, from the day after sign-up.
+    pub days: Vec<IndividualDay>,
+}
+
+impl IndividualView {
+    /// Returns the shown day, or the last earlier day as a subscriber.
+    pub fn day_shown(&self) -> Option<&IndividualDay> {
+        self.days.last()
+    }
+
+    /// Returns the day on which the currently open issue was opened.
+    pub fn issue_opened_on(&self) -> Option<u32> {
+        let shown = self.day_shown().filter(|own| own.open_issue_days > 0)?;
+        let days = self.days.iter().rev();
+        let mut later = u32::MAX;
+        // The count increases while an issue is open; otherwise a new issue was opened.
+        let same = days.take_while(|own| {
+            let is_same = own.open_issue_days > 0 && own.open_issue_days < later;
+            later = own.open_issue_days;
+            is_same
+        });
+        same.last().map_or(Some(shown.day), |own| Some(own.day))
+    }
+
+    /// Returns the last bill before that day.
+    pub fn last_bill(&self) -> Option<&IndividualDay> {
+        let shown = self.day_shown()?.day;
+        self.days.iter().rev().find(|own| own.is_due && own.day < shown)
+    }
+}
+
+impl IndividualView {
+    /// Returns an individual on a simulated day.
+    pub(super) fn new(
+        run: &Session,
+        look: &InspectionPermit,
+        customer: u32,
+        found: (Group, u32),
+        arrival: u32,
+    ) -> Result<IndividualView, Rejection> {
+        let day = look.day();
+        let diary = Arc::new(IndividualRecorder::new(customer, found, arrival));
+        look.replay_until(run, day, diary.clone())?;
+        let pages = diary.take_record();
+        let Some(first) = pages.signup else {
+            return Err(Rejection::new(
+                "not_readable",
+                format!("the first day of customer {customer} could not be re-simulated"),
+            ));
+        };
+        let days = pages.days.into_iter().filter(|own| own.day <= day).collect();
+        Ok(IndividualView { customer, group: found.0, day, signup: first, days })
+    }
+}

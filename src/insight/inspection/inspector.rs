@@ -1,0 +1,97 @@
+//! The inspector of hidden state. Simulated days are cached with the run for the next question.
+
+use std::sync::Arc;
+
+use super::breakpoint::list::Breakpoints;
+use super::hidden_day::{HiddenDay, HiddenDayRecorder};
+use super::hidden_tables::HiddenTables;
+use novamind_session::{InspectionPermit, RunReplay, Session};
+use novamind_tools::Rejection;
+
+/// Cached data of inspections of a run.
+#[derive(Default)]
+pub(super) struct InspectorCache {
+    /// The copy that re-simulates the days; `None` before the first question.
+    pub(super) replay: Option<RunReplay>,
+    pub(super) hidden_days: Arc<HiddenDayRecorder>,
+    pub(super) breakpoints: Breakpoints,
+    /// The hidden tables; `None` before the first query.
+    pub(super) hidden_tables: Option<HiddenTables>,
+}
+
+/// The inspector of a run's hidden state. Each question is rejected, or recorded before it is answered.
+pub struct Inspector<'a> {
+    pub(super) run: &'a mut Session,
+    pub(super) cache: Box<InspectorCache>,
+}
+
+/// A run whose hidden state can be inspected.
+pub trait Inspect {
+    /// Returns an inspector of the run.
+    fn inspect(&mut self) -> Inspector<'_>;
+}
+
+impl Inspect for Session {
+    fn inspect(&mut self) -> Inspector<'_> {
+        Inspector { cache: self.extension().take(), run: self }
+    }
+}
+
+impl Drop for Inspector<'_> {
+    fn drop(&mut self) {
+        self.run.extension().store(std::mem::take(&mut self.cache));
+    }
+}
+
+impl Inspector<'_> {
+    /// Returns the hidden state of completed days, in ascending order.
+    ///
+    /// # Errors
+    /// `not_possible`, `unreadable_record`.
+    pub(super) fn hidden_days(
+        &mut self,
+        look: &InspectionPermit,
+        days: impl IntoIterator<Item = u32>,
+    ) -> Result<Vec<HiddenDay>, Rejection> {
+        let diary = self.all_hidden_days(look, self.cache.hidden_days.keeps_threads())?;
+        Ok(days.into_iter().filter_map(|day| diary.day(day)).collect())
+    }
+
+    /// Returns the hidden state of a completed day.
+    ///
+    /// # Errors
+    /// `not_possible`, `unreadable_record`.
+    pub(super) fn hidden_day(&mut self, look: &InspectionPermit, day: u32) -> Result<HiddenDay, Rejection> {
+        let seen = self.hidden_days(look, [day])?.pop();
+        seen.ok_or_else(|| Rejection::new("not_readable", format!("day {day} could not be re-simulated")))
+    }
+
+    /// Returns the hidden state of all days up to now, optionally with threads. Restarts the re-simulation if it has no
+    /// threads yet.
+    ///
+    /// # Errors
+    /// `not_possible`, `unreadable_record`.
+    pub(super) fn all_hidden_days(
+        &mut self,
+        look: &InspectionPermit,
+        with_threads: bool,
+    ) -> Result<Arc<HiddenDayRecorder>, Rejection> {
+        let kept =
+            self.cache.replay.take().filter(|_| self.cache.hidden_days.keeps_threads() == with_threads);
+        let mut shadow = match kept {
+            Some(shadow) => shadow,
+            None => {
+                self.cache.hidden_days = Arc::new(if with_threads {
+                    HiddenDayRecorder::with_threads()
+                } else {
+                    HiddenDayRecorder::default()
+                });
+                look.replay(self.run, self.cache.hidden_days.clone())?
+            }
+        };
+        // After an error, the next inspection restarts the re-simulation.
+        shadow.advance(self.run, |_| true, &mut |_| {})?;
+        self.cache.replay = Some(shadow);
+        Ok(self.cache.hidden_days.clone())
+    }
+}

@@ -1,0 +1,234 @@
+//! The reputation equation of a group on a day, and the spillover of changes between groups.
+
+use serde::Serialize;
+
+use novamind_world::identifiers::{ByGroup, Group};
+use novamind_world::market::Market;
+use novamind_world::params::Params;
+use novamind_world::reputation::{
+    ReputationBook, ReputationCause, ReputationContribution, ReputationWrite, SpilloverEffect, daily_change,
+    spillover_effect, unrounded_daily_change,
+};
+
+/// The cancellations of a day and their effect.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct DepartureEffect {
+    /// Number of cancellations with an effect; a lost enterprise counts once for each thread.
+    pub count: u32,
+    /// Change of the reputation; not positive.
+    pub change: f64,
+}
+
+/// The contribution of a group's subscribers.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SubscriberContribution {
+    /// Number of subscribers.
+    pub subscribers: u32,
+    /// Change by their satisfaction before the threshold.
+    pub requested_change: f64,
+    /// Whether the change reached the threshold and was applied.
+    pub is_applied: bool,
+}
+
+impl SubscriberContribution {
+    /// Returns the applied change.
+    pub fn applied_change(&self) -> f64 {
+        if self.is_applied { self.requested_change } else { 0.0 }
+    }
+}
+
+/// Thresholds below which changes are dropped.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ChangeThresholds {
+    /// A contribution is dropped if its absolute value is below this.
+    pub subscriber_contribution: f64,
+    /// A spillover is dropped if its absolute value is not above this.
+    pub spillover: f64,
+}
+
+#[derive(Debug, Clone, Default)]
+pub(crate) struct ReputationDay {
+    before: ByGroup<f64>,
+    individual_departures: ByGroup<DepartureEffect>,
+    enterprise_departures: ByGroup<DepartureEffect>,
+    contributions: ByGroup<SubscriberContribution>,
+    /// Spillovers with a weight, in order.
+    spillovers: Vec<SpilloverEffect>,
+    bounds: ByGroup<f64>,
+    after: ByGroup<f64>,
+    thresholds: ChangeThresholds,
+}
+
+impl ReputationDay {
+    pub(crate) fn at_start_of_day(book: &ReputationBook) -> ReputationDay {
+        ReputationDay { before: ByGroup::from_fn(|group| book.get(group)), ..ReputationDay::default() }
+    }
+
+    /// Adds a write of a mechanism.
+    pub(crate) fn add_write(&mut self, write: &ReputationWrite<'_>) {
+        let group = write.group;
+        let without_bounds = write.changes.iter().fold(write.before, |value, change| value + change);
+        self.bounds[group] += write.after - without_bounds;
+        let departures = match write.cause {
+            ReputationCause::Cancellations => &mut self.individual_departures[group],
+            ReputationCause::LostEnterprise => &mut self.enterprise_departures[group],
+            ReputationCause::Contributions(_) | ReputationCause::Spillover(_) => return,
+        };
+        departures.count += write.changes.len() as u32;
+        departures.change += write.changes.iter().sum::<f64>();
+    }
+
+    /// Adds the contributions of subscribers, including dropped ones.
+    pub(crate) fn add_subscriber_contributions(
+        &mut self,
+        moods: &ByGroup<ReputationContribution>,
+        market: &Market,
+        params: &Params,
+    ) {
+        let law = &params.reputation;
+        self.thresholds = ChangeThresholds {
+            subscriber_contribution: law.daily_delta_min_abs,
+            spillover: law.cross_delta_min_abs,
+        };
+        self.after = ByGroup::from_fn(|group| market.reputation.get(group));
+        for group in Group::all().filter(|group| moods[*group].count > 0) {
+            let (mood, change) = (&moods[group], daily_change(&moods[group], law));
+            let called = unrounded_daily_change(mood, law);
+            self.contributions[group] = SubscriberContribution {
+                subscribers: mood.count,
+                requested_change: called,
+                is_applied: change.is_some(),
+            };
+            let Some(change) = change.filter(|_| market.is_known(group)) else { continue };
+            let others = Group::all().filter(|other| *other != group && market.is_known(*other));
+            let spills = others.map(|other| spillover_effect(change, group, other, params));
+            self.spillovers.extend(spills.filter(|spill| spill.weight > 0.0));
+        }
+    }
+}
+
+/// The reputation of a group on a day: before + departures + own contribution + spills + bounds = after.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReputationEquation {
+    /// The group.
+    pub group: Group,
+    /// The day, from 1.
+    pub day: u32,
+    /// Reputation at the start of the day.
+    pub before: f64,
+    /// Cancellations of individuals without an acceptable plan.
+    pub individual_departures: DepartureEffect,
+    /// Lost enterprises.
+    pub enterprise_departures: DepartureEffect,
+    /// Contribution of its subscribers.
+    pub contribution: SubscriberContribution,
+    /// Spillovers from other groups, including dropped ones.
+    pub spillovers: Vec<SpilloverEffect>,
+    /// Effect of the lower and upper limit.
+    pub bounds: f64,
+    /// Reputation at the end of the day.
+    pub after: f64,
+    /// Reputation at the end of up to 28 days, in ascending order; this day is last.
+    pub recent_days: Vec<f64>,
+    /// Thresholds below which changes are dropped.
+    pub thresholds: ChangeThresholds,
+}
+
+impl ReputationEquation {
+    pub(crate) fn new(
+        group: Group,
+        day: u32,
+        seen: &ReputationDay,
+        evenings: Vec<f64>,
+    ) -> ReputationEquation {
+        ReputationEquation {
+            group,
+            day,
+            before: seen.before[group],
+            individual_departures: seen.individual_departures[group],
+            enterprise_departures: seen.enterprise_departures[group],
+            contribution: seen.contributions[group],
+            spillovers: seen.spillovers.iter().copied().filter(|spill| spill.to == group).collect(),
+            bounds: seen.bounds[group],
+            after: seen.after[group],
+            recent_days: evenings,
+            thresholds: seen.thresholds,
+        }
+    }
+
+    /// Returns the sum of the terms.
+    pub fn total(&self) -> f64 {
+        let spills: f64 = self.spillovers.iter().filter(|spill| spill.counts).map(|spill| spill.change).sum();
+        self.before
+            + self.individual_departures.change
+            + self.enterprise_departures.change
+            + self.contribution.applied_change()
+            + spills
+            + self.bounds
+    }
+}
+
+/// The spillover of a day between discovered groups.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Spillover {
+    /// The day, from 1.
+    pub day: u32,
+    /// Discovered groups.
+    pub known_groups: Vec<Group>,
+    /// Contribution of each group's subscribers.
+    pub contributions: ByGroup<SubscriberContribution>,
+    /// Spillovers with a weight, including dropped ones.
+    pub spillovers: Vec<SpilloverEffect>,
+    /// Thresholds below which changes are dropped.
+    pub thresholds: ChangeThresholds,
+}
+
+impl Spillover {
+    pub(crate) fn new(day: u32, known: &ByGroup<bool>, seen: ReputationDay) -> Spillover {
+        let known = Group::all().filter(|group| known[*group]).collect();
+        let ReputationDay { contributions: own, spillovers: spills, thresholds: least, .. } = seen;
+        Spillover { day, known_groups: known, contributions: own, spillovers: spills, thresholds: least }
+    }
+
+    /// Returns the spillover from one group to another; `None` without a weight or a change.
+    pub fn between(&self, from: Group, to: Group) -> Option<SpilloverEffect> {
+        self.spillovers.iter().copied().find(|spill| spill.from == from && spill.to == to)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::inspection::hidden_day::HiddenDayRecorder;
+    use novamind_world::day::step_day_observed;
+    use novamind_world::events::Facts;
+    use novamind_world::fixed_inputs::FixedInputs;
+    use novamind_world::random::Streams;
+    use novamind_world::state::World;
+
+    #[test]
+    fn reputation_floor_is_a_separate_term() {
+        let (params, streams) = (Params::bundled(), Streams::new(5));
+        let mut facts = Facts::default();
+        let mut world = World::new(500, 1e9, &params, &mut facts);
+        novamind_world::test_kit::policy_p(&mut world);
+        let diary = HiddenDayRecorder::default();
+        let mut day = |world: &mut World| {
+            step_day_observed(world, &params, &streams, &FixedInputs::default(), &mut facts, &diary);
+        };
+        (0..80).for_each(|_| day(&mut world));
+        // Zero quality and higher prices cause low satisfaction and many cancellations.
+        world.settings.core.prices.0 = [90.0, 190.0, 390.0];
+        world.settings.core.capacity_tier = 0;
+        (0..30).for_each(|_| day(&mut world));
+        let s1 = Group::parse("S1").expect("a group");
+        world.market.reputation.set(s1, 0.0011);
+        day(&mut world);
+        let seen = diary.day(world.day).expect("a day").reputation;
+        let own = ReputationEquation::new(s1, world.day, &seen, Vec::new());
+        assert_eq!((own.before, own.after), (0.0011, params.reputation.reputation_floor));
+        assert_eq!(own.after.to_bits(), world.market.reputation.get(s1).to_bits());
+        assert!(own.contribution.requested_change < 0.0 && own.bounds > 1e-6, "{own:?}");
+        assert!((own.total() - own.after).abs() < 1e-12, "{own:?}");
+    }
+}

@@ -1,0 +1,231 @@
+//! The satisfaction equation of a group on a day: the terms of the mechanism, each as a mean over the subscribers.
+
+use std::collections::BTreeMap;
+use std::ops::AddAssign;
+
+use novamind_world::context::DayContext;
+use novamind_world::customers::columns::Block;
+use novamind_world::identifiers::{ByGroup, Group};
+use novamind_world::retention::satisfaction::{SatisfactionTerms, satisfaction_terms};
+
+/// A term of instant satisfaction (docs/mechanics/retention/satisfaction.md).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SatisfactionTerm {
+    /// Delivered quality, before the service of the day.
+    Delivered,
+    /// Overload and outages.
+    Service,
+    /// Relationship, positive or negative.
+    Relationship,
+    /// Tenure.
+    Tenure,
+    /// A quota below the demand.
+    Quota,
+    /// Open issues.
+    Issues,
+    /// In-app ads.
+    Ads,
+    /// Required quality at the price.
+    Required,
+    /// The market's addition to required quality.
+    Expectations,
+}
+
+impl SatisfactionTerm {
+    /// All terms in display order.
+    pub const ALL: [SatisfactionTerm; 9] = [
+        SatisfactionTerm::Delivered,
+        SatisfactionTerm::Service,
+        SatisfactionTerm::Relationship,
+        SatisfactionTerm::Tenure,
+        SatisfactionTerm::Quota,
+        SatisfactionTerm::Issues,
+        SatisfactionTerm::Ads,
+        SatisfactionTerm::Required,
+        SatisfactionTerm::Expectations,
+    ];
+
+    /// Returns the name.
+    pub fn id(self) -> &'static str {
+        [
+            "delivered",
+            "service",
+            "relationship",
+            "tenure",
+            "quota",
+            "issues",
+            "ads",
+            "required",
+            "expectations",
+        ][self as usize]
+    }
+
+    /// Returns the value of the term for each subscriber. The sum of the terms is instant satisfaction.
+    fn contribution(self, felt: &SatisfactionTerms) -> f64 {
+        let own = &felt.experience;
+        match self {
+            SatisfactionTerm::Delivered => own.delivered + felt.service_penalty,
+            SatisfactionTerm::Service => 0.0 - felt.service_penalty,
+            SatisfactionTerm::Relationship => own.relationship,
+            SatisfactionTerm::Tenure => own.tenure,
+            // The remainder to the sum of all other terms, because the quota is a factor of several terms.
+            SatisfactionTerm::Quota => {
+                felt.perceived - (own.delivered + own.relationship + own.tenure - own.issues - own.ads)
+            }
+            SatisfactionTerm::Issues => 0.0 - own.issues,
+            SatisfactionTerm::Ads => 0.0 - own.ads,
+            SatisfactionTerm::Required => 0.0 - felt.required,
+            SatisfactionTerm::Expectations => 0.0 - felt.expectation,
+        }
+    }
+}
+
+/// Sums over subscribers.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct SatisfactionSums {
+    count: u32,
+    before: f64,
+    terms: [f64; SatisfactionTerm::ALL.len()],
+    instant: f64,
+    after: f64,
+}
+
+impl SatisfactionSums {
+    /// Sums a block before its satisfaction changes.
+    pub(crate) fn from_block(group: Group, block: &Block, day: &DayContext<'_>) -> SatisfactionSums {
+        let mut sums = SatisfactionSums { count: block.len() as u32, ..SatisfactionSums::default() };
+        for at in 0..block.len() {
+            let own = satisfaction_terms(group, block, at, day);
+            sums.before += own.before;
+            sums.instant += own.instant;
+            sums.after += own.after;
+            for (sum, term) in sums.terms.iter_mut().zip(SatisfactionTerm::ALL) {
+                *sum += term.contribution(&own);
+            }
+        }
+        sums
+    }
+}
+
+impl AddAssign for SatisfactionSums {
+    fn add_assign(&mut self, other: SatisfactionSums) {
+        self.count += other.count;
+        self.before += other.before;
+        self.instant += other.instant;
+        self.after += other.after;
+        for (sum, term) in self.terms.iter_mut().zip(other.terms) {
+            *sum += term;
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct SatisfactionDay {
+    sums: SatisfactionSums,
+    departed: u32,
+    weight: f64,
+}
+
+/// Sums of a day's blocks, in any order.
+pub(crate) type SatisfactionSumsByBlock = BTreeMap<(Group, u32), SatisfactionSums>;
+
+impl SatisfactionDay {
+    /// Combines the blocks of all groups with their cancellations. `weight` is the weight of a day.
+    pub(crate) fn by_group(
+        blocks: &SatisfactionSumsByBlock,
+        left: &ByGroup<u32>,
+        weight: f64,
+    ) -> ByGroup<SatisfactionDay> {
+        let day =
+            |group| SatisfactionDay { sums: SatisfactionSums::default(), departed: left[group], weight };
+        let mut days = ByGroup::from_fn(day);
+        for ((group, _), sums) in blocks {
+            days[*group].sums += *sums;
+        }
+        days
+    }
+}
+
+/// The mean satisfaction of a group on a day: after = (1 - weight) before + weight (sum of the terms).
+#[derive(Debug, Clone, PartialEq)]
+pub struct SatisfactionEquation {
+    /// The group.
+    pub group: Group,
+    /// The day, from 1.
+    pub day: u32,
+    /// Weight of a day, 0..=1.
+    pub weight: f64,
+    /// Number of individuals and enterprises that cancelled on the day.
+    pub departed: u32,
+    /// Number of new subscribers of the day, who are not in the mean.
+    pub joined: u32,
+    /// Number of subscribers at the end of the day.
+    pub subscribers: u32,
+    /// Their mean satisfaction; `None` without subscribers.
+    pub end_of_day: Option<f64>,
+    /// Mean satisfaction at the end of up to 28 days, in ascending order; this day is last. `None` without subscribers.
+    pub recent_days: Vec<Option<f64>>,
+    today: SatisfactionDay,
+    yesterday: Option<SatisfactionDay>,
+}
+
+impl SatisfactionEquation {
+    /// Creates the equation of a group on a day from its subscribers at the end of the day with their mean satisfaction, the
+    /// day before, and the mean satisfaction of recent days.
+    pub(crate) fn new(
+        group: Group,
+        day: u32,
+        own: SatisfactionDay,
+        (subscribers, evening): (u32, Option<f64>),
+        yesterday: Option<SatisfactionDay>,
+        evenings: Vec<Option<f64>>,
+    ) -> SatisfactionEquation {
+        SatisfactionEquation {
+            group,
+            day,
+            weight: own.weight,
+            departed: own.departed,
+            joined: (subscribers + own.departed).saturating_sub(own.sums.count),
+            subscribers,
+            end_of_day: evening,
+            recent_days: evenings,
+            today: own,
+            yesterday,
+        }
+    }
+
+    /// Returns the number of subscribers in the mean.
+    pub fn included_subscribers(&self) -> u32 {
+        self.today.sums.count
+    }
+
+    /// Returns their mean satisfaction before the day; `None` without subscribers.
+    pub fn before(&self) -> Option<f64> {
+        mean(self.today.sums.before, self.today.sums.count)
+    }
+
+    /// Returns their mean satisfaction after the day.
+    pub fn after(&self) -> Option<f64> {
+        mean(self.today.sums.after, self.today.sums.count)
+    }
+
+    /// Returns their mean instant satisfaction, the sum of the terms.
+    pub fn instant(&self) -> Option<f64> {
+        mean(self.today.sums.instant, self.today.sums.count)
+    }
+
+    /// Returns the mean of a term.
+    pub fn term(&self, term: SatisfactionTerm) -> Option<f64> {
+        mean(self.today.sums.terms[term as usize], self.today.sums.count)
+    }
+
+    /// Returns the mean of a term on the day before, over the subscribers of that day.
+    pub fn term_yesterday(&self, term: SatisfactionTerm) -> Option<f64> {
+        let sums = self.yesterday?.sums;
+        mean(sums.terms[term as usize], sums.count)
+    }
+}
+
+fn mean(sum: f64, count: u32) -> Option<f64> {
+    (count > 0).then(|| sum / f64::from(count))
+}

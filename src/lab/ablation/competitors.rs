@@ -1,0 +1,64 @@
+//! Competitor settings of the two axes: copying and draining.
+
+use crate::experiment::Arm;
+use crate::policy::Policy;
+
+/// The competitor behavior of an arm.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct CompetitorSetting {
+    /// Name in tables.
+    pub name: &'static str,
+    /// Scenario.
+    pub scenario: &'static str,
+    /// Minimum and maximum share of a targeted bank that an event drains; `None`: from the scenario.
+    drain_range: Option<(&'static str, &'static str)>,
+}
+
+const fn scenario_setting(name: &'static str, scenario: &'static str) -> CompetitorSetting {
+    CompetitorSetting { name, scenario, drain_range: None }
+}
+
+const fn drain_setting(name: &'static str, least: &'static str, most: &'static str) -> CompetitorSetting {
+    CompetitorSetting { name, scenario: "default", drain_range: Some((least, most)) }
+}
+
+/// Settings of the copying axis, from no competitors to hard ones.
+pub const COPY_SETTINGS: [CompetitorSetting; 7] = [
+    scenario_setting("off", "competitor-off"),
+    scenario_setting("stationary", "competitor-stationary"),
+    scenario_setting("u = 0.1", "competitor-u10"),
+    scenario_setting("u = 0.2", "competitor-u20"),
+    scenario_setting("u = 0.3", "competitor-u30"),
+    scenario_setting("default", "default"),
+    scenario_setting("hard", "competitor-hard"),
+];
+
+/// Settings of the draining axis, plus hard competitors for comparison.
+pub const DRAIN_SETTINGS: [CompetitorSetting; 6] = [
+    scenario_setting("off", "competitor-off"),
+    drain_setting("no drain", "0.0", "0.0"),
+    drain_setting("drain 0.05", "0.05", "0.05"),
+    scenario_setting("default", "default"),
+    scenario_setting("hard", "competitor-hard"),
+    drain_setting("drain to 0.2", "0.0", "0.2"),
+];
+
+/// Name of the arm that the others are compared with.
+pub fn reference_arm(settings: &[CompetitorSetting]) -> usize {
+    settings.iter().position(|own| own.name == "default").unwrap_or(0)
+}
+
+/// Returns the arms in which a policy plays each competitor setting.
+pub fn competitor_arms(policy: &Policy, settings: &[CompetitorSetting], days: u32) -> Vec<Arm> {
+    let arm = |own: &CompetitorSetting| {
+        let mut arm = Arm::new(own.name, policy.clone());
+        arm.spec.scenario = Some(own.scenario.to_owned());
+        arm.spec.days = Some(days);
+        if let Some((least, most)) = own.drain_range {
+            let key = |end: &str| format!("competitor.competitor_segment_drain_u_{end}");
+            arm.spec.overrides = vec![(key("min"), least.to_owned()), (key("max"), most.to_owned())];
+        }
+        arm
+    };
+    settings.iter().map(arm).collect()
+}

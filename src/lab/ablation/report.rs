@@ -1,0 +1,255 @@
+//! Tables and graphs of the ablation: figures by arm, paired differences between neighboring arms, curves.
+
+use super::competitors::{CompetitorSetting, reference_arm};
+use crate::experiment::{ExperimentResults, RunResult};
+use crate::lab_report::{
+    AxisScale, CellValue, Column, Graph, GraphAxis, GraphForm, LabReport, LabTable, Measure, Series,
+};
+use novamind_base::statistics::{Interval, MIN_SAMPLE_SIZE, PairedDifference, mean, median};
+use novamind_report::pluralize;
+
+/// The results of one axis of the ablation.
+pub struct AblationAxis<'a> {
+    /// Name for programs.
+    pub name: &'static str,
+    /// Caption: what varies and which policy plays.
+    pub caption: String,
+    /// Name of the policy.
+    pub policy: &'a str,
+    /// Arms.
+    pub settings: &'a [CompetitorSetting],
+    /// Results, one arm per setting.
+    pub results: &'a ExperimentResults,
+}
+
+/// The results of a policy over the short horizon, with and without competitors.
+pub struct ShortRun<'a> {
+    /// Policy.
+    pub name: &'a str,
+    /// Competitor settings: off, default, hard.
+    pub settings: &'a [CompetitorSetting],
+    /// Results, one arm per setting.
+    pub results: &'a ExperimentResults,
+}
+
+/// Days of the short horizon. Competitors and drift start later.
+pub const SHORT_DAYS: u32 = 50;
+
+/// Starting cash of a short run in dollars; final cash is compared with it.
+const SHORT_RUN_START_CASH: f64 = 1e6;
+
+/// Returns the tables and graphs of the ablation: subscribers on `day`, final figures, steps, and short runs.
+pub fn ablation_report(axes: &[AblationAxis<'_>], short: &[ShortRun<'_>], day: u32) -> LabReport {
+    let seeds = axes.first().map_or(0, |axis| axis.results.seeds.len());
+    let mut exhibit = LabReport {
+        title: format!(
+            "Competitors that copy and drain, {}, same random draws in every arm",
+            pluralize(seeds as u32, "seed")
+        ),
+        tables: Vec::new(),
+        graphs: Vec::new(),
+        notes: Vec::new(),
+    };
+    for axis in axes {
+        exhibit.tables.push(arm_table(axis, day));
+        exhibit.tables.push(step_table(axis, day));
+        exhibit.graphs.push(subscriber_graph(axis));
+        exhibit.notes.push(describe_equal_runs(axis));
+    }
+    exhibit.tables.push(short_run_table(short));
+    exhibit.tables.push(run_table(axes, short, day));
+    exhibit.notes.push(format!(
+        "Within {SHORT_DAYS} days neither competitors nor drift are active, so the short runs do not measure them."
+    ));
+    exhibit.notes.push(
+        "u: share of shared improvements that a competitor event can copy; targeted development is not affected. Drain: share of a group's targeted improvements that an event copies."
+            .to_owned(),
+    );
+    exhibit.notes.push(format!(
+        "An event uses the copied improvement only if it is larger than the event's own size. Subscribers are those at the end of day {day}; a run that went bankrupt earlier counts as 0. Intervals and verdicts need at least {MIN_SAMPLE_SIZE} seeds."
+    ));
+    exhibit
+}
+
+/// Returns the subscribers at the end of a day; 0 after a bankruptcy.
+fn subscribers_on(run: &RunResult, day: u32) -> f64 {
+    run.weeks.iter().find(|week| week.day == day).map_or(0.0, |week| f64::from(week.subscribers))
+}
+
+fn arm_table(axis: &AblationAxis<'_>, day: u32) -> LabTable {
+    let columns = vec![
+        Column::text("rivals", "rivals"),
+        Column::number("subscribers", &format!("mean subscribers, day {day}"), Measure::Count),
+        Column::interval("subscribers_interval", "95 % interval", Measure::Count),
+        Column::number("difference", "minus default", Measure::Count),
+        Column::interval("difference_interval", "95 % interval of the difference", Measure::Count),
+        Column::number("cash", "median final cash", Measure::Dollars),
+        Column::number("bankrupt", "bankrupt", Measure::Share),
+    ];
+    let mut table = LabTable::new(axis.name, axis.caption.clone(), columns);
+    let default = reference_arm(axis.settings);
+    for (arm, setting) in axis.settings.iter().enumerate() {
+        let own = axis.results.figures_of_arm(arm, |run| subscribers_on(run, day));
+        let pairs = axis.results.paired_figures(arm, default, |run| subscribers_on(run, day));
+        let difference = PairedDifference::from_pairs(pairs).filter(|_| arm != default);
+        table.rows.push(vec![
+            CellValue::text(setting.name),
+            CellValue::number(mean(&own)),
+            CellValue::interval(Interval::for_mean(&own)),
+            CellValue::number(difference.map(|own| own.mean)),
+            CellValue::interval(difference.and_then(|own| own.interval)),
+            CellValue::number(median(&axis.results.figures_of_arm(arm, |run| run.cash))),
+            CellValue::number(mean(
+                &axis.results.figures_of_arm(arm, |run| f64::from(u8::from(run.is_bankrupt()))),
+            )),
+        ]);
+    }
+    table
+}
+
+fn step_table(axis: &AblationAxis<'_>, day: u32) -> LabTable {
+    let columns = vec![
+        Column::text("step", "from, to"),
+        Column::number("lost", &format!("subscribers lost, day {day}"), Measure::Count),
+        Column::interval("lost_interval", "95 % interval", Measure::Count),
+        Column::number("seeds", "seeds that lose", Measure::Count),
+        Column::text("verdict", "order"),
+    ];
+    let mut table = LabTable::new(&format!("{}_steps", axis.name), "Steps, paired differences", columns);
+    for (at, pair) in axis.settings.windows(2).enumerate() {
+        let pairs = axis.results.paired_figures(at, at + 1, |run| subscribers_on(run, day));
+        let Some(own) = PairedDifference::from_pairs(pairs) else { continue };
+        table.rows.push(vec![
+            CellValue::text(format!("{} to {}", pair[0].name, pair[1].name)),
+            CellValue::number(own.mean),
+            CellValue::interval(own.interval),
+            CellValue::number(f64::from(own.first_greater)),
+            CellValue::text(describe_difference(&own)),
+        ]);
+    }
+    table
+}
+
+fn describe_difference(own: &PairedDifference) -> &'static str {
+    match own.interval {
+        None => "too few seeds",
+        Some(Interval { low, .. }) if low > 0.0 => "loses",
+        Some(Interval { high, .. }) if high < 0.0 => "gains",
+        Some(Interval { low, high }) if low == 0.0 && high == 0.0 => "identical",
+        Some(_) => "inconclusive",
+    }
+}
+
+/// Returns a note on how many runs are identical under default and hard competitors.
+fn describe_equal_runs(axis: &AblationAxis<'_>) -> String {
+    let place = |name: &str| axis.settings.iter().position(|own| own.name == name);
+    let (Some(default), Some(hard)) = (place("default"), place("hard")) else { return String::new() };
+    let ends = |run: &RunResult| (run.day, run.cash.to_bits(), run.subscribers, run.peak_subscribers);
+    let runs = |arm: usize| axis.results.by_arm.get(arm).map_or(&[][..], Vec::as_slice);
+    let same = runs(default).iter().zip(runs(hard)).filter(|(own, other)| ends(own) == ends(other)).count();
+    format!(
+        "{}: default and hard competitors are identical in {same} of {}.",
+        axis.caption,
+        pluralize(runs(default).len() as u32, "seed")
+    )
+}
+
+fn subscriber_graph(axis: &AblationAxis<'_>) -> Graph {
+    let series = axis.settings.iter().enumerate().map(|(arm, setting)| {
+        let runs = axis.results.by_arm.get(arm).map_or(&[][..], Vec::as_slice);
+        let mut days: Vec<u32> = runs.iter().flat_map(|run| run.weeks.iter().map(|week| week.day)).collect();
+        days.sort_unstable();
+        days.dedup();
+        let at = |day: u32| mean(&runs.iter().map(|run| subscribers_on(run, day)).collect::<Vec<_>>());
+        let whole_weeks = days.into_iter().filter(|day| day.is_multiple_of(7));
+        Series {
+            name: setting.name.to_owned(),
+            points: whole_weeks.map(|day| (f64::from(day), at(day))).collect(),
+        }
+    });
+    Graph {
+        title: axis.caption.clone(),
+        summary: "Mean subscribers by day on a logarithmic axis, one line per competitor setting".to_owned(),
+        x_axis: GraphAxis { label: "day", scale: AxisScale::Whole },
+        y_axis: GraphAxis { label: "subscribers", scale: AxisScale::Logarithmic },
+        series: series.collect(),
+        form: GraphForm::Lines,
+    }
+}
+
+fn short_run_table(short: &[ShortRun<'_>]) -> LabTable {
+    let columns = vec![
+        Column::text("policy", "policy"),
+        Column::number("cash", "mean cash", Measure::Dollars),
+        Column::interval("cash_interval", "95 % interval", Measure::Dollars),
+        Column::number("gained", "seeds above $1,000,000", Measure::Count),
+        Column::number("alike", "seeds equal with rivals off, default, hard", Measure::Count),
+        Column::number("seeds", "seeds", Measure::Count),
+    ];
+    let caption = format!("{SHORT_DAYS} days: neither competitors nor drift");
+    let mut table = LabTable::new("short", caption, columns);
+    for own in short {
+        let cash = own.results.figures_of_arm(0, |run| run.cash);
+        let by_seed = |at: usize| own.results.by_arm.iter().filter_map(move |runs| runs.get(at));
+        let is_alike = |at: &usize| {
+            let mut all = by_seed(*at).map(|run| run.cash.to_bits());
+            let first = all.next();
+            all.all(|other| Some(other) == first)
+        };
+        table.rows.push(vec![
+            CellValue::text(own.name),
+            CellValue::number(mean(&cash)),
+            CellValue::interval(Interval::for_mean(&cash)),
+            CellValue::number(cash.iter().filter(|cash| **cash > SHORT_RUN_START_CASH).count() as f64),
+            CellValue::number((0..own.results.seeds.len()).filter(is_alike).count() as f64),
+            CellValue::number(own.results.seeds.len() as f64),
+        ]);
+    }
+    table
+}
+
+fn run_table(axes: &[AblationAxis<'_>], short: &[ShortRun<'_>], day: u32) -> LabTable {
+    let columns = vec![
+        Column::text("axis", "axis"),
+        Column::text("policy", "policy"),
+        Column::text("rivals", "rivals"),
+        Column::text("seed", "seed"),
+        Column::number("days", "days of the run", Measure::Days),
+        Column::number("last_day", "last day", Measure::Days),
+        Column::text("bankrupt", "bankrupt"),
+        Column::number("cash", "final cash", Measure::Dollars),
+        Column::number("subscribers_on_day", &format!("subscribers, day {day}"), Measure::Count),
+        Column::number("subscribers", "subscribers at the end", Measure::Count),
+        Column::number("peak", "peak subscribers", Measure::Count),
+        Column::number("peak_day", "on day", Measure::Days),
+        Column::text("state_hash", "state hash"),
+    ];
+    let of_axes = axes.iter().map(|own| (own.name, own.policy, own.settings, own.results));
+    let of_short = short.iter().map(|own| ("short", own.name, own.settings, own.results));
+    let mut table =
+        LabTable { is_machine_readable_only: true, ..LabTable::new("runs", "Every run", columns) };
+    for (axis, policy, settings, results) in of_axes.chain(of_short) {
+        for (setting, runs) in settings.iter().zip(&results.by_arm) {
+            let row = |run: &RunResult| {
+                let then = (day <= run.days).then(|| subscribers_on(run, day));
+                vec![
+                    CellValue::text(axis),
+                    CellValue::text(policy),
+                    CellValue::text(setting.name),
+                    CellValue::text(run.seed.to_string()),
+                    CellValue::number(f64::from(run.days)),
+                    CellValue::number(f64::from(run.day)),
+                    CellValue::text(if run.is_bankrupt() { "yes" } else { "no" }),
+                    CellValue::number(run.cash),
+                    CellValue::number(then),
+                    CellValue::number(f64::from(run.subscribers)),
+                    CellValue::number(f64::from(run.peak_subscribers)),
+                    CellValue::number(f64::from(run.peak_day)),
+                    CellValue::text(&*run.state_hash),
+                ]
+            };
+            table.rows.extend(runs.iter().map(row));
+        }
+    }
+    table
+}

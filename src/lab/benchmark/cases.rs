@@ -1,0 +1,277 @@
+//! The rows of the speed table and their measurements.
+
+use std::time::Instant;
+
+use super::machine::{folder_megabytes, peak_memory_megabytes};
+use super::measured_company::{MarketSize, MeasuredCompany, POLICY, RunStorage, SEED, WeekMeasurement};
+use super::{BenchContext, BenchError, BenchFigure, Case, Samples, Unit, queries, resimulation};
+use crate::{Collector, Policy, RunSpec, play};
+use novamind_base::statistics::median;
+use novamind_record::folder::runs::find_run;
+use novamind_session::{Access, Session};
+
+/// Cases of the simulator.
+pub const CASES: &[Case] = &[
+    Case {
+        name: "day",
+        figures: &[
+            BenchFigure::with_target(
+                "a day at 165,000, database in the background",
+                Unit::Milliseconds,
+                10.0,
+                Some(4.0),
+            ),
+            BenchFigure::without_target("a day at 165,000, in memory", Unit::Milliseconds),
+        ],
+        needs_new_process: false,
+        is_slow: false,
+        measure: measure_day,
+    },
+    Case {
+        name: "million",
+        figures: &[
+            BenchFigure::with_target(
+                "a day at 1,000,000, database in the background",
+                Unit::Milliseconds,
+                60.0,
+                Some(25.0),
+            ),
+            BenchFigure::without_target("a day at 1,000,000, in memory", Unit::Milliseconds),
+            BenchFigure::with_target("peak memory at 1,000,000", Unit::Megabytes, 1.2 * 1_073.741_824, None),
+        ],
+        needs_new_process: false,
+        is_slow: true,
+        measure: measure_day_with_a_million,
+    },
+    Case {
+        name: "run",
+        figures: &[BenchFigure::with_target("500 days, trajectory recorded", Unit::Seconds, 3.0, Some(1.7))],
+        needs_new_process: false,
+        is_slow: false,
+        measure: measure_run,
+    },
+    Case {
+        name: "save",
+        figures: &[
+            BenchFigure::with_target(
+                "500 days with --save, world.db complete",
+                Unit::Seconds,
+                9.0,
+                Some(5.0),
+            ),
+            BenchFigure::with_target("its run directory", Unit::Megabytes, 300.0, Some(150.0)),
+            BenchFigure::with_target("its peak memory", Unit::Megabytes, 400.0, None),
+        ],
+        needs_new_process: true,
+        is_slow: false,
+        measure: measure_save,
+    },
+    Case {
+        name: "resume",
+        figures: &[BenchFigure::with_target("resume of a 500-day run", Unit::Seconds, 1.0, None)],
+        needs_new_process: false,
+        is_slow: false,
+        measure: measure_resume,
+    },
+    Case {
+        name: "week",
+        figures: &[
+            BenchFigure::with_target("a week at 165,000: key to dashboard", Unit::Milliseconds, 150.0, None),
+            BenchFigure::with_target(
+                "a week at 165,000: key to first query answered",
+                Unit::Milliseconds,
+                800.0,
+                None,
+            ),
+        ],
+        needs_new_process: false,
+        is_slow: false,
+        measure: measure_week,
+    },
+    Case {
+        name: "resimulation",
+        figures: resimulation::FIGURES,
+        needs_new_process: false,
+        is_slow: true,
+        measure: resimulation::measure_resimulation,
+    },
+    Case {
+        name: "queries",
+        figures: queries::FIGURES,
+        needs_new_process: false,
+        is_slow: true,
+        measure: queries::measure_queries,
+    },
+    Case {
+        name: "scaling",
+        figures: &[
+            BenchFigure::with_target(
+                "cost per subscriber, 10,000 to 1,000,000: spread",
+                Unit::Percent,
+                30.0,
+                None,
+            ),
+            BenchFigure::without_target(
+                "one thread, per subscriber and day at 10,000",
+                Unit::NanosecondsPerSubscriberDay,
+            ),
+            BenchFigure::without_target(
+                "one thread, per subscriber and day at 40,000",
+                Unit::NanosecondsPerSubscriberDay,
+            ),
+            BenchFigure::without_target(
+                "one thread, per subscriber and day at 165,000",
+                Unit::NanosecondsPerSubscriberDay,
+            ),
+            BenchFigure::without_target(
+                "one thread, per subscriber and day at 1,000,000",
+                Unit::NanosecondsPerSubscriberDay,
+            ),
+        ],
+        needs_new_process: false,
+        is_slow: true,
+        measure: measure_scaling,
+    },
+];
+
+/// Returns the milliseconds per day, scaled to this many subscribers.
+fn estimate_day_milliseconds(subscribers: f64, laps: &[WeekMeasurement]) -> Vec<f64> {
+    laps.iter().map(|lap| lap.per_subscriber_day() * subscribers * 1e3).collect()
+}
+
+fn measure_weeks(company: &mut MeasuredCompany, count: usize) -> Result<Vec<WeekMeasurement>, BenchError> {
+    (0..count).map(|_| company.measure_week()).collect()
+}
+
+/// Returns a company with about 165,000 subscribers. It grows during the measurement.
+fn company_with_165_000(keep: RunStorage, bench: &BenchContext) -> Result<MeasuredCompany, BenchError> {
+    MeasuredCompany::with_subscribers(150_000, keep, bench)
+}
+
+/// Saves a run with about 165,000 subscribers in the scratch folder and returns its ID.
+///
+/// # Errors
+/// Fails if the run cannot be played or saved.
+pub fn save_large_company(bench: &BenchContext) -> Result<String, BenchError> {
+    let mut company = company_with_165_000(RunStorage::Disk, bench)?;
+    company.session.save()?;
+    Ok(company.session.manifest().id.clone())
+}
+
+/// Returns a company with about a million subscribers in the large market.
+fn company_with_a_million(keep: RunStorage, bench: &BenchContext) -> Result<MeasuredCompany, BenchError> {
+    let mut company = MeasuredCompany::new(MarketSize::Large, keep, bench)?;
+    company.grow_to(1_000_000)?;
+    company.play_billing_period()?;
+    Ok(company)
+}
+
+fn measure_day(bench: &BenchContext) -> Result<Samples, BenchError> {
+    let on_disk = measure_weeks(&mut company_with_165_000(RunStorage::Disk, bench)?, bench.repetitions)?;
+    let in_memory = measure_weeks(&mut company_with_165_000(RunStorage::Memory, bench)?, bench.repetitions)?;
+    Ok(vec![estimate_day_milliseconds(165_000.0, &on_disk), estimate_day_milliseconds(165_000.0, &in_memory)])
+}
+
+fn measure_day_with_a_million(bench: &BenchContext) -> Result<Samples, BenchError> {
+    let mut company = company_with_a_million(RunStorage::Disk, bench)?;
+    let on_disk = measure_weeks(&mut company, bench.repetitions)?;
+    company.session.save()?;
+    // Read the peak before the second company allocates memory.
+    let memory = peak_memory_megabytes().into_iter().collect();
+    drop(company);
+    let in_memory =
+        measure_weeks(&mut company_with_a_million(RunStorage::Memory, bench)?, bench.repetitions)?;
+    Ok(vec![estimate_day_milliseconds(1e6, &on_disk), estimate_day_milliseconds(1e6, &in_memory), memory])
+}
+
+/// Plays the 500 days; returns the seconds and the name of the run.
+fn play_500_days(projection: bool, bench: &BenchContext) -> Result<(f64, String), BenchError> {
+    let policy = Policy::find(POLICY, &bench.configuration)?;
+    let spec = RunSpec {
+        save_folder: Some(bench.scratch_folder.clone()),
+        saves_database: projection,
+        ..RunSpec::for_seed(SEED)
+    };
+    let outcome = play(&policy, &spec, &bench.configuration, &mut Collector::disabled())?;
+    let run = outcome.run.ok_or_else(|| BenchError("the run was not saved".to_owned()))?;
+    Ok((outcome.seconds, run))
+}
+
+fn measure_run(bench: &BenchContext) -> Result<Samples, BenchError> {
+    let seconds = (0..bench.repetitions).map(|_| Ok(play_500_days(false, bench)?.0));
+    Ok(vec![seconds.collect::<Result<_, BenchError>>()?])
+}
+
+fn measure_save(bench: &BenchContext) -> Result<Samples, BenchError> {
+    let (mut seconds, mut sizes) = (Vec::new(), Vec::new());
+    for _ in 0..bench.repetitions {
+        let (took, run) = play_500_days(true, bench)?;
+        let folder = find_run(&bench.scratch_folder, &run)?;
+        seconds.push(took);
+        sizes.push(folder_megabytes(&folder)?);
+        std::fs::remove_dir_all(&folder)?;
+    }
+    Ok(vec![seconds, sizes, peak_memory_megabytes().into_iter().collect()])
+}
+
+fn measure_resume(bench: &BenchContext) -> Result<Samples, BenchError> {
+    let (_, run) = play_500_days(true, bench)?;
+    let folder = find_run(&bench.scratch_folder, &run)?;
+    let mut seconds = Vec::new();
+    for _ in 0..bench.repetitions {
+        let started = Instant::now();
+        let session = Session::open(&folder, Access::Write, true)?;
+        seconds.push(started.elapsed().as_secs_f64());
+        drop(session);
+    }
+    Ok(vec![seconds])
+}
+
+fn measure_week(bench: &BenchContext) -> Result<Samples, BenchError> {
+    let mut company = company_with_165_000(RunStorage::Disk, bench)?;
+    let (mut dashboard, mut query) = (Vec::new(), Vec::new());
+    for _ in 0..bench.repetitions {
+        let lap = company.measure_week()?;
+        let since = company.session.day() - 7;
+        let question = format!(
+            "SELECT category, COUNT(*) AS entries, SUM(amount) AS total FROM ledger WHERE day > {since} GROUP BY category"
+        );
+        let started = Instant::now();
+        company.session.query(&question)?;
+        dashboard.push(lap.seconds * 1e3);
+        query.push((lap.seconds + started.elapsed().as_secs_f64()) * 1e3);
+    }
+    Ok(vec![dashboard, query])
+}
+
+/// Subscriber counts at which costs are compared, in the default market.
+const SUBSCRIBER_COUNTS: [u32; 3] = [10_000, 40_000, 165_000];
+/// Maximum weeks measured per company: after more it has outgrown its size.
+const MAX_WEEKS_PER_SIZE: usize = 5;
+
+/// Uses one thread: the gain of a second one depends on wake-up latency, which is the same for a company
+/// of any size.
+fn measure_scaling(bench: &BenchContext) -> Result<Samples, BenchError> {
+    rayon::ThreadPoolBuilder::new().num_threads(1).build()?.install(|| costs_by_size(bench))
+}
+
+/// Companies take turns, so that a slow period of the machine affects all of them equally.
+fn costs_by_size(bench: &BenchContext) -> Result<Samples, BenchError> {
+    // Companies grow during the measurement, so they start slightly smaller.
+    let own = SUBSCRIBER_COUNTS
+        .iter()
+        .map(|size| MeasuredCompany::with_subscribers(size / 10 * 9, RunStorage::Memory, bench));
+    let mut companies = own.collect::<Result<Vec<MeasuredCompany>, BenchError>>()?;
+    companies.push(company_with_a_million(RunStorage::Memory, bench)?);
+    let mut costs = vec![Vec::new(); companies.len()];
+    for _ in 0..bench.repetitions.min(MAX_WEEKS_PER_SIZE) {
+        for (company, own) in companies.iter_mut().zip(&mut costs) {
+            own.push(company.measure_week()?.per_subscriber_day() * 1e9);
+        }
+    }
+    let medians: Vec<f64> = costs.iter().filter_map(|samples| median(samples)).collect();
+    let least = medians.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = medians.iter().copied().fold(0.0, f64::max);
+    costs.insert(0, vec![(most / least - 1.0) * 100.0]);
+    Ok(costs)
+}

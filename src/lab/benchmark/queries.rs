@@ -1,0 +1,106 @@
+//! Speed of interactive queries on the database of a large company.
+
+use std::time::Instant;
+
+use serde_json::json;
+
+use super::measured_company::{MeasuredCompany, RunStorage};
+use super::{BenchContext, BenchError, BenchFigure, Samples, Unit};
+use novamind_base::statistics::median;
+use novamind_record::folder::query_library::QueryLibrary;
+use novamind_record::trajectory::record::Via;
+use novamind_session::Session;
+use novamind_tools::ToolId;
+
+/// Approximate peak subscribers of P1a.
+const SUBSCRIBER_COUNT: u32 = 190_000;
+
+/// Prefix of figures of library queries.
+const FIGURE_NAME_PREFIX: &str = "query ";
+
+const USAGE_30_DAYS_SQL: &str = "SELECT COUNT(*) AS days, SUM(usage_units) AS units FROM daily_usage
+    WHERE day > (SELECT MAX(day) FROM service_day) - 30";
+
+/// The slowest library query, a count over millions of rows, and ten common queries.
+pub const FIGURES: &[BenchFigure] = &[
+    BenchFigure::with_target("slowest query of the library at 190,000", Unit::Milliseconds, 300.0, None),
+    BenchFigure::with_target(
+        "usage of 30 days at 190,000, counted and summed",
+        Unit::Milliseconds,
+        1_000.0,
+        None,
+    ),
+    BenchFigure::without_target("query cash-by-week", Unit::Milliseconds),
+    BenchFigure::without_target("query costs-by-week", Unit::Milliseconds),
+    BenchFigure::without_target("query growth-by-week", Unit::Milliseconds),
+    BenchFigure::without_target("query revenue-by-plan", Unit::Milliseconds),
+    BenchFigure::without_target("query leavers-by-group", Unit::Milliseconds),
+    BenchFigure::without_target("query retention-by-plan", Unit::Milliseconds),
+    BenchFigure::without_target("query acquisition-by-source", Unit::Milliseconds),
+    BenchFigure::without_target("query usage-by-group", Unit::Milliseconds),
+    BenchFigure::without_target("query support-wait", Unit::Milliseconds),
+    BenchFigure::without_target("query prices-paid", Unit::Milliseconds),
+];
+
+/// Returns the queried company at its largest, after five weeks of in-app ads: as many rows in every
+/// table as there ever are.
+///
+/// # Errors
+/// Fails if the run cannot be played or saved.
+pub fn company_for_queries(bench: &BenchContext) -> Result<Session, BenchError> {
+    let mut company = MeasuredCompany::with_subscribers(SUBSCRIBER_COUNT, RunStorage::Disk, bench)?;
+    company.session.call(ToolId::SetAdsStrength, &json!({"global_strength": 0.1}), Via::Script)?;
+    for _ in 0..5 {
+        company.measure_week()?;
+    }
+    company.session.wait_for_database()?;
+    Ok(company.session)
+}
+
+/// Runs every library query several times; the slowest has the largest median.
+pub fn measure_queries(bench: &BenchContext) -> Result<Samples, BenchError> {
+    let mut session = MeasuredCompany::with_subscribers(SUBSCRIBER_COUNT, RunStorage::Disk, bench)?.session;
+    session.wait_for_database()?;
+    let mut ask = |sql: &str| query_milliseconds(&mut session, sql, bench.repetitions);
+    let usage = ask(USAGE_30_DAYS_SQL)?;
+    let library = QueryLibrary::bundled();
+    let mut asked: Vec<(&str, Vec<f64>)> = Vec::new();
+    for query in library.queries() {
+        asked.push((&query.name, ask(query.body())?));
+    }
+    let typical = FIGURES.iter().filter_map(|figure| figure.name.strip_prefix(FIGURE_NAME_PREFIX));
+    let typical = typical.map(|name| {
+        let own = asked.iter().find(|(known, _)| *known == name);
+        own.map(|(_, times)| times.clone()).ok_or_else(|| BenchError(format!("unknown query {name}")))
+    });
+    let typical: Vec<Vec<f64>> = typical.collect::<Result<_, _>>()?;
+    let slowest = asked.into_iter().map(|(_, times)| times).max_by(|one, other| {
+        let middle = |times: &[f64]| median(times).unwrap_or(0.0);
+        middle(one).total_cmp(&middle(other))
+    });
+    Ok([slowest.unwrap_or_default(), usage].into_iter().chain(typical).collect())
+}
+
+/// Returns the milliseconds until the result is available.
+fn query_milliseconds(session: &mut Session, sql: &str, repetitions: usize) -> Result<Vec<f64>, BenchError> {
+    let once = |_| {
+        let started = Instant::now();
+        session.query(sql)?;
+        Ok(started.elapsed().as_secs_f64() * 1e3)
+    };
+    (0..repetitions).map(once).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn measured_queries_are_in_the_library() {
+        let library = QueryLibrary::bundled();
+        let names: Vec<&str> =
+            FIGURES.iter().filter_map(|figure| figure.name.strip_prefix(FIGURE_NAME_PREFIX)).collect();
+        assert_eq!(names.len(), 10);
+        assert!(names.iter().all(|name| library.find(name).is_some()), "{names:?}");
+    }
+}

@@ -1,0 +1,83 @@
+//! Speed of re-simulation: what-if branches and causes of a change.
+
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use super::measured_company::{MeasuredCompany, RunStorage};
+use super::{BenchContext, BenchError, BenchFigure, Samples, Unit};
+use novamind_insight::{
+    CauseAnalysis, ConditionParseError, DecisionEdit, RecordAnalysis, WhatIf, cause_analysis_folder,
+};
+use novamind_session::Session;
+
+const SMALL_SUBSCRIBERS: u32 = 20_000;
+const LARGE_SUBSCRIBERS: u32 = 165_000;
+const BRANCH_WEEKS: u32 = 12;
+/// Changed decisions of the branches; one more branch keeps the run's decisions.
+const ALTERNATIVES: [&str; 3] = ["set_prices * 0.9", "set_prices * 1.1", "set_daily_spend * 1.1"];
+
+/// A company with 20,000 subscribers grows fast, so the what-if covers weeks with that average. The first
+/// answer about a run reads its record and simulates it from day 0; later answers continue from there.
+pub const FIGURES: &[BenchFigure] = &[
+    BenchFigure::with_target(
+        "what if, 4 branches of 12 weeks of 20,000: next answer",
+        Unit::Seconds,
+        0.5,
+        None,
+    ),
+    BenchFigure::without_target("what if, 4 branches of 12 weeks of 20,000: first answer", Unit::Seconds),
+    BenchFigure::with_target("why of a week at 20,000: first answer", Unit::Seconds, 1.0, None),
+    BenchFigure::with_target("why of a week at 165,000: first answer", Unit::Seconds, 8.0, None),
+];
+
+/// Measures a company once it has the number of subscribers in the figures.
+pub fn measure_resimulation(bench: &BenchContext) -> Result<Samples, BenchError> {
+    let mut company = MeasuredCompany::with_subscribers(SMALL_SUBSCRIBERS, RunStorage::Disk, bench)?;
+    let small = measure_cause_analysis(&company.session, bench.repetitions)?;
+    while mean_subscribers(&company.session) < f64::from(SMALL_SUBSCRIBERS) {
+        company.measure_week()?;
+    }
+    let parting = company.session.weeks().len() as u32 + 1 - BRANCH_WEEKS;
+    let (mut first, mut next) = (Vec::new(), Vec::new());
+    for _ in 0..bench.repetitions {
+        let started = Instant::now();
+        let mut what_if = WhatIf::open(&cause_analysis_folder(&company.session)?)?;
+        run_what_if(&mut what_if, parting)?;
+        first.push(started.elapsed().as_secs_f64());
+        let again = Instant::now();
+        run_what_if(&mut what_if, parting)?;
+        next.push(again.elapsed().as_secs_f64());
+    }
+    company.grow_to(LARGE_SUBSCRIBERS)?;
+    let large = measure_cause_analysis(&company.session, bench.repetitions)?;
+    Ok(vec![next, first, small, large])
+}
+
+/// Returns the mean subscribers over the last weeks, as many as a branch has.
+fn mean_subscribers(session: &Session) -> f64 {
+    let last = session.weeks().iter().rev().take(BRANCH_WEEKS as usize);
+    last.map(|week| f64::from(week.individual_subscribers)).sum::<f64>() / f64::from(BRANCH_WEEKS)
+}
+
+/// Simulates four branches from a week.
+fn run_what_if(what_if: &mut WhatIf, week: u32) -> Result<(), BenchError> {
+    let read = |edit: &str| edit.parse::<DecisionEdit>().map_err(BenchError);
+    let alternatives = ALTERNATIVES.into_iter().map(|edit| Ok(vec![read(edit)?]));
+    let alternatives = alternatives.collect::<Result<Vec<_>, BenchError>>()?;
+    what_if.compare(week, Some(week + BRANCH_WEEKS - 1), &alternatives, &|_, _| ControlFlow::Continue(()))?;
+    Ok(())
+}
+
+/// Returns the seconds until the causes of last week's change in cancellations are computed.
+fn measure_cause_analysis(session: &Session, repetitions: usize) -> Result<Vec<f64>, BenchError> {
+    let folder = cause_analysis_folder(session)?;
+    let once = |_| {
+        let started = Instant::now();
+        let asked = "cancellations"
+            .parse()
+            .map_err(|problem: ConditionParseError| BenchError::new(problem.message))?;
+        CauseAnalysis::open(&folder)?.explain(asked, &|_| ControlFlow::Continue(()))?;
+        Ok(started.elapsed().as_secs_f64())
+    };
+    (0..repetitions).map(once).collect()
+}

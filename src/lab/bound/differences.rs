@@ -1,0 +1,96 @@
+//! Explanations of differences from the published account.
+
+use super::account::BoundAccount;
+use super::account_line::AccountLine;
+use super::acquisition_costs;
+use super::attainable_market;
+use novamind_base::formatting::{grouped_number, percent};
+use novamind_world::identifiers::Group;
+use novamind_world::params::Params;
+
+impl BoundAccount {
+    /// Returns the reason why a line differs from the published one.
+    pub(super) fn explain_difference(&self, line: AccountLine, own: f64, params: &Params) -> String {
+        let millions = own / 1e6;
+        if (millions - line.published_millions()).abs() <= line.rounding_error() {
+            return format!("within ±{}, the rounding of the published figure", line.rounding_error());
+        }
+        let ratio = line.published_millions() / millions;
+        match line {
+            AccountLine::Individuals | AccountLine::Enterprises => {
+                self.explain_revenue_difference(line, params)
+            }
+            AccountLine::Revenue => "the sum of the two lines above".to_owned(),
+            AccountLine::Compute => {
+                let units = 1e6 * line.published_millions()
+                    / (params.model(self.assumptions.model_tier).unit_cost
+                        * f64::from(self.assumptions.days));
+                format!(
+                    "{} million units a day here, {} published",
+                    grouped_number(self.daily_usage / 1e6, 0),
+                    grouped_number(units / 1e6, 0)
+                )
+            }
+            AccountLine::TargetedDevelopment if params.competitor.competitor_events_disabled => {
+                "no competitor raises expectations here; in the published account they do".to_owned()
+            }
+            AccountLine::TargetedDevelopment => format!(
+                "the gap of each group depends on competitors: mean over {} seeds here; the paper's method for gaps is unknown",
+                super::shared_quality::SEED_COUNT
+            ),
+            AccountLine::Advertising => format!(
+                "published {} of ours: ours fills every market within the first {} days, where leads become more expensive; the paper's pace is unknown",
+                percent(ratio, 0),
+                self.assumptions.renewals.first().unwrap_or(&0)
+            ),
+            AccountLine::LeadCosts => format!(
+                "one lead per customer here; the published figure pays for {} leads per customer",
+                grouped_number(
+                    1e6 * line.published_millions()
+                        / params.leads.lead_acquisition_cost
+                        / acquisition_costs::account_count(params),
+                    2
+                )
+            ),
+            AccountLine::Operations => {
+                "supported customers and seats differ because the markets do".to_owned()
+            }
+            AccountLine::MarketResearch => {
+                let unknown = Group::all().filter(|group| !group.is_initially_known()).count();
+                let law = &params.market_research;
+                format!(
+                    "{} attempts find {unknown} groups on average; the published figure pays for {}",
+                    grouped_number(unknown as f64 / law.market_research_discover_prob, 1),
+                    grouped_number(1e6 * line.published_millions() / law.discovery_cost_level_1, 0)
+                )
+            }
+            AccountLine::GroupResearch => format!(
+                "a study to level {} of every found group, at current prices; the levels that the paper pays for are unknown",
+                self.assumptions.study_level
+            ),
+            AccountLine::Costs => "the sum of the costs above".to_owned(),
+            AccountLine::Subtotal => "cash on day 0 plus revenue minus costs".to_owned(),
+            AccountLine::Estimate => {
+                format!("{} of the amount before the discount, as published", self.assumptions.reported_share)
+            }
+            AccountLine::Capacity | AccountLine::GlobalDevelopment | AccountLine::Research => {
+                "the current parameters differ from the published ones".to_owned()
+            }
+        }
+    }
+
+    fn explain_revenue_difference(&self, line: AccountLine, params: &Params) -> String {
+        let of_companies = line == AccountLine::Enterprises;
+        let groups = Group::all().filter(|group| group.is_enterprise() == of_companies);
+        let bills = self.assumptions.renewals.len() as f64;
+        let full =
+            bills * groups.map(|group| attainable_market::full_billing_revenue(group, params)).sum::<f64>();
+        let what = if of_companies { "the maximum seats of every account" } else { "the markets of day 0" };
+        format!(
+            "{} of full billing is paid here; full billing of {what} at mean budgets is {} million, of which the published figure is {}",
+            percent(self.revenue_of(of_companies) / full, 1),
+            grouped_number(full / 1e6, 0),
+            percent(1e6 * line.published_millions() / full, 1)
+        )
+    }
+}

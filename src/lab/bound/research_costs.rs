@@ -1,0 +1,30 @@
+//! Costs of finding and studying the groups.
+
+use super::assumptions::BoundAssumptions;
+use novamind_world::identifiers::Group;
+use novamind_world::params::Params;
+
+/// Returns the mean cost of market research until every group is found, dollars.
+pub fn market_research_cost(params: &Params) -> f64 {
+    let unknown = Group::all().filter(|group| !group.is_initially_known()).count() as f64;
+    let law = &params.market_research;
+    unknown * law.discovery_cost_level_1 / law.market_research_discover_prob
+}
+
+/// Returns the cost of a study of every found group, dollars.
+pub fn group_research_cost(premises: &BoundAssumptions, params: &Params) -> f64 {
+    let found = Group::all().filter(|group| !group.is_initially_known()).count() as f64;
+    found * params.level(premises.study_level).cost
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn research_needs_67_attempts_and_20_studies() {
+        let params = Params::bundled();
+        assert!((market_research_cost(&params) - 20.0 * 25_000.0 / 0.3).abs() < 1e-6);
+        assert_eq!(group_research_cost(&BoundAssumptions::from_paper(3.0), &params), 1_200_000.0);
+    }
+}

@@ -1,0 +1,48 @@
+//! Delta and T: the quality gap of a group and the targeted development that closes it.
+
+use super::assumptions::BoundAssumptions;
+use super::required_quality::{added_expectation, required_quality};
+use super::shared_quality::SharedQualityPath;
+use novamind_world::identifiers::Group;
+use novamind_world::params::Params;
+
+/// Returns the widest gap over the renewals between the mean customer's required quality and shared quality, in
+/// quality before the model's multiplier.
+pub fn widest_gap(
+    group: Group,
+    overload: f64,
+    climate: &SharedQualityPath,
+    premises: &BoundAssumptions,
+    params: &Params,
+) -> f64 {
+    let model = params.model(premises.model_tier).quality_multiplier;
+    let (mean, _) = required_quality(group, params);
+    let gap = |day: &u32| {
+        let shared = params.quality.base_product_quality + climate.shared[*day as usize];
+        (mean + added_expectation(group, *day, climate, params) + overload) / model - shared
+    };
+    premises.renewals.iter().map(gap).fold(0.0, f64::max)
+}
+
+/// Returns T0, the spending that closes a gap, dollars a day: scale (exp(gap / (counted share, mean age, gain)) - 1).
+pub fn min_spending(gap: f64, premises: &BoundAssumptions, params: &Params) -> f64 {
+    let law = &params.development;
+    let counted = premises.counted_gain * premises.mean_spending_age() * law.targeted_dev_improvement_coef;
+    law.targeted_dev_spend_scale * libm::expm1(gap / counted)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use novamind_world::product::development::targeted_development_gain;
+
+    #[test]
+    fn min_spending_closes_the_gap() {
+        let (premises, params) = (BoundAssumptions::from_paper(1.0), Params::bundled());
+        for gap in [0.5, 4.0, 9.0] {
+            let gain = targeted_development_gain(min_spending(gap, &premises, &params), &params.development);
+            assert!((0.7 * 248.5 * gain - gap).abs() < 1e-9);
+        }
+        assert_eq!(min_spending(0.0, &premises, &params), 0.0);
+    }
+}

@@ -1,0 +1,122 @@
+//! Comparison of many runs: one row per run, best result first.
+
+use super::comparison::{Comparison, ComparisonRow};
+use crate::lab_report::{CellValue, Column, LabReport, LabTable, Measure, column_name};
+use novamind_base::formatting::grouped_number;
+use novamind_record::trajectory::record::RunEndReason;
+
+/// Columns: figure, horizon, heading; the most important first.
+const COLUMNS: [(&str, &str, &str); 10] = [
+    ("final cash", "", "cash"),
+    ("calls that act, a week", "", "calls a week"),
+    ("ad spend on the truly best channel", "", "ads on best channel"),
+    ("targeted share of development", "", "targeted dev."),
+    ("forecast error", "28", "4-week error"),
+    ("words of planning in 100", "", "planning in 100 words"),
+    ("queries, a week", "", "queries a week"),
+    ("evenness of tools", "", "evenness of tools"),
+    ("minutes played", "", "minutes"),
+    ("forecast coverage", "28", "4-week coverage"),
+];
+
+/// Returns a table with a row per run.
+pub(super) fn row_per_run_report(beside: &Comparison) -> LabReport {
+    let figures: Vec<(&ComparisonRow, &str)> = COLUMNS
+        .iter()
+        .filter_map(|(figure, of, heading)| {
+            let row = beside.figures.iter().find(|row| row.figure == *figure && row.of == *of)?;
+            Some((row, *heading))
+        })
+        .collect();
+    let has_labels = beside.participants.iter().any(Option::is_some);
+    let mut columns = vec![Column::text("run", "run"), Column::number("place", "#", Measure::Count)];
+    columns.extend(has_labels.then(|| Column::text("participant", "who")));
+    columns.push(Column::text("end", "end"));
+    columns.extend(
+        figures
+            .iter()
+            .map(|(row, heading)| Column::number(&column_name(&row.figure), heading, row.measure())),
+    );
+    let row = |(place, run): (usize, &usize)| {
+        let mut cells = vec![CellValue::text(&*beside.runs[*run]), CellValue::Number((place + 1) as f64)];
+        cells.extend(has_labels.then(|| CellValue::text(short_label(beside.participants[*run].as_deref()))));
+        cells.push(CellValue::text(describe_end(beside.ends[*run])));
+        cells.extend(figures.iter().map(|(row, _)| CellValue::number(row.values[*run])));
+        cells
+    };
+    let rows = beside.order.iter().enumerate().map(row).collect();
+    let table = LabTable { rows, ..LabTable::new("runs", "", columns) };
+    let exhibit = LabReport::with_table(format!("{} runs, best result first", beside.runs.len()), table);
+    exhibit.with_note("Use --csv for cash by week and all figures, --json for decisions as well.")
+}
+
+/// Characters of a label that are shown, so that a row fits on one line.
+const LABEL_WIDTH: usize = 12;
+
+fn short_label(participant: Option<&str>) -> String {
+    match participant {
+        None => "–".to_owned(),
+        Some(who) if who.chars().count() <= LABEL_WIDTH => who.to_owned(),
+        Some(who) => who.chars().take(LABEL_WIDTH - 1).chain(['…']).collect(),
+    }
+}
+
+fn describe_end((day, ended): (u32, Option<RunEndReason>)) -> String {
+    let day = grouped_number(f64::from(day), 0);
+    match ended {
+        Some(RunEndReason::Horizon) => format!("day {day}"),
+        Some(RunEndReason::Bankruptcy) => format!("bankrupt {day}"),
+        Some(RunEndReason::Abandoned) => format!("given up {day}"),
+        Some(RunEndReason::Lesson) => format!("lesson {day}"),
+        None => format!("at day {day}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{compare_runs, comparison_to_text};
+    use novamind_report::{Logbook, sample_logbook};
+
+    /// Returns thirty runs with different names, players and results.
+    fn thirty_runs() -> Vec<Logbook> {
+        let book = sample_logbook();
+        let named = |at: u32| {
+            let mut own = book.clone();
+            own.run = format!("{:08x}", 0x1a2b_3c00 + at);
+            own.participant = Some(format!("participant-{at:02}"));
+            own.cash = f64::from(at * 7919 % 30) * 1e5;
+            own
+        };
+        (0..30).map(named).collect()
+    }
+
+    #[test]
+    fn thirty_runs_fit_a_terminal_sorted_by_result() {
+        let books = thirty_runs();
+        for width in [80, 100, 120, 200] {
+            let text = comparison_to_text(&compare_runs(&books), width);
+            assert!(text.lines().all(|line| line.chars().count() <= width), "{width}:\n{text}");
+            let row = |cash: [&str; 2]| {
+                let told = |line: &str| line.split_whitespace().any(|word| cash.contains(&word));
+                text.lines().position(told).expect("a row")
+            };
+            assert_eq!(row(["$0", "$0"]) - row(["$2.90M", "$2,900,000"]), 29, "{text}");
+        }
+    }
+
+    #[test]
+    fn two_runs_are_side_by_side_if_they_fit() {
+        let books = &thirty_runs()[..2];
+        let wide = comparison_to_text(&compare_runs(books), 400);
+        assert!(wide.contains("Decisions") && wide.contains("cash on day 7"), "{wide}");
+        let narrow = comparison_to_text(&compare_runs(books), 80);
+        assert!(!narrow.contains("cash on day") && narrow.contains("at day 14"), "{narrow}");
+    }
+
+    #[test]
+    fn columns_are_known_figures() {
+        for (figure, of, _) in super::COLUMNS {
+            assert!(super::super::find_figure(figure, of).is_some(), "{figure}");
+        }
+    }
+}

@@ -1,0 +1,363 @@
+//! Random draws of new customers: traits, channel, and misjudgment of quality.
+
+use super::distribution::{DrawDistribution, RoundingMode};
+use super::world_draw::{DrawContext, DrawFamily, WorldDraw, group_at};
+use novamind_world::customers::choice::PlanOffer;
+use novamind_world::customers::traits::{Negotiator, Traits, draw_traits};
+use novamind_world::identifiers::{ByPlan, Channel};
+use novamind_world::market::arrivals::LeadEvaluation;
+use novamind_world::market::leads::LeadFactors;
+use novamind_world::params::Params;
+use novamind_world::random::Part;
+
+const TRAITS_FILE: &str = "customers/traits.rs";
+const INFINITE: f64 = f64::INFINITY;
+
+/// Expected leads of the example day.
+const EXPECTED_LEADS: f64 = 12.0;
+
+fn example_traits(luck: &DrawContext, member: usize, n: u64) -> Traits {
+    draw_traits(group_at(member), n as u32, 1.0, &luck.params, &luck.streams)
+}
+
+fn example_negotiator(luck: &DrawContext, member: usize, n: u64) -> Negotiator {
+    example_traits(luck, member, n).negotiator.expect("the family is enterprises")
+}
+
+fn normal_at_least(mean: f64, std: f64, least: f64) -> DrawDistribution {
+    DrawDistribution::Normal { mean, std, min: least, max: INFINITE }
+}
+
+/// Returns the leads of a day on which every channel has the same budget for a group.
+fn lead_factors_for_equal_budgets(params: &Params, member: usize) -> LeadFactors {
+    let yields = params.starting_yields();
+    let mut factors = LeadFactors::default();
+    for channel in Channel::ALL {
+        factors.paid[channel] = yields[channel][group_at(member)];
+    }
+    factors
+}
+
+/// Returns the draws.
+pub const CUSTOMER_DRAWS: &[WorldDraw] = &[
+    WorldDraw {
+        name: "steepness_left",
+        description: "steepness of the lower half of a customer's curve",
+        part: Part::Traits,
+        family: DrawFamily::Single,
+        parameters: &[
+            "customer_generation.steepness_left_exp_scale",
+            "customer_generation.steepness_left_offset",
+            "customer_generation.steepness_left_min",
+            "customer_generation.steepness_left_max",
+        ],
+        source_files: &[(TRAITS_FILE, 1)],
+        distribution: |params, _| {
+            let own = &params.customer_generation;
+            DrawDistribution::Exponential {
+                mean: own.steepness_left_exp_scale,
+                offset: own.steepness_left_offset,
+                min: own.steepness_left_min,
+                max: own.steepness_left_max,
+            }
+        },
+        draw: |luck, member, n| example_traits(luck, member, n).curve.steepness_left,
+    },
+    WorldDraw {
+        name: "steepness_right",
+        description: "steepness of the upper half of a customer's curve",
+        part: Part::Traits,
+        family: DrawFamily::Single,
+        parameters: &[
+            "customer_generation.steepness_right_exp_scale",
+            "customer_generation.steepness_right_offset",
+            "customer_generation.steepness_right_min",
+            "customer_generation.steepness_right_max",
+        ],
+        source_files: &[(TRAITS_FILE, 1)],
+        distribution: |params, _| {
+            let own = &params.customer_generation;
+            DrawDistribution::Exponential {
+                mean: own.steepness_right_exp_scale,
+                offset: own.steepness_right_offset,
+                min: own.steepness_right_min,
+                max: own.steepness_right_max,
+            }
+        },
+        draw: |luck, member, n| example_traits(luck, member, n).curve.steepness_right,
+    },
+    WorldDraw {
+        name: "c_max",
+        description: "budget of a customer, dollars a month and seat",
+        part: Part::Traits,
+        family: DrawFamily::Groups,
+        parameters: &[
+            "group.c_max_mean",
+            "group.c_max_std",
+            "customer_generation.c_max_std_multiplier",
+            "customer_generation.c_max_min",
+        ],
+        source_files: &[(TRAITS_FILE, 1)],
+        distribution: |params, member| {
+            let (own, bounds) = (params.group(group_at(member)), &params.customer_generation);
+            normal_at_least(own.c_max_mean, bounds.c_max_std_multiplier * own.c_max_std, bounds.c_max_min)
+        },
+        draw: |luck, member, n| example_traits(luck, member, n).curve.c_max,
+    },
+    WorldDraw {
+        name: "q_min",
+        description: "lowest quality that a customer accepts at any price",
+        part: Part::Traits,
+        family: DrawFamily::Groups,
+        parameters: &["group.q_min_mean", "group.q_min_std", "customer_generation.q_min_min"],
+        source_files: &[(TRAITS_FILE, 1)],
+        distribution: |params, member| {
+            let own = params.group(group_at(member));
+            normal_at_least(own.q_min_mean, own.q_min_std, params.customer_generation.q_min_min)
+        },
+        draw: |luck, member, n| example_traits(luck, member, n).curve.q_min,
+    },
+    WorldDraw {
+        name: "q_range",
+        description: "additional quality that a customer requires at its budget",
+        part: Part::Traits,
+        family: DrawFamily::Groups,
+        parameters: &["group.q_range_mean", "group.q_range_std", "customer_generation.q_range_min"],
+        source_files: &[(TRAITS_FILE, 1)],
+        distribution: |params, member| {
+            let own = params.group(group_at(member));
+            normal_at_least(own.q_range_mean, own.q_range_std, params.customer_generation.q_range_min)
+        },
+        draw: |luck, member, n| {
+            let own = example_traits(luck, member, n).curve;
+            own.q_max - own.q_min
+        },
+    },
+    WorldDraw {
+        name: "usage_demand",
+        description: "demand of a customer, units a day and seat",
+        part: Part::Traits,
+        family: DrawFamily::Groups,
+        parameters: &[
+            "group.usage_demand_mean",
+            "group.usage_demand_std",
+            "customer_generation.usage_demand_min",
+        ],
+        source_files: &[(TRAITS_FILE, 1)],
+        distribution: |params, member| {
+            let own = params.group(group_at(member));
+            normal_at_least(
+                own.usage_demand_mean,
+                own.usage_demand_std,
+                params.customer_generation.usage_demand_min,
+            )
+        },
+        draw: |luck, member, n| example_traits(luck, member, n).usage_demand,
+    },
+    WorldDraw {
+        name: "ads_quality_sensitivity",
+        description: "quality loss of a customer at full ad strength",
+        part: Part::Traits,
+        family: DrawFamily::Groups,
+        parameters: &[
+            "group.ads_quality_sensitivity_mean",
+            "group.ads_quality_sensitivity_std",
+            "customer_generation.ads_quality_sensitivity_min",
+        ],
+        source_files: &[(TRAITS_FILE, 1)],
+        distribution: |params, member| {
+            let own = params.group(group_at(member));
+            normal_at_least(
+                own.ads_quality_sensitivity_mean,
+                own.ads_quality_sensitivity_std,
+                params.customer_generation.ads_quality_sensitivity_min,
+            )
+        },
+        draw: |luck, member, n| example_traits(luck, member, n).ads_quality_sensitivity,
+    },
+    WorldDraw {
+        name: "ads_return_sensitivity",
+        description: "ad revenue at full strength, dollars a day and seat",
+        part: Part::Traits,
+        family: DrawFamily::Groups,
+        parameters: &[
+            "group.ads_return_sensitivity_mean",
+            "group.ads_return_sensitivity_std",
+            "customer_generation.ads_return_sensitivity_min",
+        ],
+        source_files: &[(TRAITS_FILE, 1)],
+        distribution: |params, member| {
+            let own = params.group(group_at(member));
+            normal_at_least(
+                own.ads_return_sensitivity_mean,
+                own.ads_return_sensitivity_std,
+                params.customer_generation.ads_return_sensitivity_min,
+            )
+        },
+        draw: |luck, member, n| example_traits(luck, member, n).ads_return_sensitivity,
+    },
+    WorldDraw {
+        name: "seats",
+        description: "seats of an enterprise",
+        part: Part::Traits,
+        family: DrawFamily::Enterprises,
+        parameters: &["group.seat_count_min", "group.seat_count_max"],
+        source_files: &[(TRAITS_FILE, 1)],
+        distribution: |params, member| {
+            let own = params.group(group_at(member));
+            DrawDistribution::UniformInteger {
+                low: own.seat_count_min.unwrap_or(1),
+                high: own.seat_count_max.unwrap_or(1),
+            }
+        },
+        draw: |luck, member, n| example_traits(luck, member, n).seats,
+    },
+    WorldDraw {
+        name: "reply_delay_mean",
+        description: "mean response time of an enterprise in a neutral economy, days",
+        part: Part::Traits,
+        family: DrawFamily::Enterprises,
+        parameters: &[
+            "group.reply_delay_mean",
+            "group.reply_delay_std",
+            "customer_generation.reply_delay_mean_noise_std_factor",
+            "customer_generation.reply_delay_mean_min",
+        ],
+        source_files: &[(TRAITS_FILE, 1)],
+        distribution: |params, member| {
+            let (own, bounds) = (params.group(group_at(member)), &params.customer_generation);
+            let spread = bounds.reply_delay_mean_noise_std_factor * own.reply_delay_std.unwrap_or(0.0);
+            normal_at_least(own.reply_delay_mean.unwrap_or(0.0), spread, bounds.reply_delay_mean_min)
+        },
+        draw: |luck, member, n| example_negotiator(luck, member, n).reply_delay_mean,
+    },
+    WorldDraw {
+        name: "reply_delay_std",
+        description: "spread of an enterprise's response time, days",
+        part: Part::Traits,
+        family: DrawFamily::Enterprises,
+        parameters: &[
+            "group.reply_delay_std",
+            "customer_generation.reply_delay_std_noise_std_factor",
+            "customer_generation.reply_delay_std_min",
+        ],
+        source_files: &[(TRAITS_FILE, 1)],
+        distribution: |params, member| {
+            let (own, bounds) = (params.group(group_at(member)), &params.customer_generation);
+            let spread = own.reply_delay_std.unwrap_or(0.0);
+            normal_at_least(
+                spread,
+                bounds.reply_delay_std_noise_std_factor * spread,
+                bounds.reply_delay_std_min,
+            )
+        },
+        draw: |luck, member, n| example_negotiator(luck, member, n).reply_delay_std,
+    },
+    WorldDraw {
+        name: "initial_offer_factor",
+        description: "first bid of an enterprise as a share of its maximum price",
+        part: Part::Traits,
+        family: DrawFamily::Enterprises,
+        parameters: &[
+            "enterprise.enterprise_initial_offer_factor_mean",
+            "enterprise.enterprise_initial_offer_factor_std",
+            "customer_generation.initial_offer_factor_min",
+            "customer_generation.initial_offer_factor_max",
+        ],
+        source_files: &[(TRAITS_FILE, 1)],
+        distribution: |params, _| DrawDistribution::Normal {
+            mean: params.enterprise.enterprise_initial_offer_factor_mean,
+            std: params.enterprise.enterprise_initial_offer_factor_std,
+            min: params.customer_generation.initial_offer_factor_min,
+            max: params.customer_generation.initial_offer_factor_max,
+        },
+        draw: |luck, member, n| example_negotiator(luck, member, n).initial_offer_factor,
+    },
+    WorldDraw {
+        name: "max_negotiation_turns",
+        description: "patience of an enterprise, turns",
+        part: Part::Traits,
+        family: DrawFamily::Enterprises,
+        parameters: &[
+            "group.max_negotiation_turns_mean",
+            "group.max_negotiation_turns_std",
+            "customer_generation.max_negotiation_turns_min",
+        ],
+        source_files: &[(TRAITS_FILE, 1)],
+        distribution: |params, member| {
+            let own = params.group(group_at(member));
+            DrawDistribution::RoundedNormal {
+                mean: own.max_negotiation_turns_mean.unwrap_or(0.0),
+                std: own.max_negotiation_turns_std.unwrap_or(0.0),
+                rounding: RoundingMode::Nearest,
+                min: f64::from(params.customer_generation.max_negotiation_turns_min),
+            }
+        },
+        draw: |luck, member, n| f64::from(example_negotiator(luck, member, n).max_negotiation_turns),
+    },
+    WorldDraw {
+        name: "persona_pick",
+        description: "index into the list of a group's industries; the other profile lists are drawn equally",
+        part: Part::Traits,
+        family: DrawFamily::Groups,
+        parameters: &[],
+        source_files: &[("customers/persona.rs", 1)],
+        distribution: |params, member| {
+            let own = &params.personas.group[member];
+            DrawDistribution::UniformInteger { low: 0, high: own.industry.len().saturating_sub(1) as u32 }
+        },
+        draw: |luck, member, n| f64::from(example_traits(luck, member, n).persona.0[0]),
+    },
+    WorldDraw {
+        name: "lead_count",
+        description: "leads of a group on a day; the example's mean is 12",
+        part: Part::LeadCount,
+        family: DrawFamily::Single,
+        parameters: &[],
+        source_files: &[("market/arrivals.rs", 1)],
+        distribution: |_, _| DrawDistribution::Poisson(EXPECTED_LEADS),
+        draw: |luck, member, n| {
+            luck.streams.open(Part::LeadCount, [n, member as u64]).poisson(EXPECTED_LEADS) as f64
+        },
+    },
+    WorldDraw {
+        name: "lead_source",
+        description: "channel of a lead, by index; the example spends the same on each",
+        part: Part::LeadSource,
+        family: DrawFamily::Groups,
+        parameters: &["channel.leads_per_1000_dollars"],
+        source_files: &[("market/arrivals.rs", 2)],
+        distribution: |params, member| {
+            let factors = lead_factors_for_equal_budgets(params, member);
+            DrawDistribution::Discrete(
+                Channel::ALL
+                    .into_iter()
+                    .map(|channel| (channel.index() as f64, factors.paid[channel]))
+                    .collect(),
+            )
+        },
+        draw: |luck, member, n| {
+            let u = luck.streams.open(Part::LeadSource, [member as u64, n]).uniform();
+            let source = lead_factors_for_equal_budgets(&luck.params, member).pick_source(u);
+            source.channel().map_or(f64::NAN, |channel| channel.index() as f64)
+        },
+    },
+    WorldDraw {
+        name: "lead_noise",
+        description: "factor by which an individual misjudges quality at its first decision",
+        part: Part::LeadNoise,
+        family: DrawFamily::Single,
+        parameters: &["quality.initial_decision_noise_min", "quality.initial_decision_noise_max"],
+        source_files: &[("market/arrivals.rs", 1)],
+        distribution: |params, _| DrawDistribution::Uniform {
+            low: params.quality.initial_decision_noise_min,
+            high: params.quality.initial_decision_noise_max,
+        },
+        draw: |luck, member, n| {
+            let offers = ByPlan([PlanOffer { price: 10.0, quality: 0.3, quota: 1e6 }; 3]);
+            let own = example_traits(luck, member, 1);
+            let word = luck.streams.open(Part::LeadNoise, [member as u64, n]).word();
+            LeadEvaluation::new(&offers, 0.0, (own.curve, own.usage_demand), word, &luck.params).noise
+        },
+    },
+];

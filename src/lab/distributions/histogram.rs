@@ -1,0 +1,71 @@
+//! Histograms of draws.
+
+/// Counts of draws in bins of equal width.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Histogram {
+    /// Lower end of the first bin.
+    pub from: f64,
+    /// Width of a bin.
+    pub width: f64,
+    /// Draws in each bin; the outer bins include everything beyond.
+    pub counts: Vec<u64>,
+}
+
+/// Share of draws at each end that is merged into the outer bins, so that outliers do not flatten the rest.
+const TAIL_SHARE: f64 = 0.001;
+
+impl Histogram {
+    /// Creates a histogram with at most `bins` bins. A small number of distinct values has one bin each.
+    pub fn from_draws(draws: &[f64], bins: usize) -> Histogram {
+        let mut sorted: Vec<f64> = draws.iter().copied().filter(|draw| draw.is_finite()).collect();
+        sorted.sort_by(f64::total_cmp);
+        let (Some(&least), Some(&most)) = (sorted.first(), sorted.last()) else {
+            return Histogram { from: 0.0, width: 1.0, counts: vec![0] };
+        };
+        let whole = sorted.iter().all(|draw| draw.fract() == 0.0);
+        if whole && most - least < bins as f64 {
+            return Histogram::count_into_bins(&sorted, least - 0.5, 1.0, (most - least) as usize + 1);
+        }
+        let beyond = (TAIL_SHARE * sorted.len() as f64) as usize;
+        let (low, high) = (sorted[beyond], sorted[sorted.len() - 1 - beyond]);
+        let span = if high > low { high - low } else { 1.0 };
+        Histogram::count_into_bins(&sorted, low, span / bins as f64, bins)
+    }
+
+    fn count_into_bins(draws: &[f64], from: f64, width: f64, bins: usize) -> Histogram {
+        let mut counts = vec![0; bins];
+        for draw in draws {
+            let bin = ((draw - from) / width).floor().clamp(0.0, (bins - 1) as f64);
+            counts[bin as usize] += 1;
+        }
+        Histogram { from, width, counts }
+    }
+
+    /// Returns the middle of a bin.
+    pub fn bin_center(&self, bin: usize) -> f64 {
+        self.from + (bin as f64 + 0.5) * self.width
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn few_integers_get_one_bin_each() {
+        let own = Histogram::from_draws(&[10.0, 12.0, 12.0, 11.0], 20);
+        assert_eq!((own.from, own.width, own.counts.clone()), (9.5, 1.0, vec![1, 1, 2]));
+        assert_eq!(own.bin_center(2), 12.0);
+    }
+
+    #[test]
+    fn outliers_count_in_the_outer_bins() {
+        let mut draws: Vec<f64> = (0..2000).map(|n| f64::from(n) / 2000.0).collect();
+        draws.push(1e9);
+        let own = Histogram::from_draws(&draws, 10);
+        assert_eq!(own.counts.iter().sum::<u64>(), 2001);
+        assert!(own.width < 0.2 && own.counts.iter().all(|count| (190..215).contains(count)), "{own:?}");
+        assert_eq!(Histogram::from_draws(&[], 5).counts, [0]);
+        assert_eq!(Histogram::from_draws(&[0.25; 4], 3).counts, [4, 0, 0]);
+    }
+}

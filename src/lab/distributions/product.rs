@@ -1,0 +1,188 @@
+//! Random draws of the product: service, development, R&D, usage.
+
+use super::distribution::{DrawDistribution, RoundingMode};
+use super::world_draw::{DrawFamily, WorldDraw, group_at};
+use novamind_world::params::Params;
+use novamind_world::product::development::daily_noise;
+use novamind_world::product::research::{project_boost, project_duration};
+use novamind_world::product::service::{draw_downtime_minutes, error_rate, outage_probability, p95_latency};
+use novamind_world::product::usage::usage_rate;
+use novamind_world::random::Part;
+
+const SERVICE_FILE: &str = "product/service.rs";
+const RESEARCH_FILE: &str = "product/research.rs";
+
+fn chance_of_outage(params: &Params) -> f64 {
+    outage_probability(0.0, 0.0, &params.operations)
+}
+
+/// Returns the draws.
+pub const PRODUCT_DRAWS: &[WorldDraw] = &[
+    WorldDraw {
+        name: "outage",
+        description: "an outage on a day, without operations and overload",
+        part: Part::Service,
+        family: DrawFamily::Single,
+        parameters: &["operations.base_outage_prob", "operations.ops_outage_min_prob"],
+        source_files: &[(SERVICE_FILE, 1)],
+        distribution: |params, _| DrawDistribution::Bernoulli(chance_of_outage(params)),
+        draw: |luck, _, n| {
+            let mut stream = luck.streams.open(Part::Service, [n]);
+            f64::from(u8::from(stream.bernoulli(chance_of_outage(&luck.params))))
+        },
+    },
+    WorldDraw {
+        name: "downtime",
+        description: "length of an outage, minutes",
+        part: Part::Service,
+        family: DrawFamily::Single,
+        parameters: &["operations.downtime_minutes_choices", "operations.downtime_minutes_probabilities"],
+        source_files: &[(SERVICE_FILE, 1)],
+        distribution: |params, _| {
+            let own = &params.operations;
+            let lengths = own.downtime_minutes_choices.into_iter().map(f64::from);
+            DrawDistribution::Discrete(lengths.zip(own.downtime_minutes_probabilities).collect())
+        },
+        draw: |luck, _, n| {
+            f64::from(draw_downtime_minutes(
+                &mut luck.streams.open(Part::Service, [n]),
+                &luck.params.operations,
+            ))
+        },
+    },
+    WorldDraw {
+        name: "p95_latency",
+        description: "latency of a day without overload, milliseconds",
+        part: Part::Service,
+        family: DrawFamily::Single,
+        parameters: &["operations.p95_base_ms", "operations.p95_noise_std"],
+        source_files: &[(SERVICE_FILE, 1)],
+        distribution: |params, _| DrawDistribution::Normal {
+            mean: params.operations.p95_base_ms,
+            std: params.operations.p95_noise_std,
+            min: f64::NEG_INFINITY,
+            max: f64::INFINITY,
+        },
+        draw: |luck, _, n| {
+            let z = luck.streams.open(Part::Service, [n]).standard_normal();
+            p95_latency(0.0, z, &luck.params.operations)
+        },
+    },
+    WorldDraw {
+        name: "error_rate",
+        description: "share of failed requests of a day without overload",
+        part: Part::Service,
+        family: DrawFamily::Single,
+        parameters: &[
+            "operations.error_rate_base",
+            "operations.error_rate_noise_std",
+            "operations.error_rate_min",
+            "operations.error_rate_max",
+        ],
+        source_files: &[(SERVICE_FILE, 1)],
+        distribution: |params, _| DrawDistribution::Normal {
+            mean: params.operations.error_rate_base,
+            std: params.operations.error_rate_noise_std,
+            min: params.operations.error_rate_min,
+            max: params.operations.error_rate_max,
+        },
+        draw: |luck, _, n| {
+            let z = luck.streams.open(Part::Service, [n]).standard_normal();
+            error_rate(0.0, z, &luck.params.operations)
+        },
+    },
+    WorldDraw {
+        name: "quality_noise",
+        description: "daily random change of shared quality",
+        part: Part::QualityNoise,
+        family: DrawFamily::Single,
+        parameters: &["development.quality_shared_noise_scale"],
+        source_files: &[("product/development.rs", 1)],
+        distribution: |params, _| DrawDistribution::Normal {
+            mean: 0.0,
+            std: params.development.quality_shared_noise_scale,
+            min: f64::NEG_INFINITY,
+            max: f64::INFINITY,
+        },
+        draw: |luck, _, n| daily_noise(n as u32, &luck.params, &luck.streams),
+    },
+    WorldDraw {
+        name: "research_days",
+        description: "duration of an R&D project, days",
+        part: Part::Research,
+        family: DrawFamily::ResearchTiers,
+        parameters: &[
+            "research_tier.mean_days",
+            "research_tier.std_days",
+            "development.rd_min_duration_days",
+        ],
+        source_files: &[(RESEARCH_FILE, 1)],
+        distribution: |params, tier| {
+            let own = params.research(tier as u8);
+            DrawDistribution::RoundedNormal {
+                mean: own.mean_days,
+                std: own.std_days,
+                rounding: RoundingMode::Down,
+                min: f64::from(params.development.rd_min_duration_days),
+            }
+        },
+        draw: |luck, tier, n| {
+            let z = luck.streams.open(Part::Research, [tier as u64, n]).standard_normal();
+            let own = luck.params.research(tier as u8);
+            f64::from(project_duration(own, z, &luck.params.development))
+        },
+    },
+    WorldDraw {
+        name: "research_gain",
+        description: "quality gained by an R&D project",
+        part: Part::Research,
+        family: DrawFamily::ResearchTiers,
+        parameters: &[
+            "research_tier.mean_quality_boost",
+            "research_tier.std_quality_boost",
+            "development.rd_min_quality_boost",
+        ],
+        source_files: &[(RESEARCH_FILE, 1)],
+        distribution: |params, tier| {
+            let own = params.research(tier as u8);
+            DrawDistribution::Normal {
+                mean: own.mean_quality_boost,
+                std: own.std_quality_boost,
+                min: params.development.rd_min_quality_boost,
+                max: f64::INFINITY,
+            }
+        },
+        draw: |luck, tier, n| {
+            let mut stream = luck.streams.open(Part::Research, [tier as u64, n]);
+            // The duration is drawn first.
+            let (_, z) = (stream.standard_normal(), stream.standard_normal());
+            project_boost(luck.params.research(tier as u8), z, &luck.params.development)
+        },
+    },
+    WorldDraw {
+        name: "usage_rate",
+        description: "usage of a billing period, units a day, of a customer with its group's mean demand",
+        part: Part::UsageRate,
+        family: DrawFamily::Groups,
+        parameters: &[
+            "group.usage_demand_mean",
+            "customer_generation.daily_usage_rate_std_fraction",
+            "customer_generation.daily_usage_rate_min",
+        ],
+        source_files: &[("retention/billing.rs", 1), ("enterprise/outcomes.rs", 1)],
+        distribution: |params, member| {
+            let (own, bounds) = (params.group(group_at(member)), &params.customer_generation);
+            DrawDistribution::Normal {
+                mean: own.usage_demand_mean,
+                std: bounds.daily_usage_rate_std_fraction * own.usage_demand_mean,
+                min: bounds.daily_usage_rate_min,
+                max: f64::INFINITY,
+            }
+        },
+        draw: |luck, member, n| {
+            let z = luck.streams.open(Part::UsageRate, [member as u64, n, 1]).standard_normal();
+            let demand = luck.params.group(group_at(member)).usage_demand_mean;
+            usage_rate(demand, 1.0, z, &luck.params.customer_generation)
+        },
+    },
+];

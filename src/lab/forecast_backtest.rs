@@ -1,0 +1,115 @@
+//! Back-test of naive forecasts: plays policies and compares the naive forecast before each week
+//! with the outcome.
+
+use super::policy::Policy;
+use super::runner::{RunError, RunSpec, play_all_weeks};
+use novamind_record::figures::WeekFigures;
+use novamind_record::folder::configuration::Configuration;
+use novamind_session::{Coverage, ErrorBands, GrowthStage, Hindcast, hindcasts};
+use novamind_world::params::Params;
+
+/// Forecast horizons in days.
+pub fn forecast_horizons() -> Vec<u32> {
+    Params::bundled().limits.prediction_horizons_days
+}
+
+/// Weeks of one run of a policy.
+#[derive(Debug, Clone)]
+pub struct PlayedWeeks {
+    /// Policy.
+    pub policy: String,
+    /// Weeks.
+    pub weeks: Vec<WeekFigures>,
+}
+
+/// Plays a policy on a seed and returns its weeks.
+///
+/// # Errors
+/// Fails if the run cannot start or a tool rejects a call that must succeed.
+pub fn play_weeks(
+    policy: &Policy,
+    seed: u64,
+    configuration: &Configuration,
+) -> Result<PlayedWeeks, RunError> {
+    let weeks = play_all_weeks(policy, &RunSpec::for_seed(seed), configuration)?;
+    Ok(PlayedWeeks { policy: policy.name.clone(), weeks })
+}
+
+/// Returns the intervals fitted to some runs, with their coverage there.
+pub fn measure_naive_bands(runs: &[PlayedWeeks], horizons: &[u32], seeds: u64) -> ErrorBands {
+    // Errors do not depend on the intervals.
+    let all = horizons.iter().flat_map(|horizon| runs.iter().map(move |run| (*horizon, run)));
+    let errors: Vec<(GrowthStage, u32, f64)> = all
+        .flat_map(|(horizon, run)| {
+            let made = hindcasts(&run.weeks, horizon, ErrorBands::bundled());
+            made.into_iter().map(move |own| (own.stage, horizon, own.error))
+        })
+        .collect();
+    let policies = policy_names(runs).len();
+    let bands = ErrorBands::from_errors(&errors, policies, seeds);
+    let coverage = horizons.iter().map(|horizon| band_coverage(runs, None, *horizon, &bands)).collect();
+    ErrorBands { coverage, ..bands }
+}
+
+/// Returns the coverage at a horizon, over all runs or those of one policy.
+pub fn band_coverage(
+    runs: &[PlayedWeeks],
+    policy: Option<&str>,
+    horizon: u32,
+    bands: &ErrorBands,
+) -> Coverage {
+    let own = runs.iter().filter(|run| policy.is_none_or(|policy| run.policy == policy));
+    let made: Vec<Hindcast> = own.flat_map(|run| hindcasts(&run.weeks, horizon, bands)).collect();
+    let held = made.iter().filter(|own| own.is_covered).count();
+    // Rounded to the displayed digits to keep the file readable.
+    let share = if made.is_empty() { 0.0 } else { held as f64 / made.len() as f64 };
+    Coverage { horizon, forecasts: made.len(), held: (share * 1e4).round() / 1e4 }
+}
+
+/// Returns the names of the policies in order.
+pub fn policy_names(runs: &[PlayedWeeks]) -> Vec<&str> {
+    let mut names: Vec<&str> = runs.iter().map(|run| run.policy.as_str()).collect();
+    names.dedup();
+    names
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use novamind_session::JournalEntry;
+
+    /// The forecast offered during play equals the back-test's forecast.
+    #[test]
+    fn backtest_uses_the_forecasts_the_game_offers() {
+        let configuration = Configuration::bundled();
+        let policy = Policy::find("P1c", &configuration).expect("a shipped policy");
+        let spec = RunSpec { stop_after_day: Some(84), ..RunSpec::for_seed(5) };
+        let session = super::super::runner::play_session(
+            &policy,
+            &spec,
+            &configuration,
+            &mut super::super::Collector::disabled(),
+        )
+        .expect("it plays");
+        let filed: Vec<_> = session
+            .journal()
+            .iter()
+            .filter_map(|entry| match entry {
+                JournalEntry::Advance { day, forecasts, .. } => Some((*day, forecasts.clone())),
+                _ => None,
+            })
+            .collect();
+        let mut compared = 0;
+        for horizon in [7, 28] {
+            let made = hindcasts(session.weeks(), horizon, ErrorBands::bundled());
+            for (own, (day, forecasts)) in made.iter().zip(&filed) {
+                let forecast = forecasts.iter().find(|one| one.horizon_days == horizon).expect("filed");
+                let outcome = session.cash_by_day()[(day + horizon) as usize];
+                let inside = (forecast.lower..=forecast.upper).contains(&outcome);
+                assert_eq!(inside, own.is_covered, "day {day}, {horizon} ahead: {outcome}, {forecast:?}");
+                compared += 1;
+            }
+        }
+        assert_eq!(compared, 12 + 9);
+    }
+}

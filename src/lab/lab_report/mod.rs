@@ -1,0 +1,239 @@
+//! Output of laboratory commands: tables of typed cells, graphs, and notes.
+//!
+//! An exhibit is written as terminal text ([`LabReport::as_text`]), comma-separated values ([`LabTable::to_csv_rows`]), JSON
+//! ([`LabReport::to_json`]) and SVG ([`LabReport::to_svg`]). The last three have full precision.
+
+mod data;
+mod graph;
+mod text;
+
+pub use graph::{Graph, GraphAxis, GraphForm, Series};
+pub use novamind_report::plot::AxisScale;
+
+use novamind_base::formatting::{dollars, grouped_number, percent, short_dollars};
+use novamind_base::statistics::Interval;
+
+/// Default maximum width of a table in columns.
+pub const DEFAULT_WIDTH: usize = 100;
+
+/// The output of a laboratory command.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LabReport {
+    /// Title.
+    pub title: String,
+    /// Tables; the first one is the result.
+    pub tables: Vec<LabTable>,
+    /// Graphs.
+    pub graphs: Vec<Graph>,
+    /// Notes below: assumptions, definitions and sources.
+    pub notes: Vec<String>,
+}
+
+/// A table of an exhibit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LabTable {
+    /// Name for programs: `--table NAME` asks for it.
+    pub name: String,
+    /// Caption; empty for none.
+    pub caption: String,
+    /// Columns.
+    pub columns: Vec<Column>,
+    /// Cells by row, one per column.
+    pub rows: Vec<Vec<CellValue>>,
+    /// Summary rows: shown below a rule in text, separate from the rows in JSON.
+    pub summary: Vec<Vec<CellValue>>,
+    /// Whether the table is too long for text, which names the export option instead.
+    pub is_machine_readable_only: bool,
+}
+
+/// A column of a table.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Column {
+    /// Name for programs, see [`column_name`].
+    pub name: String,
+    /// Heading; it can wrap at spaces.
+    pub heading: String,
+    /// Cell type.
+    pub kind: ColumnKind,
+}
+
+/// The cell type of a column.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ColumnKind {
+    /// Text, left-aligned.
+    Text,
+    /// Numbers, right-aligned.
+    Number(Measure),
+    /// Intervals; two numbers in exports.
+    Interval(Measure),
+    /// Character drawings, not exported.
+    Sparkline,
+}
+
+/// The unit and display format of a number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Measure {
+    /// Dollars.
+    Dollars,
+    /// A count.
+    Count,
+    /// Days.
+    Days,
+    /// A share, 0 to 1; shown in percent.
+    Share,
+    /// Millions of dollars with one decimal.
+    Millions,
+    /// Any other number, with this many decimals.
+    Number(usize),
+}
+
+/// The content of a cell.
+#[derive(Debug, Clone, PartialEq)]
+pub enum CellValue {
+    /// Text.
+    Text(String),
+    /// A number in the column's measure.
+    Number(f64),
+    /// A number with its own measure, for tables whose rows have different units.
+    NumberWithMeasure(f64, Measure),
+    /// An interval in the column's measure.
+    Interval(Interval),
+    /// A missing value.
+    Missing,
+}
+
+impl Column {
+    /// Returns a text column.
+    pub fn text(name: &str, heading: &str) -> Column {
+        Column { name: name.to_owned(), heading: heading.to_owned(), kind: ColumnKind::Text }
+    }
+
+    /// Returns a number column.
+    pub fn number(name: &str, heading: &str, measure: Measure) -> Column {
+        Column { name: name.to_owned(), heading: heading.to_owned(), kind: ColumnKind::Number(measure) }
+    }
+
+    /// Returns an interval column.
+    pub fn interval(name: &str, heading: &str, measure: Measure) -> Column {
+        Column { name: name.to_owned(), heading: heading.to_owned(), kind: ColumnKind::Interval(measure) }
+    }
+
+    /// Returns a column of drawings, which is not exported.
+    pub fn sparkline(name: &str, heading: &str) -> Column {
+        Column { name: name.to_owned(), heading: heading.to_owned(), kind: ColumnKind::Sparkline }
+    }
+
+    /// Returns the measure of its numbers.
+    fn measure(&self) -> Option<Measure> {
+        match self.kind {
+            ColumnKind::Text | ColumnKind::Sparkline => None,
+            ColumnKind::Number(measure) | ColumnKind::Interval(measure) => Some(measure),
+        }
+    }
+}
+
+/// Returns the name of a column for programs: the letters and digits of a text in lower case, with underscores between its words.
+pub fn column_name(text: &str) -> String {
+    let words = text.split(|letter: char| !letter.is_alphanumeric()).filter(|word| !word.is_empty());
+    words.collect::<Vec<_>>().join("_").to_lowercase()
+}
+
+impl Measure {
+    /// Returns the name for programs.
+    pub fn name(self) -> &'static str {
+        match self {
+            Measure::Dollars => "dollars",
+            Measure::Count => "count",
+            Measure::Days => "days",
+            Measure::Share => "share",
+            Measure::Millions => "millions of dollars",
+            Measure::Number(_) => "number",
+        }
+    }
+
+    /// Formats a value.
+    pub fn format(self, value: f64) -> String {
+        match self {
+            _ if !value.is_finite() => MISSING_VALUE.to_owned(),
+            Measure::Dollars => dollars(value),
+            Measure::Count | Measure::Days => grouped_number(value + 0.0, 0),
+            Measure::Share => percent(value, 1),
+            Measure::Millions => grouped_number(value + 0.0, 1),
+            Measure::Number(decimals) => grouped_number(value + 0.0, decimals),
+        }
+    }
+
+    /// Formats a value in few characters.
+    fn format_short(self, value: f64) -> String {
+        match self {
+            Measure::Dollars if value.is_finite() && value.abs() >= 100_000.0 => short_dollars(value),
+            _ => self.format(value),
+        }
+    }
+}
+
+const MISSING_VALUE: &str = "–";
+
+impl CellValue {
+    /// Text.
+    pub fn text(text: impl Into<String>) -> CellValue {
+        CellValue::Text(text.into())
+    }
+
+    /// Returns a number cell, or a missing value.
+    pub fn number(value: impl Into<Option<f64>>) -> CellValue {
+        value.into().filter(|value| value.is_finite()).map_or(CellValue::Missing, CellValue::Number)
+    }
+
+    /// Returns an interval cell, or a missing value.
+    pub fn interval(interval: Option<Interval>) -> CellValue {
+        interval.map_or(CellValue::Missing, CellValue::Interval)
+    }
+
+    fn format(&self, measure: Option<Measure>, is_short: bool) -> String {
+        let own = measure.unwrap_or(Measure::Number(2));
+        let write = |value: f64, measure: Measure| match is_short {
+            true => measure.format_short(value),
+            false => measure.format(value),
+        };
+        match self {
+            CellValue::Text(text) => text.clone(),
+            CellValue::Number(value) => write(*value, own),
+            CellValue::NumberWithMeasure(value, measure) => write(*value, *measure),
+            CellValue::Interval(Interval { low, high }) => {
+                format!("{} to {}", write(*low, own), write(*high, own))
+            }
+            CellValue::Missing => MISSING_VALUE.to_owned(),
+        }
+    }
+}
+
+impl LabReport {
+    /// Creates an exhibit with one table.
+    pub fn with_table(title: impl Into<String>, table: LabTable) -> LabReport {
+        LabReport { title: title.into(), tables: vec![table], graphs: Vec::new(), notes: Vec::new() }
+    }
+
+    /// Adds a note.
+    pub fn with_note(mut self, note: impl Into<String>) -> LabReport {
+        self.notes.push(note.into());
+        self
+    }
+}
+
+impl LabTable {
+    /// Creates a table without rows.
+    pub fn new(name: &str, caption: impl Into<String>, columns: Vec<Column>) -> LabTable {
+        LabTable {
+            name: name.to_owned(),
+            caption: caption.into(),
+            columns,
+            rows: Vec::new(),
+            summary: Vec::new(),
+            is_machine_readable_only: false,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,124 @@
+//! Several attempts of one program, and the selected one by the rule of the published table.
+
+use super::{FinishedRun, best_run};
+use crate::lab_report::{CellValue, Column, LabReport, LabTable, Measure};
+use novamind_base::statistics::SampleStatistics;
+
+/// A new run for a program.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AttemptResult {
+    /// Number, from 1.
+    pub number: u32,
+    /// Name of the run.
+    pub run: String,
+    /// Number of starts of the program.
+    pub starts: u32,
+    /// Exit code of the last start; `None` if a signal ended it.
+    pub exit_code: Option<i32>,
+    /// Last simulated day.
+    pub day: u32,
+    /// Result of the run; `None` if it is unfinished.
+    pub result: Option<FinishedRun>,
+}
+
+/// Returns a table of the attempts under a title that names the program.
+pub fn attempts_report(title: String, tries: &[AttemptResult]) -> LabReport {
+    let columns = vec![
+        Column::number("try", "try", Measure::Count),
+        Column::text("run", "run"),
+        Column::text("end", "end"),
+        Column::number("day", "day", Measure::Days),
+        Column::number("cash", "cash", Measure::Dollars),
+        Column::number("calls_per_week", "calls a week", Measure::Number(2)),
+        Column::number("attempts", "starts", Measure::Count),
+        Column::number("exit_code", "exit code", Measure::Count),
+        Column::text("selected", "selected"),
+    ];
+    let finished: Vec<&FinishedRun> = tries.iter().filter_map(|own| own.result.as_ref()).collect();
+    let best = best_run(&finished).map(|run| run.run.clone());
+    let rows = tries.iter().map(|own| row_cells(own, best.as_deref())).collect();
+    let mut exhibit = LabReport::with_table(title, LabTable { rows, ..LabTable::new("tries", "", columns) });
+    exhibit.notes.push(
+        "Selected: the run with the most final cash; if all runs went bankrupt, the one with the longest life.".to_owned(),
+    );
+    let unfinished = tries.len() - finished.len();
+    if unfinished > 0 {
+        exhibit.notes.push(format!("Unfinished runs, not selected: {unfinished}."));
+    }
+    if !finished.is_empty() {
+        let bankrupt = finished.iter().filter(|run| run.is_bankrupt).count();
+        let lives: Vec<f64> = finished.iter().map(|run| f64::from(run.survival_days)).collect();
+        exhibit.notes.push(format!(
+            "Bankrupt: {bankrupt} of {}; mean life {:.1} days. `novamind lab table` compares runs that have the published length and starting \
+             cash with published ones.",
+            finished.len(),
+            SampleStatistics::from_values(&lives).mean
+        ));
+    }
+    exhibit
+}
+
+fn row_cells(own: &AttemptResult, best: Option<&str>) -> Vec<CellValue> {
+    let end = match &own.result {
+        None => "unfinished",
+        Some(run) if run.is_bankrupt => "bankrupt",
+        Some(_) => "last day",
+    };
+    vec![
+        CellValue::Number(f64::from(own.number)),
+        CellValue::text(&*own.run),
+        CellValue::text(end),
+        CellValue::Number(f64::from(own.day)),
+        CellValue::number(own.result.as_ref().map(|run| run.score)),
+        CellValue::number(own.result.as_ref().map(|run| run.calls_per_week)),
+        CellValue::Number(f64::from(own.starts)),
+        CellValue::number(own.exit_code.map(f64::from)),
+        CellValue::text(if best == Some(own.run.as_str()) { "yes" } else { "" }),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sample_attempt(number: u32, result: Option<(f64, u32)>) -> AttemptResult {
+        let run = format!("r{number}");
+        let result = result.map(|(score, days)| FinishedRun {
+            run: run.clone(),
+            participant: None,
+            policy: None,
+            seed: 42,
+            score,
+            is_bankrupt: score == 0.0,
+            survival_days: days,
+            calls_per_week: 1.0,
+        });
+        let day = result.as_ref().map_or(14, |run| run.survival_days);
+        AttemptResult { number, run, starts: 1, exit_code: Some(0), day, result }
+    }
+
+    fn selected_attempts(tries: &[AttemptResult]) -> Vec<String> {
+        let exhibit = attempts_report("x".to_owned(), tries);
+        let rows = &exhibit.tables[0].rows;
+        let is_selected = |row: &&Vec<CellValue>| row.last() == Some(&CellValue::text("yes"));
+        rows.iter().filter(is_selected).map(|row| format!("{:?}", row[1])).collect()
+    }
+
+    #[test]
+    fn best_attempt_has_most_cash_then_longest_survival() {
+        let name = |run: &str| vec![format!("{:?}", CellValue::text(run))];
+        assert_eq!(
+            selected_attempts(&[
+                sample_attempt(1, Some((0.0, 400))),
+                sample_attempt(2, Some((5.0, 500))),
+                sample_attempt(3, None)
+            ]),
+            name("r2")
+        );
+        assert_eq!(
+            selected_attempts(&[sample_attempt(1, Some((0.0, 120))), sample_attempt(2, Some((0.0, 131)))]),
+            name("r2")
+        );
+        assert!(selected_attempts(&[sample_attempt(1, None)]).is_empty());
+    }
+}

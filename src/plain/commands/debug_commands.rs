@@ -1,0 +1,42 @@
+//! `find`, `who`, `diff` and `set`: commands that the console offers, too (docs/debugging.md).
+
+use serde_json::{Value, json};
+
+use super::super::grammar::ParseError;
+use super::super::response::CommandResponse;
+use super::Interpreter;
+use super::breakpoints::{judged_to_json, writers_to_json};
+use novamind_report::inspection::{InspectionCommand, InspectionOutput, difference_to_json};
+
+impl Interpreter {
+    /// Answers a command. The permission is checked before anything is parsed.
+    pub(super) fn run_debug_command(
+        &mut self,
+        word: &str,
+        read: impl FnOnce() -> Result<InspectionCommand, ParseError>,
+    ) -> Result<CommandResponse, ParseError> {
+        if let Err(refusal) = InspectionCommand::check_permission(word, &self.session) {
+            return Ok(CommandResponse::rejected(word, refusal));
+        }
+        Ok(match read()?.run(&mut self.session) {
+            Ok(found) => CommandResponse::success(word, found.describe().join("\n"), result_to_json(&found)),
+            Err(refusal) => CommandResponse::rejected(word, refusal),
+        })
+    }
+}
+
+fn result_to_json(found: &InspectionOutput) -> Value {
+    match found {
+        InspectionOutput::Days(condition, found, _) => {
+            let days: Vec<Value> = found.iter().map(judged_to_json).collect();
+            json!({ "condition": condition.to_string(), "days": days })
+        }
+        InspectionOutput::Writes(own) => writers_to_json(own),
+        InspectionOutput::Difference(one, other, found) => {
+            json!({ "days": [one, other], "difference": difference_to_json(found) })
+        }
+        InspectionOutput::Parameters(changed) => json!(changed),
+        InspectionOutput::Parameter(key, value) => json!({ "key": key, "value": value }),
+        InspectionOutput::Set(set, _) => json!(set),
+    }
+}

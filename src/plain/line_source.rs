@@ -1,0 +1,121 @@
+//! Reads lines on a separate thread, so that a signal or a time limit can end the wait.
+
+use std::io;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::time::Duration;
+
+use super::end_reason::EndReason;
+use super::input::{Input, InputLine};
+use super::signals::{Phase, SignalWatch};
+
+/// An event that ends a wait.
+enum Event {
+    /// A line with its number.
+    Line(u32, io::Result<InputLine>),
+    /// A signal that asks to leave.
+    Signal(i32),
+}
+
+/// Input lines, each read on request.
+pub struct LineSource {
+    requests: Sender<()>,
+    events: Receiver<Event>,
+    watch: SignalWatch,
+    /// A line was requested and has not arrived.
+    is_requested: bool,
+    number: u32,
+}
+
+impl LineSource {
+    /// Reads from standard input and starts watching for signals.
+    pub fn from_stdin() -> LineSource {
+        let (sender, events) = channel();
+        let signals = sender.clone();
+        let watch = SignalWatch::start(move |signal| drop(signals.send(Event::Signal(signal))));
+        let (wanted, wants) = channel();
+        std::thread::spawn(move || {
+            let mut input = Input::new(io::stdin().lock());
+            while wants.recv().is_ok() {
+                let (number, read) = (input.next_number(), input.read_line());
+                if sender.send(Event::Line(number, read)).is_err() {
+                    return;
+                }
+            }
+        });
+        LineSource { requests: wanted, events, watch, is_requested: false, number: 1 }
+    }
+
+    /// Returns the signal watch.
+    pub fn watch(&self) -> SignalWatch {
+        self.watch.clone()
+    }
+
+    /// Returns how the session ends when there are no more lines.
+    pub fn end_reason(&self) -> EndReason {
+        self.watch.caught_signal().map_or(EndReason::EndOfInput, EndReason::Signal)
+    }
+
+    /// Returns the number of the last line read, from 1.
+    pub fn number(&self) -> u32 {
+        self.number
+    }
+
+    /// Returns whether a requested line has not arrived yet.
+    pub fn is_waiting(&self) -> bool {
+        self.is_requested
+    }
+
+    /// Waits for a line. Returns the end of input after a signal, which the watch reports.
+    ///
+    /// # Errors
+    /// The source fails.
+    pub fn read_line(&mut self) -> io::Result<InputLine> {
+        loop {
+            if let Some(read) = self.read_line_timeout(None)? {
+                return Ok(read);
+            }
+        }
+    }
+
+    /// Waits for a line at most for a duration. Returns `None` if none arrived.
+    ///
+    /// # Errors
+    /// The source fails.
+    pub fn read_line_timeout(&mut self, at_most: Option<Duration>) -> io::Result<Option<InputLine>> {
+        if self.watch.caught_signal().is_some() {
+            return Ok(Some(InputLine::End));
+        }
+        if !std::mem::replace(&mut self.is_requested, true) {
+            // The thread ends with the program.
+            let _ = self.requests.send(());
+        }
+        if !self.watch.enter_prompt() {
+            return Ok(Some(InputLine::End));
+        }
+        let event = self.next_event(at_most);
+        self.watch.set_phase(Phase::Working);
+        match event {
+            None => Ok(None),
+            Some(Event::Signal(number)) => {
+                self.watch.record_signal(number);
+                Ok(Some(InputLine::End))
+            }
+            Some(Event::Line(number, read)) => {
+                (self.is_requested, self.number) = (false, number);
+                read.map(Some)
+            }
+        }
+    }
+
+    fn next_event(&self, at_most: Option<Duration>) -> Option<Event> {
+        let end = || Event::Line(self.number, Ok(InputLine::End));
+        match at_most {
+            None => Some(self.events.recv().unwrap_or_else(|_| end())),
+            Some(time) => match self.events.recv_timeout(time) {
+                Ok(event) => Some(event),
+                Err(RecvTimeoutError::Timeout) => None,
+                Err(RecvTimeoutError::Disconnected) => Some(end()),
+            },
+        }
+    }
+}

@@ -1,0 +1,292 @@
+//! A participant's session in a study, line by line: label, consent, practice, session, questions, thanks.
+
+use std::io::{self, IsTerminal, Write};
+use std::path::{Path, PathBuf};
+
+use serde_json::json;
+
+use super::input::InputLine;
+use super::line_source::LineSource;
+use super::{EndReason, OutputStyle, confirm_withdrawal, run_dialogue, show_prompt};
+use novamind_base::formatting::escape_control_characters;
+use novamind_record::clock::monotonic_time;
+use novamind_record::consent::{ConsentAgreement, ConsentGiven, ConsentMeans};
+use novamind_record::error::RunError;
+use novamind_record::folder::configuration::Configuration;
+use novamind_record::folder::query_library::QueryLibrary;
+use novamind_report::prose::to_plain_text;
+use novamind_session::Session;
+use novamind_study::{DECLINED_NOTICE, NextStep, ParticipantSession, Study};
+
+/// The reason why a visit ends early.
+enum SessionStop {
+    /// The participant or the input left, with the exit code.
+    Left(u8),
+    /// A run or a file cannot be read.
+    Run(RunError),
+    /// Standard input or output fails.
+    Io(io::Error),
+}
+
+impl From<RunError> for SessionStop {
+    fn from(error: RunError) -> SessionStop {
+        SessionStop::Run(error)
+    }
+}
+
+impl From<io::Error> for SessionStop {
+    fn from(error: io::Error) -> SessionStop {
+        SessionStop::Io(error)
+    }
+}
+
+/// Guides a participant through a study. Returns the exit code. `again` is the command that continues the study.
+///
+/// # Errors
+/// A run or a file of the study cannot be read; standard input or output fails.
+pub fn run_participant_session(
+    study: Study,
+    runs: &Path,
+    configuration: &Configuration,
+    style: OutputStyle,
+    resume_command: &str,
+) -> Result<u8, RunError> {
+    let lines = LineSource::from_stdin();
+    let mut host = SessionHost { lines, configuration, style, consent: None, resume_command };
+    match host.run_steps(study, runs) {
+        Ok(code) | Err(SessionStop::Left(code)) => Ok(code),
+        Err(SessionStop::Run(error)) => Err(error),
+        Err(SessionStop::Io(error)) => Err(RunError::InvalidRequest(error.to_string())),
+    }
+}
+
+/// Columns of wrapped text.
+const TEXT_COLUMNS: usize = 78;
+
+/// How to leave a run of a study.
+const LEAVE_HELP: &str = "quit leaves the run; everything confirmed is saved.\n\
+                        withdraw erases everything you did in this study. Both also work at questions.\n\
+                        pause stops the clock for a break, resume restarts it.";
+
+struct SessionHost<'a> {
+    lines: LineSource,
+    configuration: &'a Configuration,
+    style: OutputStyle,
+    consent: Option<ConsentAgreement>,
+    resume_command: &'a str,
+}
+
+impl SessionHost<'_> {
+    fn run_steps(&mut self, study: Study, runs: &Path) -> Result<u8, SessionStop> {
+        self.show_text("study", &study.protocol.title)?;
+        let visit = self.ask_label(study, runs)?;
+        loop {
+            let step = match visit.next_step()? {
+                // Consent is recorded in the first run, which does not exist yet.
+                NextStep::Consent(_) if self.consent.is_some() => visit.next_step_after_consent()?,
+                step => step,
+            };
+            match step {
+                NextStep::Consent(text) => self.ask_consent(&visit, &text.text)?,
+                NextStep::Practice { unfinished, may_skip: may_pass } => {
+                    self.run_practice(&visit, unfinished, may_pass)?
+                }
+                NextStep::Session(unfinished) => {
+                    let session = self.open_or_create_run(&visit, false, unfinished.as_deref())?;
+                    let first = match (unfinished, session.company().observe().week) {
+                        (None, _) => "The session begins.".to_owned(),
+                        (Some(_), 0) => "The session continues before its first week.".to_owned(),
+                        (Some(_), week) => format!("The session continues after week {week}."),
+                    };
+                    self.show_text("session", &format!("{first}\n{LEAVE_HELP}"))?;
+                    self.play_run(&visit, session)?;
+                }
+                NextStep::Questions(folder) => self.play_run(&visit, visit.open_run(&folder)?)?,
+                NextStep::Withdrawn(kept) => {
+                    self.show_text("withdrawn", &format!("You have withdrawn from this study. {kept}"))?;
+                    return Ok(0);
+                }
+                NextStep::Thanks => {
+                    visit.record_finished();
+                    self.show_text(
+                        "thanks",
+                        "Thank you. Everything is recorded; please tell the experimenter.",
+                    )?;
+                    return Ok(0);
+                }
+            }
+        }
+    }
+
+    /// Asks for the label until it is valid.
+    fn ask_label(&mut self, study: Study, runs: &Path) -> Result<ParticipantSession, SessionStop> {
+        let mut refused = 0;
+        loop {
+            let label = self.ask_line("label", "Your label (quit leaves):")?;
+            if is_quit(&label) {
+                return Err(SessionStop::Left(0));
+            }
+            match ParticipantSession::start(study.clone(), runs, &label, refused) {
+                Ok(visit) => return Ok(visit),
+                Err(RunError::InvalidRequest(problem)) => {
+                    refused += 1;
+                    self.show_text("label_refused", &problem)?;
+                }
+                Err(error) => return Err(error.into()),
+            }
+        }
+    }
+
+    fn ask_consent(&mut self, visit: &ParticipantSession, text: &str) -> Result<(), SessionStop> {
+        // Programs receive the text without wrapping.
+        let shown = if self.style.json { text.trim().to_owned() } else { to_plain_text(text, TEXT_COLUMNS) };
+        self.show_text("consent", &shown)?;
+        let shown = monotonic_time();
+        let question = "Type yes if you agree, no if you do not";
+        match self.ask_choice(visit, "consent", question, ["yes", "no"])? {
+            None => Ok(()),
+            Some("yes") => {
+                let read_ms = monotonic_time().saturating_sub(shown).as_millis() as u64;
+                let means = ConsentMeans::Prompt;
+                self.consent = Some(ConsentGiven { means, scrolled_to_end: true, read_ms }.given_now());
+                Ok(())
+            }
+            Some(_) => {
+                visit.record_declined();
+                self.show_text("declined", &format!("{DECLINED_NOTICE} Please tell the experimenter."))?;
+                Err(SessionStop::Left(0))
+            }
+        }
+    }
+
+    fn run_practice(
+        &mut self,
+        visit: &ParticipantSession,
+        unfinished: Option<PathBuf>,
+        may_pass: bool,
+    ) -> Result<(), SessionStop> {
+        if may_pass {
+            let question = "Type practice to practice first, skip to start the session";
+            match self.ask_choice(visit, "practice", question, ["practice", "skip"])? {
+                None => return Ok(()),
+                Some("practice") => {}
+                Some(_) => {
+                    visit.skip_practice();
+                    return Ok(());
+                }
+            }
+        }
+        let first = if unfinished.is_some() { "The practice continues" } else { "The practice starts" };
+        let text = format!(
+            "{first}. It uses a separate company and does not count. It ends after its last day.\n{LEAVE_HELP}"
+        );
+        self.show_text("practice", &text)?;
+        let session = self.open_or_create_run(visit, true, unfinished.as_deref())?;
+        self.play_run(visit, session)
+    }
+
+    /// Asks until one of two words is typed. Returns `None` if the participant withdrew.
+    fn ask_choice(
+        &mut self,
+        visit: &ParticipantSession,
+        event: &str,
+        question: &str,
+        words: [&'static str; 2],
+    ) -> Result<Option<&'static str>, SessionStop> {
+        let question = format!("{question} (quit leaves, withdraw erases what you did):");
+        loop {
+            let typed = self.ask_line(event, &question)?.trim().to_lowercase();
+            if let Some(word) = words.into_iter().find(|word| *word == typed) {
+                return Ok(Some(word));
+            }
+            match typed.as_str() {
+                typed if is_quit(typed) => {
+                    let text = format!(
+                        "You have left. To continue, run `{}` and give the same label.",
+                        self.resume_command
+                    );
+                    self.show_text("later", &text)?;
+                    return Err(SessionStop::Left(0));
+                }
+                "withdraw" if confirm_withdrawal(self.style, &mut self.lines)? => {
+                    visit.withdraw()?;
+                    return Ok(None);
+                }
+                "withdraw" => {}
+                other => {
+                    let [one, two] = words;
+                    self.show_text("not_understood", &format!("{other:?} is neither {one} nor {two}"))?;
+                }
+            }
+        }
+    }
+
+    fn open_or_create_run(
+        &self,
+        visit: &ParticipantSession,
+        practice: bool,
+        unfinished: Option<&Path>,
+    ) -> Result<Session, SessionStop> {
+        Ok(match unfinished {
+            Some(folder) => visit.open_run(folder)?,
+            None => visit.create_run(practice, self.consent.clone(), self.configuration)?,
+        })
+    }
+
+    /// Plays a run until it is over and its questions are answered, or the participant leaves.
+    fn play_run(&mut self, visit: &ParticipantSession, session: Session) -> Result<(), SessionStop> {
+        let library = QueryLibrary::load(self.configuration);
+        let (end, session) =
+            run_dialogue(session, library, self.style, Some(visit.study()), &mut self.lines)?;
+        let goes_on = session.ended().is_some() && visit.study().due_questions(&session).is_empty();
+        // The run must be closed before it can be erased.
+        drop(session);
+        match end {
+            EndReason::Withdrawn => Ok(visit.withdraw()?),
+            EndReason::Quit | EndReason::RunOver if goes_on => Ok(()),
+            EndReason::RecordLost => Err(SessionStop::Left(end.exit_code())),
+            end => {
+                let text = format!(
+                    "Everything confirmed is saved. To continue, run `{}` and give the same label.",
+                    self.resume_command
+                );
+                self.show_text("later", &text)?;
+                Err(SessionStop::Left(end.exit_code()))
+            }
+        }
+    }
+
+    fn ask_line(&mut self, event: &str, question: &str) -> Result<String, SessionStop> {
+        if self.style.json {
+            println!("{}", json!({ "event": "ask", "what": event, "text": question }));
+            io::stdout().flush()?;
+        } else if io::stdin().is_terminal() {
+            show_prompt(&format!("{question} "))?;
+        } else {
+            println!("{question}");
+            io::stdout().flush()?;
+        }
+        loop {
+            match self.lines.read_line()? {
+                InputLine::Line(line) => return Ok(line),
+                InputLine::Unreadable(problem) => self.show_text("not_understood", &problem)?,
+                InputLine::End => return Err(SessionStop::Left(self.lines.end_reason().exit_code())),
+            }
+        }
+    }
+
+    fn show_text(&self, event: &str, text: &str) -> Result<(), SessionStop> {
+        if self.style.json {
+            println!("{}", json!({ "event": event, "text": text }));
+        } else {
+            println!("{}\n", escape_control_characters(text));
+        }
+        io::stdout().flush()?;
+        Ok(())
+    }
+}
+
+/// Returns whether a line asks to leave.
+fn is_quit(line: &str) -> bool {
+    matches!(line.trim(), "quit" | "exit")
+}

@@ -1,0 +1,52 @@
+//! Answered questions of a study, read from the record of a run, and the number of breaks.
+
+use std::collections::BTreeSet;
+
+use crate::trajectory::record::{Activity, ClockEvent, PresenceEvent, QuestionAnswer};
+use crate::trajectory::{Line, Record};
+
+/// The questions of a study that a run has answered.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct AnsweredQuestions {
+    /// Questionnaire, occasion and question of each answer.
+    answers: BTreeSet<(String, String, String)>,
+    /// Number of times the participant reopened the run or restarted the clock.
+    pub break_count: u32,
+    /// Whether an `opened` line was read before.
+    was_opened: bool,
+}
+
+impl AnsweredQuestions {
+    /// Reads the answers and breaks from the lines of a run, in order.
+    pub fn from_lines<'a>(lines: impl IntoIterator<Item = &'a Line>) -> AnsweredQuestions {
+        let mut book = AnsweredQuestions::default();
+        for line in lines {
+            if let Record::Activity(activity) = &line.record {
+                book.record_activity(activity);
+            }
+        }
+        book
+    }
+
+    /// Updates the answers and breaks with one activity.
+    pub fn record_activity(&mut self, activity: &Activity) {
+        match activity {
+            Activity::Answer(answer) => {
+                let QuestionAnswer { questionnaire, occasion, id, .. } = answer.clone();
+                self.answers.insert((questionnaire, occasion, id));
+            }
+            Activity::Session(presence) if presence.event == PresenceEvent::Opened => {
+                self.break_count += u32::from(self.was_opened);
+                self.was_opened = true;
+            }
+            Activity::Clock(clock) if clock.event == ClockEvent::Started => self.break_count += 1,
+            _ => {}
+        }
+    }
+
+    /// Returns whether a question of a questionnaire was answered on an occasion.
+    pub fn is_answered(&self, questionnaire: &str, occasion: &str, question: &str) -> bool {
+        let place = (questionnaire.to_owned(), occasion.to_owned(), question.to_owned());
+        self.answers.contains(&place)
+    }
+}

@@ -1,0 +1,153 @@
+//! The manifest of a run, derived from the first line of its trajectory. `run.toml` repeats it and is rebuilt if it differs.
+
+use std::collections::BTreeSet;
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+
+use toml::{Table, Value};
+
+use super::manifest::Manifest;
+use crate::error::RunError;
+use crate::files::open_regular_file;
+use crate::trajectory::Line;
+
+/// The manifest of a run, and the defect of its `run.toml`.
+pub struct ManifestCheck {
+    /// The manifest.
+    pub manifest: Manifest,
+    /// Why `run.toml` has to be rebuilt; `None` if it agrees with the first line.
+    pub problem: Option<String>,
+}
+
+impl ManifestCheck {
+    /// Reads the manifest of the run in a folder. If the first line cannot be read, `run.toml` is used: opening the run then
+    /// reports the defect of the line.
+    ///
+    /// # Errors
+    /// The run has another format or other mechanics, or neither file can be read.
+    pub fn read(folder: &Path) -> Result<ManifestCheck, RunError> {
+        let path = folder.join("trajectory.jsonl");
+        let own = Manifest::read(folder);
+        let Some(line) = read_first_line(&path) else {
+            return own.map(|manifest| ManifestCheck { manifest, problem: None });
+        };
+        let told = Manifest::from_start_line(&path, Some(&line))?;
+        let (manifest, problem) = match own {
+            Err(error) => (told, Some(describe_manifest_error(&error))),
+            // The files belong to different runs, and the name of the folder does not confirm the trajectory.
+            Ok(own) if own.id != told.id && !folder.ends_with(&told.id) => (own, None),
+            Ok(own) => {
+                let manifest = with_unrecorded_fields(told, &own);
+                let problem = differing_field_names(&own, &manifest)
+                    .map(|names| format!("run.toml differed ({names})"));
+                (manifest, problem)
+            }
+        };
+        Ok(ManifestCheck { manifest, problem })
+    }
+
+    /// Rebuilds `run.toml` if necessary. Returns a message for the user if it was rebuilt.
+    ///
+    /// # Errors
+    /// The folder cannot be written.
+    pub fn repair_manifest(&self, folder: &Path) -> Result<Option<String>, RunError> {
+        let Some(problem) = &self.problem else { return Ok(None) };
+        self.manifest.write(folder)?;
+        Ok(Some(format!("{problem} and was rebuilt from the first line of the trajectory.")))
+    }
+}
+
+/// Returns the manifest according to the first line of the trajectory.
+///
+/// # Errors
+/// As [`read_manifest_text`].
+pub fn read_manifest(folder: &Path) -> Result<Manifest, RunError> {
+    ManifestCheck::read(folder).map(|derived| derived.manifest)
+}
+
+/// Returns the text of `run.toml` according to the first line of the trajectory.
+///
+/// # Errors
+/// The run has another format or other mechanics, or neither file can be read.
+pub fn read_manifest_text(folder: &Path) -> Result<String, RunError> {
+    ManifestCheck::read(folder).map(|derived| derived.manifest.to_toml())
+}
+
+/// Reads the first line of a file, if it is complete.
+fn read_first_line(path: &Path) -> Option<Line> {
+    let mut bytes = Vec::new();
+    BufReader::new(open_regular_file(path).ok()?).read_until(b'\n', &mut bytes).ok()?;
+    Line::parse_first(bytes.strip_suffix(b"\n")?)
+}
+
+/// Adds the fields that only `run.toml` has.
+fn with_unrecorded_fields(told: Manifest, own: &Manifest) -> Manifest {
+    // The first line is written shortly after the run was created; in format 1 it does not list earlier runs.
+    let earlier_runs = if told.format == 1 { own.earlier_runs } else { told.earlier_runs };
+    Manifest { created: own.created.clone(), earlier_runs, ..told }
+}
+
+fn describe_manifest_error(error: &RunError) -> String {
+    match error {
+        RunError::Io { error, .. } if error.kind() == std::io::ErrorKind::NotFound => {
+            "run.toml was missing".to_owned()
+        }
+        RunError::Damaged { line, problem, .. } => {
+            format!("run.toml was damaged (line {line}: {})", problem.trim())
+        }
+        RunError::OtherFormat { .. } => "run.toml named another format".to_owned(),
+        RunError::OtherMechanics { .. } => "run.toml named other mechanics".to_owned(),
+        error => format!("run.toml could not be read ({error})"),
+    }
+}
+
+/// Checks that a manifest agrees with the first line of a trajectory in every field that both have.
+///
+/// # Errors
+/// The line does not start a run, or a field differs, so one of the two files belongs to another run.
+pub fn check_start(path: &Path, first: Option<&Line>, manifest: &Manifest) -> Result<(), RunError> {
+    let told = Manifest::from_start_line(path, first)?;
+    let Some(names) = differing_field_names(manifest, &with_unrecorded_fields(told, manifest)) else {
+        return Ok(());
+    };
+    Err(RunError::Damaged {
+        path: path.to_owned(),
+        line: 1,
+        problem: format!("the start of the trajectory contradicts run.toml ({names})"),
+        remedy: "Nothing was changed; restore run.toml or the trajectory from a copy".to_owned(),
+    })
+}
+
+/// Returns one sentence for each field in which `run.toml` differs from the first line; `told` is the manifest of the line.
+pub fn manifest_differences(folder: &Path, told: &Manifest) -> Vec<String> {
+    let own = match Manifest::read(folder) {
+        Ok(own) => own,
+        Err(error) => return vec![describe_manifest_error(&error)],
+    };
+    let shown = |value: Option<Value>| value.map_or("nothing".to_owned(), |value| value.to_string());
+    let differ = differing_fields(&own, &with_unrecorded_fields(told.clone(), &own)).into_iter();
+    let words = |(name, own, told): (String, Option<Value>, Option<Value>)| {
+        format!("run.toml says {name} = {}, the first line {}", shown(own), shown(told))
+    };
+    differ.map(words).collect()
+}
+
+/// Returns the names of the fields that differ, separated by commas, or `None` if the manifests are equal.
+fn differing_field_names(own: &Manifest, told: &Manifest) -> Option<String> {
+    let names: Vec<String> = differing_fields(own, told).into_iter().map(|(name, ..)| name).collect();
+    (!names.is_empty()).then(|| names.join(", "))
+}
+
+fn differing_fields(own: &Manifest, told: &Manifest) -> Vec<(String, Option<Value>, Option<Value>)> {
+    if own == told {
+        return Vec::new();
+    }
+    let fields = |manifest: &Manifest| match Value::try_from(manifest) {
+        Ok(Value::Table(table)) => table,
+        _ => Table::new(),
+    };
+    let (own, told) = (fields(own), fields(told));
+    let names: BTreeSet<&String> = own.keys().chain(told.keys()).collect();
+    let differ = names.into_iter().filter(|name| own.get(*name) != told.get(*name));
+    differ.map(|name| (name.clone(), own.get(name).cloned(), told.get(name).cloned())).collect()
+}

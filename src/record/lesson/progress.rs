@@ -1,0 +1,194 @@
+//! The progress of a student in a lesson, derived from its plan and the recorded lines.
+
+use std::sync::Arc;
+
+use super::definition::{GuessForm, LessonAccess, LessonPart, LessonStep};
+use super::lesson_file::Lesson;
+use crate::trajectory::record::{Activity, LessonEvent, LessonNote};
+use crate::trajectory::{Line, Record};
+use novamind_tools::{Rejection, ToolId};
+
+/// A lesson in play, with its recorded events.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LessonProgress {
+    /// The lesson.
+    pub lesson: Arc<Lesson>,
+    /// Part of this run, from 0.
+    pub part: usize,
+    /// Whether goals and pitfalls are judged.
+    pub is_judged: bool,
+    /// Events in order, each with its day.
+    pub events: Vec<(u32, LessonNote)>,
+}
+
+impl LessonPart {
+    /// Returns whether the part starts with an empty company and no step sets parameters.
+    pub fn starts_empty(&self) -> bool {
+        let is_set = |step: &LessonStep| !step.parameters.is_empty();
+        self.start_weeks == 0 && self.start.is_empty() && !self.steps.iter().any(is_set)
+    }
+
+    /// Returns the weeks from the first day of the company to the end of the last step.
+    pub fn weeks(&self) -> u32 {
+        self.start_weeks + self.steps.iter().map(|step| step.weeks).sum::<u32>()
+    }
+
+    /// Returns the weeks that have passed at the start and at the end of a step, from 0.
+    pub fn step_weeks(&self, step: usize) -> (u32, u32) {
+        let before: u32 = self.steps.iter().take(step).map(|own| own.weeks).sum();
+        let begin = self.start_weeks + before;
+        (begin, begin + self.steps.get(step).map_or(0, |own| own.weeks))
+    }
+
+    /// Returns the step of the week after `weeks` weeks, or `None` if all steps are over.
+    pub fn step_after(&self, weeks: u32) -> Option<usize> {
+        (0..self.steps.len()).find(|step| weeks < self.step_weeks(*step).1)
+    }
+}
+
+impl LessonProgress {
+    /// Reads the progress from the lines of a run.
+    pub fn from_lines<'a>(
+        lesson: Arc<Lesson>,
+        part: usize,
+        lines: impl IntoIterator<Item = &'a Line>,
+    ) -> LessonProgress {
+        let noted = |line: &Line| match &line.record {
+            Record::Activity(Activity::Lesson(note)) => Some((line.day, note.clone())),
+            _ => None,
+        };
+        LessonProgress {
+            lesson,
+            part,
+            is_judged: true,
+            events: lines.into_iter().filter_map(noted).collect(),
+        }
+    }
+
+    /// Returns the part of this run.
+    pub fn current_part(&self) -> &LessonPart {
+        &self.lesson.plan.parts[self.part]
+    }
+
+    /// Returns the parts of the program that the student can use.
+    pub fn access(&self) -> &LessonAccess {
+        &self.lesson.plan.access
+    }
+
+    /// Returns a step of the part, from 0.
+    pub fn step(&self, step: usize) -> Option<&LessonStep> {
+        self.current_part().steps.get(step)
+    }
+
+    /// Returns whether the student can use a tool.
+    pub fn has_tool(&self, tool: ToolId) -> bool {
+        self.check_tool(tool).is_ok()
+    }
+
+    /// Rejects a tool that the lesson does not offer.
+    ///
+    /// # Errors
+    /// `not_in_this_lesson`.
+    pub fn check_tool(&self, tool: ToolId) -> Result<(), Rejection> {
+        if self.current_part().has_automatic_capacity() && tool == ToolId::SetCapacityTier {
+            let message = "capacity follows usage by itself in this lesson";
+            return Err(Rejection::new("not_in_this_lesson", message));
+        }
+        match &self.lesson.plan.access.tools {
+            Some(tools) if !tools.contains(&tool) => {
+                let known: Vec<&str> = tools.iter().map(|tool| tool.name()).collect();
+                let message = format!("{tool} is not in this lesson; it has {}", known.join(", "));
+                Err(Rejection::new("not_in_this_lesson", message))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Rejects the week after `weeks` weeks while the question of its step is unanswered.
+    ///
+    /// # Errors
+    /// `guess_first`.
+    pub fn check_guess_submitted(&self, weeks: u32) -> Result<(), Rejection> {
+        let step = self.current_part().step_after(weeks).filter(|step| self.awaits_guess(*step));
+        let guess = step.and_then(|step| self.step(step)).and_then(|step| step.guess.as_ref());
+        match guess {
+            Some(guess) => {
+                Err(Rejection::new("guess_first", format!("first your guess: {}", guess.question)))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Returns the number of the latest attempt at a step.
+    pub fn attempt(&self, step: usize) -> u32 {
+        let of_try = |note: &LessonNote| note.number;
+        self.last_event(LessonEvent::Begun, step).and_then(of_try).unwrap_or(0)
+    }
+
+    /// Returns whether a step has started.
+    pub fn has_started(&self, step: usize) -> bool {
+        self.last_event(LessonEvent::Begun, step).is_some()
+    }
+
+    /// Returns the last step that has started, or the first one.
+    pub fn last_started_step(&self) -> usize {
+        (0..self.current_part().steps.len()).rev().find(|step| self.has_started(*step)).unwrap_or(0)
+    }
+
+    /// Returns the guess of a step; for choices the number of the choice, from 1.
+    pub fn guess(&self, step: usize) -> Option<f64> {
+        self.last_event(LessonEvent::Guess, step)?.value
+    }
+
+    /// Returns the outcome of a guess, and for choices whether the guess was correct.
+    pub fn outcome(&self, step: usize) -> Option<&LessonNote> {
+        self.last_event(LessonEvent::Outcome, step)
+    }
+
+    /// Returns whether the guess of a step is missing.
+    pub fn awaits_guess(&self, step: usize) -> bool {
+        self.step(step).is_some_and(|own| own.guess.is_some()) && self.guess(step).is_none()
+    }
+
+    /// Returns how many hints of a step were requested.
+    pub fn hint_count(&self, step: usize) -> usize {
+        self.events_of(LessonEvent::Hint, step).count()
+    }
+
+    /// Returns the results of the goals of a step, in order; empty before the step is over.
+    pub fn goal_results(&self, step: usize) -> Vec<&LessonNote> {
+        self.events_of(LessonEvent::Goal, step).collect()
+    }
+
+    /// Returns whether every goal of every step was reached.
+    pub fn has_reached_all(&self) -> bool {
+        let wanted: usize = self.current_part().steps.iter().map(|step| step.goals.len()).sum();
+        let reached =
+            |(_, note): &&(u32, LessonNote)| note.event == LessonEvent::Goal && note.met == Some(true);
+        self.events.iter().filter(reached).count() == wanted
+    }
+
+    /// Returns the names of the triggered pitfalls, in order.
+    pub fn met_pitfalls(&self) -> Vec<&str> {
+        let met = self.events.iter().filter(|(_, note)| note.event == LessonEvent::Pitfall);
+        met.filter_map(|(_, note)| note.name.as_deref()).collect()
+    }
+
+    /// Returns the choices of a guess, or `None` for other questions.
+    pub fn choices(&self, step: usize) -> Option<&[String]> {
+        match &self.step(step)?.guess.as_ref()?.form {
+            GuessForm::Choice { choices, .. } => Some(choices),
+            GuessForm::Number { .. } => None,
+        }
+    }
+
+    fn events_of(&self, event: LessonEvent, step: usize) -> impl DoubleEndedIterator<Item = &LessonNote> {
+        let number = step as u32 + 1;
+        let is_it = move |note: &&LessonNote| note.event == event && note.step == number;
+        self.events.iter().map(|(_, note)| note).filter(is_it)
+    }
+
+    fn last_event(&self, event: LessonEvent, step: usize) -> Option<&LessonNote> {
+        self.events_of(event, step).next_back()
+    }
+}

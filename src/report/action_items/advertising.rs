@@ -1,0 +1,122 @@
+//! Diagnoses of advertising: whether it brings enough for its cost.
+
+use serde_json::{Map, Value, json};
+
+use super::selling::{GroupOffers, MissingAspect};
+use super::{ActionItem, ActionTarget, DiagnosisContext, Problem, RISK_DAYS};
+use crate::formatting::{format_money, pluralize};
+use crate::lead_costs::{AdWindow, LeadCost, lead_costs_by_pair};
+use novamind_base::formatting::{cents, json_number};
+use novamind_session::identifiers::{Channel, Group};
+use novamind_tools::ToolId;
+
+/// Minimum number of enterprises in four weeks for a missing request to matter.
+const MIN_ENTERPRISES: u32 = 3;
+
+/// Finds enterprise groups that are advertised to but request no offer.
+pub(super) fn groups_without_requests(situation: &DiagnosisContext<'_>) -> Vec<ActionItem> {
+    let recent = &situation.groups[situation.groups.len().saturating_sub(4)..];
+    let enterprises = situation.estimates.iter().filter(|own| own.group.is_enterprise());
+    let paid = enterprises.filter(|own| situation.ads_by_group[own.group] > 0.0);
+    let unwanted = paid.filter_map(|own| {
+        let came: u32 = recent.iter().map(|week| week[own.group].leads).sum();
+        let asked: u32 = recent.iter().map(|week| week[own.group].asked).sum();
+        if came < MIN_ENTERPRISES || asked > 0 {
+            return None;
+        }
+        let offers = GroupOffers::new(situation, own)?;
+        let ads = situation.ads_by_group[own.group];
+        let text = format!(
+            "{}: {} arrived in {} and none requested an offer; ads for them cost {} a day",
+            own.group,
+            pluralize(came, "enterprise"),
+            pluralize(recent.len() as u32, "week"),
+            format_money(ads)
+        );
+        // The current offers are not known to be insufficient, so only the cost of advertising can be named.
+        let (told, proposal, place) = match offers.missing_aspect() {
+            missing @ (MissingAspect::Quota | MissingAspect::Quality) => {
+                let (told, proposal, place) = offers.remedy(missing, ads * RISK_DAYS)?;
+                (format!("{text}; {told}"), Some(proposal), place)
+            }
+            MissingAspect::Price | MissingAspect::Balance => {
+                let saved = format!("removing these ads saves {} a day", format_money(ads));
+                (text, Some(saved), target_without_ads(situation, own.group, |_| true))
+            }
+        };
+        Some(ActionItem {
+            problem: Problem::NoRequests(own.group),
+            text: told,
+            proposal,
+            target: place,
+            at_risk: ads * RISK_DAYS,
+            is_urgent: false,
+        })
+    });
+    unwanted.collect()
+}
+
+/// Finds advertised pairs of channel and group whose cost per lead has risen strongly.
+pub(super) fn lead_costs(situation: &DiagnosisContext<'_>) -> Vec<ActionItem> {
+    lead_costs_by_pair(situation.groups).iter().filter_map(|pair| expensive_leads(situation, pair)).collect()
+}
+
+fn expensive_leads(situation: &DiagnosisContext<'_>, pair: &LeadCost) -> Option<ActionItem> {
+    let (rise, before) = (pair.cost_rise()?, pair.cheapest?);
+    let (channel, group) = (pair.channel, pair.group);
+    let ads = situation.session.settings().targeted_ads.spend(channel, group);
+    if ads <= 0.0 {
+        return None;
+    }
+    let (first, last) = before.weeks;
+    let text = format!(
+        "{} × {group}: in the last {} {}, in weeks {first} to {last} {}",
+        channel.id(),
+        pluralize(pair.recent.weeks.1 + 1 - pair.recent.weeks.0, "week"),
+        describe_window(&pair.recent),
+        describe_window(&before)
+    );
+    Some(ActionItem {
+        problem: Problem::LeadCost(channel, group),
+        text,
+        proposal: Some(format!("removing these ads saves {} a day", format_money(ads))),
+        target: target_without_ads(situation, group, |own| own == channel),
+        // The additional cost of the same leads.
+        at_risk: ads * RISK_DAYS * (1.0 - 1.0 / rise),
+        is_urgent: false,
+    })
+}
+
+/// Describes costs per lead and first bill: `$372 a lead, $410 a first bill`.
+fn describe_window(spell: &AdWindow) -> String {
+    let dollars = |value: f64| if value < 100.0 { cents(value) } else { format_money(value) };
+    let lead = match spell.cost_per_lead() {
+        Some(each) => format!("{} a lead", dollars(each)),
+        None => format!("no lead for {}", format_money(spell.spend)),
+    };
+    match (spell.cost_per_bill(), spell.first_bills) {
+        (Some(each), _) => format!("{lead}, {} a first bill", dollars(each)),
+        (None, Some(_)) => format!("{lead}, no first bill"),
+        (None, None) => lead,
+    }
+}
+
+/// Returns the advertising form without the budgets of a group in some channels.
+fn target_without_ads(
+    situation: &DiagnosisContext<'_>,
+    group: Group,
+    of: impl Fn(Channel) -> bool,
+) -> ActionTarget {
+    let mut spend = situation.session.settings().targeted_ads.targeted_spend.clone();
+    for (_, groups) in spend.iter_mut().filter(|(channel, _)| of(**channel)) {
+        groups.entry(group).and_modify(|dollars| *dollars = 0.0);
+    }
+    let spend: Map<String, Value> = spend
+        .iter()
+        .map(|(channel, groups)| {
+            let groups = groups.iter().map(|(group, dollars)| (group.id().to_owned(), json_number(*dollars)));
+            (channel.id().to_owned(), Value::Object(groups.collect()))
+        })
+        .collect();
+    ActionTarget::Call(ToolId::SetTargetedAdSpend, json!({ "targeted_spend": spend }))
+}

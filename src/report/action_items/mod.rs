@@ -1,0 +1,242 @@
+//! Problems of the company that need action: a diagnosis from visible data, ranked by the money at risk.
+//!
+//! Every need names the object, the problem and the amount, and leads to the place for solving it: a call with
+//! proposed arguments, a thread, a group or the ledger. Amounts are proposed if they follow from a formula that the
+//! tools document. Baseline runs get no proposals.
+
+mod advertising;
+mod cash;
+mod retention;
+mod selling;
+mod service;
+#[cfg(test)]
+mod tests;
+
+use serde_json::Value;
+
+use novamind_record::figures::WeekFigures;
+use novamind_session::identifiers::{ByGroup, Channel, Group};
+use novamind_session::{
+    CoreSettings, Decisions, DeliveredQuality, Estimates, GroupWeek, Observation, Session, ToolLimits,
+};
+use novamind_tools::ToolId;
+
+/// Kind of problem. Among needs with equal money at risk, the earlier variant comes first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Problem {
+    /// Cash will not last.
+    Runway,
+    /// Enterprises wait for an answer.
+    Threads,
+    /// No plan has a price.
+    NoPrice,
+    /// Plans with a price have a quota of 0.
+    NoQuota,
+    /// No channel brings leads.
+    NoLeads,
+    /// Leads of a group do not sign up.
+    NoSales(Group),
+    /// Individuals on a plan cost more than they pay.
+    Margin,
+    /// Usage exceeded capacity.
+    Overload,
+    /// The service failed.
+    Outages,
+    /// Subscribers wait for support.
+    Backlog,
+    /// Subscribers of a group cancel.
+    Churn(Group),
+    /// Enterprises of a group find no plan with sufficient quality.
+    NoRequests(Group),
+    /// Leads of a group in a channel have become expensive.
+    LeadCost(Channel, Group),
+    /// Usage will soon exceed capacity.
+    Capacity,
+}
+
+impl Problem {
+    /// Returns the ID for programs.
+    pub fn id(self) -> &'static str {
+        match self {
+            Problem::Runway => "runway",
+            Problem::Threads => "threads",
+            Problem::NoPrice => "no_price",
+            Problem::NoQuota => "no_quota",
+            Problem::NoLeads => "no_leads",
+            Problem::NoSales(_) => "no_sales",
+            Problem::Margin => "margin",
+            Problem::Overload => "overload",
+            Problem::Outages => "outages",
+            Problem::Backlog => "backlog",
+            Problem::Churn(_) => "churn",
+            Problem::NoRequests(_) => "unwanted",
+            Problem::LeadCost(..) => "lead_cost",
+            Problem::Capacity => "capacity",
+        }
+    }
+}
+
+/// Where a need can be solved.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ActionTarget {
+    /// The form of a tool, filled with these arguments.
+    Call(ToolId, Value),
+    /// The thread with this number.
+    Thread(u32),
+    /// A group.
+    Group(Group),
+    /// The ledger.
+    Ledger,
+}
+
+/// A problem that needs action.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ActionItem {
+    /// Kind of problem.
+    pub problem: Problem,
+    /// Description with amounts.
+    pub text: String,
+    /// Proposed solution; `None` if nothing is proposed.
+    pub proposal: Option<String>,
+    /// Where it can be solved.
+    pub target: ActionTarget,
+    /// Money at risk over the next four weeks, dollars.
+    pub at_risk: f64,
+    /// Whether waiting until the next week costs something.
+    pub is_urgent: bool,
+}
+
+struct DiagnosisContext<'a> {
+    observation: Observation,
+    settings: CoreSettings,
+    /// Advertising in dollars a day: total, and by group.
+    daily_ad_spend: f64,
+    ads_by_group: ByGroup<f64>,
+    weeks: &'a [WeekFigures],
+    groups: &'a [ByGroup<GroupWeek>],
+    decisions: &'a [Decisions],
+    quality: Vec<DeliveredQuality>,
+    estimates: Vec<Estimates>,
+    terms: ToolLimits,
+    session: &'a Session,
+}
+
+/// Days over which money at risk is counted.
+const RISK_DAYS: f64 = 28.0;
+/// Share of the turnover below which nothing is reported.
+const MIN_RISK_SHARE: f64 = 0.01;
+const DAYS_PER_MONTH: f64 = 30.0;
+
+impl<'a> DiagnosisContext<'a> {
+    fn new(session: &'a Session) -> DiagnosisContext<'a> {
+        let settings = session.settings();
+        let mut ads_by_group = ByGroup::default();
+        for (group, dollars) in settings.targeted_ads.targeted_spend.values().flatten() {
+            ads_by_group[*group] += dollars;
+        }
+        DiagnosisContext {
+            observation: session.company().observe(),
+            settings: settings.core,
+            daily_ad_spend: settings.targeted_ads.total(),
+            ads_by_group,
+            weeks: session.weeks(),
+            groups: session.company().group_weeks(),
+            decisions: session.company().decisions(),
+            quality: session.company().delivered_quality(),
+            estimates: session.company().estimates(),
+            terms: session.company().tool_limits(),
+            session,
+        }
+    }
+
+    fn last_week(&self) -> Option<&WeekFigures> {
+        self.weeks.last()
+    }
+
+    fn last_group_week(&self) -> Option<&ByGroup<GroupWeek>> {
+        self.groups.last()
+    }
+
+    /// Returns recurring revenue of the next four weeks, dollars.
+    fn upcoming_revenue(&self) -> f64 {
+        self.last_week().map_or(0.0, |week| week.recurring_revenue) * RISK_DAYS / DAYS_PER_MONTH
+    }
+
+    /// Returns the cost of the settings over the next four weeks, dollars.
+    fn upcoming_costs(&self) -> f64 {
+        self.observation.pace.committed * RISK_DAYS
+    }
+
+    fn individuals(&self) -> impl Iterator<Item = &Estimates> {
+        self.estimates.iter().filter(|estimate| !estimate.group.is_enterprise())
+    }
+
+    fn estimate(&self, group: Group) -> Option<&Estimates> {
+        self.estimates.iter().find(|estimate| estimate.group == group)
+    }
+
+    fn quality(&self, group: Group) -> Option<&DeliveredQuality> {
+        self.quality.iter().find(|quality| quality.group == group)
+    }
+}
+
+/// Returns what needs action, urgent needs first, then by money at risk; empty after the end of the run.
+pub fn action_items(session: &Session) -> Vec<ActionItem> {
+    if session.ended().is_some() {
+        return Vec::new();
+    }
+    let situation = DiagnosisContext::new(session);
+    let mut found: Vec<ActionItem> = Vec::new();
+    found.extend(cash::runway(&situation));
+    found.extend(retention::expiring_threads(&situation));
+    found.extend(selling::nothing_on_sale(&situation));
+    found.extend(selling::no_leads(&situation));
+    found.extend(selling::no_sales(&situation));
+    found.extend(advertising::groups_without_requests(&situation));
+    found.extend(advertising::lead_costs(&situation));
+    found.extend(cash::unprofitable_plans(&situation));
+    found.extend(service::capacity(&situation));
+    found.extend(service::outages(&situation));
+    found.extend(service::backlog(&situation));
+    found.extend(retention::churn_waves(&situation));
+    let moved = situation.upcoming_revenue() + situation.upcoming_costs();
+    // Threads and subscribers waiting for an answer are always reported, however small their value.
+    found.retain(|need| need.problem == Problem::Threads || need.at_risk >= MIN_RISK_SHARE * moved);
+    // Skips forms that the lesson has locked.
+    let is_locked = |tool: ToolId| session.lesson().is_some_and(|own| !own.has_tool(tool));
+    found.retain(|need| !matches!(need.target, ActionTarget::Call(tool, _) if is_locked(tool)));
+    if !session.rules().advice {
+        found.iter_mut().for_each(ActionItem::remove_advice);
+    }
+    found.sort_by(|left, right| {
+        let order = (!left.is_urgent).cmp(&!right.is_urgent);
+        order.then(right.at_risk.total_cmp(&left.at_risk)).then(left.problem.cmp(&right.problem))
+    });
+    found
+}
+
+impl ActionItem {
+    fn remove_advice(&mut self) {
+        self.proposal = None;
+        if let ActionTarget::Call(_, arguments) = &mut self.target {
+            *arguments = Value::Null;
+        }
+    }
+
+    /// Describes the problem and its proposed solution.
+    pub fn describe(&self) -> String {
+        match &self.proposal {
+            Some(proposal) => format!("{}; {proposal}", self.text),
+            None => self.text.clone(),
+        }
+    }
+}
+
+/// Rounds an amount up to two digits, for proposals of round figures.
+fn round_up_to_two_digits(value: f64) -> f64 {
+    if value <= 0.0 {
+        return 0.0;
+    }
+    let unit = libm::pow(10.0, libm::log10(value).floor() - 1.0);
+    (value / unit).ceil() * unit
+}

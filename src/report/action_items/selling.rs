@@ -1,0 +1,461 @@
+//! Diagnoses of sales: plans on offer, leads, and their conversion.
+
+use serde_json::{Map, Value, json};
+
+use super::{
+    ActionItem, ActionTarget, DAYS_PER_MONTH, DiagnosisContext, Problem, RISK_DAYS, round_up_to_two_digits,
+};
+use crate::fit::TrueValueRange;
+use crate::formatting::{format_money, format_whole, pluralize};
+use novamind_base::formatting::{cents, json_number, percent};
+use novamind_session::identifiers::{Channel, Group, Plan};
+use novamind_session::{DeliveredQuality, Estimates, GroupWeek};
+use novamind_tools::ToolId;
+
+const MIN_WEEKLY_LEADS: u32 = 20;
+const LOW_CONVERSION: f64 = 0.1;
+/// Share of the estimated usage that a quota must cover.
+const MIN_QUOTA_COVERAGE: f64 = 0.8;
+/// Age in days at which an estimate is old.
+const OUTDATED_STUDY_DAYS: u32 = 28;
+/// Dollars a day for a first test of a channel.
+const TRIAL_AD_SPEND: f64 = 50.0;
+
+/// Finds that no plan has a price, or that priced plans have a quota of 0.
+pub(super) fn nothing_on_sale(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
+    let core = &situation.settings;
+    let priced: Vec<Plan> = Plan::ALL.into_iter().filter(|plan| core.prices[*plan] > 0.0).collect();
+    if priced.is_empty() {
+        return Some(missing_price(situation));
+    }
+    let empty: Vec<&str> =
+        priced.iter().filter(|plan| core.quotas[**plan].units() == 0.0).map(|plan| plan.id()).collect();
+    if empty.is_empty() {
+        return None;
+    }
+    let all = empty.len() == priced.len();
+    let most = situation.individuals().map(|own| (own.account_usage_range().1, own.group));
+    let (use_a_day, group) = most.max_by(|left, right| left.0.total_cmp(&right.0))?;
+    let quota = round_up_to_two_digits(use_a_day);
+    let arguments: Map<String, Value> = Plan::ALL
+        .into_iter()
+        .map(|plan| {
+            let kept = core.quotas[plan].units();
+            (plan.id().to_owned(), json_number(if empty.contains(&plan.id()) { quota } else { kept }))
+        })
+        .collect();
+    let (plans, verb) = match empty.as_slice() {
+        [one] => (format!("plan {one}"), "has"),
+        more => (format!("plans {}", more.join(", ")), "have"),
+    };
+    let consequence =
+        if all { "subscribers get nothing for their money" } else { "subscribers get nothing on it" };
+    Some(ActionItem {
+        problem: Problem::NoQuota,
+        text: format!("{plans} {verb} a price and a quota of 0 units a day: {consequence}"),
+        proposal: Some(format!(
+            "{} units a day cover {group}, which uses about {} (at most {})",
+            format_whole(quota),
+            format_whole(situation.estimate(group)?.usage),
+            format_whole(use_a_day)
+        )),
+        target: ActionTarget::Call(ToolId::SetUsageQuotas, Value::Object(arguments)),
+        at_risk: situation.upcoming_costs() + situation.upcoming_revenue(),
+        is_urgent: all,
+    })
+}
+
+fn missing_price(situation: &DiagnosisContext<'_>) -> ActionItem {
+    let mut budgets: Vec<&Estimates> = situation.individuals().collect();
+    budgets.sort_by(|left, right| left.budget.total_cmp(&right.budget));
+    let half = |at: usize| budgets.get(at).map(|own| (own.budget.round() / 2.0).round().max(1.0));
+    let prices: Map<String, Value> = Plan::ALL
+        .into_iter()
+        .enumerate()
+        .filter_map(|(at, plan)| Some((plan.id().to_owned(), json_number(half(at)?))))
+        .collect();
+    // The form contains half of the displayed estimate, not of the middle of its range.
+    let told: Vec<String> = budgets
+        .iter()
+        .map(|own| {
+            let range = TrueValueRange::from_estimate(own.budget, own.max_relative_error).format_money();
+            format!("{} {range} (estimate {})", own.group, format_money(own.budget.round()))
+        })
+        .collect();
+    ActionItem {
+        problem: Problem::NoPrice,
+        text: "no plan has a price: no one can subscribe".to_owned(),
+        proposal: Some(format!(
+            "mean budgets a month: {}; the form proposes half of each estimate",
+            told.join(", ")
+        )),
+        target: ActionTarget::Call(ToolId::SetPrices, Value::Object(prices)),
+        at_risk: situation.upcoming_costs() + situation.upcoming_revenue(),
+        is_urgent: true,
+    }
+}
+
+/// Finds that no channel is paid and no subscribers bring word of mouth.
+pub(super) fn no_leads(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
+    let came = situation.last_week().map_or(0, |week| week.new_individual_leads + week.new_enterprise_leads);
+    let silent = situation.observation.subscribers + situation.observation.seats == 0;
+    if situation.daily_ad_spend > 0.0 || came > 0 || !silent {
+        return None;
+    }
+    // Groups are ranked by their fit with the current plans, then with the best model tier, then by budget.
+    let group = situation.individuals().min_by(|left, right| {
+        let now =
+            |own: &Estimates| (own.required_quality - best_delivered_quality(situation, own.group)).max(0.0);
+        let missing =
+            |own: &Estimates| (own.required_quality - best_possible_quality(situation, own.group)).max(0.0);
+        let reach = || missing(left).total_cmp(&missing(right));
+        now(left).total_cmp(&now(right)).then_with(reach).then_with(|| right.budget.total_cmp(&left.budget))
+    })?;
+    let group = group.group;
+    let each: Map<String, Value> = Channel::ALL
+        .into_iter()
+        .map(|channel| (channel.id().to_owned(), json!({ group.id(): TRIAL_AD_SPEND })))
+        .collect();
+    let total = TRIAL_AD_SPEND * Channel::ALL.len() as f64;
+    Some(ActionItem {
+        problem: Problem::NoLeads,
+        text: "no leads: no ads are running and there are no subscribers to spread the word".to_owned(),
+        proposal: Some(format!(
+            "{} a day per channel on {group} shows within a week which ones bring leads, for {} in ads",
+            format_money(TRIAL_AD_SPEND),
+            format_money(7.0 * total)
+        )),
+        target: ActionTarget::Call(ToolId::SetTargetedAdSpend, json!({ "targeted_spend": each })),
+        at_risk: situation.upcoming_costs(),
+        is_urgent: true,
+    })
+}
+
+/// Returns the highest quality that any plan delivers to a group today.
+fn best_delivered_quality(situation: &DiagnosisContext<'_>, group: Group) -> f64 {
+    let delivered = |quality: &DeliveredQuality| Plan::ALL.map(|plan| quality.by_plan[plan]);
+    situation.quality(group).map_or(0.0, |quality| delivered(quality).into_iter().fold(0.0, f64::max))
+}
+
+/// Returns the quality that the best model tier would deliver to a group today.
+fn best_possible_quality(situation: &DiagnosisContext<'_>, group: Group) -> f64 {
+    let models = &situation.terms.models;
+    let best = models.iter().map(|model| model.multiplier).fold(0.0, f64::max);
+    let now = models.iter().find(|model| model.tier == situation.settings.tiers[Plan::A]);
+    let delivered = situation.quality(group).map(|quality| quality.by_plan[Plan::A]);
+    delivered.zip(now).map_or(0.0, |(delivered, now)| delivered / now.multiplier * best)
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum MissingAspect {
+    Price,
+    Quota,
+    Quality,
+    /// Price, quota and quality each meet the estimates, but customers require more quality at this price.
+    Balance,
+}
+
+/// Finds groups of individuals with leads that do not sign up.
+pub(super) fn no_sales(situation: &DiagnosisContext<'_>) -> Vec<ActionItem> {
+    let on_sale = Plan::ALL
+        .into_iter()
+        .any(|plan| situation.settings.prices[plan] > 0.0 && situation.settings.quotas[plan].units() != 0.0);
+    let Some(week) = situation.last_group_week().filter(|_| on_sale) else { return Vec::new() };
+    let few = |own: &&Estimates| {
+        let figures = &week[own.group];
+        figures.leads >= MIN_WEEKLY_LEADS && figures.conversion().is_some_and(|share| share < LOW_CONVERSION)
+    };
+    situation.individuals().filter(few).filter_map(|own| no_sale(situation, own, &week[own.group])).collect()
+}
+
+fn no_sale(situation: &DiagnosisContext<'_>, own: &Estimates, week: &GroupWeek) -> Option<ActionItem> {
+    let offers = GroupOffers::new(situation, own)?;
+    let missing = offers.missing_aspect();
+    let signed = if week.signed == 0 { "none".to_owned() } else { format_whole(f64::from(week.signed)) };
+    let share = percent(week.conversion()?, 1);
+    let price = offers.lowest_price().min(own.budget);
+    let at_risk = f64::from(week.leads - week.signed) * RISK_DAYS / 7.0 * price;
+    let (told, proposal, place) = offers.remedy(missing, at_risk)?;
+    Some(ActionItem {
+        problem: Problem::NoSales(own.group),
+        text: format!(
+            "{}: {} last week, {signed} signed ({share}); {told}",
+            own.group,
+            pluralize(week.leads, "lead")
+        ),
+        proposal: Some(proposal),
+        target: place,
+        at_risk,
+        is_urgent: true,
+    })
+}
+
+pub(super) struct GroupOffers<'a> {
+    situation: &'a DiagnosisContext<'a>,
+    own: &'a Estimates,
+    quality: &'a DeliveredQuality,
+}
+
+impl<'a> GroupOffers<'a> {
+    /// Returns the offers to a group; `None` if no plan delivers to it.
+    pub(super) fn new(situation: &'a DiagnosisContext<'a>, own: &'a Estimates) -> Option<GroupOffers<'a>> {
+        Some(GroupOffers { situation, own, quality: situation.quality(own.group)? })
+    }
+
+    fn plans(&self) -> impl Iterator<Item = Plan> + '_ {
+        Plan::ALL.into_iter().filter(|plan| self.price(*plan) > 0.0)
+    }
+
+    fn price(&self, plan: Plan) -> f64 {
+        self.situation.settings.prices[plan]
+    }
+
+    /// Returns the share of an account's estimated usage that the quota covers.
+    fn quota_coverage(&self, plan: Plan) -> f64 {
+        (self.situation.settings.quotas[plan].units() / self.own.account_usage().max(1e-9)).min(1.0)
+    }
+
+    fn lowest_price(&self) -> f64 {
+        self.plans().map(|plan| self.price(plan)).fold(f64::INFINITY, f64::min)
+    }
+
+    fn affordable_plans(&self) -> impl Iterator<Item = Plan> + '_ {
+        // Enterprises negotiate their price.
+        let negotiates = self.own.group.is_enterprise();
+        self.plans().filter(move |plan| negotiates || self.price(*plan) <= self.own.budget)
+    }
+
+    /// Returns the affordable plan with the fewest deficits; among equals the one with the highest quality, ignoring
+    /// its quota.
+    fn best_plan(&self) -> Option<Plan> {
+        let quality = |plan: &Plan| self.quality.by_plan[*plan];
+        let lacks = |plan: &Plan| {
+            u8::from(self.quota_coverage(*plan) < MIN_QUOTA_COVERAGE)
+                + u8::from(quality(plan) < self.own.required_quality)
+        };
+        // At equal quality, customers choose the cheaper plan.
+        let price = |plan: &Plan| self.price(*plan);
+        self.affordable_plans().max_by(|left, right| {
+            lacks(right)
+                .cmp(&lacks(left))
+                .then_with(|| quality(left).total_cmp(&quality(right)))
+                .then_with(|| price(right).total_cmp(&price(left)))
+        })
+    }
+
+    /// Describes the quality of the best plan. Also names a plan with higher quality whose quota does not cover the
+    /// usage.
+    fn describe_best_plan(&self, plan: Plan, delivered: f64) -> String {
+        let quality = |plan: Plan| self.quality.by_plan[plan];
+        // Screens show the range of the budget, but plans are compared by the point estimate.
+        let scope = match self.own.group.is_enterprise() {
+            true => String::new(),
+            false => format!(" within their estimated budget of {}", format_money(self.own.budget.round())),
+        };
+        let more = self.affordable_plans().max_by(|left, right| quality(*left).total_cmp(&quality(*right)));
+        match more.filter(|more| quality(*more) > delivered) {
+            None => format!("the best{scope} is {delivered:.4} on {plan}"),
+            Some(more) => format!(
+                "{delivered:.4} on {plan}; {more} delivers {:.4}{scope}, but its quota is too small for them",
+                quality(more)
+            ),
+        }
+    }
+
+    pub(super) fn missing_aspect(&self) -> MissingAspect {
+        match self.best_plan() {
+            None => MissingAspect::Price,
+            Some(plan) if self.quota_coverage(plan) < MIN_QUOTA_COVERAGE => MissingAspect::Quota,
+            Some(plan) if self.quality.by_plan[plan] < self.own.required_quality => MissingAspect::Quality,
+            Some(_) => MissingAspect::Balance,
+        }
+    }
+
+    fn was_changed_today(&self) -> bool {
+        let of_offers = [ToolId::SetPrices, ToolId::SetUsageQuotas, ToolId::SetModelTiers];
+        self.situation.observation.changes.iter().any(|change| of_offers.contains(&change.setting.tool()))
+    }
+
+    /// Describes the deficit, a solution and its place. Proposes a new study first if the estimate is old.
+    pub(super) fn remedy(
+        &self,
+        missing: MissingAspect,
+        at_risk: f64,
+    ) -> Option<(String, String, ActionTarget)> {
+        let (told, proposal, place) = self.direct_remedy(missing, at_risk)?;
+        match self.renewed_study(at_risk) {
+            Some((study, place)) if matches!(missing, MissingAspect::Quality | MissingAspect::Balance) => {
+                Some((told, study, place))
+            }
+            _ => Some((told, proposal, place)),
+        }
+    }
+
+    /// Proposes a study that updates estimates older than four weeks, if it costs no more than is at risk. `None` if
+    /// a study is already running.
+    fn renewed_study(&self, at_risk: f64) -> Option<(String, ActionTarget)> {
+        let (own, day) = (self.own, self.situation.observation.day);
+        let is_studied = || {
+            self.situation.session.company().running_studies().iter().any(|study| study.group == own.group)
+        };
+        if day < own.as_of + OUTDATED_STUDY_DAYS || is_studied() {
+            return None;
+        }
+        let terms = &self.situation.terms;
+        let study =
+            terms.study_level(own.level.max(terms.targets.0)).filter(|study| study.cost <= at_risk)?;
+        let text = format!(
+            "required quality rises as competitors improve, and the estimate is {} old: a level {} study updates it for {} in {}",
+            pluralize(day - own.as_of, "day"),
+            study.level,
+            format_money(study.cost),
+            pluralize(study.days, "day")
+        );
+        let arguments = json!({ "group_id": own.group.id(), "target_level": study.level });
+        Some((text, ActionTarget::Call(ToolId::ResearchGroup, arguments)))
+    }
+
+    fn direct_remedy(&self, missing: MissingAspect, at_risk: f64) -> Option<(String, String, ActionTarget)> {
+        let (own, group) = (self.own, self.own.group);
+        let floor =
+            TrueValueRange::from_estimate(own.required_quality, own.max_relative_error).format_quality();
+        let as_of = format!("as of day {}", own.as_of);
+        match missing {
+            MissingAspect::Price => {
+                let least = own.true_range(own.budget).0;
+                let price = least.floor().max(1.0);
+                let plan =
+                    self.plans().min_by(|left, right| self.price(*left).total_cmp(&self.price(*right)))?;
+                Some((
+                    format!(
+                        "price: the lowest is {} for {plan}, the mean budget {} ({as_of})",
+                        format_money(self.price(plan)),
+                        TrueValueRange::from_estimate(own.budget, own.max_relative_error).format_money()
+                    ),
+                    format!("{} is below even the low end of that range", format_money(price)),
+                    ActionTarget::Call(ToolId::SetPrices, json!({ plan.id(): json_number(price) })),
+                ))
+            }
+            MissingAspect::Quota => {
+                let plan = self.best_plan()?;
+                let quota = round_up_to_two_digits(own.account_usage_range().1);
+                let quotas: Map<String, Value> = Plan::ALL
+                    .into_iter()
+                    .map(|of| {
+                        let held = self.situation.settings.quotas[of].units();
+                        (of.id().to_owned(), json_number(if of == plan { quota } else { held }))
+                    })
+                    .collect();
+                Some((
+                    format!(
+                        "quota: {} units a day on {plan}; mean usage{} is {}",
+                        format_whole(self.situation.settings.quotas[plan].units()),
+                        if group.is_enterprise() { " of the smallest enterprises" } else { "" },
+                        TrueValueRange::from(own.account_usage_range()).format_units()
+                    ),
+                    format!("{} units a day cover even the high end of that range", format_whole(quota)),
+                    ActionTarget::Call(ToolId::SetUsageQuotas, Value::Object(quotas)),
+                ))
+            }
+            MissingAspect::Quality => {
+                let plan = self.best_plan()?;
+                let delivered = self.quality.by_plan[plan];
+                let told = format!(
+                    "quality: {}; required on average: {floor} ({as_of})",
+                    self.describe_best_plan(plan, delivered)
+                );
+                let (proposal, place) =
+                    better_quality(self.situation, group, plan, (delivered, own.required_quality), at_risk)?;
+                Some((told, proposal, place))
+            }
+            // Customers have not seen an offer that changed today, so last week's leads do not judge it.
+            MissingAspect::Balance if self.was_changed_today() => None,
+            MissingAspect::Balance => {
+                let plan = self.best_plan()?;
+                let delivered = self.quality.by_plan[plan];
+                let problem = format!(
+                    "{plan} delivers {delivered:.4} for {}; they expect more at higher prices (mean at low prices: {floor}, {as_of})",
+                    format_money(self.price(plan))
+                );
+                let remedy = "only a lower price or higher quality can win them";
+                Some(match better_model(self.situation, group, plan, delivered, delivered) {
+                    Some((model, place)) => (problem, format!("{remedy}: {model}"), place),
+                    None => (problem, remedy.to_owned(), ActionTarget::Group(group)),
+                })
+            }
+        }
+    }
+}
+
+/// Returns the lowest higher model tier that delivers sufficient quality and whose compute the price covers.
+fn better_model(
+    situation: &DiagnosisContext<'_>,
+    group: Group,
+    plan: Plan,
+    delivered: f64,
+    floor: f64,
+) -> Option<(String, ActionTarget)> {
+    let models = &situation.terms.models;
+    let now = models.iter().find(|model| model.tier == situation.settings.tiers[plan])?;
+    let product = delivered / now.multiplier;
+    // Does not propose a model tier whose compute costs more than the plan earns. Enterprises negotiate their price.
+    let used = situation.estimate(group)?.account_usage().min(situation.settings.quotas[plan].units())
+        * DAYS_PER_MONTH;
+    let pays = |unit_cost: f64| group.is_enterprise() || used * unit_cost <= situation.settings.prices[plan];
+    let better = models.iter().filter(|model| model.tier > now.tier && pays(model.unit_cost));
+    let enough = better.into_iter().find(|model| product * model.multiplier >= floor)?;
+    Some((
+        format!(
+            "model tier {} delivers {:.4} on {plan} at {} per 1,000 units rather than {}",
+            enough.tier,
+            product * enough.multiplier,
+            cents(enough.unit_cost * 1_000.0),
+            cents(now.unit_cost * 1_000.0)
+        ),
+        ActionTarget::Call(ToolId::SetModelTiers, json!({ plan.id(): enough.tier })),
+    ))
+}
+
+/// Proposes a better model tier if one is sufficient and profitable, otherwise development for the group if it costs
+/// no more than is at risk.
+fn better_quality(
+    situation: &DiagnosisContext<'_>,
+    group: Group,
+    plan: Plan,
+    (delivered, floor): (f64, f64),
+    at_risk: f64,
+) -> Option<(String, ActionTarget)> {
+    if let Some(model) = better_model(situation, group, plan, delivered, floor) {
+        return Some(model);
+    }
+    let now = situation.terms.models.iter().find(|model| model.tier == situation.settings.tiers[plan])?;
+    const DEVELOPMENT_DOLLARS: f64 = 5_000.0;
+    // A running project needs only time.
+    let mut spend = situation.session.settings().targeted_development.targeted_spend.clone();
+    if spend.get(&group).is_some_and(|spend| *spend >= DEVELOPMENT_DOLLARS) {
+        return None;
+    }
+    let gain = situation.session.company().targeted_development_gain(DEVELOPMENT_DOLLARS) * now.multiplier;
+    let days = ((floor - delivered) / gain).ceil();
+    // Settings stay in force for at least a week.
+    let cost = DEVELOPMENT_DOLLARS * days.max(7.0);
+    let reached = format!(
+        "development for {group} at {} a day reaches that quality in {}, for {} in total",
+        format_money(DEVELOPMENT_DOLLARS),
+        pluralize(days as u32, "day"),
+        format_money(cost)
+    );
+    let told = match cost > at_risk {
+        true => {
+            format!(
+                "{reached}: more than the {} lost in four weeks, but the effect lasts",
+                format_money(at_risk)
+            )
+        }
+        false => reached,
+    };
+    spend.insert(group, DEVELOPMENT_DOLLARS);
+    let spend: Map<String, Value> =
+        spend.iter().map(|(group, dollars)| (group.id().to_owned(), json_number(*dollars))).collect();
+    Some((told, ActionTarget::Call(ToolId::SetTargetedDevSpend, json!({ "targeted_spend": spend }))))
+}

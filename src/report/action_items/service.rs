@@ -1,0 +1,173 @@
+//! Diagnoses of the service: capacity, outages and support.
+
+use serde_json::json;
+
+use super::{ActionItem, ActionTarget, DiagnosisContext, Problem, RISK_DAYS, round_up_to_two_digits};
+use crate::formatting::{format_money, format_whole, pluralize};
+use crate::peak::PeakProjection;
+use novamind_base::formatting::{json_number, percent};
+use novamind_record::figures::WeekFigures;
+use novamind_session::{CapacityTier, SettingId};
+use novamind_tools::ToolId;
+
+/// Weeks ahead in which capacity must be sufficient.
+const CAPACITY_HORIZON_WEEKS: f64 = 2.0;
+/// Share of days with an outage at which operations are too low.
+const MAX_OUTAGE_SHARE: f64 = 0.01;
+/// Acceptable share of subscribers waiting for support.
+const MAX_BACKLOG_SHARE: f64 = 0.02;
+/// Days in which a backlog should be cleared.
+const DAYS_TO_CLEAR: f64 = 7.0;
+
+/// Finds usage above capacity, or soon above it.
+pub(super) fn capacity(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
+    let week = situation.last_week()?;
+    let tiers = &situation.terms.capacities;
+    let now = tiers.iter().find(|tier| tier.tier == situation.settings.capacity_tier)?;
+    let busiest = week.busiest_day as f64;
+    if busiest > now.units {
+        return Some(overload(situation, week, now));
+    }
+    // A tier chosen today has no usage data yet.
+    if situation.observation.changes.iter().any(|change| change.setting == SettingId::CapacityTier) {
+        return None;
+    }
+    let growth = PeakProjection::from_weeks(situation.weeks)?.growth;
+    if growth <= 1.0 {
+        return None;
+    }
+    let weeks = libm::log(now.units / busiest) / libm::log(growth);
+    let next = tiers.iter().find(|tier| tier.tier == now.tier + 1)?;
+    let full = match (weeks * 7.0).ceil() {
+        days if days < 7.0 => pluralize(days.max(1.0) as u32, "day"),
+        _ => format!("{weeks:.1} weeks"),
+    };
+    (weeks < CAPACITY_HORIZON_WEEKS).then(|| ActionItem {
+        problem: Problem::Capacity,
+        text: format!(
+            "the busiest day of the week used {} units, {} of the {} of capacity tier {} and {} more than the busiest day \
+             a week before: at that growth, the tier is full in {full}",
+            format_whole(busiest),
+            percent(busiest / now.units, 0),
+            format_whole(now.units),
+            now.tier,
+            percent(growth - 1.0, 0)
+        ),
+        proposal: Some(describe_tier_cost(next, now)),
+        target: ActionTarget::Call(ToolId::SetCapacityTier, json!({ "tier": next.tier })),
+        at_risk: situation.upcoming_revenue(),
+        is_urgent: false,
+    })
+}
+
+fn overload(situation: &DiagnosisContext<'_>, week: &WeekFigures, now: &CapacityTier) -> ActionItem {
+    let busiest = week.busiest_day as f64;
+    let tiers = &situation.terms.capacities;
+    let enough = tiers.iter().find(|tier| tier.units >= busiest).or(tiers.last()).unwrap_or(now);
+    ActionItem {
+        problem: Problem::Overload,
+        text: format!(
+            "the busiest day used {} units, {} above the {} of capacity tier {}",
+            format_whole(busiest),
+            percent(busiest / now.units - 1.0, 1),
+            format_whole(now.units),
+            now.tier
+        ),
+        proposal: Some(describe_tier_cost(enough, now)),
+        target: ActionTarget::Call(ToolId::SetCapacityTier, json!({ "tier": enough.tier })),
+        at_risk: situation.upcoming_revenue(),
+        is_urgent: true,
+    }
+}
+
+fn describe_tier_cost(tier: &CapacityTier, now: &CapacityTier) -> String {
+    format!(
+        "tier {} serves {} units for {} a day, {} more",
+        tier.tier,
+        format_whole(tier.units),
+        format_money(tier.cost),
+        format_money(tier.cost - now.cost)
+    )
+}
+
+/// Finds outages that higher operations spending would reduce. Outages during overload are excluded.
+pub(super) fn outages(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
+    let week = situation.last_week().filter(|week| week.outage && week.overload_peak == 0.0)?;
+    let operations = situation.settings.operations;
+    let share = |dollars: f64| situation.session.company().outage_share(dollars);
+    let now = share(operations);
+    if now < MAX_OUTAGE_SHARE {
+        return None;
+    }
+    // The smallest round amount that halves the frequency of outages.
+    let more = (1..=200)
+        .map(|step| operations + 50.0 * f64::from(step))
+        .find(|dollars| share(*dollars) <= now / 2.0)?;
+    let at_risk = situation.upcoming_revenue() * (now * RISK_DAYS).min(1.0);
+    // Does not propose spending that exceeds the possible savings.
+    if (more - operations) * RISK_DAYS > at_risk {
+        return None;
+    }
+    Some(ActionItem {
+        problem: Problem::Outages,
+        text: format!(
+            "outages took {} last week; with operations at {} a day, {} of days have one",
+            pluralize(week.downtime_minutes, "minute"),
+            format_money(operations),
+            percent(now, 1)
+        ),
+        proposal: Some(format!("{} a day reduce this to {}", format_money(more), percent(share(more), 1))),
+        target: ActionTarget::Call(ToolId::SetDailySpend, json!({ "operations": json_number(more) })),
+        at_risk,
+        is_urgent: true,
+    })
+}
+
+/// Finds subscribers who wait for support for more than a day, beyond what operations can resolve.
+pub(super) fn backlog(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
+    let week = situation.last_week()?;
+    let people = f64::from(week.individual_subscribers.max(1));
+    let opened = f64::from(week.issues_opened) / f64::from(week.days_run.max(1));
+    let waiting = f64::from(week.open_issues) - opened;
+    if waiting <= 20.0 || waiting <= MAX_BACKLOG_SHARE * people {
+        return None;
+    }
+    let (base, per_dollar) = situation.terms.issues_solved;
+    let operations = situation.settings.operations + situation.session.settings().targeted_operations.total();
+    // Waiting subscribers open no further issue, so more are opened once the backlog is cleared.
+    let free = (people - f64::from(week.open_issues)).max(1.0);
+    let inflow = opened * people / free;
+    let needed = inflow + f64::from(week.open_issues) / DAYS_TO_CLEAR;
+    let dollars = round_up_to_two_digits((needed - base) / per_dollar);
+    if dollars <= operations {
+        return None;
+    }
+    let general = dollars - (operations - situation.settings.operations);
+    let at_risk = situation.upcoming_revenue() * (waiting / people).min(1.0);
+    if (dollars - operations) * RISK_DAYS > at_risk {
+        return None;
+    }
+    let solved = (base + per_dollar * dollars).round();
+    // Uses the rounded numbers that the sentence shows.
+    let days = (f64::from(week.open_issues) / (solved - inflow.round()).max(1.0)).ceil();
+    Some(ActionItem {
+        problem: Problem::Backlog,
+        text: format!(
+            "{} waiting for support; {} new issues a day, and operations of {} a day resolve about {}",
+            pluralize(week.open_issues, "subscriber"),
+            format_whole(opened),
+            format_money(operations),
+            format_whole(base + per_dollar * operations)
+        ),
+        proposal: Some(format!(
+            "{} a day resolve about {}: the {} new issues a day once no one waits, and the backlog in {}",
+            format_money(dollars),
+            format_whole(solved),
+            format_whole(inflow),
+            pluralize(days as u32, "day")
+        )),
+        target: ActionTarget::Call(ToolId::SetDailySpend, json!({ "operations": json_number(general) })),
+        at_risk,
+        is_urgent: true,
+    })
+}

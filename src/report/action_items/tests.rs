@@ -1,0 +1,585 @@
+//! Tests with one problem per company: it must be the first need, and the healthy company has none.
+
+use serde_json::{Value, json};
+
+use super::*;
+use novamind_record::folder::configuration::Configuration;
+use novamind_record::mode::Mode;
+use novamind_record::trajectory::record::Via;
+use novamind_session::identifiers::Plan;
+use novamind_session::{NewRun, Storage};
+use novamind_tools::ToolId;
+
+/// Settings of a healthy company with sales, leads and spare capacity.
+fn healthy_calls() -> Vec<(&'static str, Value)> {
+    vec![
+        ("set_prices", json!({"A": 11, "B": 24, "C": 52})),
+        ("set_model_tiers", json!({"A": 1, "B": 2, "C": 3})),
+        ("set_usage_quotas", json!({"A": 2_000, "B": 4_000, "C": 9_000})),
+        ("set_daily_spend", json!({"operations": 900, "development": 100})),
+        ("set_targeted_dev_spend", json!({"targeted_spend": {"S1": 5_000}})),
+        ("set_targeted_ad_spend", json!({"targeted_spend": {"content_marketing": {"S1": 600}}})),
+        ("set_capacity_tier", json!({"tier": 4})),
+    ]
+}
+
+fn healthy_calls_with(changed: &[(&'static str, Value)]) -> Vec<(&'static str, Value)> {
+    let mut calls = healthy_calls();
+    for (tool, arguments) in changed {
+        calls.retain(|(own, _)| own != tool);
+        calls.push((tool, arguments.clone()));
+    }
+    calls
+}
+
+fn play_company(seed: u64, cash: f64, calls: &[(&str, Value)], weeks: usize) -> Session {
+    let new = NewRun { seed: Some(seed), cash: Some(cash), storage: Storage::Memory, ..NewRun::default() };
+    let mut session = Session::create(new, &Configuration::bundled()).expect("a run");
+    for (tool, arguments) in calls {
+        session.call(tool, arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
+    }
+    advance_weeks(&mut session, weeks);
+    session
+}
+
+fn advance_weeks(session: &mut Session, weeks: usize) {
+    for _ in 0..weeks {
+        let forecasts = session.company().naive_forecasts();
+        session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
+    }
+}
+
+/// Returns the first need, after checking that the form accepts its proposal.
+#[track_caller]
+fn first_item(session: &Session) -> ActionItem {
+    let all = action_items(session);
+    let first = all.first().unwrap_or_else(|| panic!("no need was found")).clone();
+    for need in &all {
+        assert!(need.at_risk.is_finite() && need.at_risk > 0.0, "{need:?}");
+        if let ActionTarget::Call(tool, arguments) = &need.target {
+            let preview =
+                session.preview_call(tool, arguments).unwrap_or_else(|refusal| panic!("{need:?}: {refusal}"));
+            assert!(!preview.changes.is_empty(), "the proposal changes something: {need:?}");
+        }
+    }
+    first
+}
+
+#[track_caller]
+fn assert_first(session: &Session, problem: Problem, words: &[&str]) -> ActionItem {
+    let need = first_item(session);
+    assert_eq!(need.problem, problem, "{:#?}", action_items(session));
+    for word in words {
+        assert!(need.describe().contains(word), "{word} is missing: {}", need.describe());
+    }
+    need
+}
+
+fn group(id: &str) -> Group {
+    Group::parse(id).expect("a group")
+}
+
+#[test]
+fn missing_prices_are_found() {
+    let need = assert_first(
+        &play_company(3, 1e6, &[], 0),
+        Problem::NoPrice,
+        &["no plan has a price", "mean budgets a month: S1 $", "the form proposes half of each estimate"],
+    );
+    let ActionTarget::Call(ToolId::SetPrices, arguments) = &need.target else { panic!("{need:?}") };
+    let proposal = need.proposal.as_deref().unwrap_or_default();
+    let estimates: Vec<f64> = proposal
+        .split("(estimate $")
+        .skip(1)
+        .filter_map(|rest| rest.split(')').next()?.replace(',', "").parse().ok())
+        .collect();
+    let prices: Vec<f64> = ["A", "B", "C"].iter().filter_map(|plan| arguments[plan].as_f64()).collect();
+    let halves: Vec<f64> = estimates.iter().take(3).map(|estimate| (estimate / 2.0).round()).collect();
+    assert_eq!(prices, halves, "{proposal}");
+}
+
+#[test]
+fn zero_quotas_are_found() {
+    let calls = healthy_calls_with(&[("set_usage_quotas", json!({"A": 0, "B": 0, "C": 0}))]);
+    for weeks in [0, 2] {
+        let session = play_company(3, 1e6, &calls, weeks);
+        assert_first(
+            &session,
+            Problem::NoQuota,
+            &["plans A, B, C have a price and a quota of 0", "units a day cover"],
+        );
+    }
+    let one = play_company(
+        3,
+        1e6,
+        &healthy_calls_with(&[("set_usage_quotas", json!({"A": 2_000, "B": 0, "C": 9_000}))]),
+        0,
+    );
+    let need = assert_first(&one, Problem::NoQuota, &["plan B has a price and a quota of 0"]);
+    let ActionTarget::Call(ToolId::SetUsageQuotas, arguments) = &need.target else { panic!("{need:?}") };
+    assert_eq!(
+        (&arguments["A"], &arguments["C"]),
+        (&json!(2_000), &json!(9_000)),
+        "the others are unchanged"
+    );
+}
+
+#[test]
+fn missing_leads_are_found() {
+    let calls = healthy_calls_with(&[("set_targeted_ad_spend", json!({"targeted_spend": {}}))]);
+    for weeks in [0, 1] {
+        assert_first(
+            &play_company(3, 1e6, &calls, weeks),
+            Problem::NoLeads,
+            &["no leads", "$50 a day per channel"],
+        );
+    }
+}
+
+#[test]
+fn prices_above_every_budget_are_found() {
+    let session = play_company(
+        3,
+        1e6,
+        &healthy_calls_with(&[("set_prices", json!({"A": 900, "B": 950, "C": 990}))]),
+        2,
+    );
+    let need = assert_first(
+        &session,
+        Problem::NoSales(group("S1")),
+        &["none signed", "price: the lowest is $900 for A"],
+    );
+    let ActionTarget::Call(ToolId::SetPrices, arguments) = &need.target else { panic!("{need:?}") };
+    let budget = session.params().group(group("S1")).c_max_mean;
+    let price = arguments["A"].as_f64().expect("a price");
+    assert!(price > 0.0 && price <= budget, "{price} is within the true budget {budget}");
+}
+
+#[test]
+fn quality_below_the_floor_is_found() {
+    let calls = healthy_calls_with(&[
+        ("set_targeted_ad_spend", json!({"targeted_spend": {"search_ads": {"S2": 900}}})),
+        ("set_targeted_dev_spend", json!({"targeted_spend": {}})),
+        ("set_prices", json!({"A": 20, "B": 30, "C": 40})),
+    ]);
+    let session = play_company(7, 1e6, &calls, 2);
+    let need = assert_first(
+        &session,
+        Problem::NoSales(group("S2")),
+        &["quality: the best within their estimated budget of $"],
+    );
+    let ActionTarget::Call(ToolId::SetTargetedDevSpend, arguments) = &need.target else { panic!("{need:?}") };
+    assert_eq!(arguments["targeted_spend"]["S2"], 5_000.0);
+    let mut session = session;
+    session.call("set_targeted_dev_spend", arguments, Via::Script).expect("the proposal");
+    assert!(
+        action_items(&session).iter().all(|need| need.problem != Problem::NoSales(group("S2"))),
+        "it is on its way"
+    );
+}
+
+#[test]
+fn a_plan_that_delivers_more_and_has_too_small_a_quota_is_named() {
+    let calls = healthy_calls_with(&[
+        ("set_targeted_ad_spend", json!({"targeted_spend": {"search_ads": {"S2": 900}}})),
+        ("set_targeted_dev_spend", json!({"targeted_spend": {}})),
+        ("set_prices", json!({"A": 20, "B": 30, "C": 40})),
+        ("set_usage_quotas", json!({"A": 2_000, "B": 4_000, "C": 4})),
+    ]);
+    let session = play_company(7, 1e6, &calls, 2);
+    let quality = session.company().delivered_quality();
+    let own = quality.iter().find(|own| own.group == group("S2")).expect("S2 is known");
+    assert!(own.by_plan[Plan::C] > own.by_plan[Plan::B], "C has the better model");
+    let named = format!(
+        "quality: {:.4} on B; C delivers {:.4} within their estimated budget of $",
+        own.by_plan[Plan::B],
+        own.by_plan[Plan::C]
+    );
+    assert_first(
+        &session,
+        Problem::NoSales(group("S2")),
+        &[named.as_str(), "but its quota is too small for them"],
+    );
+}
+
+#[test]
+fn offers_changed_today_are_not_diagnosed() {
+    let plain = healthy_calls_with(&[
+        ("set_prices", json!({"A": 12, "B": 25, "C": 55})),
+        ("set_model_tiers", json!({"A": 1, "B": 1, "C": 1})),
+        ("set_targeted_dev_spend", json!({"targeted_spend": {}})),
+        ("set_targeted_ad_spend", json!({"targeted_spend": {"content_marketing": {"S1": 750}}})),
+    ]);
+    let mut session = play_company(42, 1e6, &plain, 1);
+    let about_s1 = |session: &Session| {
+        action_items(session).into_iter().find(|need| need.problem == Problem::NoSales(group("S1")))
+    };
+    let need = about_s1(&session).expect("few sign");
+    assert!(
+        need.text.contains("quality: the best within their estimated budget of $")
+            && need.text.contains(" on A;"),
+        "{}",
+        need.text
+    );
+    let ActionTarget::Call(ToolId::SetModelTiers, arguments) = &need.target else { panic!("{need:?}") };
+    session.call("set_model_tiers", arguments, Via::Script).expect("the proposal");
+    assert_eq!(about_s1(&session), None, "no customer has seen it yet");
+}
+
+#[test]
+fn too_small_quota_is_named_if_quality_suffices() {
+    let calls = healthy_calls_with(&[("set_usage_quotas", json!({"A": 4, "B": 4, "C": 4}))]);
+    let session = play_company(7, 1e6, &calls, 3);
+    assert_first(&session, Problem::NoSales(group("S1")), &["quota: 4 units a day on"]);
+}
+
+#[test]
+fn unprofitable_plan_is_found() {
+    let calls = healthy_calls_with(&[
+        ("set_prices", json!({"A": 4, "B": 90, "C": 95})),
+        ("set_model_tiers", json!({"A": 5, "B": 1, "C": 1})),
+    ]);
+    let session = play_company(3, 3e6, &calls, 8);
+    let need = assert_first(&session, Problem::Margin, &["plan A loses money", "model tier"]);
+    let ActionTarget::Call(ToolId::SetModelTiers, arguments) = &need.target else { panic!("{need:?}") };
+    assert!(arguments["A"].as_u64().is_some_and(|tier| tier < 5));
+}
+
+#[test]
+fn overload_names_the_tier_that_covers_the_busiest_day_and_its_price() {
+    let session = play_company(3, 2e6, &healthy_calls_with(&[("set_capacity_tier", json!({"tier": 0}))]), 5);
+    let need =
+        assert_first(&session, Problem::Overload, &["above the 50,000 of capacity tier 0", " a day, $"]);
+    let busiest = session.weeks().last().expect("a week").busiest_day as f64;
+    let ActionTarget::Call(ToolId::SetCapacityTier, arguments) = &need.target else { panic!("{need:?}") };
+    let tier = arguments["tier"].as_u64().expect("a tier");
+    let tiers = session.company().tool_limits().capacities;
+    let units = |tier: u64| tiers[tier as usize].units;
+    assert!(units(tier) >= busiest && units(tier - 1) < busiest, "the smallest sufficient tier");
+}
+
+#[test]
+fn outages_that_operations_would_make_rarer_are_reported_with_the_spend() {
+    // Targeted operations resolve issues but do not change the frequency of outages.
+    let calls = healthy_calls_with(&[
+        ("set_daily_spend", json!({"operations": 0, "development": 100})),
+        ("set_targeted_ops_spend", json!({"by_group": {"S1": 900}})),
+    ]);
+    let mut session = play_company(5, 3e6, &calls, 12);
+    for _ in 0..30 {
+        if session.weeks().last().is_some_and(|week| week.outage) {
+            break;
+        }
+        advance_weeks(&mut session, 1);
+    }
+    let words = "with operations at $0 a day, 3.0% of days have one";
+    let need =
+        assert_first(&session, Problem::Outages, &["outages took", words, "$350 a day reduce this to 1.5%"]);
+    let ActionTarget::Call(ToolId::SetDailySpend, arguments) = &need.target else { panic!("{need:?}") };
+    let dollars = arguments["operations"].as_f64().expect("dollars");
+    let share = session.company().outage_share(dollars);
+    assert!(
+        share <= 0.015 && session.company().outage_share(dollars - 50.0) > 0.015,
+        "half as often, and no more than that"
+    );
+    let mut small = play_company(5, 3e6, &calls, 1);
+    for _ in 0..30 {
+        advance_weeks(&mut small, 1);
+        if small.weeks().last().is_some_and(|week| week.outage) {
+            break;
+        }
+    }
+    for need in action_items(&small).iter().filter(|need| need.problem == Problem::Outages) {
+        assert!(need.at_risk >= 350.0 * 28.0, "proposals cost no more than is at risk: {need:?}");
+    }
+}
+
+#[test]
+fn a_backlog_names_the_operations_that_clear_it_in_a_week() {
+    let calls = healthy_calls_with(&[("set_daily_spend", json!({"operations": 0, "development": 100}))]);
+    let mut session = play_company(3, 3e6, &calls, 9);
+    for _ in 0..6 {
+        if session.weeks().last().is_some_and(|week| !week.outage) {
+            break;
+        }
+        advance_weeks(&mut session, 1);
+    }
+    let need = assert_first(
+        &session,
+        Problem::Backlog,
+        &["waiting for support", "once no one waits, and the backlog in "],
+    );
+    // The number of days follows from the numbers of both sentences.
+    let numbers: Vec<f64> = format!("{} {}", need.text, need.proposal.as_deref().unwrap_or_default())
+        .replace(',', "")
+        .split(|sign: char| !sign.is_ascii_digit())
+        .filter_map(|word| word.parse().ok())
+        .collect();
+    let [waiting, _, _, _, _, solved, inflow, days] = numbers[..] else { panic!("{need:?}") };
+    assert_eq!((waiting / (solved - inflow)).ceil(), days, "{need:?}");
+    assert!((6.0..=7.0).contains(&days), "{need:?}");
+    let ActionTarget::Call(ToolId::SetDailySpend, arguments) = &need.target else { panic!("{need:?}") };
+    session.call("set_daily_spend", arguments, Via::Script).expect("it is set");
+    assert!(
+        action_items(&session).iter().all(|need| need.problem != Problem::Backlog),
+        "a solved problem is not reported"
+    );
+    advance_weeks(&mut session, 2);
+    assert!(
+        action_items(&session).iter().all(|need| need.problem != Problem::Backlog),
+        "the amount is sufficient"
+    );
+}
+
+#[test]
+fn churn_wave_names_the_preceding_change() {
+    let mut session = play_company(3, 3e6, &healthy_calls(), 14);
+    let higher = json!({"A": 45, "B": 70, "C": 120});
+    session.call("set_prices", &higher, Via::Script).expect("higher prices");
+    advance_weeks(&mut session, 1);
+    let need = assert_first(
+        &session,
+        Problem::Churn(group("S1")),
+        &["cancelled last week", "you changed price A: 11 → 45"],
+    );
+    let ActionTarget::Call(ToolId::SetPrices, arguments) = &need.target else { panic!("{need:?}") };
+    assert_eq!(arguments, &json!({"A": 11, "B": 24, "C": 52}), "the form contains the earlier values");
+}
+
+#[test]
+fn expiring_threads_link_to_the_largest() {
+    let mut session = play_company(
+        11,
+        3e7,
+        &healthy_calls_with(&[
+            ("set_model_tiers", json!({"A": 4, "B": 4, "C": 4})),
+            ("set_usage_quotas", json!({"A": 300, "B": 30_000, "C": 1_000_000})),
+            ("set_targeted_dev_spend", json!({"targeted_spend": {"E1": 4_000, "E2": 5_000, "E3": 5_000}})),
+            (
+                "set_targeted_ad_spend",
+                json!({"targeted_spend": {"linkedin": {"E1": 4_000, "E2": 4_000}, "social_media": {"E3": 4_000}}}),
+            ),
+        ]),
+        2,
+    );
+    for _ in 0..20 {
+        if session.company().observe().waiting.len() > 1 {
+            break;
+        }
+        advance_weeks(&mut session, 1);
+    }
+    let waiting = session.company().observe().waiting;
+    let need = assert_first(
+        &session,
+        Problem::Threads,
+        &["enterprises wait for an answer", "their threads end by day"],
+    );
+    let most = waiting.iter().max_by_key(|thread| thread.seats).expect("threads");
+    assert_eq!(need.target, ActionTarget::Thread(most.thread));
+}
+
+#[test]
+fn short_runway_ranks_first() {
+    let session = play_company(3, 400_000.0, &healthy_calls(), 1);
+    let seen = session.company().observe();
+    assert!(seen.runway_weeks.is_some_and(|weeks| (2.0..6.0).contains(&weeks)), "{:?}", seen.runway_weeks);
+    let need = assert_first(
+        &session,
+        Problem::Runway,
+        &["cash lasts", "the largest budget is targeted development"],
+    );
+    let ActionTarget::Call(ToolId::SetTargetedDevSpend, arguments) = &need.target else { panic!("{need:?}") };
+    let proposed = arguments["targeted_spend"]["S1"].as_f64().expect("an amount");
+    let told = format!("at {} a day, cash lasts 8 weeks", crate::formatting::format_money(proposed));
+    assert!(need.describe().contains(&told), "{}: {told}", need.describe());
+    let mut mended = session;
+    mended.call("set_targeted_dev_spend", arguments, Via::Script).expect("it is set");
+    assert!(
+        mended.company().observe().runway_weeks.is_none_or(|weeks| weeks >= 7.99),
+        "{:?}",
+        mended.company().observe().runway_weeks
+    );
+}
+
+#[test]
+fn healthy_company_has_no_action_items() {
+    let session = play_company(3, 3e6, &healthy_calls(), 10);
+    let week = session.weeks().last().expect("a week");
+    assert!(week.individual_subscribers > 1_000 && week.new_individual_subscribers > week.cancellations);
+    assert_eq!(action_items(&session), []);
+}
+
+#[test]
+fn enterprises_without_suitable_plan_are_found() {
+    let ads =
+        json!({"targeted_spend": {"linkedin": {"E1": 6_000, "E2": 6_000}, "content_marketing": {"S1": 600}}});
+    let session = play_company(11, 9e6, &healthy_calls_with(&[("set_targeted_ad_spend", ads)]), 4);
+    let found: Vec<ActionItem> = action_items(&session)
+        .into_iter()
+        .filter(|need| matches!(need.problem, Problem::NoRequests(_)))
+        .collect();
+    assert!(!found.is_empty(), "{:#?}", action_items(&session));
+    assert!(found.iter().all(|need| need.text.contains("none requested an offer")), "{found:#?}");
+    // All seats of an enterprise share one quota.
+    assert!(
+        found.iter().any(|need| need.text.contains("mean usage of the smallest enterprises")),
+        "{found:#?}"
+    );
+}
+
+#[test]
+fn table_budget_is_shown_as_in_the_form() {
+    let each = json!({"S1": 99, "S2": 99, "S3": 99, "E1": 2_999, "E2": 2_999});
+    let ads = json!({"targeted_spend": {"linkedin": each, "social_media": each}});
+    let session = play_company(3, 400_000.0, &healthy_calls_with(&[("set_targeted_ad_spend", ads)]), 1);
+    let need = assert_first(&session, Problem::Runway, &["the largest budget is advertising"]);
+    let ActionTarget::Call(ToolId::SetTargetedAdSpend, arguments) = &need.target else { panic!("{need:?}") };
+    let mut mended = session;
+    mended.call("set_targeted_ad_spend", arguments, Via::Script).expect("it is set");
+    let kept = mended.settings().targeted_ads.total();
+    let told = format!("at {} a day", crate::formatting::format_money(kept));
+    assert!(need.describe().contains(&told), "{}: {told}", need.describe());
+}
+
+#[test]
+fn advertising_to_enterprises_without_requests_is_found() {
+    let people = json!({"S1": 200, "S2": 200, "S3": 200, "E1": 1_000, "E2": 1_000});
+    let spend = json!({"social_media": people, "linkedin": {"E1": 1_500, "E2": 1_500, "E3": 500}});
+    let calls = healthy_calls_with(&[
+        ("set_prices", json!({"A": 14, "B": 32, "C": 55})),
+        ("set_model_tiers", json!({"A": 2, "B": 3, "C": 4})),
+        ("set_usage_quotas", json!({"A": 3_000, "B": 30_000, "C": 1_000_000})),
+        ("set_targeted_dev_spend", json!({"targeted_spend": {"E1": 3_000, "E2": 3_000}})),
+        ("set_targeted_ad_spend", json!({ "targeted_spend": spend })),
+        ("set_daily_spend", json!({"operations": 300, "development": 400})),
+        ("set_capacity_tier", json!({"tier": 1})),
+    ]);
+    let session = play_company(23, 1e6, &calls, 7);
+    let all = action_items(&session);
+    let of_ads = |need: &&ActionItem| {
+        let ads = matches!(need.target, ActionTarget::Call(ToolId::SetTargetedAdSpend, _));
+        ads && matches!(need.problem, Problem::NoRequests(_))
+    };
+    let need = all.iter().find(of_ads).unwrap_or_else(|| panic!("{all:#?}"));
+    let Problem::NoRequests(group) = need.problem else { panic!("{need:?}") };
+    let ActionTarget::Call(_, arguments) = &need.target else { panic!("{need:?}") };
+    let before = session.settings().targeted_ads.clone();
+    let mut mended = session;
+    mended.call("set_targeted_ad_spend", arguments, Via::Script).expect("it is set");
+    let after = &mended.settings().targeted_ads;
+    let saved = before.total() - after.total();
+    assert!(
+        saved > 0.0
+            && after.targeted_spend.values().all(|groups| groups.get(&group).is_none_or(|it| *it == 0.0))
+    );
+    let told = format!("removing these ads saves {} a day", crate::formatting::format_money(saved));
+    assert!(need.describe().contains(&told), "{}: {told}", need.describe());
+}
+
+#[test]
+fn expensive_leads_name_their_earlier_cost() {
+    // A small market is soon saturated, so the same ads bring fewer leads.
+    let ads = json!({"targeted_spend": {"content_marketing": {"S1": 6_000}, "social_media": {"S2": 100}}});
+    let new = NewRun {
+        seed: Some(3),
+        cash: Some(9e6),
+        mode: Mode::Debug,
+        storage: Storage::Memory,
+        overrides: vec![("leads.saturation_base".to_owned(), "0.001".to_owned())],
+        ..NewRun::default()
+    };
+    let mut session = Session::create(new, &Configuration::bundled()).expect("a run");
+    for (tool, arguments) in healthy_calls_with(&[("set_targeted_ad_spend", ads)]) {
+        session.call(tool, &arguments, Via::Script).unwrap_or_else(|refusal| panic!("{tool}: {refusal}"));
+    }
+    let dear = |session: &Session| {
+        action_items(session).into_iter().find(|need| matches!(need.problem, Problem::LeadCost(..)))
+    };
+    let week = (1..20).find(|_| {
+        advance_weeks(&mut session, 1);
+        dear(&session).is_some()
+    });
+    let need = dear(&session).unwrap_or_else(|| panic!("{week:?}"));
+    let cost = |from: u32, upto: u32, session: &mut Session| {
+        let sql = format!(
+            "SELECT sum(spend) / sum(leads_generated) FROM ad_channel_leads WHERE channel_id = 'content_marketing' AND \
+             group_id = 'S1' AND (day + 6) / 7 BETWEEN {from} AND {upto}"
+        );
+        novamind_database::number_at(&session.query(&sql).expect("rows").rows[0], 0)
+    };
+    let last = session.weeks().len() as u32;
+    let now = cost(last - 3, last, &mut session);
+    let before = (1..=last - 7).map(|from| cost(from, from + 3, &mut session)).fold(f64::INFINITY, f64::min);
+    assert!(now >= 2.0 * before, "{now} {before}");
+    let told = |each: f64| {
+        if each < 100.0 {
+            novamind_base::formatting::cents(each)
+        } else {
+            crate::formatting::format_money(each)
+        }
+    };
+    for words in ["content_marketing × S1: in the last 4 weeks", &told(now), &told(before), "a first bill"] {
+        assert!(need.text.contains(words), "{words} in {}", need.text);
+    }
+    let ActionTarget::Call(ToolId::SetTargetedAdSpend, arguments) = &need.target else { panic!("{need:?}") };
+    let spend = &arguments["targeted_spend"];
+    assert_eq!((&spend["content_marketing"]["S1"], &spend["social_media"]["S2"]), (&json!(0), &json!(100)));
+    let lost = 6_000.0 * 28.0 * (1.0 - before / now);
+    assert!((need.at_risk - lost).abs() < 1.0, "{} {lost}", need.at_risk);
+}
+
+#[test]
+fn baseline_run_gets_no_advice() {
+    let new = NewRun {
+        mode: Mode::Baseline,
+        participant: Some("P1".to_owned()),
+        storage: Storage::Memory,
+        ..NewRun::default()
+    };
+    let session = Session::create(new, &Configuration::bundled()).expect("a run");
+    let all = action_items(&session);
+    assert_eq!(all.len(), 1 + all.iter().skip(1).count());
+    for need in all {
+        assert_eq!(need.proposal, None);
+        assert!(!matches!(need.target, ActionTarget::Call(_, arguments) if !arguments.is_null()));
+    }
+}
+
+#[test]
+fn best_plan_is_named_and_other_development_is_kept() {
+    let calls = healthy_calls_with(&[
+        ("set_usage_quotas", json!({"A": 10, "B": 90_000_000, "C": 90_000_000})),
+        ("set_targeted_ad_spend", json!({"targeted_spend": {"search_ads": {"S2": 900}}})),
+        ("set_targeted_dev_spend", json!({"targeted_spend": {"S1": 700}})),
+        ("set_prices", json!({"A": 20, "B": 30, "C": 40})),
+    ]);
+    let session = play_company(7, 1e6, &calls, 2);
+    let all = action_items(&session);
+    let need = all.iter().find(|need| need.problem == Problem::NoSales(group("S2"))).expect("none signs");
+    assert!(
+        need.text.contains("quality: the best within their estimated budget of $"),
+        "A also has too small a quota: {}",
+        need.text
+    );
+    let ActionTarget::Call(ToolId::SetTargetedDevSpend, arguments) = &need.target else { panic!("{need:?}") };
+    assert_eq!(arguments["targeted_spend"], json!({"S1": 700, "S2": 5_000}));
+}
+
+#[test]
+fn outdated_estimate_proposes_a_study_if_worthwhile() {
+    let with_ads = |dollars: u32| {
+        healthy_calls_with(&[
+            ("set_targeted_ad_spend", json!({"targeted_spend": {"search_ads": {"S2": dollars}}})),
+            ("set_targeted_dev_spend", json!({"targeted_spend": {}})),
+            ("set_prices", json!({"A": 20, "B": 30, "C": 40})),
+        ])
+    };
+    let place = |dollars: u32, weeks: usize| {
+        let all = action_items(&play_company(7, 1e7, &with_ads(dollars), weeks));
+        all.into_iter().find(|need| need.problem == Problem::NoSales(group("S2"))).expect("none signs").target
+    };
+    let study = ActionTarget::Call(ToolId::ResearchGroup, json!({"group_id": "S2", "target_level": 2}));
+    assert_ne!(place(9_000, 2), study, "the estimate is two weeks old");
+    assert_eq!(place(9_000, 5), study);
+    assert_ne!(place(200, 5), study, "the study costs more than is at risk");
+}

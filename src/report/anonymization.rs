@@ -1,0 +1,325 @@
+//! Anonymized tables of a study: new labels and run names, times relative to the start of each run, no texts written
+//! by people, and renamed machines.
+//!
+//! All new names derive from a secret that the experimenter keeps, so tables collected later are consistent. Each run
+//! contains the hash of its sealed original's last hash. Anyone who has the original can prove that it belongs to the
+//! run.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::tables::{ColumnHeading, table_headings};
+
+/// A table's name and rows; the first row is the header.
+pub type NamedTable = (String, Vec<Vec<String>>);
+
+/// Treatment of texts written by people.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TextHandling {
+    /// Removes them.
+    Dropped,
+    /// Replaces them with their length in characters.
+    Masked,
+}
+
+/// Old and new names of a run, for the experimenter only.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RunLink {
+    /// Label of the participant.
+    pub participant: String,
+    /// Their new label.
+    pub new_participant: String,
+    /// Run ID.
+    pub run: String,
+    /// New run ID.
+    pub new_run: String,
+    /// Hash of the last line of the original.
+    pub last_hash: String,
+    /// Hash of `last_hash`, as in the anonymized table.
+    pub original: String,
+}
+
+/// Column names of the table of links.
+pub const LINK_COLUMNS: [&str; 6] =
+    ["participant", "new_participant", "run", "new_run", "last_hash", "original"];
+
+// People who know a participant could identify them by these columns.
+const IDENTIFYING_COLUMNS: [(&str, &str); 4] =
+    [("runs", "assigned_order"), ("runs", "problem"), ("notes", "digest"), ("visits", "folder")];
+
+// Columns that describe a session's design. Rare combinations can identify a participant.
+const DESIGN_COLUMNS: [&str; 2] = ["seed", "condition"];
+
+/// Columns that join the tables.
+const REQUIRED_COLUMNS: [&str; 2] = ["run", "participant"];
+
+/// The result of anonymization.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct AnonymizedTables {
+    /// The tables.
+    pub tables: Vec<NamedTable>,
+    /// The links to the originals.
+    pub links: Vec<RunLink>,
+    /// Size and shared values of the smallest group of sessions with the same seed and condition, as far as
+    /// these columns are kept.
+    /// `None` if neither is kept or no session exists.
+    pub smallest_group: Option<(usize, String)>,
+}
+
+/// Replaces identifying values, keyed by a secret.
+pub struct Anonymizer {
+    secret: [u8; 32],
+    texts: TextHandling,
+    /// Columns to omit in addition to `IDENTIFYING_COLUMNS`.
+    omitted_columns: Vec<String>,
+    /// Start of each run, in nanoseconds since 1970.
+    run_starts: BTreeMap<String, i64>,
+    /// First use of each label, in nanoseconds since 1970.
+    first_visits: BTreeMap<String, i64>,
+}
+
+impl Anonymizer {
+    /// Returns an anonymizer that also omits the columns `without` from every table.
+    pub fn new(secret: [u8; 32], texts: TextHandling, without: Vec<String>) -> Anonymizer {
+        Anonymizer {
+            secret,
+            texts,
+            omitted_columns: without,
+            run_starts: BTreeMap::new(),
+            first_visits: BTreeMap::new(),
+        }
+    }
+
+    /// Returns the anonymized tables of an export or a collection, and the links to the originals.
+    ///
+    /// # Errors
+    /// Returns an error if a table or column is missing, or if two names would become the same.
+    pub fn anonymize(&mut self, tables: &[NamedTable]) -> Result<AnonymizedTables, String> {
+        let all = |name: &str| {
+            let found = tables.iter().find(|(own, _)| own == name).map(|(_, rows)| rows.as_slice());
+            found.filter(|rows| !rows.is_empty()).ok_or_else(|| format!("the table {name}.csv is missing"))
+        };
+        let runs = all("runs")?;
+        let [run, participant, created, last] =
+            ["run", "participant", "created", "last_hash"].map(|name| column_index(runs, name));
+        let (run, participant, created, last) = (run?, participant?, created?, last?);
+        let mut links = Vec::new();
+        for row in runs.iter().skip(1).filter(|row| !row[created].is_empty()) {
+            self.run_starts
+                .insert(row[run].clone(), novamind_record::clock::parse_nanoseconds(&row[created]));
+            links.push(RunLink {
+                participant: row[participant].clone(),
+                new_participant: self.new_label(&row[participant]),
+                run: row[run].clone(),
+                new_run: self.new_run_name(&row[run]),
+                last_hash: row[last].clone(),
+                original: original_hash(&row[last]),
+            });
+        }
+        let distinct = |of: fn(&RunLink) -> &String| links.iter().map(of).collect::<BTreeSet<_>>().len();
+        if distinct(|link| &link.participant) != distinct(|link| &link.new_participant)
+            || distinct(|link| &link.run) != distinct(|link| &link.new_run)
+        {
+            return Err("two names would become the same; use a different secret".to_owned());
+        }
+        links.sort_by(|one: &RunLink, other| {
+            (&one.new_participant, &one.new_run).cmp(&(&other.new_participant, &other.new_run))
+        });
+        self.record_first_visits(all("visits")?)?;
+        let mut made = Vec::new();
+        let mut described = vec![["table", "column", "unit", "meaning"].map(str::to_owned).to_vec()];
+        for (name, columns) in table_headings() {
+            let kept: Vec<ColumnHeading> =
+                columns.into_iter().filter(|own| !self.is_omitted(name, &own.name)).collect();
+            described.extend(kept.iter().map(|own| column_description(name, own)));
+            made.push((name.to_owned(), self.anonymize_table(name, &kept, all(name)?)?));
+        }
+        made.push(("columns".to_owned(), described));
+        let smallest_group = self.smallest_group(runs)?;
+        Ok(AnonymizedTables { tables: made, links, smallest_group })
+    }
+
+    fn is_omitted(&self, table: &str, column: &str) -> bool {
+        IDENTIFYING_COLUMNS.contains(&(table, column)) || self.omitted_columns.iter().any(|own| own == column)
+    }
+
+    /// Checks that the columns to omit exist and that no table needs them.
+    ///
+    /// # Errors
+    /// Names the first column that does not exist or that joins the tables.
+    pub fn check_omitted_columns(&self) -> Result<(), String> {
+        let known =
+            |name: &str| table_headings().iter().any(|(_, own)| own.iter().any(|own| own.name == *name));
+        for name in &self.omitted_columns {
+            if REQUIRED_COLUMNS.contains(&name.as_str()) {
+                return Err(format!("{name} cannot be left out: it joins the tables"));
+            }
+            if !known(name) {
+                return Err(format!("no table has a column {name}; `novamind runs columns` lists them"));
+            }
+        }
+        Ok(())
+    }
+
+    fn record_first_visits(&mut self, rows: &[Vec<String>]) -> Result<(), String> {
+        let (label, at) = (column_index(rows, "participant")?, column_index(rows, "at")?);
+        for row in rows.iter().skip(1).filter(|row| !row[label].is_empty()) {
+            let moment = novamind_record::clock::parse_nanoseconds(&row[at]);
+            self.first_visits
+                .entry(row[label].clone())
+                .and_modify(|own| *own = moment.min(*own))
+                .or_insert(moment);
+        }
+        Ok(())
+    }
+
+    fn smallest_group(&self, runs: &[Vec<String>]) -> Result<Option<(usize, String)>, String> {
+        let left: Vec<&str> =
+            DESIGN_COLUMNS.into_iter().filter(|name| !self.is_omitted("runs", name)).collect();
+        if left.is_empty() {
+            return Ok(None);
+        }
+        let places = left.iter().map(|name| column_index(runs, name)).collect::<Result<Vec<_>, _>>()?;
+        let (created, practice) = (column_index(runs, "created")?, column_index(runs, "practice")?);
+        let mut groups: BTreeMap<String, usize> = BTreeMap::new();
+        for row in runs.iter().skip(1).filter(|row| !row[created].is_empty() && row[practice] != "1") {
+            let values = left.iter().zip(&places).map(|(name, at)| format!("{name} {}", row[*at]));
+            *groups.entry(values.collect::<Vec<_>>().join(", ")).or_default() += 1;
+        }
+        Ok(groups.into_iter().map(|(values, size)| (size, values)).min())
+    }
+
+    fn anonymize_table(
+        &self,
+        name: &str,
+        columns: &[ColumnHeading],
+        rows: &[Vec<String>],
+    ) -> Result<Vec<Vec<String>>, String> {
+        let places =
+            columns.iter().map(|own| column_index(rows, &own.name)).collect::<Result<Vec<_>, _>>()?;
+        let mut made = Vec::new();
+        for row in &rows[1..] {
+            let known: BTreeMap<&str, &str> =
+                rows[0].iter().map(String::as_str).zip(row.iter().map(String::as_str)).collect();
+            if known.get("run").is_some_and(|run| !self.run_starts.contains_key(*run)) {
+                // A run that could not be read has only a name.
+                continue;
+            }
+            let cells = columns.iter().zip(&places);
+            let cells = cells.map(|(column, at)| self.anonymize_cell(name, column, &row[*at], &known));
+            let of = |name: &str| known.get(name).copied().unwrap_or_default();
+            made.push(((self.new_label(of("participant")), self.new_run_name(of("run"))), cells.collect()));
+        }
+        // The original order reveals when participants came. Lines within a run keep theirs.
+        made.sort_by(|one: &((String, String), Vec<String>), other| one.0.cmp(&other.0));
+        let head = columns.iter().map(|own| anonymized_column_name(own).to_owned()).collect();
+        Ok(std::iter::once(head).chain(made.into_iter().map(|(_, row)| row)).collect())
+    }
+
+    fn anonymize_cell(
+        &self,
+        table: &str,
+        column: &ColumnHeading,
+        cell: &str,
+        row: &BTreeMap<&str, &str>,
+    ) -> String {
+        let kind = row.get("kind").copied().unwrap_or_default();
+        match (table, &*column.name) {
+            _ if cell.is_empty() => String::new(),
+            (_, "participant") => self.new_label(cell),
+            (_, "run" | "parent") => self.new_run_name(cell),
+            ("events", "which") if kind == "branch" => self.new_run_name(cell),
+            ("events", "which") if matches!(kind, "note" | "memo") => String::new(),
+            ("runs", "last_hash") => original_hash(cell),
+            ("visits", "at") => seconds_between(self.first_visits.get(row["participant"]), cell),
+            ("visits", "machine") => self.keyed_name("machine", cell, 16),
+            ("events", "value") if kind == "start" && self.is_omitted("runs", "seed") => String::new(),
+            _ if column.unit == "RFC 3339" => self.seconds_since_run_start(row["run"], cell),
+            ("events", "detail") => self.anonymize_detail(cell),
+            ("events", "text") if kind == "question" || is_setting(row) => cell.to_owned(),
+            ("events", "text") | ("notes", "text") => self.mask_text(cell),
+            ("events", "value") if kind == "answer" && cell.parse::<f64>().is_err() => self.mask_text(cell),
+            ("answers", "value") if row["form"] == "text" => self.mask_text(cell),
+            ("queries", "sql") if row["via"] == "library" => cell.to_owned(),
+            ("queries", "sql" | "message") => self.mask_text(cell),
+            _ => cell.to_owned(),
+        }
+    }
+
+    fn mask_text(&self, text: &str) -> String {
+        match self.texts {
+            TextHandling::Dropped => String::new(),
+            TextHandling::Masked => format!("[{} characters]", text.chars().count()),
+        }
+    }
+
+    fn seconds_since_run_start(&self, run: &str, at: &str) -> String {
+        seconds_between(self.run_starts.get(run), at)
+    }
+
+    fn anonymize_detail(&self, detail: &str) -> String {
+        let part = |part: &str| match part.split_once('=') {
+            Some((name @ ("machine" | "boot"), value)) => {
+                format!("{name}={}", self.keyed_name(name, value, 16))
+            }
+            // It counts from the start of the machine.
+            Some(("monotonic_ms", _)) => "monotonic_ms=".to_owned(),
+            _ => part.to_owned(),
+        };
+        detail.split(';').map(part).collect::<Vec<_>>().join(";")
+    }
+
+    fn new_label(&self, label: &str) -> String {
+        if label.is_empty() { String::new() } else { format!("A{}", self.keyed_name("label", label, 8)) }
+    }
+
+    fn new_run_name(&self, run: &str) -> String {
+        self.keyed_name("run", run, 8)
+    }
+
+    fn keyed_name(&self, what: &str, name: &str, digits: usize) -> String {
+        let hash = blake3::keyed_hash(&self.secret, format!("{what}\n{name}").as_bytes());
+        hash.to_hex()[..digits].to_owned()
+    }
+}
+
+/// Returns whether an event is an accepted setting or purchase, whose arguments contain no free text.
+fn is_setting(row: &BTreeMap<&str, &str>) -> bool {
+    let of = |name: &str| row.get(name).copied().unwrap_or_default();
+    let begins = ["set_", "start_research", "research_"].iter().any(|begin| of("what").starts_with(begin));
+    of("kind") == "call" && of("value") == "accepted" && begins
+}
+
+/// Returns the seconds from `began`, in nanoseconds since 1970, to `at`; empty if `began` is `None`.
+fn seconds_between(began: Option<&i64>, at: &str) -> String {
+    began.map_or(String::new(), |began| {
+        let passed = novamind_record::clock::parse_nanoseconds(at) - began;
+        format!("{}", (passed as f64 / 1e6).round() / 1e3 + 0.0)
+    })
+}
+
+fn original_hash(last_hash: &str) -> String {
+    blake3::hash(last_hash.as_bytes()).to_hex().to_string()
+}
+
+fn anonymized_column_name(column: &ColumnHeading) -> &str {
+    if column.name == "last_hash" { "original" } else { &column.name }
+}
+
+fn column_description(table: &str, column: &ColumnHeading) -> Vec<String> {
+    let (unit, meaning) = match (column.unit, &*column.name) {
+        ("RFC 3339", _) if table == "visits" => {
+            ("seconds", format!("{}, as seconds since the first use of the label", column.meaning))
+        }
+        ("RFC 3339", _) => ("seconds", format!("{}, as seconds since the run began", column.meaning)),
+        (unit, "last_hash") => {
+            (unit, "BLAKE3 hash of the last hash of the sealed original, as text".to_owned())
+        }
+        (unit, _) => (unit, column.meaning.to_owned()),
+    };
+    vec![table.to_owned(), anonymized_column_name(column).to_owned(), unit.to_owned(), meaning]
+}
+
+fn column_index(rows: &[Vec<String>], name: &str) -> Result<usize, String> {
+    let found = rows.first().and_then(|head| head.iter().position(|own| own == name));
+    found.ok_or_else(|| format!("the column {name} is missing: use this version to collect the study again"))
+}

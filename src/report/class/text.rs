@@ -1,0 +1,266 @@
+//! Results of a class as text.
+
+use super::ClassView;
+use super::curves::{scatter, student_curves};
+use super::guesses::{class_questions, pitfall_counts};
+use super::ranking::{RankedStudent, rank_students};
+use crate::formatting::{format_money, pluralize};
+use crate::plot::{PlotSeries, plot_report};
+use novamind_base::formatting::{compact_number, escape_control_characters, percent};
+use novamind_course::{ClassFinding, RunVerdict};
+
+/// Describes a finding and what to do about it.
+pub fn describe_finding(finding: &ClassFinding) -> String {
+    match finding {
+        ClassFinding::Unreadable { label, path, problem } => {
+            let who = label.as_ref().map(|label| format!("{label}: ")).unwrap_or_default();
+            let place = path.display().to_string();
+            // Most problems name their path.
+            let place = if problem.contains(&place) { String::new() } else { format!("{place}: ") };
+            format!("{who}not collected: {place}{problem}")
+        }
+        ClassFinding::Altered { label, run, problem } => {
+            format!(
+                "{label}: run {run} was altered and does not count. {problem}. Ask the student to send it again"
+            )
+        }
+        ClassFinding::Conflicting { label, run, paths } => {
+            let paths: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
+            format!(
+                "{label}: run {run} has two records, and neither continues the other: {}. Neither is ranked; ask \
+                 which one counts, and collect again without the other",
+                paths.join(" and ")
+            )
+        }
+        ClassFinding::OtherLesson { label, run } => {
+            format!("{label}: run {run} belongs to a different lesson or version of it and does not count")
+        }
+        ClassFinding::OtherHandout { label, run, of: Some(of) } => {
+            format!(
+                "{label}: run {run} started from the handout of {of} and does not count; find out who played it"
+            )
+        }
+        ClassFinding::OtherHandout { label, run, of: None } => {
+            format!("{label}: run {run} does not continue the run that was handed out and does not count")
+        }
+        ClassFinding::Unknown { label, run, path } => {
+            let who = label.as_deref().unwrap_or("unknown student");
+            format!(
+                "{who}: run {run} in {} did not start from a handout of this class and does not count",
+                path.display()
+            )
+        }
+        ClassFinding::Missing { label } => format!("{label}: no submission"),
+        ClassFinding::NotFinished { label, parts } if parts.len() == 1 && parts[0] == 1 => {
+            format!("{label}: not finished")
+        }
+        ClassFinding::NotFinished { label, parts } => {
+            let parts: Vec<String> = parts.iter().map(u32::to_string).collect();
+            format!("{label}: not finished: part {}", parts.join(", "))
+        }
+        ClassFinding::AlteredHandout { label } => {
+            format!(
+                "{label}: the handout in the class folder was altered; runs started before that are not affected"
+            )
+        }
+    }
+}
+
+/// Summarizes the submissions and lists the findings.
+pub fn describe_collection(view: &ClassView<'_>) -> String {
+    let collection = view.collection;
+    let mut text = headline(view) + "\n";
+    if collection.superseded > 0 {
+        let records = pluralize(collection.superseded, "record");
+        text += &format!("{records} found as duplicates or in an earlier state: the latest counts\n");
+    }
+    if collection.others > 0 {
+        text += &format!("{} of other origin, ignored\n", pluralize(collection.others, "run"));
+    }
+    for finding in &collection.findings {
+        text += &format!("! {}\n", escape_control_characters(&describe_finding(finding)));
+    }
+    text
+}
+
+fn headline(view: &ClassView<'_>) -> String {
+    format!("{} · {}", view.title(), describe_state(view))
+}
+
+/// Summarizes the number of students and submissions.
+pub fn describe_state(view: &ClassView<'_>) -> String {
+    let students = view.class.students.len() as u32;
+    let of = |verdict: RunVerdict| view.collection.runs.iter().filter(|run| run.verdict == verdict).count();
+    let verdicts = [
+        RunVerdict::Finished,
+        RunVerdict::NotFinished,
+        RunVerdict::Altered,
+        RunVerdict::Conflicting,
+        RunVerdict::OtherLesson,
+        RunVerdict::OtherHandout,
+        RunVerdict::Unknown,
+    ];
+    let runs: Vec<String> = verdicts
+        .into_iter()
+        .filter(|verdict| of(*verdict) > 0)
+        .map(|verdict| format!("{} {}", of(verdict), verdict.label()))
+        .collect();
+    let runs =
+        if runs.is_empty() { "no submissions".to_owned() } else { format!("runs: {}", runs.join(", ")) };
+    format!("{} · {runs}", pluralize(students, "student"))
+}
+
+/// Shows the class in a terminal: ranking, curves, a scatter plot, guesses, pitfalls and findings.
+pub fn class_to_text(view: &ClassView<'_>) -> String {
+    let ranking = rank_students(view);
+    let mut text = format!("{}\nRanked by {}.\n\n", headline(view), view.describe_measure());
+    text += &ranking_text(view, &ranking);
+    let lit = view.display.highlighted_student.as_deref().or(ranking.first().map(|first| first.label));
+    for part in 1..=view.part_count() {
+        text += &drawings_text(view, &ranking, part, lit);
+    }
+    text += &guesses_text(view, &ranking);
+    let met = pitfall_counts(view);
+    if let Some((most, others)) = met.split_first() {
+        let students = pluralize(most.students as u32, "student");
+        text += &format!("\nMost common pitfall: {}, by {students}. {}\n", most.name, most.explanation);
+        for own in others {
+            text += &format!("  {}: {}\n", own.name, own.students);
+        }
+    }
+    match view.display.hides_names {
+        // Findings name students.
+        true => text,
+        false => {
+            let wrong: String =
+                view.collection.findings.iter().map(|own| format!("! {}\n", describe_finding(own))).collect();
+            let text = if wrong.is_empty() { text } else { text + "\n" + &wrong };
+            escape_control_characters(&text).into_owned()
+        }
+    }
+}
+
+fn ranking_text(view: &ClassView<'_>, ranking: &[RankedStudent<'_>]) -> String {
+    let width = ranking.iter().map(|student| student.name.chars().count()).max().unwrap_or(0).max(7);
+    let heading = if view.lesson.is_some() { "of reference" } else { "cash" };
+    let mut text = format!("rank  {:<width$}  {heading:>12}  tries  hints  goals  pitfalls\n", "student");
+    for (at, student) in ranking.iter().enumerate() {
+        let score = format_score(view, student);
+        text += format!(
+            "{:>4}  {:<width$}  {score:>12}  {:>5}  {:>5}  {:>5}  {}",
+            at + 1,
+            student.name,
+            student.max_attempt(),
+            student.hint_count(),
+            student.format_goals(),
+            student.format_pitfalls()
+        )
+        .trim_end();
+        text.push('\n');
+    }
+    text
+}
+
+/// Formats a student's score: a percentage of the reference play, or dollars.
+pub fn format_score(view: &ClassView<'_>, student: &RankedStudent<'_>) -> String {
+    match view.lesson {
+        Some(_) => percent(student.score, 0),
+        None => format_money(student.score),
+    }
+}
+
+impl RankedStudent<'_> {
+    /// Returns the highest try number of the counted runs.
+    pub fn max_attempt(&self) -> u32 {
+        self.runs.iter().map(|run| run.evidence.tries).max().unwrap_or(0)
+    }
+
+    /// Returns the number of hints used in the counted runs.
+    pub fn hint_count(&self) -> u32 {
+        self.runs.iter().map(|run| run.evidence.hints).sum()
+    }
+
+    /// Returns the goals reached and judged: `2/3`.
+    pub fn format_goals(&self) -> String {
+        let goals = || self.runs.iter().flat_map(|run| &run.evidence.steps).flat_map(|step| &step.goals);
+        format!("{}/{}", goals().filter(|goal| goal.met).count(), goals().count())
+    }
+
+    /// Returns the names of the triggered pitfalls.
+    pub fn format_pitfalls(&self) -> String {
+        let all: Vec<&str> =
+            self.runs.iter().flat_map(|run| &run.evidence.pitfalls).map(String::as_str).collect();
+        all.join(" ")
+    }
+}
+
+fn drawings_text(
+    view: &ClassView<'_>,
+    ranking: &[RankedStudent<'_>],
+    part: u32,
+    lit: Option<&str>,
+) -> String {
+    let all = student_curves(view, ranking, part);
+    let title = view.part_title(part).map(|title| format!(", {title}")).unwrap_or_default();
+    let name = ranking.iter().find(|own| Some(own.label) == lit).map_or("no one", |own| own.name.as_str());
+    let mut text = format!("\nCash by day{title}: {name} #, reference play o, others ·\n");
+    let sign = |label: Option<&str>| match label {
+        None => 'o',
+        label if label == lit => '#',
+        Some(_) => '\u{b7}',
+    };
+    let drawn = |own: &[super::curves::StudentPoints<'_>], is_line: bool| {
+        let mut all: Vec<PlotSeries<'_>> = own
+            .iter()
+            .map(|own| PlotSeries { mark: sign(own.label), points: &own.points, is_line })
+            .collect();
+        all.sort_by_key(|own| ['\u{b7}', 'o', '#'].iter().position(|sign| *sign == own.mark));
+        plot_report(&all)
+    };
+    text += &drawn(&all, true);
+    if let Some(scatter) = scatter(view, ranking, part) {
+        text += &format!("\n{} across, {} up: {name} #, others ·\n", scatter.decision, scatter.figure);
+        text += &drawn(&scatter.points, false);
+    }
+    text
+}
+
+fn guesses_text(view: &ClassView<'_>, ranking: &[RankedStudent<'_>]) -> String {
+    let mut text = String::new();
+    for asked in class_questions(view).into_iter().filter(|asked| !asked.answers.is_empty()) {
+        let part = if view.part_count() > 1 { format!("part {}: ", asked.part) } else { String::new() };
+        text += &format!("\nGuesses: {part}{}\n", asked.question);
+        if asked.choices.is_empty() {
+            let mut guesses: Vec<f64> = asked.answers.iter().map(|answer| answer.1).collect();
+            guesses.sort_by(f64::total_cmp);
+            let distance = |answer: &&(&str, f64, f64)| (answer.1 - answer.2).abs();
+            let nearest = asked.answers.iter().min_by(|one, other| distance(one).total_cmp(&distance(other)));
+            let named = |label: &str| {
+                ranking.iter().find(|own| own.label == label).map_or("-", |own| own.name.as_str())
+            };
+            let nearest = nearest.map(|(label, guess, outcome)| {
+                format!(
+                    "; nearest {}: {} for {}",
+                    named(label),
+                    compact_number(*guess),
+                    compact_number(*outcome)
+                )
+            });
+            text += &format!(
+                "  {} from {} to {}, median {}{}\n",
+                guesses.len(),
+                compact_number(guesses[0]),
+                compact_number(guesses[guesses.len() - 1]),
+                compact_number(guesses[guesses.len() / 2]),
+                nearest.unwrap_or_default()
+            );
+        } else {
+            for (number, choice) in (1..).zip(asked.choices) {
+                let taken = asked.answers.iter().filter(|answer| answer.1 == f64::from(number)).count();
+                let is_right = asked.answers.iter().any(|answer| answer.2 == f64::from(number));
+                text += &format!("  {:>3}  {choice}{}\n", taken, if is_right { "  (correct)" } else { "" });
+            }
+        }
+    }
+    text
+}

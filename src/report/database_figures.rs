@@ -1,0 +1,233 @@
+//! Data for reports: money by category and week from the ledger; groups by week and leads by channel from guarded
+//! queries over the visible tables. Queries that fail are listed and their data is omitted.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use novamind_database::{Cell, QueryResult, number_at, text_at};
+use novamind_record::figures::CategoryTotals;
+use novamind_session::Session;
+use novamind_session::identifiers::Group;
+
+// A deal cancelled early can end after the last day; it counts on the last day.
+const GROUP_FLOW_SQL: &str = "SELECT (s.start_day + 6) / 7 AS week, c.group_id, count(*), sum(s.seat_count)
+FROM subscriptions s CROSS JOIN customers c
+WHERE c.customer_id = s.customer_id AND s.status IN ('subscribed', 'cancelled') GROUP BY 1, 2
+UNION ALL
+SELECT (min(s.end_day, (SELECT max(day) FROM service_day)) + 6) / 7, c.group_id, -count(*), -sum(s.seat_count)
+FROM subscriptions s CROSS JOIN customers c
+WHERE c.customer_id = s.customer_id AND s.status = 'cancelled' GROUP BY 1, 2";
+
+// Customer 1 is the market observer, the author of news.
+const GROUP_LEADS_SQL: &str = "SELECT group_id, count(*) FROM customers WHERE customer_id > 1 GROUP BY 1";
+
+const GROUP_REVENUE_SQL: &str = "SELECT c.group_id, sum(s.effective_price * s.seat_count)
+FROM subscriptions s CROSS JOIN customers c
+WHERE c.customer_id = s.customer_id AND s.status = 'subscribed' GROUP BY 1";
+
+const CHANNEL_SQL: &str =
+    "SELECT group_id, channel_id, sum(leads_generated), sum(spend) FROM ad_channel_leads GROUP BY 1, 2";
+
+const OUTAGE_SQL: &str =
+    "SELECT day, downtime_minutes FROM service_day WHERE downtime_minutes > 0 ORDER BY day";
+
+/// Advertising of one channel for one group.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ChannelRow {
+    /// Group.
+    pub group: String,
+    /// Channel.
+    pub channel: String,
+    /// Leads of this channel and group.
+    pub leads: f64,
+    /// Dollars spent on this channel and group.
+    pub spend: f64,
+}
+
+/// A group over the run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GroupHistory {
+    /// Group.
+    pub group: Group,
+    /// All leads.
+    pub leads: f64,
+    /// Subscriptions at the end of each week, week 0 first.
+    pub active: Vec<f64>,
+    /// Seats at the end of each week, week 0 first.
+    pub seats: Vec<f64>,
+    /// Monthly revenue at the end, dollars.
+    pub revenue: f64,
+}
+
+/// Data of a run that its tables and ledger contain.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct DatabaseFigures {
+    /// Groups with at least one lead, in their fixed order.
+    pub groups: Vec<GroupHistory>,
+    /// Advertising by group and channel.
+    pub channels: Vec<ChannelRow>,
+    /// Dollars by week and category of the ledger; costs are negative. Excludes the starting cash.
+    pub ledger: BTreeMap<u32, BTreeMap<&'static str, f64>>,
+    /// Day and duration in minutes of each outage.
+    pub outages: Vec<(u32, u32)>,
+    /// Queries that failed, with their errors.
+    pub missing: Vec<String>,
+}
+
+impl DatabaseFigures {
+    /// Reads the database of a run without recording queries.
+    pub fn load(session: &Session) -> DatabaseFigures {
+        let connection = session.wait_for_database().and_then(|()| session.database().open_connection());
+        let connection = match connection {
+            Ok(connection) => connection,
+            Err(refusal) => {
+                let missing = vec![format!("groups and channels: {refusal}")];
+                return DatabaseFigures {
+                    ledger: ledger_by_week(session),
+                    missing,
+                    ..DatabaseFigures::default()
+                };
+            }
+        };
+        let mut missing = Vec::new();
+        let mut ask = |what: &str, sql: &str| match connection.query(sql, session.company().query_limits()) {
+            Ok(rows) => rows,
+            Err(error) => {
+                missing.push(format!("{what}: {}", error.message));
+                QueryResult::default()
+            }
+        };
+        let weeks = session.company().observe().week;
+        let flows = ask("groups", GROUP_FLOW_SQL);
+        let (leads, revenue) = (ask("leads", GROUP_LEADS_SQL), ask("revenue", GROUP_REVENUE_SQL));
+        let groups = group_histories(&flows, &by_group(&leads), &by_group(&revenue), weeks);
+        let channels = ask("channels", CHANNEL_SQL).rows.iter().map(|row| channel_row(row)).collect();
+        let outage = |row: &Vec<Cell>| (number_at(row, 0) as u32, number_at(row, 1) as u32);
+        let outages = ask("outages", OUTAGE_SQL).rows.iter().map(outage).collect();
+        DatabaseFigures { groups, channels, ledger: ledger_by_week(session), outages, missing }
+    }
+
+    /// Returns advertising only; empty if the query fails.
+    pub fn load_channels(session: &Session) -> Vec<ChannelRow> {
+        let connection = session.wait_for_database().and_then(|()| session.database().open_connection()).ok();
+        let rows = connection
+            .and_then(|connection| connection.query(CHANNEL_SQL, session.company().query_limits()).ok());
+        rows.map(|rows| rows.rows.iter().map(|row| channel_row(row)).collect()).unwrap_or_default()
+    }
+
+    /// Returns dollars by category over the whole run.
+    pub fn totals_by_category(&self) -> BTreeMap<&str, f64> {
+        let mut totals = BTreeMap::new();
+        for (category, amount) in self.ledger.values().flatten() {
+            *totals.entry(*category).or_default() += amount;
+        }
+        totals
+    }
+}
+
+fn group_histories(
+    flows: &QueryResult,
+    leads: &BTreeMap<String, f64>,
+    revenue: &BTreeMap<String, f64>,
+    weeks: u32,
+) -> Vec<GroupHistory> {
+    let known = Group::all().filter(|group| leads.contains_key(group.id()));
+    let book = |group: Group| {
+        let (mut active, mut seats) = (vec![0.0; weeks as usize + 1], vec![0.0; weeks as usize + 1]);
+        for row in flows.rows.iter().filter(|row| text_at(row, 1) == group.id()) {
+            let week = (number_at(row, 0) as usize).min(weeks as usize);
+            active[week] += number_at(row, 2);
+            seats[week] += number_at(row, 3);
+        }
+        for week in 1..=weeks as usize {
+            active[week] += active[week - 1];
+            seats[week] += seats[week - 1];
+        }
+        let of = |map: &BTreeMap<String, f64>| map.get(group.id()).copied().unwrap_or(0.0);
+        GroupHistory { group, leads: of(leads), active, seats, revenue: of(revenue) }
+    };
+    known.map(book).collect()
+}
+
+fn by_group(rows: &QueryResult) -> BTreeMap<String, f64> {
+    rows.rows.iter().map(|row| (text_at(row, 0).to_owned(), number_at(row, 1))).collect()
+}
+
+fn channel_row(row: &[Cell]) -> ChannelRow {
+    ChannelRow {
+        group: text_at(row, 0).to_owned(),
+        channel: text_at(row, 1).to_owned(),
+        leads: number_at(row, 2),
+        spend: number_at(row, 3),
+    }
+}
+
+/// Returns the entries of each week, and those since the last week.
+fn ledger_by_week(session: &Session) -> BTreeMap<u32, BTreeMap<&'static str, f64>> {
+    let since = session.company().observe().booked_since;
+    let weeks = session.weeks().iter().map(|week| week.booked).chain([since]);
+    let entries = |booked: CategoryTotals| {
+        booked.entries().map(|(category, dollars)| (category.id(), dollars)).collect()
+    };
+    (1..).zip(weeks.map(entries)).filter(|(_, entries): &(u32, BTreeMap<_, _>)| !entries.is_empty()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_kit;
+    use novamind_session::WEEK_OF_ENTRY_SQL;
+
+    #[test]
+    fn database_figures_match_week_figures() {
+        let session = test_kit::play_weeks(5);
+        let books = DatabaseFigures::load(&session);
+        assert_eq!(books.missing, Vec::<String>::new());
+        let seen = session.company().observe();
+        let people = books.groups.iter().filter(|book| !book.group.is_enterprise());
+        let last: f64 = people.filter_map(|book| book.active.last()).sum();
+        assert!(last > 0.0);
+        assert_eq!(last, f64::from(seen.subscribers));
+        for (at, week) in session.weeks().iter().enumerate() {
+            let people = books.groups.iter().filter(|book| !book.group.is_enterprise());
+            let then: f64 = people.map(|book| book.active[at + 1]).sum();
+            assert_eq!(then, f64::from(week.individual_subscribers), "week {}", at + 1);
+        }
+        let total: f64 = books.totals_by_category().values().sum::<f64>() + session.cash_by_day()[0];
+        assert!((total - seen.cash).abs() < 0.01, "{total} is not {}", seen.cash);
+        let connection = session.database().open_connection().expect("a connection");
+        let sql = format!(
+            "SELECT {WEEK_OF_ENTRY_SQL}, category, sum(amount) FROM ledger WHERE day > 0 GROUP BY 1, 2"
+        );
+        for row in connection.query(&sql, session.company().query_limits()).expect("the ledger").rows {
+            let (week, category) = (number_at(&row, 0) as u32, text_at(&row, 1));
+            let booked = books.ledger.get(&week).and_then(|week| week.get(category)).copied().unwrap_or(0.0);
+            assert!((booked - number_at(&row, 2)).abs() < 0.01, "week {week}: {category} {booked}");
+        }
+        assert!(
+            books.channels.iter().any(|row| row.channel == "content_marketing" && row.spend == 5.0 * 5250.0)
+        );
+        assert!(session.company().query_history().is_empty(), "reports record no queries");
+    }
+
+    #[test]
+    fn cancellations_count_in_the_week_of_the_last_day() {
+        let session = test_kit::play_weeks(9);
+        let books = DatabaseFigures::load(&session);
+        let mut left_before_the_end = 0;
+        for book in books.groups.iter().filter(|book| !book.group.is_enterprise()) {
+            let mut active = 0.0;
+            for (at, week) in session.company().group_weeks().iter().enumerate() {
+                let own = &week[book.group];
+                active += f64::from(own.signed) - f64::from(own.left);
+                assert_eq!(book.active[at + 1], active, "{} in week {}", book.group, at + 1);
+                assert_eq!(book.seats[at + 1], active, "an individual has one seat");
+                left_before_the_end += if at < 8 { own.left } else { 0 };
+            }
+            let came: u32 = session.company().group_weeks().iter().map(|week| week[book.group].leads).sum();
+            assert_eq!(book.leads, f64::from(came), "{}", book.group);
+        }
+        assert!(left_before_the_end > 0, "no one cancelled, so the test checked nothing");
+    }
+}

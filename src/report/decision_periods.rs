@@ -1,0 +1,172 @@
+//! Decisions by week: settings as old → new, purchases and messages, and the first line of the rationale.
+
+use serde_json::Value;
+
+use super::formatting::format_number;
+use novamind_record::figures::WeekFigures;
+use novamind_session::{Decisions, JournalEntry, SettingChange, week_of};
+use novamind_tools::ToolId;
+
+/// Consecutive weeks under one decision: the first week made it, the others changed nothing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DecisionPeriod {
+    /// First week.
+    pub week: u32,
+    /// Last week.
+    pub last_week: u32,
+    /// Decision day.
+    pub day: u32,
+    /// Last simulated day.
+    pub end_day: u32,
+    /// First line of the rationale.
+    pub rationale: String,
+    /// Settings, old → new.
+    pub changes: Vec<String>,
+    /// Purchases, posts and offers.
+    pub actions: Vec<String>,
+    /// Cash at the end, dollars.
+    pub cash: f64,
+    /// Change of cash, dollars.
+    pub cash_change: f64,
+}
+
+/// Describes a change: `price A: 0 → 14 $/month`.
+pub fn describe_change(change: &SettingChange) -> String {
+    let told = format!("{}: {} → {}", change.setting, format_number(change.old), format_number(change.new));
+    change.setting.unit().map_or(told.clone(), |unit| format!("{told} {unit}"))
+}
+
+/// Describes changes, one line per family of settings: `price: A 0 → 14, B 0 → 49 $/month`.
+pub fn describe_changes(changes: &[SettingChange]) -> Vec<String> {
+    let mut families: Vec<(String, Vec<&SettingChange>)> = Vec::new();
+    for change in changes {
+        let (family, _) = change.setting.name_parts();
+        match families.iter_mut().find(|(known, _)| *known == family) {
+            Some((_, members)) => members.push(change),
+            None => families.push((family, vec![change])),
+        }
+    }
+    let member = |change: &&SettingChange| {
+        let (_, member) = change.setting.name_parts();
+        let name = if member.is_empty() { "in general" } else { &member };
+        format!("{name} {} → {}", format_number(change.old), format_number(change.new))
+    };
+    let line = |(family, members): (String, Vec<&SettingChange>)| match members[..] {
+        [only] => describe_change(only),
+        _ => {
+            let told: Vec<String> = members.iter().map(member).collect();
+            let unit = members[0].setting.unit().map_or(String::new(), |unit| format!(" {unit}"));
+            format!("{family}: {}{unit}", told.join(", "))
+        }
+    };
+    families.into_iter().map(line).collect()
+}
+
+/// Returns the chapters of a run. Weeks without a new decision join the chapter before them.
+pub fn decision_periods(
+    decisions: &[Decisions],
+    journal: &[JournalEntry],
+    start_cash: f64,
+) -> Vec<DecisionPeriod> {
+    let mut told: Vec<DecisionPeriod> = Vec::new();
+    let mut parts = journal.split_inclusive(|entry| matches!(entry, JournalEntry::Week { .. }));
+    let mut cash = start_cash;
+    for decided in decisions {
+        let entries = parts.next().unwrap_or_default();
+        let figures = entries.iter().rev().find_map(entry_figures);
+        let after = figures.map_or(cash, |figures| figures.cash);
+        let chapter = DecisionPeriod {
+            week: week_of(decided.day + 1),
+            last_week: week_of(decided.until),
+            day: decided.day,
+            end_day: decided.until,
+            rationale: entries.iter().find_map(entry_rationale).unwrap_or_default(),
+            changes: describe_changes(&decided.changes),
+            actions: describe_actions(decided, entries),
+            cash: after,
+            cash_change: after - cash,
+        };
+        cash = after;
+        match told.last_mut() {
+            Some(before) if before.is_continued_by(&chapter) => {
+                before.last_week = chapter.last_week;
+                before.end_day = chapter.end_day;
+                before.cash = chapter.cash;
+                before.cash_change += chapter.cash_change;
+            }
+            _ => told.push(chapter),
+        }
+    }
+    told
+}
+
+impl DecisionPeriod {
+    fn is_continued_by(&self, next: &DecisionPeriod) -> bool {
+        next.changes.is_empty()
+            && next.actions.is_empty()
+            && (next.rationale == self.rationale || next.rationale.is_empty())
+    }
+}
+
+fn entry_figures(entry: &JournalEntry) -> Option<&WeekFigures> {
+    match entry {
+        JournalEntry::Week { figures } => Some(figures),
+        _ => None,
+    }
+}
+
+fn entry_rationale(entry: &JournalEntry) -> Option<String> {
+    match entry {
+        JournalEntry::Advance { rationale, .. } => {
+            rationale.lines().map(str::trim).find(|line| !line.is_empty()).map(str::to_owned)
+        }
+        _ => None,
+    }
+}
+
+/// Lists purchases and offers, with repeated ones counted, and posts with their texts.
+fn describe_actions(decided: &Decisions, entries: &[JournalEntry]) -> Vec<String> {
+    let posts = entries.iter().filter_map(|entry| match entry {
+        JournalEntry::Call { tool, args, .. } if *tool == ToolId::PostSocialMedia => {
+            args.get("content").and_then(Value::as_str).map(|content| format!("post: “{content}”"))
+        }
+        _ => None,
+    });
+    let mut deeds: Vec<(String, u32)> = Vec::new();
+    // The text of a post replaces the sentence that it was published.
+    for deed in decided.purchases.iter().filter(|deed| !deed.starts_with("post ")).cloned().chain(posts) {
+        match deeds.iter_mut().find(|(known, _)| *known == deed) {
+            Some((_, times)) => *times += 1,
+            None => deeds.push((deed, 1)),
+        }
+    }
+    let in_words =
+        |(deed, times): (String, u32)| if times > 1 { format!("{deed} ({times} times)") } else { deed };
+    deeds.into_iter().map(in_words).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_kit;
+
+    #[test]
+    fn weeks_without_decisions_extend_the_previous_period() {
+        let session = test_kit::play_weeks(5);
+        let told = decision_periods(session.company().decisions(), session.journal(), 1_000_000.0);
+        let weeks: Vec<(u32, u32)> = told.iter().map(|chapter| (chapter.week, chapter.last_week)).collect();
+        assert_eq!(weeks, [(1, 2), (3, 3), (4, 5)], "the third week has its own rationale");
+        let prices = "price: A 0 → 12, B 0 → 25, C 0 → 55 $/month";
+        assert!(told[0].changes.contains(&prices.to_owned()), "{:?}", told[0].changes);
+        let post = "post: “NovaMind <opens> today | with *three* plans & fair prices.”";
+        assert_eq!(told[0].actions, [post]);
+        assert_eq!(told[1].changes, ["price B: 25 → 22 $/month"]);
+        assert_eq!(told[1].rationale, "If B is cheaper, more will take it; otherwise we go back | <b>B</b>");
+        let total: f64 = told.iter().map(|chapter| chapter.cash_change).sum();
+        assert!((total - (session.company().observe().cash - 1_000_000.0)).abs() < 0.01);
+        assert_eq!(
+            told.last().map(|chapter| (chapter.end_day, chapter.cash)),
+            Some((35, session.company().observe().cash))
+        );
+    }
+}

@@ -1,0 +1,148 @@
+//! Rates how unusual a change is compared with earlier weeks.
+
+/// A change of a figure over the last week.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FigureChange {
+    /// Earlier value.
+    pub old: f64,
+    /// Current value.
+    pub new: f64,
+    /// Rating of the change: 0 is an ordinary week, above 3 is rare.
+    pub unusualness: f64,
+    /// Random variation of the figure.
+    pub noise: f64,
+    /// Weeks since a change in this direction was as large; `None` if there was none.
+    pub weeks_since_larger: Option<usize>,
+    /// Number of earlier changes.
+    pub earlier_changes: usize,
+}
+
+/// Number of earlier changes needed to rate a week against them.
+const MIN_KNOWN_CHANGES: usize = 4;
+/// Factor from the median distance to the standard deviation of a normal distribution.
+const MAD_TO_STD: f64 = 1.4826;
+
+impl FigureChange {
+    /// Returns the change relative to the larger of both values.
+    pub fn relative_size(&self) -> f64 {
+        (self.new - self.old).abs() / self.old.abs().max(self.new.abs())
+    }
+
+    /// Describes the rank of the change within the run; empty if it is not remarkable.
+    pub fn describe_rarity(&self) -> String {
+        let what = if self.new > self.old { "rise" } else { "fall" };
+        match self.weeks_since_larger {
+            _ if self.earlier_changes < MIN_KNOWN_CHANGES
+                || (self.new - self.old).abs() <= 2.0 * self.noise =>
+            {
+                String::new()
+            }
+            None => format!("largest {what} yet"),
+            Some(weeks) if weeks >= MIN_KNOWN_CHANGES => format!("largest {what} in {weeks} weeks"),
+            Some(_) => String::new(),
+        }
+    }
+}
+
+/// Rates the last change of a series, oldest value first. Returns `None` without two values or without a change. With
+/// enough weeks, compares it with the median change and the usual distance from it; otherwise uses its relative size.
+/// A change of about `noise`, the random variation of the figure, is never unusual.
+pub fn last_change(series: &[f64], noise: f64) -> Option<FigureChange> {
+    let [.., old, new] = *series else { return None };
+    if old == new || !old.is_finite() || !new.is_finite() {
+        return None;
+    }
+    let change = new - old;
+    let before: Vec<f64> = series[..series.len() - 1].windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let as_large = |earlier: &f64| if change > 0.0 { *earlier >= change } else { *earlier <= change };
+    let since = before.iter().rev().position(as_large).map(|at| at + 1);
+    let size = change.abs() / old.abs().max(new.abs());
+    let unusual = if before.len() < MIN_KNOWN_CHANGES {
+        // A change by half counts as unusual, by a tenth does not.
+        size * 6.0
+    } else {
+        let usual = median(&before);
+        let distances: Vec<f64> = before.iter().map(|earlier| (earlier - usual).abs()).collect();
+        // Avoids an infinite rating for a figure that never changed.
+        let spread = (MAD_TO_STD * median(&distances)).max(0.02 * old.abs().max(new.abs()));
+        (change - usual).abs() / spread.max(noise)
+    };
+    let unusual = unusual.min(change.abs() / noise);
+    Some(FigureChange {
+        old,
+        new,
+        unusualness: unusual,
+        noise,
+        weeks_since_larger: since,
+        earlier_changes: before.len(),
+    })
+}
+
+fn median(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    match sorted.len() {
+        0 => 0.0,
+        odd if odd % 2 == 1 => sorted[odd / 2],
+        even => (sorted[even / 2 - 1] + sorted[even / 2]) / 2.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn change_beyond_usual_spread_is_unusual() {
+        let steady = [100.0, 110.0, 121.0, 130.0, 141.0, 150.0];
+        let ordinary = last_change(&[&steady[..], &[160.0]].concat(), 0.0).expect("it moved");
+        assert!(ordinary.unusualness < 1.0, "{ordinary:?}");
+        assert_eq!(ordinary.describe_rarity(), "");
+        let fall = last_change(&[&steady[..], &[120.0]].concat(), 0.0).expect("it moved");
+        assert!(fall.unusualness > 10.0, "{fall:?}");
+        assert_eq!(fall.describe_rarity(), "largest fall yet");
+        let jump = last_change(&[0.0, 50.0, 60.0, 65.0, 70.0, 72.0, 110.0], 0.0).expect("it moved");
+        assert_eq!(
+            (jump.weeks_since_larger, jump.describe_rarity().as_str()),
+            (Some(5), "largest rise in 5 weeks")
+        );
+    }
+
+    #[test]
+    fn short_series_are_ranked_by_size() {
+        let half = last_change(&[100.0, 50.0], 0.0).expect("it moved");
+        assert_eq!(
+            (half.unusualness, half.weeks_since_larger, half.describe_rarity().as_str()),
+            (3.0, None, "")
+        );
+        assert!(last_change(&[100.0, 98.0], 0.0).expect("it moved").unusualness < 0.2);
+        assert_eq!(
+            [
+                last_change(&[1.0], 0.0),
+                last_change(&[], 0.0),
+                last_change(&[2.0, 2.0], 0.0),
+                last_change(&[1.0, f64::NAN], 0.0)
+            ],
+            [None; 4]
+        );
+        let first = last_change(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 7.0], 0.0).expect("it moved");
+        assert!(first.unusualness.is_finite() && first.unusualness > 3.0);
+    }
+
+    #[test]
+    fn small_counts_are_within_noise() {
+        let series = [0.0, 1.0, 0.0, 2.0, 1.0, 1.0, 0.0];
+        let one = last_change(&series, 1.0).expect("it moved");
+        assert!(one.unusualness <= 1.0, "{one:?}");
+        assert_eq!(one.describe_rarity(), "");
+        // Stalled growth is not a notable change.
+        let stalled =
+            last_change(&[0.0, 600.0, 1200.0, 1800.0, 2400.0, 3000.0, 3072.0], 180.0).expect("it moved");
+        assert!(stalled.unusualness < 1.0, "{stalled:?}");
+        let first_weeks = last_change(&[1.0, 0.0], 1.0).expect("it moved");
+        assert!(first_weeks.unusualness <= 1.0, "{first_weeks:?}");
+        let many = last_change(&[&series[..], &[40.0]].concat(), 40f64.sqrt()).expect("it moved");
+        assert!(many.unusualness > 3.0);
+        assert_eq!(many.describe_rarity(), "largest rise yet");
+    }
+}

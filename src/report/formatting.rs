@@ -1,0 +1,126 @@
+//! Formats and names used by all reports.
+
+pub use novamind_base::formatting::pluralize;
+use novamind_base::formatting::{compact_number, grouped_number, signed_dollars};
+use novamind_insight::{BranchOrigin, FirstChange};
+use novamind_session::{Category, Observation};
+
+/// Formats dollars with the sign before the dollar sign: `$1,234`, `-$45`.
+pub fn format_money(value: f64) -> String {
+    let sign = if value < -0.5 { "-" } else { "" };
+    format!("{sign}${}", grouped_number(value.abs(), 0))
+}
+
+/// Describes the last change of cash and its period: `+$1,234 over the last week`.
+pub fn describe_cash_change(seen: &Observation) -> String {
+    let span = match seen.cash_change_days {
+        0 | 7 => "week".to_owned(),
+        1 => "day".to_owned(),
+        days => pluralize(days, "day"),
+    };
+    format!("{} over the last {span}", signed_dollars(seen.cash_change))
+}
+
+/// Describes the origin of a branch: `branch of 1a2b3c4d from week 5, first change set_prices_validates_and_updates on day 28`.
+pub fn describe_origin(origin: &BranchOrigin) -> String {
+    let BranchOrigin { run, week, first_change } = origin;
+    let change = first_change
+        .as_ref()
+        .map_or(String::new(), |change| format!(", first change {}", describe_first_change(change)));
+    format!("branch of {run} from week {week}{change}")
+}
+
+/// Describes the first decision that differs from the parent: `set_prices_validates_and_updates on day 28`, `no set_prices_validates_and_updates on day 28`.
+pub fn describe_first_change(change: &FirstChange) -> String {
+    let FirstChange { day, what, is_left_out } = change;
+    format!("{}{what} on day {day}", if *is_left_out { "no " } else { "" })
+}
+
+/// Describes the lengths of two compared weeks if they differ: `of 3 days, the week before of 7`.
+pub fn describe_short_week(days: u32, before: u32) -> Option<String> {
+    (days != before).then(|| format!("of {}, the week before of {before}", pluralize(days, "day")))
+}
+
+/// Returns the display name of a ledger category.
+pub fn category_name(category: Category) -> &'static str {
+    match category {
+        Category::SubscriptionPayment => "payments",
+        Category::AdRevenue => "ad revenue",
+        Category::InitialFunding => "funding",
+        Category::Compute => "compute",
+        Category::Capacity => "capacity",
+        Category::Advertising => "advertising",
+        Category::LeadAcquisitionCost => "lead costs",
+        Category::Operations => "operations",
+        Category::Development => "development",
+        Category::ResearchProject => "R&D",
+        Category::MarketResearch => "market research",
+        Category::GroupResearch => "group studies",
+    }
+}
+
+/// Formats a whole number.
+pub fn format_whole(value: f64) -> String {
+    grouped_number(value + 0.0, 0)
+}
+
+/// Formats a number with at most two decimals.
+pub fn format_number(value: f64) -> String {
+    let value = value + 0.0;
+    grouped_number(value, if value.fract() == 0.0 || value.abs() >= 10_000.0 { 0 } else { 2 })
+}
+
+/// Formats a range, rounded outward: `18 to 87`.
+pub fn format_range(least: f64, most: f64, decimals: usize) -> String {
+    let unit = (0..decimals).fold(1.0, |unit, _| unit * 10.0);
+    // Ignores rounding errors in whole numbers of units.
+    let (least, most) = ((least * unit + 1e-9).floor() / unit, (most * unit - 1e-9).ceil() / unit);
+    format!("{} to {}", grouped_number(least, decimals), grouped_number(most, decimals))
+}
+
+/// Formats a difference of shares in percentage points: `9.3 pt`. Shares are never compared in relative percent.
+pub fn format_percentage_points(difference: f64, decimals: usize) -> String {
+    format!("{} pt", grouped_number(100.0 * difference, decimals))
+}
+
+/// Formats an axis label without trailing zeros: `1.5M`, `200k`, `0`.
+pub fn format_tick(value: f64) -> String {
+    let text = compact_number(value);
+    let (digits, suffix) = match text.find(|letter: char| letter.is_ascii_alphabetic()) {
+        Some(at) => text.split_at(at),
+        None => (text.as_str(), ""),
+    };
+    let digits = match digits.contains('.') {
+        true => digits.trim_end_matches('0').trim_end_matches('.'),
+        false => digits,
+    };
+    format!("{digits}{suffix}")
+}
+
+/// Formats an axis label in dollars.
+pub fn format_dollar_tick(value: f64) -> String {
+    let sign = if value < 0.0 { "-" } else { "" };
+    format!("{sign}${}", format_tick(value.abs()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn figures_are_formatted() {
+        assert_eq!([format_money(-1234.4), format_money(-0.2), format_money(5.0)], ["-$1,234", "$0", "$5"]);
+        assert_eq!(
+            [pluralize(1, "week"), pluralize(2, "day"), pluralize(1200, "lead"), pluralize(2, "company")],
+            ["1 week", "2 days", "1,200 leads", "2 companies"]
+        );
+        assert_eq!(
+            [format_tick(1_500_000.0), format_tick(200_000.0), format_tick(0.0), format_tick(120.0)],
+            ["1.5M", "200k", "0", "120"]
+        );
+        assert_eq!(format_range(30.3 / 1.65, 30.3 / 0.35, 0), "18 to 87");
+        assert_eq!(format_range(0.2, 0.4, 3), "0.200 to 0.400");
+        assert_eq!(format_dollar_tick(-2_000_000.0), "-$2M");
+        assert_eq!([format_number(12.0), format_number(0.25)], ["12", "0.25"]);
+    }
+}

@@ -1,0 +1,74 @@
+//! Text for the inspection of an enterprise.
+
+use super::{clean_up_numbers, indented_table};
+use novamind_insight::{EnterpriseThreadDay, EnterpriseView};
+use novamind_session::OfferResponse;
+use novamind_session::identifiers::Plan;
+
+/// Describes its open threads on a day: perceived quality, acceptance limits and the answer it would give.
+pub fn describe_enterprise(lens: &EnterpriseView) -> Vec<String> {
+    let EnterpriseView { customer, group, day, days } = lens;
+    let mut lines = vec![format!("enterprise {customer} · {group} · day {day}")];
+    let before = lines.len();
+    lens.threads_of_day().for_each(|own| lines.extend(describe_thread(own)));
+    if lines.len() == before {
+        lines.push(match days.last() {
+            Some(last) => format!("no thread was open on day {day}; the last one was on day {}", last.day),
+            None => format!("no thread was open up to day {day}"),
+        });
+    }
+    clean_up_numbers(lines)
+}
+
+fn describe_thread(own: &EnterpriseThreadDay) -> Vec<String> {
+    let mut lines = vec![format!(
+        "thread {} ({}): budget {:.2}, {} turns left, relationship {:.4}{}",
+        own.thread,
+        own.kind.id(),
+        own.budget,
+        own.remaining_turns,
+        own.relationship,
+        match own.late_penalty {
+            0.0 => String::new(),
+            penalty => format!(", {penalty:+.4} if the late answer arrives today"),
+        }
+    )];
+    let head = ["plan", "quality", "if answered today", "accepts", "counteroffer"];
+    let row = |plan: Plan| {
+        let judged = own.plans[plan];
+        vec![
+            plan.to_string(),
+            format!("{:.4}", judged.quality),
+            format!("{:.4}", judged.quality_if_answered),
+            match judged.accepts_any_price {
+                true => "any price".to_owned(),
+                false => format!("below {:.2}", judged.accepts_below),
+            },
+            if judged.counter > 0.0 { format!("{:.2}", judged.counter) } else { "none".to_owned() },
+        ]
+    };
+    lines.extend(indented_table(&head, &Plan::ALL.map(row)));
+    if let Some(answer) = &own.answer {
+        let offered: Vec<String> = own
+            .offerings
+            .iter()
+            .map(|offering| format!("{} at {:.2}", offering.plan, offering.price))
+            .collect();
+        let when = own.reply_day.map_or(String::new(), |day| format!(", due on day {day}"));
+        lines.push(format!(
+            "  offered {}; today's answer{when}: {}",
+            offered.join(", "),
+            describe_answer(answer, own)
+        ));
+    }
+    lines
+}
+
+fn describe_answer(answer: &OfferResponse, own: &EnterpriseThreadDay) -> String {
+    let plan = |at: usize| own.offerings.get(at).map_or("", |offering| offering.plan.id());
+    match answer {
+        OfferResponse::Accept(at) => format!("accepts plan {}", plan(*at)),
+        OfferResponse::Counter(at, price) => format!("counters with {price:.2} for plan {}", plan(*at)),
+        OfferResponse::Silence => "no answer".to_owned(),
+    }
+}

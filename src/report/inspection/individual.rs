@@ -1,0 +1,228 @@
+//! Text for the inspection of an individual: its decisions and their terms.
+
+use super::{clean_up_numbers, indented_table};
+use novamind_insight::{
+    DecisionTerm, DecisiveTerm, IndividualView, SignupDecision, SubscriberOutcome, WeighedDecision,
+};
+use novamind_session::EndCause;
+use novamind_session::identifiers::Plan;
+
+/// Start of the line that lists satisfaction.
+pub const SATISFACTION_PREFIX: &str = "satisfaction:";
+
+/// Interval between listed satisfaction values, days.
+const SATISFACTION_STEP_DAYS: usize = 7;
+
+/// Describes the headline, curve, plans today and at the last bill, satisfaction and events.
+pub fn describe_individual(lens: &IndividualView) -> Vec<String> {
+    let first = &lens.signup;
+    let came = format!("arrived on day {} through {}", first.day, first.source.id());
+    let mut lines = vec![format!("customer {} · {} · {came}", lens.customer, lens.group), headline(lens)];
+    let Some(shown) = lens.day_shown() else {
+        lines.extend(describe_signup(first));
+        return clean_up_numbers(lines);
+    };
+    let curve = shown.weighed_decision.curve;
+    lines.push(format!(
+        "curve on day {}: budget {:.2}, quality {:.4} to {:.4}, steepness {:.2} and {:.2}",
+        shown.day, curve.c_max, curve.q_min, curve.q_max, curve.steepness_left, curve.steepness_right
+    ));
+    lines.push(format!("plans on day {}, * current:", shown.day));
+    lines.extend(plan_rows(&shown.weighed_decision, shown.plan));
+    if let Some(bill) = lens.last_bill() {
+        lines.push(format!("plans at the last bill, day {}:", bill.day));
+        lines.extend(plan_rows(&bill.weighed_decision, bill.plan));
+    }
+    lines.push(satisfaction_line(lens));
+    lines.extend(event_lines(lens));
+    clean_up_numbers(lines)
+}
+
+/// Describes the outcome of a day and the terms that would have changed it.
+fn headline(lens: &IndividualView) -> String {
+    let Some(shown) = lens.day_shown() else { return signup_headline(lens) };
+    let WeighedDecision { choice, plans, decisive_terms: turning, .. } = &shown.weighed_decision;
+    let day = shown.day;
+    match (shown.outcome, choice) {
+        (SubscriberOutcome::Cancels(EndCause::Involuntary), _) => format!(
+            "cancelled on day {day}: the payment failed, with a chance of {:.2} % on that day",
+            shown.payment_failure * 100.0
+        ),
+        (SubscriberOutcome::Cancels(_), _) => {
+            format!(
+                "cancelled on day {day}: no plan is acceptable; {}",
+                describe_retaining_terms(turning, lens)
+            )
+        }
+        (_, None) => {
+            format!(
+                "day {day} is not a billing day; no plan would be acceptable: {}",
+                describe_retaining_terms(turning, lens)
+            )
+        }
+        (outcome, Some(best)) => {
+            let what = match outcome {
+                SubscriberOutcome::Switches(plan) => format!("switched to plan {plan} on day {day}"),
+                _ if shown.is_due => format!("stayed on plan {} on day {day}", shown.plan),
+                _ => format!("on plan {} on day {day}, not a billing day", shown.plan),
+            };
+            format!(
+                "{what}: plan {best} has the largest surplus, {:.4}; {}",
+                plans[*best].surplus,
+                describe_cancelling_terms(turning, lens)
+            )
+        }
+    }
+}
+
+fn describe_retaining_terms(turning: &[DecisiveTerm], lens: &IndividualView) -> String {
+    let turned = |without: &DecisiveTerm| {
+        let (plan, surplus) = without.plan?;
+        Some(format!("without {}, plan {plan} would be, by {surplus:.4}", describe_term(without.term, lens)))
+    };
+    match turning.iter().find_map(turned) {
+        Some(text) => text,
+        None => "no single term is decisive".to_owned(),
+    }
+}
+
+fn describe_cancelling_terms(turning: &[DecisiveTerm], lens: &IndividualView) -> String {
+    let terms: Vec<String> = turning.iter().map(|without| describe_term(without.term, lens)).collect();
+    match terms.is_empty() {
+        true => "no single term is decisive".to_owned(),
+        false => format!("no plan would be acceptable without {}", terms.join(", or without ")),
+    }
+}
+
+fn describe_term(term: DecisionTerm, lens: &IndividualView) -> String {
+    match term {
+        DecisionTerm::Issue => match lens.issue_opened_on() {
+            Some(since) => format!("the issue open since day {since}"),
+            None => "an issue".to_owned(),
+        },
+        DecisionTerm::Ads => "ads".to_owned(),
+        DecisionTerm::Quota => "the quota limit".to_owned(),
+        DecisionTerm::Relationship => "the relationship".to_owned(),
+        DecisionTerm::Tenure => "tenure".to_owned(),
+        DecisionTerm::Service => "today's service".to_owned(),
+        DecisionTerm::Expectations => "the market's expectations".to_owned(),
+        DecisionTerm::Budgets => "budget drift".to_owned(),
+        DecisionTerm::Economy => "the economy".to_owned(),
+        DecisionTerm::Prices => "price changes since the last bill".to_owned(),
+    }
+}
+
+fn plan_rows(weighed: &WeighedDecision, own: Plan) -> Vec<String> {
+    let head = [
+        "plan",
+        "price",
+        "delivered",
+        "relationship",
+        "tenure",
+        "quota",
+        "issues",
+        "ads",
+        "quality",
+        "required",
+        "surplus",
+        "",
+    ];
+    let row = |plan: Plan| {
+        let terms = &weighed.plans[plan];
+        let seen = terms.experience;
+        let number = |value: f64| format!("{value:.4}");
+        vec![
+            format!("{plan}{}", if plan == own { "*" } else { "" }),
+            format!("{:.2}", terms.price),
+            number(seen.delivered),
+            number(seen.relationship),
+            number(seen.tenure),
+            number(seen.quota),
+            number(0.0 - seen.issues),
+            number(0.0 - seen.ads),
+            number(terms.quality),
+            number(terms.required),
+            number(terms.surplus),
+            if terms.within_budget { String::new() } else { "above budget".to_owned() },
+        ]
+    };
+    indented_table(&head, &Plan::ALL.map(row))
+}
+
+fn signup_headline(lens: &IndividualView) -> String {
+    let SignupDecision { day, plan, plans, quality_noise: noise, signed_up, curve, .. } = &lens.signup;
+    let own = &plans[*plan];
+    let seen = own.offered.quality * noise;
+    if *signed_up {
+        return format!(
+            "signed up for plan {plan} on day {day}: quality {seen:.4} with noise {noise:.4}, required {:.4}",
+            own.required
+        );
+    }
+    let missing = match own.offered.price <= curve.c_max {
+        true => format!("misses by {:.4} with noise {noise:.4}", own.required - seen),
+        false => format!("costs {:.2}, and the budget is {:.2}", own.offered.price, curve.c_max),
+    };
+    format!("did not sign up on day {day}: plan {plan}, which it considered, {missing}")
+}
+
+fn describe_signup(first: &SignupDecision) -> Vec<String> {
+    let curve = first.curve;
+    let row = |plan: Plan| {
+        let own = &first.plans[plan];
+        vec![
+            plan.to_string(),
+            format!("{:.2}", own.offered.price),
+            format!("{:.4}", own.offered.quality),
+            format!("{:.4}", own.offered.quality * first.quality_noise),
+            format!("{:.4}", own.required),
+            if own.offered.price <= curve.c_max { String::new() } else { "above budget".to_owned() },
+        ]
+    };
+    let mut lines = vec![format!(
+        "curve: budget {:.2}, quality {:.4} to {:.4}, steepness {:.2} and {:.2}",
+        curve.c_max, curve.q_min, curve.q_max, curve.steepness_left, curve.steepness_right
+    )];
+    lines.extend(indented_table(
+        &["plan", "price", "quality", "with noise", "required", ""],
+        &Plan::ALL.map(row),
+    ));
+    lines
+}
+
+/// Lists satisfaction every seventh day, back from the inspected day.
+fn satisfaction_line(lens: &IndividualView) -> String {
+    let listed = lens.days.iter().rev().step_by(SATISFACTION_STEP_DAYS).take(12);
+    let mut listed: Vec<String> =
+        listed.map(|own| format!("day {} {:.3}", own.day, own.satisfaction)).collect();
+    listed.reverse();
+    format!("{SATISFACTION_PREFIX} {}", listed.join(", "))
+}
+
+fn event_lines(lens: &IndividualView) -> Vec<String> {
+    let first = &lens.signup;
+    let mut lines = vec![format!("day {}: signed up for plan {}", first.day, first.plan)];
+    let mut waited = 0;
+    for own in &lens.days {
+        let is_new = own.open_issue_days > 0 && (waited == 0 || own.open_issue_days <= waited);
+        if waited > 0 && (own.open_issue_days == 0 || is_new) {
+            lines.push(format!("day {}: the issue was resolved", own.day));
+        }
+        if is_new {
+            lines.push(format!("day {}: an issue was opened", own.day));
+        }
+        waited = own.open_issue_days;
+        match own.outcome {
+            SubscriberOutcome::Cancels(EndCause::Involuntary) => {
+                lines.push(format!("day {}: the payment failed", own.day))
+            }
+            SubscriberOutcome::Cancels(_) => lines.push(format!("day {}: cancelled", own.day)),
+            SubscriberOutcome::Switches(plan) => {
+                lines.push(format!("day {}: switched to plan {plan}", own.day))
+            }
+            SubscriberOutcome::Stays if own.is_due => lines.push(format!("day {}: stayed", own.day)),
+            SubscriberOutcome::Stays => {}
+        }
+    }
+    lines
+}

@@ -1,0 +1,69 @@
+//! Text for the equation of a group's leads.
+
+use super::clean_up_numbers;
+use novamind_insight::{LeadEquation, LeadFactor};
+
+/// Returns the index of a factor's line in [`describe_lead_equation`].
+pub fn factor_line_index(factor: LeadFactor) -> usize {
+    2 + factor as usize
+}
+
+/// Describes the equation of the last day, each factor with its range over all days, and λ with factors held fixed.
+pub fn describe_lead_equation(days: &[LeadEquation], held: &[(LeadFactor, f64)]) -> Vec<String> {
+    let Some(own) = days.last() else { return Vec::new() };
+    let mut lines = vec![format!("leads of {} on day {}", own.group, own.day)];
+    if !own.is_known {
+        lines.push("not discovered on that day: no leads".to_owned());
+        return lines;
+    }
+    lines.push(format_equation(own));
+    lines.extend(LeadFactor::ALL.map(|factor| factor_range(days, factor)));
+    if own.has_unlimited_market {
+        lines.push("  D is always 1: base_market_cap is 0, so the market has no size limit".to_owned());
+    }
+    let by_group = own.word_of_mouth.iter().map(|(group, leads)| format!("{group} {leads:.3}"));
+    let by_group: Vec<String> = by_group.collect();
+    lines.push(match by_group.is_empty() {
+        true => "  no word of mouth: there are no subscribers".to_owned(),
+        false => format!("  word of mouth from {}", by_group.join(" + ")),
+    });
+    if !held.is_empty() {
+        let held_at: Vec<String> = held.iter().map(|(factor, value)| format!("{factor} {value}")).collect();
+        let with = own.expected_with(held);
+        lines.push(format!(
+            "with {}: λ {with:.2} rather than {:.2}",
+            held_at.join(", "),
+            own.expected_leads()
+        ));
+    }
+    lines.push(format!(
+        "  p {:.2}: the share of draws around λ that are at least as far from it as {}",
+        own.p_value(),
+        own.actual_leads
+    ));
+    clean_up_numbers(lines)
+}
+
+/// Formats `R 0.50 × … × (search_ads 5.0 + word of mouth 12.4) = λ 98.3, actual 104 (p 0.56)`.
+fn format_equation(own: &LeadEquation) -> String {
+    let factors = LeadFactor::ALL.map(|factor| format!("{factor} {:.4}", own.factor(factor)));
+    let mut sources: Vec<String> =
+        own.channels().map(|(channel, leads)| format!("{} {leads:.2}", channel.id())).collect();
+    sources.push(format!("word of mouth {:.2}", own.word_of_mouth_leads()));
+    format!(
+        "  {} × ({}) = λ {:.2}, actual {} (p {:.2})",
+        factors.join(" × "),
+        sources.join(" + "),
+        own.expected_leads(),
+        own.actual_leads,
+        own.p_value()
+    )
+}
+
+fn factor_range(days: &[LeadEquation], factor: LeadFactor) -> String {
+    let values = || days.iter().filter(|day| day.is_known).map(|day| day.factor(factor));
+    let (least, most) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+    let now = days.last().map_or(0.0, |day| day.factor(factor));
+    let (name, count) = (factor.name(), values().count());
+    format!("  {factor} {name:<18} {now:>8.4}   last {count} days {least:.4} to {most:.4}")
+}

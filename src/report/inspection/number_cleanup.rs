@@ -1,0 +1,73 @@
+//! Normalizes numbers in text: no zero has a sign, and no number has more digits than significant.
+
+use novamind_base::formatting::grouped_number;
+
+/// Number of digits before the point from which powers of ten are used.
+const MAX_INTEGER_DIGITS: usize = 16;
+
+/// Normalizes the numbers of lines.
+pub fn clean_up_numbers(lines: Vec<String>) -> Vec<String> {
+    lines.into_iter().map(|line| clean_up_line(&line)).collect()
+}
+
+/// Removes the minus sign of zeros, and writes numbers above 1e15 in powers of ten.
+pub fn clean_up_line(text: &str) -> String {
+    let mut settled = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(at) = rest.find(|letter: char| letter.is_ascii_digit()) {
+        let (before, number) = rest.split_at(at);
+        let end = number
+            .find(|letter: char| !(letter.is_ascii_digit() || letter == '.' || letter == ','))
+            .unwrap_or(number.len());
+        let (number, behind) = number.split_at(end);
+        let number_alone = number.trim_end_matches(['.', ',']);
+        settled.push_str(before);
+        let mut letters = settled.chars().rev();
+        let (last, before_last) = (letters.next(), letters.next());
+        let is_word = last.is_some_and(char::is_alphanumeric);
+        let has_sign = last == Some('-') && before_last.is_none_or(|letter| !letter.is_alphanumeric());
+        let is_zero = number_alone.chars().all(|letter| matches!(letter, '0' | '.'));
+        let goes_on = behind.starts_with(['e', 'E']);
+        if is_zero && has_sign && !goes_on {
+            settled.pop();
+        }
+        match to_scientific(number_alone).filter(|_| !is_word && !goes_on) {
+            Some(short) => {
+                settled.push_str(&short);
+                settled.push_str(&number[number_alone.len()..]);
+            }
+            None => settled.push_str(number),
+        }
+        rest = behind;
+    }
+    settled + rest
+}
+
+/// Writes a number with too many digits before its point in powers of ten.
+fn to_scientific(number: &str) -> Option<String> {
+    let plain = number.replace(',', "");
+    let digits = plain.split('.').next().map_or(0, str::len);
+    let value: f64 = plain.parse().ok().filter(|_| digits >= MAX_INTEGER_DIGITS)?;
+    Some(grouped_number(value, 0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn zeros_have_no_sign_and_numbers_are_short() {
+        for (text, told) in [
+            ("from S3 -0.0000, then", "from S3 0.0000, then"),
+            ("-0 of S1→S2-0 -0.10 (-0.00)", "0 of S1→S2-0 -0.10 (0.00)"),
+            ("day 0-0, +0.0000 of 20", "day 0-0, +0.0000 of 20"),
+            ("budget 100,000,000,000,000,000.00 dollars", "budget 1e17 dollars"),
+            ("below 999999999999999, not below", "below 999999999999999, not below"),
+            ("-0e5 of -1,234.5", "-0e5 of -1,234.5"),
+        ] {
+            assert_eq!(clean_up_line(text), told);
+        }
+        let long = clean_up_line(&format!("budget {:.2}, quality", 1e308));
+        assert_eq!(long, "budget 1e308, quality");
+    }
+}

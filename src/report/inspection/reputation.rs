@@ -1,0 +1,79 @@
+//! Text for the causes of a reputation change.
+
+use super::{clean_up_numbers, describe_recent_days, indented_table};
+use novamind_insight::{ChangeThresholds, DepartureEffect, ReputationEquation, SubscriberContribution};
+use novamind_session::SpilloverEffect;
+use novamind_session::identifiers::Group;
+
+/// Describes the reputation of a group: before, every term, after, and dropped terms.
+pub fn describe_reputation(own: &ReputationEquation) -> Vec<String> {
+    let ReputationEquation { group, day, before, after, thresholds: least, .. } = own;
+    let plain = |name: &str, value: f64| vec![name.to_owned(), format!("{value:.8}")];
+    let mut rows = vec![plain("before", *before)];
+    rows.extend(departures_row("cancellations", &own.individual_departures));
+    rows.extend(departures_row("lost enterprises", &own.enterprise_departures));
+    rows.push(term_row(&describe_contribution(&own.contribution, least), own.contribution.applied_change()));
+    let heard = own.spillovers.iter().filter(|spill| spill.counts);
+    rows.extend(heard.map(|spill| term_row(&spillover_product(spill), spill.change)));
+    // Rounding errors are not limits.
+    if own.bounds.abs() > 1e-12 {
+        rows.push(term_row("limits", own.bounds));
+    }
+    rows.push(plain("after", *after));
+    let mut lines = vec![format!("reputation of {group} on day {day}")];
+    lines.extend(indented_table(&["", ""], &rows).into_iter().skip(1));
+    lines.extend(describe_recent_days(own.recent_days.iter().copied()));
+    let dropped: Vec<&SpilloverEffect> = own.spillovers.iter().filter(|spill| !spill.counts).collect();
+    lines.extend(describe_dropped_spillovers(&dropped, least));
+    clean_up_numbers(lines)
+}
+
+/// Formats `spillover: +0.00476883 of S1 × weight 0.4 × 0.3`.
+fn spillover_product(spill: &SpilloverEffect) -> String {
+    let SpilloverEffect { from, source_change, weight, factor, .. } = spill;
+    format!("spillover: {source_change:+.8} of {from} × weight {weight} × {factor}")
+}
+
+fn term_row(name: &str, value: f64) -> Vec<String> {
+    vec![name.to_owned(), format!("{value:+.8}")]
+}
+
+fn departures_row(name: &str, own: &DepartureEffect) -> Option<Vec<String>> {
+    (own.count > 0).then(|| term_row(&format!("{} {name}", own.count), own.change))
+}
+
+fn describe_contribution(own: &SubscriberContribution, least: &ChangeThresholds) -> String {
+    match own {
+        SubscriberContribution { subscribers: 0, .. } => "no subscribers in the group".to_owned(),
+        SubscriberContribution { subscribers, is_applied: true, .. } => {
+            format!("satisfaction of its {subscribers}")
+        }
+        SubscriberContribution { subscribers, requested_change: called, .. } => {
+            format!(
+                "satisfaction of its {subscribers}: {called:+.8} is below {}: dropped",
+                format_small(least.subscriber_contribution)
+            )
+        }
+    }
+}
+
+/// Formats `0.0001`, never `1e-4`.
+pub(super) fn format_small(value: f64) -> String {
+    format!("{value}")
+}
+
+/// Lists dropped spillovers, a line for each source.
+pub(super) fn describe_dropped_spillovers(
+    dropped: &[&SpilloverEffect],
+    least: &ChangeThresholds,
+) -> Vec<String> {
+    let pairs = |from: Group| {
+        let own = dropped.iter().filter(|spill| spill.from == from);
+        own.map(|spill| format!("{}→{}", spill.from, spill.to)).collect::<Vec<String>>()
+    };
+    let named = |pairs: Vec<String>| match pairs.is_empty() {
+        true => None,
+        false => Some(format!("  {} below {}: dropped", pairs.join(", "), format_small(least.spillover))),
+    };
+    Group::all().filter_map(|from| named(pairs(from))).collect()
+}

@@ -1,0 +1,63 @@
+//! Text for the causes of a change in satisfaction.
+
+use super::{clean_up_numbers, describe_recent_days, indented_table};
+use novamind_insight::{SatisfactionEquation, SatisfactionTerm};
+
+/// Describes the mean before, each term, the mean after, and the mean at the end of the day.
+pub fn describe_satisfaction(own: &SatisfactionEquation) -> Vec<String> {
+    let SatisfactionEquation { group, day, weight, departed: left, joined: came, subscribers, .. } = *own;
+    let mut lines = vec![format!("satisfaction of {group} on day {day}")];
+    match (own.before(), own.after(), own.instant()) {
+        (Some(before), Some(after), Some(instant)) => {
+            lines.push(format!(
+                "  {:.2} × before {before:.4} + {weight:.2} × perceived today {instant:.4} = after {after:.4} \
+                 ({:+.4}), mean of {}",
+                1.0 - weight,
+                after - before,
+                subscriber_count(own.included_subscribers())
+            ));
+            lines.extend(term_lines(own));
+        }
+        _ => {
+            lines.push("  no experience today: there were no subscribers at the start of the day".to_owned())
+        }
+    }
+    let moved = match (own.end_of_day, own.after()) {
+        (Some(evening), Some(after)) => format!("mean {evening:.4} ({:+.4})", evening - after),
+        (Some(evening), None) => format!("mean {evening:.4}"),
+        (None, _) => "no mean".to_owned(),
+    };
+    lines.push(format!(
+        "  end of day: {left} left, {came} joined, {} remain, {moved}",
+        subscriber_count(subscribers)
+    ));
+    lines.extend(describe_recent_days(own.recent_days.iter().flatten().copied()));
+    clean_up_numbers(lines)
+}
+
+fn subscriber_count(count: u32) -> String {
+    match count {
+        1 => "1 subscriber".to_owned(),
+        count => format!("{count} subscribers"),
+    }
+}
+
+fn term_lines(own: &SatisfactionEquation) -> Vec<String> {
+    let head = ["term", "today", "day before", "change", "change of mean"];
+    let number = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:+.4}"));
+    let row = |name: &str, today: Option<f64>, yesterday: Option<f64>| {
+        vec![
+            name.to_owned(),
+            number(today),
+            number(yesterday),
+            number(today.zip(yesterday).map(|(today, yesterday)| today - yesterday)),
+            number(today.map(|today| today * own.weight)),
+        ]
+    };
+    let mut rows: Vec<Vec<String>> =
+        SatisfactionTerm::ALL.map(|term| row(term.id(), own.term(term), own.term_yesterday(term))).to_vec();
+    let forgotten = own.before().map(|before| format!("{:+.4}", 0.0 - own.weight * before));
+    let blank = String::new;
+    rows.push(vec!["decay".to_owned(), blank(), blank(), blank(), forgotten.unwrap_or_default()]);
+    indented_table(&head, &rows)
+}

@@ -1,0 +1,140 @@
+//! Text for spillover of reputation between groups: a heat map and a table.
+
+use super::reputation::{describe_dropped_spillovers, format_small};
+use super::{clean_up_numbers, indented_table};
+use novamind_insight::Spillover;
+use novamind_session::SpilloverEffect;
+use novamind_session::identifiers::Group;
+
+/// Marks of a heat map, from the smallest share of the largest spillover to the largest.
+pub const HEAT_MARKS: [&str; 4] = ["░", "▒", "▓", "█"];
+
+/// The spillover of a day: rows are sources, columns are targets.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpilloverMap {
+    /// Heading.
+    pub heading: String,
+    /// Columns: target groups.
+    pub targets: Vec<Group>,
+    /// Rows: source groups.
+    pub rows: Vec<SpilloverRow>,
+    /// Dropped changes and other notes.
+    pub notes: Vec<String>,
+}
+
+/// Effects of a source group.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpilloverRow {
+    /// Source group.
+    pub from: Group,
+    /// Change of its own reputation.
+    pub own_change: String,
+    /// Effect on each target.
+    pub cells: Vec<SpilloverCell>,
+}
+
+/// Effect of a group on another.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SpilloverCell {
+    /// The source has no weight for the target.
+    NoWeight,
+    /// The effect was too small and was dropped.
+    Dropped,
+    /// Change of the target's reputation, and the index of its mark in [`HEAT_MARKS`].
+    Applied(f64, usize),
+}
+
+impl SpilloverMap {
+    /// Returns the map of a day.
+    pub fn new(own: &Spillover) -> SpilloverMap {
+        let Spillover { day, known_groups: known, spillovers: spills, .. } = own;
+        let heading = format!("changes of reputation on day {day}: rows are sources, columns are targets");
+        let sources: Vec<Group> =
+            known.iter().copied().filter(|group| own.contributions[*group].subscribers > 0).collect();
+        let heard: Vec<&SpilloverEffect> = spills.iter().filter(|spill| spill.counts).collect();
+        let largest = heard.iter().map(|spill| spill.change.abs()).fold(0.0, f64::max);
+        let is_target = |target: &Group| heard.iter().any(|spill| spill.to == *target);
+        let targets: Vec<Group> = match sources.is_empty() {
+            true => Vec::new(),
+            false => known.iter().copied().filter(is_target).collect(),
+        };
+        let cell = |from: Group, to: Group| match own.between(from, to) {
+            Some(spill) if spill.counts => SpilloverCell::Applied(spill.change, heat_level(&spill, largest)),
+            Some(_) => SpilloverCell::Dropped,
+            None => SpilloverCell::NoWeight,
+        };
+        let row = |from: &Group| SpilloverRow {
+            from: *from,
+            own_change: format_requested_change(own, *from),
+            cells: targets.iter().map(|to| cell(*from, *to)).collect(),
+        };
+        let rows = sources.iter().map(row).collect();
+        SpilloverMap { heading, rows, notes: notes(own, &sources, heard.is_empty()), targets }
+    }
+}
+
+impl SpilloverCell {
+    /// Formats the cell: a mark and the change.
+    pub fn describe(self) -> String {
+        match self {
+            SpilloverCell::NoWeight => "·".to_owned(),
+            SpilloverCell::Dropped => "dropped".to_owned(),
+            SpilloverCell::Applied(change, mark) => format!("{} {change:+.6}", HEAT_MARKS[mark]),
+        }
+    }
+}
+
+fn format_requested_change(own: &Spillover, from: Group) -> String {
+    let change = &own.contributions[from];
+    match change.is_applied {
+        true => format!("{:+.6}", change.requested_change),
+        false => format!("{:+.6} dropped", change.requested_change),
+    }
+}
+
+fn heat_level(spill: &SpilloverEffect, largest: f64) -> usize {
+    let share = if largest > 0.0 { spill.change.abs() / largest } else { 0.0 };
+    ((share * HEAT_MARKS.len() as f64).ceil() as usize).clamp(1, HEAT_MARKS.len()) - 1
+}
+
+fn notes(own: &Spillover, sources: &[Group], is_silent: bool) -> Vec<String> {
+    if sources.is_empty() {
+        return vec!["  no group has subscribers".to_owned()];
+    }
+    let mut lines = Vec::new();
+    if is_silent {
+        lines.push("  no spillover".to_owned());
+    }
+    let small_own: Vec<&str> = sources
+        .iter()
+        .filter(|group| !own.contributions[**group].is_applied)
+        .map(|group| group.id())
+        .collect();
+    if !small_own.is_empty() {
+        lines.push(format!(
+            "  own changes of {} below {}: dropped",
+            small_own.join(", "),
+            format_small(own.thresholds.subscriber_contribution)
+        ));
+    }
+    let dropped: Vec<&SpilloverEffect> = own.spillovers.iter().filter(|spill| !spill.counts).collect();
+    lines.extend(describe_dropped_spillovers(&dropped, &own.thresholds));
+    lines
+}
+
+/// Returns the spillover of a day as a table in text.
+pub fn describe_spillover(own: &Spillover) -> Vec<String> {
+    let SpilloverMap { heading, targets, rows, notes } = SpilloverMap::new(own);
+    let mut lines = vec![heading];
+    if !rows.is_empty() {
+        let mut head = vec!["from", "own change"];
+        head.extend(targets.iter().map(|group| group.id()));
+        let row = |row: &SpilloverRow| {
+            let cells = row.cells.iter().map(|cell| cell.describe());
+            [row.from.to_string(), row.own_change.clone()].into_iter().chain(cells).collect()
+        };
+        lines.extend(indented_table(&head, &rows.iter().map(row).collect::<Vec<Vec<String>>>()));
+    }
+    lines.extend(notes);
+    clean_up_numbers(lines)
+}

@@ -1,0 +1,93 @@
+//! Text for the next random draws of a part.
+
+use super::{clean_up_numbers, indented_table};
+use novamind_insight::{DrawEffect, KeyedDraws, NextDraws};
+
+const MAX_ROW_DRAWS: usize = 8;
+const MAX_LISTED_CUSTOMERS: usize = 12;
+
+/// Lists the streams of the next day, their first draws, and the results.
+pub fn describe_next_draws(own: &NextDraws) -> Vec<String> {
+    let NextDraws { part, day, streams, .. } = own;
+    let over = if own.is_over { "; the run has ended, so this day is not simulated" } else { "" };
+    let mut lines = vec![format!("next draws of {}, day {day}{over}", part.id())];
+    if own.is_replayed {
+        lines.push("  a recorded series replaces these draws for its length".to_owned());
+    }
+    match streams.iter().any(|own| own.draws.len() > MAX_ROW_DRAWS) {
+        true => streams.iter().for_each(|own| lines.extend(all_draws(own))),
+        false => lines.extend(stream_rows(streams)),
+    }
+    clean_up_numbers(lines)
+}
+
+fn stream_rows(streams: &[KeyedDraws]) -> Vec<String> {
+    let count = streams.iter().map(|own| own.draws.len()).max().unwrap_or(0);
+    let numbers: Vec<String> = (1..=count).map(|number| format!("draw {number}")).collect();
+    let mut head = vec!["stream", "key"];
+    head.extend(numbers.iter().map(String::as_str));
+    head.push("result");
+    let row = |own: &KeyedDraws| {
+        let draws = own.draws.iter().map(|draw| format!("{:.6}", draw.uniform));
+        let what = [describe_effect(&own.effect)];
+        [own.stream.to_owned(), format_key(own)].into_iter().chain(draws).chain(what).collect()
+    };
+    indented_table(&head, &streams.iter().map(row).collect::<Vec<_>>())
+}
+
+fn format_key(own: &KeyedDraws) -> String {
+    let parts = own.key.iter().map(|(name, value)| match (own.group, *name) {
+        (Some(group), "group") => group.to_string(),
+        _ => format!("{name} {value}"),
+    });
+    parts.collect::<Vec<String>>().join(", ")
+}
+
+fn all_draws(own: &KeyedDraws) -> Vec<String> {
+    let mut lines = vec![format!("  {} ({}): {}", own.stream, format_key(own), describe_effect(&own.effect))];
+    lines.extend(own.draws.chunks(MAX_ROW_DRAWS).map(|some| {
+        let draws: Vec<String> = some.iter().map(|draw| format!("{:.6}", draw.uniform)).collect();
+        format!("    {}", draws.join(" "))
+    }));
+    lines
+}
+
+fn describe_effect(follows: &DrawEffect) -> String {
+    match follows {
+        DrawEffect::Leads { expected, number } => {
+            format!("{number} leads if λ is {expected:.2} as on the last day")
+        }
+        DrawEffect::FailedPayments { rate, customers } => describe_failed_payments(*rate, customers),
+        DrawEffect::OutageAbove(chance) => {
+            format!("an outage if its chance is above {:.2} %", chance * 100.0)
+        }
+        DrawEffect::Noise(noise) => format!("noise {noise:+.6} in shared quality"),
+        DrawEffect::Project { tier, days, gain } => {
+            format!("a project of tier {tier} takes {days} days and adds {gain:.4}")
+        }
+        DrawEffect::Found(Some(group)) => format!("finds {group}"),
+        DrawEffect::Found(None) => "finds nothing".to_owned(),
+        DrawEffect::Surge(Some(surge)) => {
+            format!("a surge: {:.2} times the leads until day {}", surge.multiplier, surge.end_day - 1)
+        }
+        DrawEffect::Surge(None) => "no surge".to_owned(),
+        DrawEffect::Index { before, after } => format!("the index changes from {before:.2} to {after:.2}"),
+        DrawEffect::CompetitorMove(Some((sampled, u))) => {
+            format!("a move: drawn size {sampled:.4}, or {:.1} % of the shared bank", u * 100.0)
+        }
+        DrawEffect::CompetitorMove(None) => "no move".to_owned(),
+    }
+}
+
+fn describe_failed_payments(rate: f64, customers: &[u32]) -> String {
+    let named: Vec<String> =
+        customers.iter().take(MAX_LISTED_CUSTOMERS).map(|customer| customer.to_string()).collect();
+    let more = match customers.len().saturating_sub(MAX_LISTED_CUSTOMERS) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    match customers.is_empty() {
+        true => format!("{:.2} % of payments fail; none does", rate * 100.0),
+        false => format!("{:.2} % of payments fail: customers {}{more}", rate * 100.0, named.join(", ")),
+    }
+}

@@ -1,0 +1,275 @@
+//! Eligibility of a run for the ranking among the published results, for the final page, the menu, reports
+//! and the laboratory.
+
+use super::formatting::{format_dollar_tick, format_whole};
+use super::logbook::Logbook;
+use super::ranking::published_results;
+use novamind_record::folder::configuration::DEFAULT_SCENARIO;
+use novamind_record::folder::runs::RunSummary;
+use novamind_record::mode::Mode;
+use novamind_session::Observation;
+
+/// Last day of the published runs.
+pub const PUBLISHED_DAYS: u32 = 500;
+
+/// Seed of the published runs.
+pub const PUBLISHED_SEED: u64 = 42;
+
+/// Scenarios with the rules of the published results: any seed, and the seed of the release.
+const COMPARABLE_SCENARIOS: [&str; 2] = [DEFAULT_SCENARIO, "reference-seed42"];
+
+/// Properties that decide whether a run can be ranked among the published results.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RankingCriteria<'a> {
+    /// Last day of the run.
+    pub days: u32,
+    /// Cash on day 0, dollars.
+    pub start_cash: f64,
+    /// Scenario.
+    pub scenario: &'a str,
+    /// The parameters differ, or differed for some days, from those of the bundled scenario of that name.
+    pub has_changed_parameters: bool,
+    /// A language model judges the posts of the player.
+    pub judged_by_model: bool,
+    /// The run belongs to a lesson.
+    pub is_lesson: bool,
+    /// The run continues weeks of another run, whose end may be known.
+    pub is_branch: bool,
+    /// The run was played in debug mode, which shows hidden state. Policies never see hidden state.
+    pub showed_hidden_state: bool,
+}
+
+impl<'a> RankingCriteria<'a> {
+    /// Returns the terms of an open run.
+    pub fn from_observation(seen: &'a Observation) -> RankingCriteria<'a> {
+        RankingCriteria {
+            days: seen.last_day,
+            start_cash: seen.starting_cash,
+            scenario: &seen.scenario,
+            has_changed_parameters: seen.has_own_parameters,
+            judged_by_model: seen.voice.as_ref().is_some_and(|model| model.judge),
+            is_lesson: seen.mode == Mode::Lesson,
+            is_branch: seen.is_branch,
+            showed_hidden_state: seen.mode == Mode::Debug,
+        }
+    }
+
+    /// Returns the terms of a run in a list.
+    pub fn from_summary(run: &'a RunSummary) -> RankingCriteria<'a> {
+        RankingCriteria {
+            days: run.days,
+            start_cash: run.starting_cash,
+            scenario: &run.scenario,
+            has_changed_parameters: run.has_own_parameters,
+            judged_by_model: run.judged_by_model,
+            is_lesson: run.mode == Some(Mode::Lesson),
+            is_branch: run.is_branch,
+            showed_hidden_state: run.mode == Some(Mode::Debug) && run.policy.is_none(),
+        }
+    }
+
+    /// Returns the terms of a run that was read from its record.
+    pub fn from_logbook(book: &'a Logbook) -> RankingCriteria<'a> {
+        RankingCriteria {
+            days: book.days,
+            start_cash: book.start_cash,
+            scenario: &book.scenario,
+            has_changed_parameters: book.has_own_parameters,
+            judged_by_model: book.voice.as_ref().is_some_and(|model| model.judge),
+            is_lesson: book.mode == Mode::Lesson,
+            is_branch: book.parent.is_some(),
+            showed_hidden_state: book.mode == Mode::Debug && book.policy.is_none(),
+        }
+    }
+
+    /// Returns the reasons not to rank the run; empty if it can be ranked. A different seed is not a reason.
+    pub fn obstacles(&self) -> Vec<RankingObstacle> {
+        let mut obstacles = Vec::new();
+        if self.is_lesson {
+            obstacles.push(RankingObstacle::Lesson);
+        }
+        if self.days != PUBLISHED_DAYS {
+            obstacles.push(RankingObstacle::Length(self.days));
+        }
+        if self.start_cash != published_results().start_cash {
+            obstacles.push(RankingObstacle::StartCash(self.start_cash));
+        }
+        if !COMPARABLE_SCENARIOS.contains(&self.scenario) {
+            obstacles.push(RankingObstacle::Scenario(self.scenario.to_owned()));
+        }
+        if self.has_changed_parameters {
+            obstacles.push(RankingObstacle::Parameters);
+        }
+        if self.judged_by_model {
+            obstacles.push(RankingObstacle::ModelVoice);
+        }
+        if self.is_branch {
+            obstacles.push(RankingObstacle::Branch);
+        }
+        if self.showed_hidden_state {
+            obstacles.push(RankingObstacle::Debug);
+        }
+        obstacles
+    }
+}
+
+/// A reason not to rank a run among the published ones.
+#[derive(Debug, Clone, PartialEq)]
+pub enum RankingObstacle {
+    /// The run belongs to a lesson.
+    Lesson,
+    /// Different number of days.
+    Length(u32),
+    /// Different starting cash, dollars.
+    StartCash(f64),
+    /// Different scenario.
+    Scenario(String),
+    /// Parameters were changed.
+    Parameters,
+    /// A language model judges the posts of the player.
+    ModelVoice,
+    /// The run continues weeks of another run, whose outcome may be known.
+    Branch,
+    /// The run was played in debug mode, which shows hidden state.
+    Debug,
+}
+
+impl RankingObstacle {
+    /// Describes the reason: `28 days instead of 500`.
+    pub fn describe(&self) -> String {
+        match self {
+            RankingObstacle::Lesson => "part of a lesson".to_owned(),
+            RankingObstacle::Length(days) => {
+                format!("{} days instead of {PUBLISHED_DAYS}", format_whole(f64::from(*days)))
+            }
+            RankingObstacle::StartCash(cash) => {
+                format!(
+                    "{} at the start instead of {}",
+                    format_dollar_tick(*cash),
+                    format_dollar_tick(published_results().start_cash)
+                )
+            }
+            RankingObstacle::Scenario(name) => format!("scenario {name}"),
+            RankingObstacle::Parameters => "changed parameters".to_owned(),
+            RankingObstacle::ModelVoice => "posts judged by a language model".to_owned(),
+            RankingObstacle::Branch => "a branch of another run".to_owned(),
+            RankingObstacle::Debug => "played in debug mode".to_owned(),
+        }
+    }
+
+    fn plural_description(&self) -> &'static str {
+        match self {
+            RankingObstacle::Lesson => "part of a lesson",
+            RankingObstacle::Length(_) => "different length",
+            RankingObstacle::StartCash(_) => "different starting cash",
+            RankingObstacle::Scenario(_) => "different scenario",
+            RankingObstacle::Parameters => "changed parameters",
+            RankingObstacle::ModelVoice => "posts judged by a language model",
+            RankingObstacle::Branch => "a branch of another run",
+            RankingObstacle::Debug => "played in debug mode",
+        }
+    }
+}
+
+/// Lists reasons in one line.
+pub fn describe_obstacles(obstacles: &[RankingObstacle]) -> String {
+    obstacles.iter().map(RankingObstacle::describe).collect::<Vec<_>>().join(", ")
+}
+
+/// Returns the number of runs with obstacles, and the reasons: those of a single run, or counts by kind.
+/// `None` if no run has any.
+pub fn describe_excluded(runs: &[Vec<RankingObstacle>]) -> Option<(usize, String)> {
+    let left_out: Vec<&Vec<RankingObstacle>> =
+        runs.iter().filter(|obstacles| !obstacles.is_empty()).collect();
+    match left_out.as_slice() {
+        [] => None,
+        [one] => Some((1, describe_obstacles(one))),
+        several => {
+            let mut counted: Vec<(&'static str, usize)> = Vec::new();
+            for kind in
+                several.iter().flat_map(|obstacles| obstacles.iter().map(RankingObstacle::plural_description))
+            {
+                match counted.iter_mut().find(|(known, _)| *known == kind) {
+                    Some((_, count)) => *count += 1,
+                    None => counted.push((kind, 1)),
+                }
+            }
+            counted.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+            let reasons: Vec<String> =
+                counted.iter().map(|(kind, count)| format!("{kind} ({count})")).collect();
+            Some((several.len(), reasons.join(", ")))
+        }
+    }
+}
+
+/// Explains in a sentence why finished runs are not ranked. `None` if all of them are ranked.
+pub fn describe_not_ranked(runs: &[Vec<RankingObstacle>]) -> Option<String> {
+    describe_excluded(runs).map(|(count, why)| match count {
+        1 => format!("One finished run is not ranked: {why}."),
+        count => format!("{count} finished runs are not ranked: {why}."),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use novamind_record::folder::configuration::Configuration;
+    use novamind_session::{NewRun, Session};
+
+    const COMPARABLE: RankingCriteria<'static> = RankingCriteria {
+        days: 500,
+        start_cash: 1_000_000.0,
+        scenario: "default",
+        has_changed_parameters: false,
+        judged_by_model: false,
+        is_lesson: false,
+        is_branch: false,
+        showed_hidden_state: false,
+    };
+
+    #[test]
+    fn only_runs_with_published_conditions_are_ranked() {
+        for (terms, reason) in [
+            (COMPARABLE, ""),
+            (RankingCriteria { scenario: "reference-seed42", ..COMPARABLE }, ""),
+            (RankingCriteria { scenario: "paper", ..COMPARABLE }, "scenario paper"),
+            (RankingCriteria { scenario: "competitor-off", ..COMPARABLE }, "scenario competitor-off"),
+            (RankingCriteria { days: 28, ..COMPARABLE }, "28 days instead of 500"),
+            (RankingCriteria { start_cash: 2e6, ..COMPARABLE }, "$2M at the start instead of $1M"),
+            (RankingCriteria { has_changed_parameters: true, ..COMPARABLE }, "changed parameters"),
+            (RankingCriteria { judged_by_model: true, ..COMPARABLE }, "posts judged by a language model"),
+            (RankingCriteria { is_branch: true, ..COMPARABLE }, "a branch of another run"),
+            (RankingCriteria { showed_hidden_state: true, ..COMPARABLE }, "played in debug mode"),
+            (
+                RankingCriteria { is_lesson: true, days: 14, ..COMPARABLE },
+                "part of a lesson, 14 days instead of 500",
+            ),
+        ] {
+            assert_eq!(describe_obstacles(&terms.obstacles()), reason, "{terms:?}");
+        }
+    }
+
+    #[test]
+    fn default_run_is_ranked_and_comparable_scenarios_exist() {
+        for scenario in COMPARABLE_SCENARIOS {
+            let new = NewRun { scenario: scenario.to_owned(), ..NewRun::default() };
+            let seen = Session::create(new, &Configuration::bundled()).expect("a run").company().observe();
+            assert_eq!(RankingCriteria::from_observation(&seen).obstacles(), [], "{scenario}");
+        }
+    }
+
+    #[test]
+    fn obstacles_of_several_runs_are_counted() {
+        assert_eq!(describe_not_ranked(&[vec![]]), None);
+        let short = vec![RankingObstacle::Length(28)];
+        assert_eq!(
+            describe_not_ranked(&[vec![], short.clone()]).as_deref(),
+            Some("One finished run is not ranked: 28 days instead of 500.")
+        );
+        let other = vec![RankingObstacle::Length(35), RankingObstacle::Scenario("short".to_owned())];
+        assert_eq!(
+            describe_not_ranked(&[short, other]).as_deref(),
+            Some("2 finished runs are not ranked: different length (2), different scenario (1).")
+        );
+    }
+}

@@ -1,0 +1,173 @@
+//! Data of a run report: result, course, decisions and behavior.
+
+use super::bankruptcy::{CostShare, cost_shares, describe_turning_points};
+use super::database_figures::DatabaseFigures;
+use super::decision_periods::{DecisionPeriod, decision_periods};
+use super::highlights::{Highlight, highlights};
+use super::measures::BehaviorMeasures;
+use super::ranking::{Ranking, rank_score};
+use novamind_insight::{BranchOrigin, branch_origin};
+use novamind_record::figures::WeekFigures;
+use novamind_record::rules::{ResultsShown, SessionRules};
+use novamind_record::trajectory::record::RunEndReason;
+use novamind_session::{Observation, ScoredForecast, Session, filed_forecasts};
+
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bankruptcy {
+    /// Day on which cash fell below zero.
+    pub day: u32,
+    /// Costs by kind, highest first.
+    pub costs: Vec<CostShare>,
+    /// Sentences about the turning points.
+    pub turning_points: Vec<String>,
+}
+
+/// Data of a run report.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunReport {
+    /// Current state of the run.
+    pub observation: Observation,
+    /// Program version that recorded it.
+    pub version: String,
+    /// Cash on day 0, dollars.
+    pub start_cash: f64,
+    /// Cash at the end of each day, day 0 first.
+    pub cash_by_day: Vec<f64>,
+    /// Figures of every week.
+    pub weeks: Vec<WeekFigures>,
+    /// Comparison with the published results.
+    pub ranking: Ranking,
+    /// Every forecast, in the order of filing.
+    pub forecasts: Vec<ScoredForecast>,
+    /// Data from the run's tables.
+    pub database: DatabaseFigures,
+    /// Decisions by chapter.
+    pub decision_periods: Vec<DecisionPeriod>,
+    /// Notable days.
+    pub highlights: Vec<Highlight>,
+    /// Behavior measures.
+    pub measures: BehaviorMeasures,
+    /// Analysis of the bankruptcy, if there was one.
+    pub bankruptcy: Option<Bankruptcy>,
+    /// Rules of the session.
+    pub rules: SessionRules,
+    /// Origin of the run if it is a branch.
+    pub origin: Option<BranchOrigin>,
+}
+
+impl RunReport {
+    /// Collects the data of a run so far. Queries the database, so do not call it on the drawing thread.
+    pub fn from_session(session: &Session) -> RunReport {
+        let seen = session.company().observe();
+        let start_cash = session.manifest().cash;
+        let (weeks, journal) = (session.weeks(), session.journal());
+        let books = DatabaseFigures::load(session);
+        let ruin = (seen.ended == Some(RunEndReason::Bankruptcy)).then(|| Bankruptcy {
+            day: seen.day,
+            costs: cost_shares(&books.totals_by_category()),
+            turning_points: describe_turning_points(weeks),
+        });
+        let measures = BehaviorMeasures::from_session(session, &books.channels);
+        RunReport {
+            version: session.manifest().version.clone(),
+            start_cash,
+            cash_by_day: session.cash_by_day().to_vec(),
+            weeks: weeks.to_vec(),
+            ranking: rank_score(seen.score, &seen),
+            forecasts: filed_forecasts(journal, session.cash_by_day()),
+            decision_periods: decision_periods(session.company().decisions(), journal, start_cash),
+            highlights: highlights(weeks, session.cash_by_day(), &books.outages, seen.ended),
+            measures,
+            bankruptcy: ruin,
+            rules: session.rules(),
+            origin: session.folder().and_then(branch_origin),
+            database: books,
+            observation: seen,
+        }
+    }
+
+    /// Returns whether published results are shown. If the study excludes them from the session, they are shown after
+    /// its end.
+    pub fn shows_published(&self) -> bool {
+        self.rules.results == ResultsShown::Published || self.observation.ended.is_some()
+    }
+
+    /// Returns whether scores of the player's forecasts are shown, under the same condition.
+    pub fn shows_calibration(&self) -> bool {
+        self.rules.calibration || self.observation.ended.is_some()
+    }
+
+    /// Summarizes the result in one sentence.
+    pub fn headline(&self) -> String {
+        use super::formatting::format_money;
+        let day = self.observation.day;
+        match self.observation.ended {
+            Some(RunEndReason::Horizon) => {
+                format!("Day {day}. You end with {}.", format_money(self.observation.cash))
+            }
+            Some(RunEndReason::Bankruptcy) => format!("Day {day}. The company is bankrupt; the score is $0."),
+            Some(RunEndReason::Abandoned) => {
+                format!(
+                    "Day {day}. The run was abandoned with {}; it has no score.",
+                    format_money(self.observation.cash)
+                )
+            }
+            Some(RunEndReason::Lesson) => {
+                format!("Day {day}. The lesson ends with {}.", format_money(self.observation.cash))
+            }
+            None => format!(
+                "Day {day} of {}. Cash is {}.",
+                self.observation.last_day,
+                format_money(self.observation.cash)
+            ),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_kit;
+
+    #[test]
+    fn finished_run_has_score_rank_and_measures() {
+        let story = RunReport::from_session(&test_kit::finished_run());
+        assert!(story.headline().starts_with("Day 35. You end with $"), "{}", story.headline());
+        assert!(story.observation.score.is_some());
+        assert_eq!(
+            (story.ranking.rank, story.ranking.describe().as_str()),
+            (None, "not ranked: 35 days instead of 500")
+        );
+        assert_eq!(story.measures.survival_days, 35);
+        assert_eq!(story.forecasts.len(), 5 * 4);
+        assert_eq!(story.forecasts.iter().filter(|filed| filed.outcome.is_some()).count(), 5 + 2);
+        assert!(story.measures.channels.as_ref().is_some_and(|skill| skill.groups[0].tried == 2));
+        assert_eq!(story.measures.targeted_development, Some(6000.0 / 6200.0));
+        assert_eq!(story.bankruptcy, None);
+    }
+
+    #[test]
+    fn bankrupt_run_lists_costs() {
+        let story = RunReport::from_session(&test_kit::bankrupt_run());
+        let ruin = story.bankruptcy.as_ref().expect("a bankruptcy");
+        assert_eq!((ruin.day, story.measures.survival_days), (story.observation.day, story.observation.day));
+        assert_eq!(ruin.costs[0].name, "development and R&D");
+        let shares: f64 = ruin.costs.iter().map(|cost| cost.share).sum();
+        assert!((shares - 1.0).abs() < 1e-9 && !ruin.turning_points.is_empty());
+        assert!(story.headline().contains("bankrupt"));
+        assert_eq!(story.highlights.last().map(|last| last.text.as_str()), Some("bankrupt"));
+    }
+
+    #[test]
+    fn unfinished_run_has_a_report() {
+        let begun = RunReport::from_session(&test_kit::play_weeks(0));
+        assert!(
+            begun.decision_periods.is_empty()
+                && begun.measures.channels.is_none()
+                && begun.highlights.is_empty()
+        );
+        let running = RunReport::from_session(&test_kit::play_weeks(2));
+        assert_eq!((running.ranking.rank, running.bankruptcy.is_none()), (None, true));
+        assert!(running.headline().starts_with("Day 14 of 200. Cash is $"));
+    }
+}

@@ -1,0 +1,161 @@
+//! Instructions for an agent: a page with goal, rules and calls, and the documentation of tools and tables.
+//!
+//! Everything is generated from the catalog and the current parameters. The page contains what agents in the benchmark are told,
+//! without hidden state and without advice on how to play well.
+
+use std::path::Path;
+
+use serde_json::json;
+
+use super::client::module_name;
+use super::schema::specs;
+use novamind_base::formatting::dollars;
+use novamind_database::tables;
+use novamind_record::error::RunError;
+use novamind_tools::describe::{ToolDocument, document_tool, format_manual};
+use novamind_tools::{ParameterNumbers, ToolModule};
+
+const PAGE: &str = include_str!("../../assets/agent/page.md");
+const SHELL: &str = include_str!("../../assets/agent/shell.md");
+const ERRORS: &str = include_str!("../../assets/agent/errors.md");
+
+/// The heading that follows goal, calendar and rules.
+const HOW_TO_CALL: &str = "## How to call";
+
+/// File name of the page.
+const PAGE_FILE: &str = "AGENT.md";
+
+/// The run that a page describes.
+#[derive(Debug, Clone)]
+pub struct PageContext<'a> {
+    /// Last day.
+    pub days: u32,
+    /// Cash on day 0, in dollars.
+    pub cash: f64,
+    /// Current parameters.
+    pub numbers: &'a ParameterNumbers,
+}
+
+/// Returns the page as Markdown.
+pub fn agent_page(of: &PageContext<'_>) -> String {
+    let filled = of.numbers.substitute(PAGE);
+    let parts = [
+        ("{days}", of.days.to_string()),
+        ("{cash}", dollars(of.cash)),
+        ("{how}", SHELL.trim_end().to_owned()),
+        ("{tools_document}", "tools.md".to_owned()),
+        ("{tables_document}", "tables.md".to_owned()),
+        ("{tools}", tool_list(of.numbers)),
+        ("{tables}", table_list()),
+        ("{errors}", ERRORS.trim_end().to_owned()),
+    ];
+    parts.iter().fold(filled, |text, (name, value)| text.replace(name, value))
+}
+
+/// Returns the goal, the calendar and the rules of the page, for clients that receive the tools separately.
+pub fn goal_and_rules(of: &PageContext<'_>) -> String {
+    let whole = agent_page(of);
+    whole.split_once(HOW_TO_CALL).map_or(whole.as_str(), |(before, _)| before).trim_end().to_owned()
+}
+
+/// Writes the page and the documentation to a folder: `AGENT.md`, `tools.md`, `tools.json`, `tables.md`, `tables.json`.
+///
+/// # Errors
+/// The folder cannot be written.
+pub fn write_documents(folder: &Path, of: &PageContext<'_>) -> Result<(), RunError> {
+    std::fs::create_dir_all(folder).map_err(RunError::io(folder))?;
+    let documents: Vec<ToolDocument> = specs().map(|spec| document_tool(spec, of.numbers)).collect();
+    let files = [
+        (PAGE_FILE, agent_page(of)),
+        ("tools.md", tool_manual(of.numbers)),
+        ("tools.json", format!("{:#}\n", json!(documents))),
+        ("tables.md", table_manual()),
+        ("tables.json", format!("{:#}\n", json!(tables()))),
+    ];
+    files.iter().try_for_each(|(name, text)| {
+        let path = folder.join(name);
+        std::fs::write(&path, text).map_err(RunError::io(&path))
+    })
+}
+
+fn tool_list(numbers: &ParameterNumbers) -> String {
+    let mut text = String::new();
+    for module in ToolModule::ALL {
+        text += &format!("### {}\n\n", module_name(module));
+        for spec in specs().filter(|spec| spec.module == module) {
+            text += &format!("- `{}`: {}\n", spec.name(), numbers.substitute(spec.summary));
+        }
+        text.push('\n');
+    }
+    text
+}
+
+fn table_list() -> String {
+    tables().iter().map(|table| format!("- `{}`: {}\n", table.name, table.description)).collect::<String>()
+        + "\n"
+}
+
+fn tool_manual(numbers: &ParameterNumbers) -> String {
+    let one = |spec| {
+        let text = format_manual(spec, numbers);
+        let (_, rest) = text.split_once('\n').unwrap_or_default();
+        format!("## {}\n\n{}.\n\n```text\n{rest}```\n\n", spec.name(), numbers.substitute(spec.summary))
+    };
+    "# Tools\n\n".to_owned() + specs().map(one).collect::<String>().trim_end() + "\n"
+}
+
+fn table_manual() -> String {
+    let cell = |text: &str| text.replace('|', "\\|");
+    let mut text = "# Tables\n\n".to_owned();
+    for table in tables() {
+        text += &format!("## {}\n\n{}. Written {}.\n\n", table.name, table.description, table.written);
+        text += "| Column | Type | Holds |\n|---|---|---|\n";
+        for column in &table.columns {
+            let values = match column.values.as_slice() {
+                [] => String::new(),
+                values => format!(" [{}]", values.join(", ")),
+            };
+            text += &format!(
+                "| `{}` | {} | {} |\n",
+                column.name,
+                column.kind,
+                cell(&(column.description.clone() + &values))
+            );
+        }
+        text.push('\n');
+    }
+    text.trim_end().to_owned() + "\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn agent_page_lists_every_tool_and_current_parameters() {
+        let numbers = ParameterNumbers::bundled();
+        let text = agent_page(&PageContext { days: 77, cash: 250_000.0, numbers: &numbers });
+        for spec in specs() {
+            assert!(text.contains(&format!("`{}`", spec.name())), "{}", spec.name());
+        }
+        let goal = goal_and_rules(&PageContext { days: 77, cash: 250_000.0, numbers: &numbers });
+        assert!(text.starts_with(&goal) && goal.contains("## Rules") && !goal.contains("## How"), "{goal}");
+        for table in tables() {
+            assert!(text.contains(&format!("`{}`", table.name)), "{}", table.name);
+        }
+        assert!(text.contains("for 77 days") && text.contains("$250,000"), "{text}");
+        for name in
+            ["{run.", "{limits.", "{billing.", "{how}", "{tools", "{tables", "{errors}", "{days}", "{cash}"]
+        {
+            assert!(!text.contains(name), "{name}");
+        }
+    }
+
+    #[test]
+    fn documents_contain_every_tool_and_column() {
+        let manual = tool_manual(&ParameterNumbers::bundled());
+        assert_eq!(manual.matches("\n## ").count(), specs().count());
+        let columns: usize = tables().iter().map(|table| table.columns.len()).sum();
+        assert_eq!(table_manual().lines().filter(|line| line.starts_with("| `")).count(), columns);
+    }
+}

@@ -1,0 +1,272 @@
+//! The thread that owns the session, and the handle with which interfaces send requests to it.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
+
+use serde_json::Value;
+use tokio::sync::oneshot;
+
+use super::current_request::CurrentRequest;
+use super::request::{ApiRequest, ApiResponse, ResponseStatus};
+use super::request_handler::handle_request;
+use novamind_record::error::RunError;
+use novamind_record::trajectory::record::{LeavingCause, Via};
+use novamind_session::{Access, Interface, ModelSettings, RunDatabase, Session};
+use novamind_tools::NotebookSection;
+
+/// Receives reports of internal errors.
+pub type OnDefect = fn(&str);
+
+/// How an interface uses a session.
+#[derive(Clone, Copy)]
+pub struct InterfaceInfo {
+    /// Channel of calls in the record.
+    pub via: Via,
+    /// Interface of sessions in the record.
+    pub interface: &'static str,
+    /// Called with reports of internal errors.
+    pub on_defect: OnDefect,
+}
+
+/// A request and the channel for its answer.
+struct QueuedRequest {
+    number: u64,
+    request: ApiRequest,
+    reply: oneshot::Sender<ApiResponse>,
+}
+
+/// The thread that owns a session. It ends when all handles are dropped.
+pub struct SessionWorker {
+    thread: JoinHandle<Result<(), RunError>>,
+    running: CurrentRequest,
+    /// Id and folder of the run.
+    run: String,
+    folder: Option<PathBuf>,
+}
+
+impl SessionWorker {
+    /// Moves a session to a new thread and returns a handle for requests.
+    pub fn start(session: Session, door: InterfaceInfo) -> (SessionWorker, SessionHandle) {
+        let (sender, receiver) = channel();
+        let advancing = PendingWeeks::default();
+        let running = CurrentRequest::default();
+        let handle = SessionHandle {
+            sender,
+            advancing: advancing.clone(),
+            asked: Arc::default(),
+            running: running.clone(),
+        };
+        let (folder, model) = (session.folder().map(PathBuf::from), session.model_settings().cloned());
+        let run = session.manifest().id.clone();
+        let owned = WorkerState {
+            folder: folder.clone(),
+            model,
+            session: Some(session),
+            door,
+            running: running.clone(),
+        };
+        let thread = std::thread::spawn(move || owned.run(&receiver, &advancing));
+        (SessionWorker { thread, running, run, folder }, handle)
+    }
+
+    /// Stops the running script, calculation or statement, for which a stopping server does not wait.
+    pub fn stop_running_code(&self) {
+        self.running.stop();
+    }
+
+    /// Waits until every request is answered and the run is closed. All handles must have been dropped.
+    ///
+    /// # Errors
+    /// The end of the record cannot be written; everything confirmed is saved. [`RunError::Defect`] if the thread panicked.
+    pub fn finish(self) -> Result<(), RunError> {
+        let SessionWorker { thread, run, folder, .. } = self;
+        thread.join().unwrap_or(Err(RunError::Defect { run, folder }))
+    }
+}
+
+/// Sends requests to the owner.
+#[derive(Clone)]
+pub struct SessionHandle {
+    sender: Sender<QueuedRequest>,
+    advancing: PendingWeeks,
+    /// Number of requests so far.
+    asked: Arc<AtomicU64>,
+    running: CurrentRequest,
+}
+
+impl SessionHandle {
+    /// Sends a request and waits for the answer. If the caller stops waiting, a week is still simulated to its end, but a script or
+    /// statement is stopped.
+    pub async fn send(&self, request: ApiRequest) -> ApiResponse {
+        if let ApiRequest::NextWeek { request_id, .. } = &request
+            && !self.advancing.try_begin(request_id)
+        {
+            return ApiResponse::invalid_request(
+                ResponseStatus::Busy,
+                "week_running",
+                "a week is being simulated; request the next one after its response",
+            );
+        }
+        let (reply, answer) = oneshot::channel();
+        let number = self.asked.fetch_add(1, Ordering::Relaxed);
+        let watch = self.running.watch(number);
+        if self.sender.send(QueuedRequest { number, request, reply }).is_err() {
+            return worker_gone_response();
+        }
+        let answer = answer.await.unwrap_or_else(|_| worker_gone_response());
+        watch.mark_answered();
+        answer
+    }
+}
+
+fn worker_gone_response() -> ApiResponse {
+    ApiResponse::invalid_request(
+        ResponseStatus::Failed,
+        "closing",
+        "the server is closing the run; everything confirmed is saved",
+    )
+}
+
+/// Pending requests for a week: one, and retries of it.
+#[derive(Clone, Default)]
+struct PendingWeeks(Arc<Mutex<(usize, Value)>>);
+
+impl PendingWeeks {
+    /// Adds a request for a week. Returns whether it may wait. During a week only a retry with the same id may, which returns the
+    /// first answer.
+    fn try_begin(&self, request_id: &Value) -> bool {
+        let mut weeks = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let (open, id) = &mut *weeks;
+        if *open > 0 && (request_id.is_null() || *id != *request_id) {
+            return false;
+        }
+        *open += 1;
+        *id = request_id.clone();
+        true
+    }
+
+    /// Removes a request for a week after its answer.
+    fn end(&self) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).0 -= 1;
+    }
+}
+
+/// The session, and the data to open it again.
+struct WorkerState {
+    /// `None` between an internal error and reopening the run.
+    session: Option<Session>,
+    folder: Option<PathBuf>,
+    /// Settings of the model voice.
+    model: Option<ModelSettings>,
+    door: InterfaceInfo,
+    running: CurrentRequest,
+}
+
+impl WorkerState {
+    fn run(mut self, asked: &Receiver<QueuedRequest>, advancing: &PendingWeeks) -> Result<(), RunError> {
+        let interface = Interface { name: self.door.interface, window: None };
+        if let Some(session) = &mut self.session {
+            session.activity().attach(interface);
+        }
+        while let Ok(QueuedRequest { number, request, reply }) = asked.recv() {
+            let is_week = matches!(request, ApiRequest::NextWeek { .. });
+            if reply.is_closed() && request.runs_code() {
+                // The client disconnected before the request started.
+                continue;
+            }
+            if request.runs_code() || (is_week && self.has_calculations()) {
+                let interrupt = self.session.as_mut().and_then(|session| {
+                    session.up_to_date_database().and_then(RunDatabase::interrupt_handle).ok()
+                });
+                self.running.begin(number, request.runs_code(), interrupt);
+            }
+            let answer = self.respond(request);
+            self.running.end();
+            if is_week {
+                advancing.end();
+            }
+            // The client may have disconnected.
+            let _ = reply.send(answer);
+        }
+        match self.session {
+            Some(mut session) => {
+                session.activity().detach(LeavingCause::Quit);
+                session.save()
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Returns whether code runs before a week.
+    fn has_calculations(&self) -> bool {
+        let kept = |session: &Session| {
+            !session.notebook().statements(NotebookSection::Calculation).entries().is_empty()
+        };
+        self.session.as_ref().is_some_and(kept)
+    }
+
+    fn respond(&mut self, request: ApiRequest) -> ApiResponse {
+        if let Err(error) = self.reopen() {
+            return ApiResponse::invalid_request(ResponseStatus::Failed, "internal_error", error);
+        }
+        let Some(session) = &mut self.session else { return worker_gone_response() };
+        let InterfaceInfo { via, on_defect, .. } = self.door;
+        catch_unwind(AssertUnwindSafe(|| handle_request(session, request, via))).unwrap_or_else(|_| {
+            // The session in memory may be inconsistent; the trajectory is not.
+            self.session = None;
+            internal_error(on_defect)
+        })
+    }
+
+    /// Reopens the run after an internal error.
+    fn reopen(&mut self) -> Result<(), String> {
+        if self.session.is_some() {
+            return Ok(());
+        }
+        let folder = self.folder.as_ref().ok_or("the run was not saved and cannot be reopened")?;
+        let mut session = Session::open(folder, Access::Write, true).map_err(|error| error.to_string())?;
+        session.connect_model(self.model.as_ref());
+        self.session = Some(session);
+        Ok(())
+    }
+}
+
+/// Returns the answer for an internal error, with the number of its report.
+fn internal_error(on_defect: OnDefect) -> ApiResponse {
+    static DEFECTS: AtomicU64 = AtomicU64::new(1);
+    let id =
+        format!("{:012x}", (u64::from(std::process::id()) << 16) + DEFECTS.fetch_add(1, Ordering::Relaxed));
+    on_defect(&format!("internal error {id}: a request failed; the run is reopened from its record"));
+    let mut answer = ApiResponse::invalid_request(
+        ResponseStatus::Failed,
+        "internal_error",
+        "an internal error occurred; everything confirmed before is saved, and the run continues",
+    );
+    answer.body["defect_id"] = id.into();
+    answer
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn finish_reports_a_panic_while_the_run_is_saved() {
+        let panicked = |folder: Option<&str>| {
+            let thread = std::thread::spawn(|| panic!("a defect while saving"));
+            let (run, folder) = ("0123abcd".to_owned(), folder.map(PathBuf::from));
+            let owner = SessionWorker { thread, running: CurrentRequest::default(), run, folder };
+            owner.finish().expect_err("it panicked").to_string()
+        };
+        let words = panicked(Some("runs/0123abcd"));
+        assert!(
+            words.contains("0123abcd/trajectory.jsonl") && words.contains("play --run 0123abcd"),
+            "{words}"
+        );
+        assert!(panicked(None).contains("only in memory"));
+    }
+}

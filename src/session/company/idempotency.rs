@@ -1,0 +1,91 @@
+//! Responses to requests with an id, returned again if the request is retried.
+//!
+//! Lines of calls and weeks contain the ids, so retries are recognized after the run is reopened. Responses to calls
+//! are read from their lines. Responses to weeks contain the dashboard of their day, so snapshots store them.
+
+use std::collections::BTreeMap;
+
+use super::reports::WeekResult;
+use novamind_record::trajectory::record::{Call, Outcome, RequestId, RunEndReason};
+use novamind_tools::Rejection;
+
+/// The first response to a request.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum IdempotentResponse {
+    Call(Outcome),
+    Week(Box<WeekResult>),
+}
+
+#[derive(Debug, Default)]
+pub(crate) struct IdempotentResponses {
+    /// The digest of the request and its response, by id.
+    by_id: BTreeMap<String, (String, IdempotentResponse)>,
+    /// The request whose week is being simulated.
+    pending_request: Option<RequestId>,
+}
+
+impl IdempotentResponses {
+    pub(crate) fn from_weeks(weeks: Vec<(RequestId, WeekResult)>) -> IdempotentResponses {
+        let one = |(request, week): (RequestId, WeekResult)| {
+            (request.id, (request.digest, IdempotentResponse::Week(Box::new(week))))
+        };
+        IdempotentResponses { by_id: weeks.into_iter().map(one).collect(), pending_request: None }
+    }
+
+    pub(crate) fn recorded_weeks(&self) -> Vec<(RequestId, WeekResult)> {
+        let week = |(id, (digest, answer)): (&String, &(String, IdempotentResponse))| match answer {
+            IdempotentResponse::Week(week) => {
+                Some((RequestId { id: id.clone(), digest: digest.clone() }, WeekResult::clone(week)))
+            }
+            IdempotentResponse::Call(_) => None,
+        };
+        self.by_id.iter().filter_map(week).collect()
+    }
+
+    /// Records the outcome of a call if its request has an id.
+    pub(crate) fn record_call(&mut self, call: &Call) {
+        if let Some(RequestId { id, digest }) = &call.request {
+            self.by_id.insert(id.clone(), (digest.clone(), IdempotentResponse::Call(call.outcome.clone())));
+        }
+    }
+
+    pub(crate) fn start_week(&mut self, request: Option<RequestId>) {
+        self.pending_request = request;
+    }
+
+    /// Records the response to the week that was simulated, if its request has an id.
+    pub(crate) fn record_week(&mut self, week: impl FnOnce() -> WeekResult) {
+        if let Some(RequestId { id, digest }) = self.pending_request.take() {
+            self.by_id.insert(id, (digest, IdempotentResponse::Week(Box::new(week()))));
+        }
+    }
+
+    /// Adds the end of the run to the response to its last week.
+    pub(crate) fn record_end(&mut self, day: u32, ended: RunEndReason) {
+        for (_, answer) in self.by_id.values_mut() {
+            if let IdempotentResponse::Week(week) = answer
+                && week.figures.day == day
+            {
+                week.ended = Some(ended);
+            }
+        }
+    }
+
+    /// Returns the first response to a request, or `None` if the request is new.
+    ///
+    /// # Errors
+    /// `request_id_payload_mismatch`: the id belongs to a request with other contents.
+    pub(crate) fn find(&self, request: &RequestId) -> Result<Option<&IdempotentResponse>, Rejection> {
+        match self.by_id.get(&request.id) {
+            None => Ok(None),
+            Some((digest, answer)) if *digest == request.digest => Ok(Some(answer)),
+            Some(_) => Err(payload_mismatch()),
+        }
+    }
+}
+
+pub(crate) fn payload_mismatch() -> Rejection {
+    let message = "this request_id belongs to an earlier request of this run with other contents; nothing was \
+                   changed. Use a new id for a new request";
+    Rejection::for_field("request_id", "request_id_payload_mismatch", message)
+}

@@ -1,7 +1,0 @@
-//! The only access to hidden state: recorded inspections and replays of a run.
-//!
-//! Every function that shows hidden state needs a [`Look`](look::Look), which exists only after it was permitted and
-//! recorded.
-
-pub(crate) mod look;
-pub(crate) mod shadow;

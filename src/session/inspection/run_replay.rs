@@ -1,0 +1,58 @@
+//! Replays of a run that pass its days to a watch.
+
+use std::sync::Arc;
+
+use crate::company::reports::DayReport;
+use crate::database::unreadable_record;
+use crate::play::Session;
+use novamind_record::trajectory::Trajectory;
+use novamind_tools::Rejection;
+use novamind_world::day::observer::DayObserver;
+
+/// A copy of a run that replays its recorded days and passes them to a watch.
+pub struct RunReplay(Box<Session>);
+
+impl RunReplay {
+    /// Creates a copy of a run before its first line.
+    ///
+    /// # Errors
+    /// `not_possible`: the run has no folder; `unreadable_record`.
+    pub(super) fn new(run: &Session, watch: Arc<dyn DayObserver>) -> Result<RunReplay, Rejection> {
+        if run.folder().is_none() {
+            let message = "a run in memory has no record, so its past days cannot be simulated again";
+            return Err(Rejection::new("not_possible", message));
+        }
+        let shadow = Session::replay_of(run, watch).map_err(|error| unreadable_record(&error))?;
+        Ok(RunReplay(Box::new(shadow)))
+    }
+
+    /// Applies the lines after the last applied one, up to the current line of the run, while `should_continue` returns true
+    /// for the day reached. Each line must lead to the state that it records. Calls `tell` for each day.
+    ///
+    /// # Errors
+    /// `unreadable_record`.
+    pub fn advance(
+        &mut self,
+        run: &Session,
+        goes_on: impl Fn(u32) -> bool,
+        tell: &mut dyn FnMut(&DayReport<'_>),
+    ) -> Result<(), Rejection> {
+        let RunReplay(shadow) = self;
+        let Some(folder) = run.folder() else { return Ok(()) };
+        let has_begun = !shadow.position().line_hash.is_empty();
+        if has_begun && shadow.position() == run.position() {
+            return Ok(());
+        }
+        let path = folder.join("trajectory.jsonl");
+        let trajectory = Trajectory::read(&path).map_err(|error| unreadable_record(&error))?;
+        let lines = trajectory.lines.iter().skip_while(|line| has_begun && line.seq <= shadow.position().seq);
+        let lacking: Vec<_> = lines.take_while(|line| line.seq <= run.position().seq).collect();
+        for line in lacking {
+            if !goes_on(shadow.day()) {
+                break;
+            }
+            shadow.apply_line_with_progress(&path, line, tell).map_err(|error| unreadable_record(&error))?;
+        }
+        Ok(())
+    }
+}

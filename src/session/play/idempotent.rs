@@ -1,0 +1,123 @@
+//! Idempotent requests: a request with an id runs once, and retries return the first response.
+
+use serde_json::Value;
+
+use super::Session;
+use super::advance::{WeekSubmission, week_arguments};
+use super::tool_call::CallMetadata;
+use crate::company::idempotency::{IdempotentResponse, payload_mismatch};
+use crate::company::reports::WeekResult;
+use novamind_record::trajectory::record::{Outcome, RejectionRecord, RequestId, Via};
+use novamind_tools::{Rejection, ToolId, find};
+
+const MAX_ID_CHARACTERS: usize = 128;
+
+/// A request to simulate a week, from a program.
+#[derive(Debug, Clone, Copy)]
+pub struct WeekRequest<'a> {
+    /// Rationale.
+    pub rationale: &'a Value,
+    /// Forecasts for four horizons.
+    pub predictions: &'a Value,
+    /// The day on which the run must be; null for any.
+    pub expected_day: &'a Value,
+    /// The id of the request; null without one.
+    pub id: &'a Value,
+}
+
+enum RequestState {
+    /// A new request, with the id to record.
+    New(Option<RequestId>),
+    /// A retry, with the first response.
+    Repeated(IdempotentResponse),
+}
+
+fn parse_request_id(id: &Value) -> Result<Option<&str>, Rejection> {
+    match id {
+        Value::Null => Ok(None),
+        Value::String(id) if (1..=MAX_ID_CHARACTERS).contains(&id.chars().count()) => Ok(Some(id)),
+        _ => {
+            let message = format!("request_id must be a text of 1 to {MAX_ID_CHARACTERS} characters");
+            Err(Rejection::for_field("request_id", "request_id_invalid", message))
+        }
+    }
+}
+
+impl Session {
+    /// Calls a tool as [`Session::call`] does, but only once per id: a retry returns the first response. Tools that
+    /// only read or run code ignore the id.
+    ///
+    /// # Errors
+    /// The rejections of the call; `request_id_invalid`, `request_id_payload_mismatch`.
+    pub fn call_once(
+        &mut self,
+        tool: impl AsRef<str>,
+        arguments: &Value,
+        via: Via,
+        id: &Value,
+    ) -> Result<Value, RejectionRecord> {
+        let tool = tool.as_ref();
+        let ignores_id = find(tool).is_some_and(|tool| !tool.spec().id.takes_request_id());
+        let id = if ignores_id { &Value::Null } else { id };
+        match self.request_state(tool, arguments, id) {
+            Err(refusal) => {
+                self.record_rejection(tool, arguments, via, &refusal, None);
+                Err(refusal.into())
+            }
+            Ok(RequestState::Repeated(IdempotentResponse::Call(Outcome::Accepted(answer)))) => Ok(answer),
+            Ok(RequestState::Repeated(IdempotentResponse::Call(Outcome::Rejected(refusal)))) => Err(refusal),
+            Ok(RequestState::Repeated(IdempotentResponse::Week(_))) => Err(payload_mismatch().into()),
+            Ok(RequestState::New(request)) => {
+                let answer =
+                    self.call_with_metadata(tool, arguments, via, CallMetadata { reversal: None, request })?;
+                Ok(answer.to_json())
+            }
+        }
+    }
+
+    /// Simulates a week as [`Session::advance_with_json`] does, but only once per id and only on the expected day.
+    ///
+    /// # Errors
+    /// The rejections of the week; `unexpected_day`, `request_id_invalid`, `request_id_payload_mismatch`.
+    pub fn advance_once(
+        &mut self,
+        request: &WeekRequest<'_>,
+        via: Via,
+    ) -> Result<WeekResult, RejectionRecord> {
+        let WeekRequest { rationale, predictions, expected_day, id } = *request;
+        let args = week_arguments(rationale, predictions, expected_day);
+        let name = ToolId::NextWeek.name();
+        match self.request_state(name, &args, id) {
+            Err(refusal) => {
+                self.record_rejection(name, &args, via, &refusal, None);
+                Err(refusal.into())
+            }
+            Ok(RequestState::Repeated(IdempotentResponse::Week(week))) => Ok(*week),
+            Ok(RequestState::Repeated(IdempotentResponse::Call(Outcome::Rejected(refusal)))) => Err(refusal),
+            Ok(RequestState::Repeated(IdempotentResponse::Call(Outcome::Accepted(_)))) => {
+                Err(payload_mismatch().into())
+            }
+            Ok(RequestState::New(request)) => {
+                let filing = WeekSubmission {
+                    rationale,
+                    predictions,
+                    filled_naively: [false; 4],
+                    expected_day,
+                    request,
+                };
+                Ok(self.submit_week(filing, via, &mut |_| {})?)
+            }
+        }
+    }
+
+    /// Returns whether a request is new or a retry.
+    ///
+    /// # Errors
+    /// `request_id_invalid`, `request_id_payload_mismatch`.
+    fn request_state(&self, tool: &str, args: &Value, id: &Value) -> Result<RequestState, Rejection> {
+        let Some(id) = parse_request_id(id)? else { return Ok(RequestState::New(None)) };
+        let request = RequestId::new(id, tool, args);
+        let first = self.history.idempotent_responses.find(&request)?.cloned();
+        Ok(first.map_or_else(|| RequestState::New(Some(request)), RequestState::Repeated))
+    }
+}

@@ -1,0 +1,122 @@
+//! Progress of a lesson before and after a week, and its restrictions.
+
+use serde_json::json;
+
+use crate::play::Session;
+use crate::play::tool_call::not_saved_rejection;
+use novamind_record::lesson::LessonProgress;
+use novamind_record::trajectory::record::{Activity, LessonNote, RunEndReason, Via};
+use novamind_record::trajectory::{Durability, Record};
+use novamind_tools::{Rejection, ToolId};
+
+/// Returns the whole weeks that have passed.
+pub fn weeks_passed(session: &Session) -> u32 {
+    session.day() / session.params().run.days_per_week
+}
+
+/// Returns the step that the next week belongs to, counted from 0; `None` outside lessons and once the part has ended.
+pub fn lesson_step(session: &Session) -> Option<usize> {
+    let standing = session.lesson().filter(|_| session.ended().is_none())?;
+    standing.current_part().step_after(weeks_passed(session))
+}
+
+impl Session {
+    /// Returns the position of the student in the lesson of this run; `None` outside lessons.
+    pub fn lesson(&self) -> Option<&LessonProgress> {
+        self.lesson.as_deref()
+    }
+
+    pub(crate) fn check_lesson_tool(&self, tool: ToolId, via: Via) -> Result<(), Rejection> {
+        let standing = self.lesson.as_deref().filter(|_| via != Via::Lesson);
+        standing.map_or(Ok(()), |standing| standing.check_tool(tool))
+    }
+
+    /// Rejects a week if the question of the lesson has no answer yet, or if the lesson has ended.
+    pub(crate) fn check_lesson_week(&self, via: Via) -> Result<(), Rejection> {
+        let Some(standing) = self.lesson.as_deref().filter(|_| via != Via::Lesson) else { return Ok(()) };
+        let Some(step) = lesson_step(self) else {
+            return Err(Rejection::new(
+                "lesson_over",
+                "the lesson has ended; open its debrief to see the result",
+            ));
+        };
+        if standing.has_started(step) {
+            return standing.check_guess_submitted(weeks_passed(self));
+        }
+        let message =
+            "the goals of the previous step are not judged yet; close the run and open it again to continue";
+        Err(Rejection::new("step_not_begun", message))
+    }
+
+    pub(crate) fn prepare_lesson_week(&mut self) -> Result<(), Rejection> {
+        if !self.lesson.as_deref().is_some_and(|own| own.current_part().has_automatic_capacity()) {
+            return Ok(());
+        }
+        let (now, next) = (self.settings().core.capacity_tier, self.company().capacity_step_toward_usage());
+        if now == next {
+            return Ok(());
+        }
+        self.call(ToolId::SetCapacityTier, &json!({ "tier": next }), Via::Lesson).map(|_| ())
+    }
+
+    /// Judges a week, before the line that ends the run. When a step has ended, judges it and starts the next one;
+    /// after the last step the run ends. Existing judgements are not changed.
+    pub(crate) fn finish_lesson_week(&mut self) {
+        let is_open = self.ended().is_none();
+        let Some(standing) = self.lesson.as_deref().filter(|_| is_open).cloned() else { return };
+        let is_over = self.simulation().world.is_over(self.params());
+        // A week with a bankruptcy counts.
+        let weeks = self.day().div_ceil(self.params().run.days_per_week);
+        let part = standing.current_part();
+        let step = part.step_after(weeks.saturating_sub(1));
+        let Some(step) = step.filter(|step| standing.has_started(*step) && !standing.has_started(step + 1))
+        else {
+            return;
+        };
+        if standing.is_judged {
+            // Statements must see the week.
+            self.commit_projection();
+            self.record_pitfalls(&standing, step, weeks);
+        }
+        let (begin, end) = part.step_weeks(step);
+        if weeks < end && !is_over {
+            return;
+        }
+        if standing.is_judged {
+            if self.lacks_rule_evaluator(&standing, step) {
+                // It is judged when `set_rule_evaluator` is called.
+                return;
+            }
+            self.judge_guesses(&standing, step, is_over);
+            self.judge_goals(&standing, step, begin);
+        }
+        if is_over {
+            return;
+        }
+        match part.steps.get(step + 1) {
+            Some(_) => {
+                let _ = self.start_step(step + 1, 1);
+            }
+            None => {
+                self.close_run(RunEndReason::Lesson);
+            }
+        }
+    }
+
+    /// Records an event of the lesson on the current day.
+    ///
+    /// # Errors
+    /// `not_in_a_lesson`, `not_saved`.
+    pub fn record_lesson_event(&mut self, note: LessonNote) -> Result<(), Rejection> {
+        if self.lesson.is_none() {
+            return Err(Rejection::new("not_in_a_lesson", "this run is not part of a lesson"));
+        }
+        self.append(&Record::Activity(Activity::Lesson(note.clone())), Durability::Synced)
+            .map_err(not_saved_rejection)?;
+        let day = self.day();
+        if let Some(standing) = &mut self.lesson {
+            standing.events.push((day, note));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,133 @@
+//! Database queries.
+
+use std::time::{Duration, Instant};
+
+use super::Session;
+use crate::database::{RunDatabase, with_hidden_table_hint};
+use novamind_database::query::{QueryLimits, SQL_CANCELLED};
+use novamind_database::{QueryResult, QueryTicket};
+use novamind_record::trajectory::Record;
+use novamind_record::trajectory::record::{Query, QuerySource};
+use novamind_tools::Rejection;
+
+impl Session {
+    /// Runs a guarded statement and records it.
+    ///
+    /// # Errors
+    /// The `sql_` codes.
+    pub fn query(&mut self, sql: &str) -> Result<QueryResult, Rejection> {
+        self.query_as(None, sql, QuerySource::Typed)
+    }
+
+    /// Like [`Session::query`], for a statement from another source. `ticket` is the ticket of
+    /// [`RunDatabase::interrupt_handle`] that was drawn when the statement was requested.
+    ///
+    /// # Errors
+    /// The `sql_` codes.
+    pub fn query_as(
+        &mut self,
+        ticket: Option<QueryTicket>,
+        sql: &str,
+        via: QuerySource,
+    ) -> Result<QueryResult, Rejection> {
+        let started = Instant::now();
+        let drawn = ticket.map_or_else(|| self.new_ticket(), Ok);
+        let answer =
+            drawn.and_then(|ticket| self.query_with_limits(ticket, sql, self.company().query_limits()));
+        self.record_query(sql, answer.as_ref(), started.elapsed(), via);
+        answer
+    }
+
+    pub(super) fn new_ticket(&mut self) -> Result<QueryTicket, Rejection> {
+        Ok(self.up_to_date_database()?.interrupt_handle()?.ticket())
+    }
+
+    /// Runs a statement under these limits without recording it.
+    ///
+    /// # Errors
+    /// The `sql_` codes.
+    pub(crate) fn query_with_limits(
+        &mut self,
+        ticket: QueryTicket,
+        sql: &str,
+        limits: QueryLimits,
+    ) -> Result<QueryResult, Rejection> {
+        let answer = self.up_to_date_database().and_then(|database| database.query(ticket, sql, limits));
+        answer.map_err(|refusal| if self.can_inspect() { with_hidden_table_hint(refusal) } else { refusal })
+    }
+
+    /// Runs a statement of the program, which is not recorded because the user did not enter it.
+    ///
+    /// # Errors
+    /// The `sql_` codes.
+    pub fn query_unrecorded(&mut self, sql: &str) -> Result<QueryResult, Rejection> {
+        let limits = self.company().query_limits();
+        let ticket = self.new_ticket()?;
+        self.up_to_date_database()?.query(ticket, sql, limits)
+    }
+
+    /// Returns the database, which may lack the newest rows.
+    pub fn database(&self) -> &RunDatabase {
+        &self.database
+    }
+
+    /// Waits until the database contains everything up to the last decision day and this week's calls.
+    ///
+    /// # Errors
+    /// The database cannot be written.
+    pub fn wait_for_database(&self) -> Result<(), Rejection> {
+        let refused = |problem: String| Rejection::new("sql_error", problem);
+        if self.log.sync_pending_calls().map_err(|error| refused(error.to_string()))? {
+            self.commit_projection();
+        }
+        self.database.wait_until_written().map_err(|error| refused(error.to_string()))
+    }
+
+    /// Records a query that was run elsewhere.
+    pub fn record_query(
+        &mut self,
+        sql: &str,
+        answer: Result<&QueryResult, &Rejection>,
+        took: Duration,
+        via: QuerySource,
+    ) {
+        let rows = answer.ok();
+        let refusal = answer.err();
+        let query = Query {
+            sql: sql.to_owned(),
+            rows: rows.map(|rows| rows.rows.len() as u64),
+            truncated: rows.is_some_and(|rows| rows.truncated),
+            error: refusal.map(|refusal| refusal.code.to_owned()),
+            message: refusal.map(|refusal| refusal.message.clone()),
+            stopped: refusal.is_some_and(|refusal| refusal.code == SQL_CANCELLED),
+            via: Some(via),
+            took_ms: (took.as_secs_f64() * 1e6).round() / 1e3,
+        };
+        self.add_to_query_history(&query);
+        self.record_event(Record::Query(query));
+    }
+
+    /// Adds a statement to the query history, unless it came from a script.
+    pub(super) fn add_to_query_history(&mut self, Query { sql, via, .. }: &Query) {
+        const MAX_KEPT_QUERIES: usize = 100;
+        if *via == Some(QuerySource::Script) {
+            return;
+        }
+        self.history.query_history.retain(|known| known != sql);
+        self.history.query_history.push(sql.clone());
+        let surplus = self.history.query_history.len().saturating_sub(MAX_KEPT_QUERIES);
+        self.history.query_history.drain(..surplus);
+    }
+
+    /// Returns the database with all rows. Repairs it if it could not be written before.
+    ///
+    /// # Errors
+    /// The database cannot be written.
+    pub fn up_to_date_database(&mut self) -> Result<&mut RunDatabase, Rejection> {
+        if let Err(problem) = self.wait_for_database() {
+            // Disk space may be available again.
+            self.repair_database().map_err(|_| problem)?;
+        }
+        Ok(&mut self.database)
+    }
+}

@@ -1,0 +1,156 @@
+//! The user's clock according to the lines of a run, and the reported time limits.
+
+use std::collections::BTreeSet;
+
+use novamind_record::rules::{AtLimit, TimeLimits};
+use novamind_record::trajectory::record::{Activity, ClockEvent, LimitEvent, LimitScope, PresenceEvent};
+use novamind_record::trajectory::{Record, Trajectory};
+
+#[derive(Debug, Clone, Default)]
+pub(crate) struct SessionClock {
+    /// When it was stopped, in seconds since 1970; `None` while it runs.
+    pub(super) stopped_at: Option<f64>,
+    /// A limit has stopped it, and it was not started since.
+    pub(super) is_stopped_by_limit: bool,
+    /// Reported limits: whether each was reached.
+    pub(super) reported_limits: BTreeSet<(LimitScope, bool)>,
+}
+
+/// A limit, and the time left.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TimeLeft {
+    /// The scope of the limit.
+    pub scope: LimitScope,
+    /// Allowed minutes.
+    pub minutes: u32,
+    /// Seconds left; negative once the limit is exceeded.
+    pub seconds: f64,
+}
+
+impl SessionClock {
+    pub(crate) fn from_trajectory(trajectory: &Trajectory) -> SessionClock {
+        let mut clock = SessionClock::default();
+        trajectory.lines.iter().for_each(|line| clock.apply(&line.record, line.at_seconds()));
+        clock
+    }
+
+    /// Applies a line written at `at`, in seconds since 1970.
+    pub(crate) fn apply(&mut self, record: &Record, at: f64) {
+        match record {
+            Record::Branch(_) => *self = SessionClock::default(),
+            Record::Week(_) => self.reported_limits.retain(|(scope, _)| *scope != LimitScope::Week),
+            Record::Activity(Activity::Session(presence)) if presence.event == PresenceEvent::Opened => {
+                self.reported_limits.retain(|(scope, _)| *scope != LimitScope::Session);
+            }
+            Record::Activity(Activity::Clock(clock)) => {
+                self.stopped_at = (clock.event == ClockEvent::Stopped).then_some(at);
+                self.is_stopped_by_limit &= clock.event != ClockEvent::Started;
+            }
+            Record::Activity(Activity::Limit(limit)) => {
+                self.reported_limits.insert((limit.limit, limit.event != LimitEvent::Warned));
+                self.is_stopped_by_limit |= limit.event == LimitEvent::Paused;
+            }
+            _ => {}
+        }
+    }
+
+    /// Returns the event of a limit that must be reported now.
+    pub(super) fn due_event(&self, left: TimeLeft, limits: &TimeLimits) -> Option<LimitEvent> {
+        let is_told = |reached| self.reported_limits.contains(&(left.scope, reached));
+        if left.seconds <= 0.0 {
+            return (!is_told(true)).then_some(match (limits.at_limit, left.scope) {
+                (AtLimit::Remind, _) => LimitEvent::Reminded,
+                (AtLimit::Naive, LimitScope::Week) => LimitEvent::FiledNaively,
+                // A week can be submitted automatically; a session cannot.
+                (AtLimit::Naive | AtLimit::Pause, _) => LimitEvent::Paused,
+            });
+        }
+        let warning = limits.warning_minutes.map(|minutes| f64::from(minutes) * 60.0)?;
+        (left.seconds <= warning && !is_told(false) && !is_told(true)).then_some(LimitEvent::Warned)
+    }
+}
+
+impl TimeLeft {
+    /// Returns the minutes left, rounded up.
+    pub fn whole_minutes(&self) -> i64 {
+        (self.seconds / 60.0).ceil() as i64
+    }
+
+    /// Describes the limit and the time left.
+    pub fn describe(&self) -> String {
+        let scope = match self.scope {
+            LimitScope::Week => "this week",
+            LimitScope::Session => "this session",
+            LimitScope::Study => "the study",
+        };
+        match self.whole_minutes() {
+            minutes if minutes <= 0 => format!("the {} min for {scope} are used up", self.minutes),
+            minutes => format!("{minutes} of {} min left for {scope}", self.minutes),
+        }
+    }
+
+    /// Describes what happens when no time is left.
+    pub fn describe_consequence(&self, at_limit: AtLimit) -> &'static str {
+        match at_limit {
+            AtLimit::Remind => "then you are asked to finish",
+            AtLimit::Naive if self.scope == LimitScope::Week => {
+                "then the week is submitted with the naive projection, without your text"
+            }
+            AtLimit::Naive | AtLimit::Pause => "then the clock is stopped",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use novamind_record::trajectory::record::{Clock, Closing, Limit};
+
+    fn limit_record(limit: LimitScope, event: LimitEvent) -> Record {
+        Record::Activity(Activity::Limit(Limit { limit, event, minutes: 10, used_ms: 0 }))
+    }
+
+    fn clock_record(event: ClockEvent) -> Record {
+        Record::Activity(Activity::Clock(Clock { event, reason: None, stood_ms: None }))
+    }
+
+    #[test]
+    fn limit_events_are_reported_once() {
+        let limits =
+            TimeLimits { warning_minutes: Some(2), at_limit: AtLimit::Naive, ..TimeLimits::default() };
+        let left = |scope, seconds| TimeLeft { scope, minutes: 10, seconds };
+        let mut own = SessionClock::default();
+        assert_eq!(own.due_event(left(LimitScope::Week, 121.0), &limits), None);
+        assert_eq!(own.due_event(left(LimitScope::Week, 119.0), &limits), Some(LimitEvent::Warned));
+        own.apply(&limit_record(LimitScope::Week, LimitEvent::Warned), 0.0);
+        assert_eq!(own.due_event(left(LimitScope::Week, 60.0), &limits), None);
+        assert_eq!(own.due_event(left(LimitScope::Week, 0.0), &limits), Some(LimitEvent::FiledNaively));
+        own.apply(&limit_record(LimitScope::Week, LimitEvent::FiledNaively), 0.0);
+        assert_eq!(own.due_event(left(LimitScope::Week, -5.0), &limits), None);
+        let (figures, state_hash, parts) = Default::default();
+        own.apply(&Record::Week(Closing { days_run: 7, figures, cash: 0.0, state_hash, parts }), 0.0);
+        assert_eq!(
+            own.due_event(left(LimitScope::Week, 100.0), &limits),
+            Some(LimitEvent::Warned),
+            "a new week"
+        );
+        let paused = own.due_event(left(LimitScope::Session, 0.0), &limits);
+        assert_eq!(paused, Some(LimitEvent::Paused), "a session cannot be submitted");
+        assert_eq!(left(LimitScope::Week, 61.0).describe(), "2 of 10 min left for this week");
+    }
+
+    #[test]
+    fn clock_stopped_by_limit_stays_stopped_until_started() {
+        let mut own = SessionClock::default();
+        for record in [
+            limit_record(LimitScope::Study, LimitEvent::Paused),
+            clock_record(ClockEvent::Stopped),
+            clock_record(ClockEvent::Forgotten),
+        ] {
+            own.apply(&record, 5.0);
+        }
+        assert!(own.is_stopped_by_limit && own.stopped_at.is_none(), "closing the run does not start it");
+        own.apply(&clock_record(ClockEvent::Started), 6.0);
+        assert!(!own.is_stopped_by_limit);
+    }
+}

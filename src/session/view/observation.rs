@@ -1,0 +1,272 @@
+//! A summary of the company for its player.
+
+use serde::Serialize;
+
+use super::CompanyView;
+use super::identical_plans::IdenticalPlans;
+use super::research_outlook::LateProject;
+use crate::company::irrevocable::IrrevocableAction;
+use crate::figures::cash_rate::CashRate;
+use crate::figures::changes::SettingChange;
+use crate::figures::dashboard::{self, WaitingLeads};
+use crate::figures::week::week_of;
+use novamind_record::figures::{CategoryTotals, WeekFigures};
+use novamind_record::mode::Mode;
+use novamind_record::trajectory::record::RunEndReason;
+use novamind_voice::model::settings::ModelStamp;
+use novamind_world::day::closing_figures;
+use novamind_world::identifiers::{Group, Plan};
+
+/// A summary of the company.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Observation {
+    /// Identifier of the run.
+    pub run: String,
+    /// Mode.
+    pub mode: Mode,
+    /// Seed; `None` in studies, whose participants must not know it.
+    pub seed: Option<u64>,
+    /// Scenario.
+    pub scenario: String,
+    /// Whether the parameters differ from those of the bundled scenario of that name.
+    pub has_own_parameters: bool,
+    /// Language model of the run.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub voice: Option<ModelStamp>,
+    /// Whether the run is a branch of another run.
+    pub is_branch: bool,
+    /// Label of the participant.
+    pub participant: Option<String>,
+    /// Last simulated day.
+    pub day: u32,
+    /// Last day of the run.
+    pub last_day: u32,
+    /// Week of the last simulated day.
+    pub week: u32,
+    /// Cash, dollars.
+    pub cash: f64,
+    /// Cash on day 0, before any purchase, dollars.
+    pub starting_cash: f64,
+    /// Change of cash over the last week, or over the simulated days of a started week, dollars; 0 before the first.
+    pub cash_change: f64,
+    /// Number of days of that change: fewer than 7 after single days, or if the run ended within a week.
+    pub cash_change_days: u32,
+    /// Ledger totals since the end of the last week: purchases, and simulated days of a started week.
+    pub booked_since: CategoryTotals,
+    /// Rate at which cash changes.
+    pub pace: CashRate,
+    /// Commitments of the settings at the end of the last week, dollars a day.
+    pub committed_before: f64,
+    /// Weeks until cash is 0 at this rate; `None` if it lasts to the last day.
+    pub runway_weeks: Option<f64>,
+    /// Active subscriptions of individuals.
+    pub subscribers: u32,
+    /// Active enterprises.
+    pub companies: u32,
+    /// Seats of active enterprises.
+    pub seats: u32,
+    /// Known groups, in fixed order.
+    pub known_groups: Vec<Group>,
+    /// How the run ended.
+    pub ended: Option<RunEndReason>,
+    /// Score; `None` before the end.
+    pub score: Option<f64>,
+    /// Figures of the last week; `None` before the first.
+    pub last_week: Option<WeekFigures>,
+    /// The dashboard of the last week, or a new one before the first.
+    pub dashboard: String,
+    /// Settings changed since the last week.
+    pub changes: Vec<SettingChange>,
+    /// Purchases and other irrevocable actions since the last week, as text.
+    pub purchases: Vec<String>,
+    /// Plans that differ only in price.
+    pub alike_plans: Vec<IdenticalPlans>,
+    /// Threads that wait for a response.
+    pub waiting: Vec<WaitingThread>,
+    /// Number of running R&D projects.
+    pub running_research: u32,
+    /// R&D projects that will not finish before the last day.
+    pub late_projects: Vec<LateProject>,
+}
+
+/// A thread that waits for a response.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct WaitingThread {
+    /// Number of the thread.
+    pub thread: u32,
+    /// The enterprise.
+    pub customer: u32,
+    /// Its group.
+    pub group: &'static str,
+    /// Seats, whole number.
+    pub seats: u32,
+    /// How the thread started.
+    pub kind: &'static str,
+    /// Number of its last turn.
+    pub turn: u32,
+    /// Number of the player's offers in it.
+    pub offers_so_far: u32,
+    /// The player's last offer: plans with prices, dollars a month and seat.
+    pub last_offer: Vec<(Plan, f64)>,
+    /// Last price that the enterprise named, dollars a month and seat.
+    pub asked: Option<f64>,
+    /// Days left before it is lost.
+    pub days_left: u32,
+}
+
+impl Observation {
+    /// Returns the active subscriptions: of individuals, and one for each enterprise.
+    pub fn active_subscriptions(&self) -> u32 {
+        self.subscribers + self.companies
+    }
+
+    /// Returns the whole weeks that cash lasts at this rate; `None` if it lasts to the last day.
+    pub fn whole_runway_weeks(&self) -> Option<u32> {
+        self.runway_weeks.map(|weeks| weeks as u32)
+    }
+}
+
+impl CompanyView<'_> {
+    /// Returns a summary of the company.
+    pub fn observe(&self) -> Observation {
+        let (closing, pace) = (closing_figures(&self.simulation.world), self.cash_rate());
+        Observation {
+            run: self.manifest.id.clone(),
+            mode: self.manifest.mode,
+            seed: Some(self.manifest.seed).filter(|_| self.manifest.study.is_none()),
+            scenario: self.manifest.scenario.clone(),
+            has_own_parameters: self.derived.has_custom_parameters(self.simulation, self.manifest),
+            voice: self.manifest.voice.clone(),
+            is_branch: self.manifest.parent.is_some(),
+            participant: self.manifest.participant.clone(),
+            day: self.simulation.world.day,
+            last_day: self.manifest.days,
+            week: week_of(self.simulation.world.day),
+            cash: self.simulation.world.finance.cash,
+            starting_cash: self.manifest.cash,
+            cash_change: self.latest_figures().map_or(0.0, |week| week.cash_change),
+            cash_change_days: self.latest_figures().map_or(0, |week| week.days_run),
+            booked_since: self.booked_since(),
+            pace,
+            committed_before: self.daily_cost(&self.history.week_actions.settings),
+            runway_weeks: self.runway_weeks(&pace),
+            subscribers: closing.individual_subscribers,
+            companies: self.active_companies(),
+            seats: closing.enterprise_seats,
+            known_groups: Group::all()
+                .filter(|group| self.simulation.world.market.is_known(*group))
+                .collect(),
+            ended: self.history.ended,
+            score: self.score(),
+            last_week: self.history.weeks.last().copied(),
+            dashboard: self.dashboard(),
+            changes: self.setting_changes(),
+            purchases: self
+                .history
+                .week_actions
+                .irrevocable_actions
+                .iter()
+                .map(IrrevocableAction::to_string)
+                .collect(),
+            alike_plans: self.identical_plans(),
+            waiting: self.waiting_threads(),
+            running_research: self.running_research_count(),
+            late_projects: self.late_projects(),
+        }
+    }
+
+    /// Returns the weekly dashboard as of the last simulated day, regardless of later settings. Before the first day,
+    /// builds it from the current state.
+    pub fn dashboard(&self) -> String {
+        self.history
+            .last_dashboard
+            .clone()
+            .unwrap_or_else(|| self.build_dashboard(self.simulation.open_issues()))
+    }
+
+    pub(crate) fn build_dashboard(&self, open_issues: u32) -> String {
+        let closing = closing_figures(&self.simulation.world);
+        let stocks = WeekFigures {
+            cash: closing.cash,
+            individual_subscribers: closing.individual_subscribers,
+            enterprise_seats: closing.enterprise_seats,
+            open_issues,
+            ..WeekFigures::default()
+        };
+        let waiting = self.waiting_threads();
+        let waiting = WaitingLeads {
+            threads: waiting.len() as u32,
+            days_left: waiting.iter().map(|thread| thread.days_left).min().unwrap_or(0),
+        };
+        let week = if self.history.current_week.days_run > 0 {
+            Some(&self.history.current_week)
+        } else {
+            self.history.weeks.last()
+        };
+        dashboard::dashboard_text(
+            &self.simulation.world,
+            &self.simulation.params,
+            week,
+            &stocks,
+            &self.history.calculation_outputs,
+            waiting,
+        )
+    }
+
+    /// Returns the threads that wait for a response, ordered by deadline.
+    fn waiting_threads(&self) -> Vec<WaitingThread> {
+        let patience = self.simulation.params.enterprise.agent_response_timeout_days;
+        let enterprise = &self.simulation.world.enterprise;
+        let threads = enterprise.threads.iter().filter(|thread| thread.awaits_player());
+        let waiting = threads.map(|thread| {
+            let company = enterprise.company(thread.customer);
+            let row = company.and_then(|company| company.row(&self.simulation.world.customers));
+            WaitingThread {
+                thread: thread.number,
+                customer: thread.customer,
+                group: thread.group.id(),
+                seats: row.map_or(1, |row| row.seats as u32),
+                kind: thread.kind.id(),
+                turn: thread.last().number,
+                offers_so_far: thread.player_turn_count(),
+                last_offer: thread.last_offerings().iter().map(|own| (own.plan, own.price)).collect(),
+                asked: thread.last_asked_price(),
+                days_left: (thread.last().day + patience).saturating_sub(self.simulation.world.day),
+            }
+        });
+        let mut waiting: Vec<WaitingThread> = waiting.collect();
+        waiting.sort_by_key(|thread| (thread.days_left, std::cmp::Reverse(thread.seats), thread.thread));
+        waiting
+    }
+
+    fn active_companies(&self) -> u32 {
+        let enterprise = Group::all().filter(|group| group.is_enterprise());
+        enterprise.map(|group| self.simulation.world.customers.groups[group].active_count()).sum()
+    }
+
+    fn running_research_count(&self) -> u32 {
+        self.simulation
+            .world
+            .product
+            .research
+            .iter()
+            .filter(|project| project.completed_day.is_none())
+            .count() as u32
+    }
+
+    fn latest_figures(&self) -> Option<&WeekFigures> {
+        let running = &self.history.current_week;
+        if running.days_run > 0 { Some(running) } else { self.history.weeks.last() }
+    }
+
+    fn runway_weeks(&self, pace: &CashRate) -> Option<f64> {
+        let left = f64::from(self.manifest.days.saturating_sub(self.simulation.world.day));
+        pace.runway_weeks(self.simulation.world.finance.cash).filter(|weeks| weeks * 7.0 < left)
+    }
+
+    fn booked_since(&self) -> CategoryTotals {
+        let mut booked = self.history.current_week.booked;
+        self.history.call_ledger.iter().for_each(|entry| booked.add(entry.category, entry.amount));
+        booked
+    }
+}

@@ -1,0 +1,104 @@
+//! The questions of a study that are due in a run, and the record of their answers.
+
+use serde_json::{Value, json};
+
+use super::definition::Study;
+use super::questions::{Occasion, Question, Questionnaire};
+use novamind_record::rules::FreeText;
+use novamind_record::trajectory::record::{Activity, QuestionAnswer, QuestionShown};
+use novamind_session::Session;
+
+/// A question that is due.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DueQuestion {
+    /// Name of its questionnaire.
+    pub questionnaire: String,
+    /// Heading of the questionnaire.
+    pub title: String,
+    /// Text before the first question of the questionnaire.
+    pub introduction: String,
+    /// Occasion: `before`, `week N`, `break N` or `end`.
+    pub occasion: String,
+    /// The question.
+    pub question: Question,
+}
+
+impl Study {
+    /// Returns the questions that are due in a run, in order. A practice run has none.
+    pub fn due_questions(&self, session: &Session) -> Vec<DueQuestion> {
+        let is_session = session.manifest().study.as_ref().is_some_and(|stamp| !stamp.practice);
+        if !is_session {
+            return Vec::new();
+        }
+        let asked = self
+            .questionnaires
+            .iter()
+            .flat_map(|own| due_occasions(own, session).into_iter().map(move |at| (own, at)));
+        asked
+            .flat_map(|(own, occasion)| {
+                let open = own.questions.iter().filter(|question| {
+                    !session.log().answer_book().is_answered(&own.name, &occasion, &question.id)
+                });
+                let due = |question: &Question| DueQuestion {
+                    questionnaire: own.name.clone(),
+                    title: own.title.clone(),
+                    introduction: own.introduction.clone(),
+                    occasion: occasion.clone(),
+                    question: question.clone(),
+                };
+                open.map(due).collect::<Vec<_>>()
+            })
+            .collect()
+    }
+}
+
+/// Returns the occasions on which a questionnaire has become due.
+fn due_occasions(questionnaire: &Questionnaire, session: &Session) -> Vec<String> {
+    let weeks = session.weeks().len() as u32;
+    match questionnaire.when {
+        Occasion::Before => vec!["before".to_owned()],
+        Occasion::Weeks => {
+            let due = (1..=weeks).filter(|week| questionnaire.is_due_after(*week));
+            due.map(|week| format!("week {week}")).collect()
+        }
+        Occasion::Break => {
+            let last = Some(session.log().answer_book().break_count)
+                .filter(|breaks| *breaks > 0 && session.ended().is_none());
+            last.map(|number| format!("break {number}")).into_iter().collect()
+        }
+        Occasion::End => session.ended().map(|_| "end".to_owned()).into_iter().collect(),
+    }
+}
+
+impl DueQuestion {
+    /// Records that the question is shown.
+    pub fn record_shown(&self, session: &mut Session) {
+        session.activity().record(Activity::Question(QuestionShown {
+            questionnaire: self.questionnaire.clone(),
+            occasion: self.occasion.clone(),
+            id: self.question.id.clone(),
+            text: self.question.text.clone(),
+            form: self.question.form.id().to_owned(),
+            options: self.question.form.options(),
+        }));
+    }
+
+    /// Records an answer, null if the question was skipped. Free text is masked if the rules require it. `shown_ms` is the time
+    /// for which the question was shown.
+    pub fn record_answer(&self, session: &mut Session, value: &Value, for_ms: u64, changes: u32) {
+        let masked = session.rules().free_text == FreeText::Masked && self.question.form.is_free_text();
+        let kept = match value.as_str().filter(|_| masked) {
+            Some(words) => json!({ "length": words.chars().count() }),
+            None => value.clone(),
+        };
+        session.activity().record(Activity::Answer(QuestionAnswer {
+            questionnaire: self.questionnaire.clone(),
+            occasion: self.occasion.clone(),
+            id: self.question.id.clone(),
+            as_expected: self.question.form.matches_expected(value),
+            value: kept,
+            for_ms,
+            changes,
+        }));
+    }
+}

@@ -1,0 +1,123 @@
+//! The current state of a study's sessions on a machine, for `study watch`.
+
+use std::path::Path;
+
+use serde::Serialize;
+
+use crate::definition::Study;
+use novamind_record::clock::{now, parse_seconds};
+use novamind_record::folder::lock::is_locked;
+use novamind_record::folder::manifest::Manifest;
+use novamind_record::folder::manifest_check::ManifestCheck;
+use novamind_record::folder::runs::{all_run_folders, read_last_lines};
+use novamind_record::trajectory::record::{Activity, ClockEvent, Outcome, PresenceEvent};
+use novamind_record::trajectory::{Line, Record};
+
+/// The current state of a run of a study.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SessionStatus {
+    /// Label.
+    pub participant: String,
+    /// Run.
+    pub run: String,
+    /// Whether it is the practice run.
+    pub practice: bool,
+    /// State of the participant.
+    pub state: SessionState,
+    /// Last simulated day.
+    pub day: u32,
+    /// Last day of the run.
+    pub days: u32,
+    /// Seconds since the last line.
+    pub quiet_seconds: f64,
+    /// Problem in the record: damage, or the last failure to save.
+    pub problems: Vec<String>,
+}
+
+/// The state of a participant in a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SessionState {
+    /// The run is being played.
+    Plays,
+    /// The run is open, and there was no input for a while.
+    Idle,
+    /// The clock is stopped.
+    Paused,
+    /// The participant has left the run.
+    Left,
+    /// The program ended without closing the run.
+    Stopped,
+    /// The run has ended.
+    Over,
+}
+
+/// Returns the runs of a study in a machine's folder of runs, sorted by label and run.
+pub fn session_statuses(study: &Study, runs: &Path) -> Vec<SessionStatus> {
+    let folders = all_run_folders(runs);
+    let entries = folders.iter().flat_map(|folder| std::fs::read_dir(folder).into_iter().flatten().flatten());
+    let own = entries.filter_map(|entry| {
+        let folder = entry.path();
+        let manifest = ManifestCheck::read(&folder).ok()?.manifest;
+        let is_own = manifest.study.as_ref().is_some_and(|stamp| stamp.digest == study.digest);
+        is_own.then(|| session_status(&folder, &manifest))
+    });
+    let mut own: Vec<SessionStatus> = own.collect();
+    own.sort_by(|one, other| (&one.participant, &one.run).cmp(&(&other.participant, &other.run)));
+    own
+}
+
+fn session_status(folder: &Path, manifest: &Manifest) -> SessionStatus {
+    let (lines, damaged) = match read_last_lines(&folder.join("trajectory.jsonl")) {
+        Ok(lines) => (lines, None),
+        Err(problem) => (Vec::new(), Some(problem)),
+    };
+    let quiet = lines.last().map_or(0.0, |line| (parse_seconds(&now()) - line.at_seconds()).max(0.0));
+    let mut problems: Vec<String> = damaged.into_iter().collect();
+    problems.extend(last_save_error(&lines));
+    SessionStatus {
+        participant: manifest.participant.clone().unwrap_or_default(),
+        run: manifest.id.clone(),
+        practice: manifest.study.as_ref().is_some_and(|stamp| stamp.practice),
+        state: session_state(&lines, is_locked(folder)),
+        day: lines.iter().rev().find(|line| line.closes_days()).map_or(0, |line| line.day),
+        days: manifest.days,
+        quiet_seconds: quiet,
+        problems,
+    }
+}
+
+/// Returns the last failure to save, unless a later call was saved.
+fn last_save_error(lines: &[Line]) -> Option<String> {
+    lines.iter().rev().find_map(|line| match &line.record {
+        Record::Call(call) => Some(match &call.outcome {
+            Outcome::Rejected(refusal) if refusal.code == "not_saved" => Some(refusal.message.clone()),
+            _ => None,
+        }),
+        Record::Week(_) => Some(None),
+        _ => None,
+    })?
+}
+
+fn session_state(lines: &[Line], locked: bool) -> SessionState {
+    let said = lines.iter().rev().find_map(|line| match &line.record {
+        Record::End(_) => Some(SessionState::Over),
+        Record::Activity(Activity::Clock(clock)) if clock.event == ClockEvent::Stopped => {
+            Some(SessionState::Paused)
+        }
+        Record::Activity(Activity::Session(own)) => match own.event {
+            PresenceEvent::Closed => Some(SessionState::Left),
+            PresenceEvent::Idle | PresenceEvent::Suspended => Some(SessionState::Idle),
+            _ => Some(SessionState::Plays),
+        },
+        Record::Call(_) | Record::Advance(_) | Record::Week(_) | Record::Query(_) => {
+            Some(SessionState::Plays)
+        }
+        _ => None,
+    });
+    match said.unwrap_or(SessionState::Plays) {
+        // The run is not locked, and no line records that it was closed.
+        SessionState::Plays | SessionState::Idle | SessionState::Paused if !locked => SessionState::Stopped,
+        said => said,
+    }
+}

@@ -1,0 +1,262 @@
+//! The context of a judgement: the readers' experience and current events
+//! (docs/mechanics/market/social/judge.md#circumstances). The judge uses no other data about the company.
+
+use super::lexicon::Lexicon;
+use novamind_world::events::{Severity, Trend};
+use novamind_world::identifiers::{ByGroup, Group, Plan};
+use novamind_world::market::competitors::severity;
+use novamind_world::market::social::chronicle::Page;
+use novamind_world::params::Params;
+use novamind_world::quality::{quota_demand, quota_factor};
+use novamind_world::state::World;
+
+/// Facts that a judgement uses.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JudgeContext {
+    /// By group.
+    pub groups: ByGroup<ReaderGroup>,
+    /// Total active subscriptions.
+    pub subscribers: u32,
+    /// Whether own research was completed in the last four weeks.
+    pub research_done: bool,
+    /// Whether a list price is below that of four weeks ago, or a discount is new.
+    pub price_cut: bool,
+    /// Whether a discount is available.
+    pub promotion: bool,
+    /// Whether a quota is above that of four weeks ago.
+    pub quota_up: bool,
+    /// Days with an outage in the last two weeks.
+    pub outage_days: u32,
+    /// Largest overload of the last two weeks.
+    pub overload: f64,
+    /// Mean latency of the last seven days, ms.
+    pub p95_ms: f64,
+    /// Open issues per subscriber.
+    pub issue_rate: f64,
+    /// Mean age of open issues in days.
+    pub issue_age: f64,
+    /// Current events with their age in days.
+    pub live_events: Vec<(LiveEvent, u32)>,
+}
+
+/// The state of a group of readers.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ReaderGroup {
+    /// Active subscriptions.
+    pub subscribers: u32,
+    /// Mean satisfaction, 0 without subscribers.
+    pub satisfaction: f64,
+    /// Quality gained in four weeks.
+    pub progress: f64,
+}
+
+/// A current event.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LiveEvent {
+    /// The service was down.
+    Outage,
+    /// A list price was raised.
+    PriceUp,
+    /// Support cannot resolve issues fast enough.
+    Issues,
+    /// Many subscribers lack quota.
+    Quota,
+    /// A competitor made a large improvement.
+    Competitor,
+    /// The economy is reported to contract.
+    MacroDown,
+    /// The economy is reported to grow.
+    MacroUp,
+    /// Own research was completed.
+    Research,
+}
+
+impl LiveEvent {
+    /// Identifier for reasons.
+    pub fn id(self) -> &'static str {
+        match self {
+            LiveEvent::Outage => "outage",
+            LiveEvent::PriceUp => "price raised",
+            LiveEvent::Issues => "open issues",
+            LiveEvent::Quota => "quota",
+            LiveEvent::Competitor => "rival",
+            LiveEvent::MacroDown => "weak economy",
+            LiveEvent::MacroUp => "strong economy",
+            LiveEvent::Research => "research done",
+        }
+    }
+}
+
+const FOUR_WEEKS: u32 = 28;
+const TWO_WEEKS: usize = 14;
+const WEEK: usize = 7;
+
+impl JudgeContext {
+    /// Returns the context at the end of the world's last day.
+    pub fn from_world(world: &World, params: &Params, lexicon: &Lexicon) -> JudgeContext {
+        let chronicle = &world.market.social.chronicle;
+        let (today, before) = (chronicle.today(), chronicle.oldest());
+        let (issue_rate, issue_age, short) = service_strain(world, params);
+        let latencies: Vec<f64> = chronicle.newest_first(WEEK).filter_map(|page| page.p95_ms).collect();
+        // A price of 0 means that nothing was on sale.
+        let cheaper = |plan: &Plan| today.prices[*plan] < before.prices[*plan];
+        let mut own = JudgeContext {
+            groups: ByGroup::from_fn(|group| reader_group(group, world)),
+            subscribers: world.customers.active_by_group().0.iter().sum(),
+            research_done: research_ages(world).any(|age| age <= FOUR_WEEKS),
+            price_cut: Plan::ALL.iter().any(cheaper) || today.discount > before.discount,
+            promotion: today.discount > 0.0,
+            quota_up: Plan::ALL.iter().any(|plan| today.quotas[*plan] > before.quotas[*plan]),
+            outage_days: chronicle.newest_first(TWO_WEEKS).filter(|page| page.outage).count() as u32,
+            overload: chronicle.newest_first(TWO_WEEKS).map(|page| page.overload).fold(0.0, f64::max),
+            p95_ms: latencies.iter().sum::<f64>() / latencies.len().max(1) as f64,
+            issue_rate,
+            issue_age,
+            live_events: Vec::new(),
+        };
+        own.live_events = live_events(world, params, lexicon, &own, short);
+        own
+    }
+
+    /// Returns the age of a current event, or `None` if it is not current.
+    pub fn event_age(&self, event: LiveEvent) -> Option<u32> {
+        self.live_events.iter().find(|(live, _)| *live == event).map(|(_, age)| *age)
+    }
+}
+
+fn reader_group(group: Group, world: &World) -> ReaderGroup {
+    let own = &world.customers.groups[group];
+    let count = own.active_count();
+    let sum: f64 = own.blocks.iter().flat_map(|block| &block.satisfaction).sum();
+    let satisfaction = if count == 0 { 0.0 } else { sum / f64::from(count) };
+    ReaderGroup {
+        subscribers: count,
+        satisfaction,
+        progress: world.market.social.chronicle.quality_change(group),
+    }
+}
+
+/// Returns open issues per subscriber, their mean age in days, and the share of subscribers who lack quota.
+fn service_strain(world: &World, params: &Params) -> (f64, f64, f64) {
+    let core = &world.settings.core;
+    let weekday = params.calendar.weekly[(world.day % 7) as usize];
+    let (mut count, mut open, mut days, mut short) = (0u32, 0u32, 0u32, 0u32);
+    for (_, block) in world.customers.blocks() {
+        for at in 0..block.len() {
+            count += 1;
+            open += u32::from(block.open_issue_days[at] > 0);
+            days += block.open_issue_days[at];
+            let rate = block.usage_rate[at];
+            let quota = core.quotas[block.plan[at]].units();
+            let factor = quota_factor(quota, quota_demand(rate * weekday, rate, params), &params.quality);
+            short += u32::from(factor < 1.0);
+        }
+    }
+    let of = |part: u32, whole: u32| if whole == 0 { 0.0 } else { f64::from(part) / f64::from(whole) };
+    (of(open, count), of(days, open), of(short, count))
+}
+
+fn research_ages(world: &World) -> impl Iterator<Item = u32> {
+    world.product.research.iter().filter_map(|project| project.completed_day).map(|day| world.day - day)
+}
+
+fn live_events(
+    world: &World,
+    params: &Params,
+    lexicon: &Lexicon,
+    own: &JudgeContext,
+    short: f64,
+) -> Vec<(LiveEvent, u32)> {
+    let (day, law) = (world.day, &lexicon.events);
+    let chronicle = &world.market.social.chronicle;
+    let age = |page: &Page| day - page.day;
+    let raised = |(before, after): &(&Page, &Page)| {
+        let rise = |plan: &Plan| {
+            before.prices[*plan] > 0.0 && after.prices[*plan] >= before.prices[*plan] * law.price_rise
+        };
+        Plan::ALL.iter().any(rise)
+    };
+    let outage = chronicle.newest_first(TWO_WEEKS + 1).find(|page| page.outage).map(age);
+    let price_up = chronicle.consecutive_pages().find(raised).map(|(_, after)| age(after));
+    let issues = own.issue_rate > law.issue_rate || own.issue_age > law.issue_age;
+    let rivals = world.market.competitors.iter().rev();
+    let rival = rivals
+        .filter(|event| severity(event.boost, &params.competitor) >= Severity::Moderate)
+        .map(|event| day - event.day)
+        .next();
+    let published = world.market.economy.published.as_ref();
+    let news = published.map(|reading| {
+        let published_day = reading.measured_day + params.economy.macro_pmi_publication_delay_days;
+        let event = match reading.trend {
+            Trend::Contraction | Trend::SevereContraction => Some(LiveEvent::MacroDown),
+            Trend::Expansion | Trend::StrongExpansion => Some(LiveEvent::MacroUp),
+            Trend::Neutral => None,
+        };
+        (event, day.saturating_sub(published_day))
+    });
+    let economy = |wanted| news.filter(|(event, _)| *event == Some(wanted)).map(|(_, age)| age);
+    [
+        (LiveEvent::Outage, outage),
+        (LiveEvent::PriceUp, price_up),
+        (LiveEvent::Issues, issues.then_some(0)),
+        (LiveEvent::Quota, (short > law.quota_share).then_some(0)),
+        (LiveEvent::Competitor, rival),
+        (LiveEvent::MacroDown, economy(LiveEvent::MacroDown)),
+        (LiveEvent::MacroUp, economy(LiveEvent::MacroUp)),
+        (LiveEvent::Research, research_ages(world).min()),
+    ]
+    .into_iter()
+    .filter_map(|(event, age)| age.filter(|age| *age <= law.kept_days).map(|age| (event, age)))
+    .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use novamind_world::day::step_day;
+    use novamind_world::events::Facts;
+    use novamind_world::quota::Quota;
+    use novamind_world::random::Streams;
+
+    #[test]
+    fn price_changes_are_remembered() {
+        let (params, streams) = (Params::bundled(), Streams::new(2));
+        let mut facts = Facts::default();
+        let mut world = World::new(500, 1_000_000.0, &params, &mut facts);
+        novamind_world::test_kit::policy_p(&mut world);
+        let (mut at_day, mut latencies) = (Vec::new(), Vec::new());
+        for day in 1..=60 {
+            match day {
+                20 => world.settings.core.prices.0[1] *= 1.2,
+                40 => world.settings.core.quotas.0[0] = Quota::from(120_000),
+                50 => world.settings.promotion.global = 2.0,
+                _ => {}
+            }
+            latencies.push(step_day(&mut world, &params, &streams, &mut facts).0.p95_ms);
+            at_day.push(JudgeContext::from_world(&world, &params, Lexicon::bundled()));
+        }
+        let on = |day: usize| &at_day[day - 1];
+        assert_eq!(on(19).event_age(LiveEvent::PriceUp), None, "the first prices are not a price increase");
+        assert_eq!(
+            (on(20).event_age(LiveEvent::PriceUp), on(34).event_age(LiveEvent::PriceUp)),
+            (Some(0), Some(14))
+        );
+        assert_eq!(on(35).event_age(LiveEvent::PriceUp), None);
+        assert!(!on(39).quota_up && on(40).quota_up && on(60).quota_up);
+        assert!(!on(49).price_cut && on(50).price_cut && on(50).promotion);
+        assert_eq!(
+            (on(31).event_age(LiveEvent::MacroDown), on(31).event_age(LiveEvent::MacroUp)),
+            (None, None)
+        );
+        assert_eq!(on(60).subscribers, world.customers.active_by_group().0.iter().sum::<u32>());
+        let s1 = Group::at(0).expect("S1");
+        assert!(on(60).groups[s1].progress > 0.0 && on(60).groups[s1].satisfaction != 0.0);
+        let last_week = latencies[53..].iter().sum::<f64>() / 7.0;
+        assert!((on(60).p95_ms / last_week - 1.0).abs() < 1e-12);
+        let ages: Vec<Option<u32>> = at_day.iter().map(|day| day.event_age(LiveEvent::Outage)).collect();
+        for (now, age) in at_day.iter().zip(&ages) {
+            assert_eq!(now.outage_days > 0, age.is_some_and(|age| age < 14), "{age:?}");
+        }
+        assert!(ages.iter().flatten().any(|age| (7..14).contains(age)), "no outage is older than a week");
+    }
+}

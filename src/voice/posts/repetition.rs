@@ -1,0 +1,119 @@
+//! A memory of recent posts that prevents repetition in the feed.
+
+use std::collections::VecDeque;
+
+use serde::{Deserialize, Serialize};
+
+/// Number of posts within which no text is repeated.
+pub const REMEMBERED_POSTS: usize = 60;
+/// Number of posts within which two should not start with the same words.
+const REMEMBERED_OPENINGS: usize = 15;
+/// Number of drafts compared for each post.
+const DRAFTS_PER_POST: usize = 24;
+/// Maximum number of drafts tried to find a text that is not repeated.
+const MAX_DRAFTS: usize = 400;
+
+/// Recent texts, oldest first.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub struct RecentPosts(VecDeque<RecentText>);
+
+/// A lowercase text, split once because it is compared with hundreds of drafts.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+struct RecentText {
+    text: String,
+    sentences: Vec<String>,
+    opening: Vec<String>,
+}
+
+impl RecentText {
+    fn new(text: &str) -> RecentText {
+        let text = text.to_lowercase();
+        let sentences = sentences(&text).map(str::to_owned).collect();
+        let opening = opening(&text).map(str::to_owned).collect();
+        RecentText { text, sentences, opening }
+    }
+}
+
+impl RecentPosts {
+    /// Picks the draft with the least repetition and remembers it. A text of the last 60 posts is repeated
+    /// only if hundreds of drafts contain nothing else.
+    pub fn pick_freshest(&mut self, mut draft: impl FnMut() -> String) -> String {
+        let mut best: Option<(usize, String)> = None;
+        for number in 0..MAX_DRAFTS {
+            let text = draft();
+            let staleness = self.staleness(&text);
+            if best.as_ref().is_none_or(|(least, _)| staleness < *least) {
+                best = Some((staleness, text));
+            }
+            let least = best.as_ref().map_or(usize::MAX, |(least, _)| *least);
+            if least == 0 || (number + 1 >= DRAFTS_PER_POST && least < MAX_DRAFTS) {
+                break;
+            }
+        }
+        let (_, text) = best.unwrap_or_default();
+        self.remember(&text);
+        text
+    }
+
+    fn remember(&mut self, text: &str) {
+        if self.0.len() == REMEMBERED_POSTS {
+            self.0.pop_front();
+        }
+        self.0.push_back(RecentText::new(text));
+    }
+
+    /// Returns how much of a text repeats recent posts: sentences, the opening, or, with the largest weight, all of it.
+    fn staleness(&self, text: &str) -> usize {
+        let text = text.to_lowercase();
+        if self.0.iter().any(|other| other.text == text) {
+            return MAX_DRAFTS;
+        }
+        let was_read = |own: &&str| self.0.iter().any(|other| other.sentences.iter().any(|it| it == own));
+        let known = sentences(&text).filter(was_read).count();
+        let alike =
+            self.0.iter().rev().take(REMEMBERED_OPENINGS).any(|other| opening(&text).eq(&other.opening));
+        2 * known + usize::from(alike)
+    }
+}
+
+/// Returns the sentences of a text without punctuation.
+fn sentences(text: &str) -> impl Iterator<Item = &str> {
+    text.split(['.', '!', '?', ':']).map(str::trim).filter(|sentence| sentence.len() > 3)
+}
+
+/// Returns the first three words.
+fn opening(text: &str) -> impl Iterator<Item = &str> {
+    text.split_whitespace().take(3)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_freshest_draft_is_taken() {
+        let mut recent = RecentPosts::default();
+        let drafts = |texts: &'static [&'static str]| {
+            let mut next = texts.iter().cycle();
+            move || (*next.next().expect("a cycle")).to_owned()
+        };
+        let all: &[&str] = &["It is down. I wait.", "I wait. All day.", "Quite another thing."];
+        assert_eq!(recent.pick_freshest(drafts(all)), all[0]);
+        assert_eq!(recent.pick_freshest(drafts(all)), all[2]);
+        assert_eq!(recent.pick_freshest(drafts(all)), all[1]);
+        assert_eq!(recent.pick_freshest(drafts(&["Same."])), "Same.");
+        assert_eq!(recent.pick_freshest(drafts(&["Same."])), "Same.", "there is nothing else to say");
+    }
+
+    #[test]
+    fn a_text_is_remembered_for_as_many_posts_as_the_memory_has() {
+        let mut recent = RecentPosts::default();
+        recent.remember("The first of all.");
+        for other in 1..REMEMBERED_POSTS {
+            recent.remember(&format!("Number {other}."));
+        }
+        assert_eq!(recent.staleness("The first of all."), MAX_DRAFTS);
+        recent.remember("One more.");
+        assert_eq!(recent.staleness("The first of all."), 0);
+    }
+}

@@ -1,0 +1,269 @@
+//! Inspections of hidden state for the X-ray screen, described as in plain mode. The session thread simulates days
+//! again for them.
+
+use std::sync::PoisonError;
+use std::time::{Duration, Instant};
+
+use super::{ActiveRun, SessionThread};
+use crate::message::Response;
+use crate::question::{Question, Reply};
+use novamind_database::QueryResult;
+use novamind_insight::{Breakpoint, Condition, CustomerView, Inspect, LeadEquation, LeadFactor, RandomPart};
+use novamind_report::inspection::{
+    InspectionCommand, RECENT_DAYS_PREFIX, SATISFACTION_PREFIX, SpilloverMap, describe_breakpoints,
+    describe_competitors, describe_condition_history, describe_drift, describe_enterprise,
+    describe_individual, describe_lead_equation, describe_next_draws, describe_quality, describe_reputation,
+    describe_satisfaction, describe_spillover, factor_line_index,
+};
+use novamind_session::identifiers::Group;
+use novamind_session::{Access, INSPECTION_REJECTED, Session};
+use novamind_tools::Rejection;
+
+/// An inspection of hidden state. Days are completed days.
+#[derive(Debug, Clone, PartialEq)]
+pub enum InspectionQuestion {
+    /// The lead equation of a group on a day, with factors fixed at values.
+    Leads(Group, u32, Vec<(LeadFactor, f64)>),
+    /// The delivered quality of a group on a day.
+    Quality(Group, u32),
+    /// The change of a group's satisfaction on a day.
+    Satisfaction(Group, u32),
+    /// The change of the reputation in a group on a day.
+    Reputation(Group, u32),
+    /// The spillover of reputation changes on a day.
+    Spillover(u32),
+    /// The information and actions of competitors on a day.
+    Rivals(u32),
+    /// The drift of expectations and budgets up to a day.
+    Drift(u32),
+    /// The random draws of a part on the day after a day.
+    Draws(RandomPart, u32),
+    /// A customer (number) on a day.
+    Customer(u32, u32),
+    /// A breakpoint command.
+    Breakpoints(BreakpointCommand),
+    /// A plain-mode command: its text, and parsed.
+    Command(String, InspectionCommand),
+}
+
+/// A command on breakpoints, other than running to them.
+#[derive(Debug, Clone, PartialEq)]
+pub enum BreakpointCommand {
+    /// Lists the breakpoints.
+    List,
+    /// Sets a breakpoint.
+    Set(Condition),
+    /// Removes a breakpoint by number.
+    Remove(u32),
+    /// Returns since when each condition has been true or false.
+    History,
+}
+
+/// The result of an inspection.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct InspectionAnswer {
+    /// Lines of text.
+    pub lines: Vec<String>,
+    /// Daily figures for some of the lines.
+    pub curves: Vec<InspectionCurve>,
+    /// Spillover map, shown in place of the lines.
+    pub map: Option<SpilloverMap>,
+    /// The displayed day if it differs from the requested one: for a customer who has left, its last day.
+    pub day: Option<u32>,
+    /// The breakpoints, after a breakpoint command.
+    pub breakpoints: Vec<Breakpoint>,
+}
+
+/// A daily figure up to the displayed day.
+#[derive(Debug, Clone, PartialEq)]
+pub struct InspectionCurve {
+    /// Index of the line that it belongs to.
+    pub line_index: usize,
+    /// Daily values; NaN if there is no value.
+    pub values_by_day: Vec<f64>,
+}
+
+impl Question for InspectionQuestion {
+    type Answer = InspectionAnswer;
+    type Progress = ();
+
+    /// If the inspection changed the run, the changed company is sent before the answer.
+    fn answer(self, thread: &mut SessionThread, reply: Reply<Self>) {
+        let changes_run = matches!(&self, InspectionQuestion::Command(_, asked) if asked.changes_run());
+        let found = match thread.read_only_rejection().filter(|_| changes_run) {
+            Some(refusal) => Err(refusal),
+            None => thread.inspection_session(false).and_then(|session| run_inspection(session, &self)),
+        };
+        match changes_run && found.is_ok() {
+            true => thread.respond_with(|run| Response::RunChanged(run.company())),
+            false => thread.report_record_loss(),
+        }
+        reply.answer(found);
+    }
+}
+
+impl SessionThread {
+    /// Queries the database and the hidden tables. In a playback, the table of one day shows the current day.
+    pub(super) fn query_hidden_tables(&mut self, sql: &str) -> Result<(QueryResult, Duration), Rejection> {
+        let started = Instant::now();
+        let stop = self.interrupt.clone();
+        let hold = |own| *stop.lock().unwrap_or_else(PoisonError::into_inner) = own;
+        let day = match &self.active_run {
+            Some(ActiveRun::Playback(playback)) => Some(playback.session().day()).filter(|day| *day > 0),
+            _ => None,
+        };
+        let rows = self.inspection_session(true).and_then(|session| {
+            let interrupt = session.inspect().hidden_query_interrupt()?;
+            // A stop now affects this query.
+            let ticket = interrupt.ticket();
+            hold(Some(interrupt));
+            session.inspect().query_hidden_tables_with_ticket(ticket, sql, day)
+        });
+        hold(None);
+        self.report_record_loss();
+        Ok((rows?, started.elapsed()))
+    }
+
+    fn read_only_rejection(&self) -> Option<Rejection> {
+        match &self.active_run {
+            Some(ActiveRun::Playback(_)) => Some(Rejection::new("read_only", "a replay is read-only")),
+            Some(ActiveRun::Live(session)) if !session.log().is_written() && session.folder().is_some() => {
+                Some(Rejection::new("read_only", "this run is open read-only"))
+            }
+            _ => None,
+        }
+    }
+
+    /// Returns the open session, or a writable session of the same run if the open one is read-only, because each
+    /// inspection is recorded. With `with_rows`, it has a database.
+    pub(super) fn inspection_session(&mut self, with_rows: bool) -> Result<&mut Session, Rejection> {
+        let (is_allowed, folder) = match &self.active_run {
+            None => return Err(Rejection::new("not_possible", "no run is open")),
+            Some(ActiveRun::Live(session)) => {
+                (session.can_inspect(), session.folder().filter(|_| !session.log().is_written()))
+            }
+            Some(ActiveRun::Playback(playback)) => (playback.can_inspect(), playback.session().folder()),
+        };
+        if !is_allowed {
+            return Err(Rejection::new("not_in_this_mode", INSPECTION_REJECTED));
+        }
+        let folder = folder.map(std::path::Path::to_owned);
+        if with_rows && !self.inspection_run_has_database {
+            self.inspection_run = None;
+        }
+        match (folder, &mut self.active_run, &mut self.inspection_run) {
+            (Some(folder), _, inside) => {
+                let session = match inside.take() {
+                    Some(session) => session,
+                    None => {
+                        let opened = Session::open(&folder, Access::Write, with_rows);
+                        self.inspection_run_has_database = with_rows;
+                        Box::new(opened.map_err(|error| Rejection::new("not_possible", error.to_string()))?)
+                    }
+                };
+                Ok(inside.insert(session))
+            }
+            (None, Some(open), _) => Ok(open.session()),
+            (None, None, _) => Err(Rejection::new("not_possible", "no run is open")),
+        }
+    }
+}
+
+fn run_inspection(
+    session: &mut Session,
+    question: &InspectionQuestion,
+) -> Result<InspectionAnswer, Rejection> {
+    let lines = match question {
+        InspectionQuestion::Leads(group, day, held) => return inspect_leads(session, *group, *day, held),
+        InspectionQuestion::Quality(group, day) => {
+            describe_quality(&session.inspect().quality_equation(*group, Some(*day))?)
+        }
+        InspectionQuestion::Satisfaction(group, day) => {
+            let own = session.inspect().satisfaction_equation(*group, Some(*day))?;
+            let days = own.recent_days.iter().map(|value| value.unwrap_or(f64::NAN)).collect();
+            return Ok(result_with_curve(describe_satisfaction(&own), RECENT_DAYS_PREFIX, days));
+        }
+        InspectionQuestion::Reputation(group, day) => {
+            let own = session.inspect().reputation_equation(*group, Some(*day))?;
+            let lines = describe_reputation(&own);
+            return Ok(result_with_curve(lines, RECENT_DAYS_PREFIX, own.recent_days));
+        }
+        InspectionQuestion::Spillover(day) => {
+            let own = session.inspect().spillover(Some(*day))?;
+            let map = Some(SpilloverMap::new(&own));
+            return Ok(InspectionAnswer {
+                lines: describe_spillover(&own),
+                map,
+                ..InspectionAnswer::default()
+            });
+        }
+        InspectionQuestion::Rivals(day) => {
+            describe_competitors(&session.inspect().competitor_state(Some(*day))?)
+        }
+        InspectionQuestion::Drift(day) => describe_drift(&session.inspect().drift_state(Some(*day))?),
+        InspectionQuestion::Draws(part, _) => {
+            describe_next_draws(&session.inspect().next_draws(*part, None)?)
+        }
+        InspectionQuestion::Customer(customer, day) => {
+            match session.inspect().customer_view(*customer, Some(*day))? {
+                CustomerView::Individual(lens) => {
+                    let days = lens.days.iter().map(|own| own.satisfaction).collect();
+                    let day = lens.day_shown().map_or(lens.signup.day, |own| own.day);
+                    let found = result_with_curve(describe_individual(&lens), SATISFACTION_PREFIX, days);
+                    return Ok(InspectionAnswer { day: Some(day), ..found });
+                }
+                CustomerView::Enterprise(lens) => describe_enterprise(&lens),
+            }
+        }
+        InspectionQuestion::Breakpoints(work) => return run_breakpoint_command(session, work),
+        InspectionQuestion::Command(_, asked) => asked.run(session)?.describe(),
+    };
+    Ok(InspectionAnswer { lines, ..InspectionAnswer::default() })
+}
+
+fn inspect_leads(
+    session: &mut Session,
+    group: Group,
+    day: u32,
+    held: &[(LeadFactor, f64)],
+) -> Result<InspectionAnswer, Rejection> {
+    let days = session.inspect().lead_equations(group, Some(day))?;
+    let lines = describe_lead_equation(&days, held);
+    let value = |own: &LeadEquation, factor| if own.is_known { own.factor(factor) } else { f64::NAN };
+    let curve = |factor| InspectionCurve {
+        line_index: factor_line_index(factor),
+        values_by_day: days.iter().map(|own| value(own, factor)).collect(),
+    };
+    let is_known = days.last().is_some_and(|own| own.is_known);
+    let curves = if is_known { LeadFactor::ALL.map(curve).to_vec() } else { Vec::new() };
+    Ok(InspectionAnswer { lines, curves, ..InspectionAnswer::default() })
+}
+
+/// Attaches daily values to the line with this prefix, if there is one.
+fn result_with_curve(lines: Vec<String>, begins: &str, days: Vec<f64>) -> InspectionAnswer {
+    let line = lines.iter().position(|line| line.starts_with(begins));
+    let curves =
+        line.map(|line| InspectionCurve { line_index: line, values_by_day: days }).into_iter().collect();
+    InspectionAnswer { lines, curves, ..InspectionAnswer::default() }
+}
+
+fn run_breakpoint_command(
+    session: &mut Session,
+    work: &BreakpointCommand,
+) -> Result<InspectionAnswer, Rejection> {
+    let found = |lines, session: &mut Session| {
+        let breakpoints = session.inspect().breakpoints()?;
+        Ok(InspectionAnswer { lines, breakpoints, ..InspectionAnswer::default() })
+    };
+    match work {
+        BreakpointCommand::List => {}
+        BreakpointCommand::Set(condition) => drop(session.inspect().set_breakpoint(*condition)?),
+        BreakpointCommand::Remove(number) => drop(session.inspect().clear_breakpoints(Some(*number))?),
+        BreakpointCommand::History => {
+            let told = session.inspect().breakpoint_histories(None)?;
+            return found(told.iter().flat_map(describe_condition_history).collect(), session);
+        }
+    }
+    let set = session.inspect().breakpoints()?;
+    found(describe_breakpoints(&set), session)
+}

@@ -1,0 +1,108 @@
+//! The open run on the session thread: calls, weeks, notes and reports.
+
+use std::sync::mpsc::Sender;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
+
+use serde_json::Value;
+
+use super::DAY_REPORT_INTERVAL;
+use super::queries::QueryThreads;
+use crate::company::DisplayedCompany;
+use crate::message::{DebugRunResult, Message, Response, SimulatedDay};
+use novamind_database::Interrupt;
+use novamind_insight::Inspect;
+use novamind_record::trajectory::record::Via;
+use novamind_report::inspection::describe_stop;
+use novamind_report::{RunReport, report_to_html, report_to_markdown};
+use novamind_session::{DayReport, Forecasts, RunDatabase, Session};
+use novamind_tools::ToolId;
+
+/// The open run, with where its messages are sent.
+pub(super) struct OpenRun<'a> {
+    pub(super) session: &'a mut Session,
+    pub(super) last_company: &'a mut Option<Arc<DisplayedCompany>>,
+    pub(super) messages: &'a Sender<Message>,
+    pub(super) queries: &'a QueryThreads,
+    pub(super) interrupt: &'a Mutex<Option<Interrupt>>,
+}
+
+impl OpenRun<'_> {
+    pub(super) fn company(&mut self) -> Arc<DisplayedCompany> {
+        let company =
+            Arc::new(DisplayedCompany::from_session_with_lesson(self.session, self.last_company.as_deref()));
+        *self.last_company = Some(company.clone());
+        company
+    }
+
+    pub(super) fn call_tool(&mut self, tool: ToolId, arguments: &Value) -> Response {
+        let hold = |own| *self.interrupt.lock().unwrap_or_else(PoisonError::into_inner) = own;
+        hold(
+            self.session
+                .up_to_date_database()
+                .and_then(RunDatabase::interrupt_handle)
+                .ok()
+                .filter(|_| tool.executes_code()),
+        );
+        let answer = self.session.call(tool, arguments, Via::Form).map(Box::new);
+        hold(None);
+        Response::ToolCalled(tool, answer, self.company())
+    }
+
+    pub(super) fn undo(&mut self) -> Response {
+        let changes = self.session.undo(Via::Palette);
+        Response::SettingRestored("undone", changes, self.company())
+    }
+
+    pub(super) fn redo(&mut self) -> Response {
+        let changes = self.session.redo(Via::Palette);
+        Response::SettingRestored("redone", changes, self.company())
+    }
+
+    pub(super) fn advance(&mut self, rationale: &str, forecasts: &Forecasts) -> Response {
+        let mut tell = day_reporter(self.messages);
+        let week = self.session.advance(rationale, forecasts, Via::Form, &mut tell);
+        Response::WeekAdvanced(week.map(Box::new), self.company())
+    }
+
+    pub(super) fn run_days(&mut self, days: u32) -> Response {
+        let mut tell = day_reporter(self.messages);
+        let breakpoints = self.session.inspect().breakpoints().map_or(0, |set| set.len());
+        let run = self.session.inspect().run_until_breakpoint(days, &mut tell);
+        let ran = run.map(|run| DebugRunResult {
+            lines: describe_stop(&run, self.session.day(), breakpoints),
+            has_ended: run.week.ended.is_some(),
+        });
+        Response::DebugDaysSimulated(ran, self.company())
+    }
+
+    pub(super) fn set_notes(&mut self, text: &str) -> Response {
+        let kept = self.session.set_notes(text);
+        Response::NotesSaved(kept, self.company())
+    }
+
+    pub(super) fn build_run_report(&mut self) -> Response {
+        Response::RunReportReady(Arc::new(RunReport::from_session(self.session)))
+    }
+
+    pub(super) fn render_report_files(&mut self) -> Response {
+        let story = RunReport::from_session(self.session);
+        Response::ReportFilesReady(vec![
+            ("report.md", report_to_markdown(&story)),
+            ("report.html", report_to_html(&story)),
+        ])
+    }
+}
+
+/// Returns a function that reports simulated days, with a minimum interval.
+pub(super) fn day_reporter(news: &Sender<Message>) -> impl FnMut(&DayReport<'_>) + use<> {
+    let (news, mut told) = (news.clone(), Instant::now());
+    move |report| {
+        if told.elapsed() >= DAY_REPORT_INTERVAL {
+            told = Instant::now();
+            let figures = report.figures;
+            let told = SimulatedDay { cash: figures.cash, subscribers: figures.individual_subscribers };
+            let _ = news.send(Message::Response(Response::DaySimulated(figures.day, Some(told))));
+        }
+    }
+}

@@ -1,0 +1,167 @@
+//! Studies on the session thread: the steps, runs and answers of a participant.
+
+use super::{ActiveRun, SessionThread};
+use crate::message::{Response, StudyResponse};
+use crate::request::{GivenAnswer, StudyRequest};
+use novamind_record::consent::ConsentAgreement;
+use novamind_record::error::RunError;
+use novamind_study::{DueQuestion, NextStep, ParticipantSession, Study, record_rejected_code};
+
+pub(super) struct ActiveStudy {
+    pub(super) study: Study,
+    pub(super) participant: Option<ParticipantSession>,
+    /// The participant's consent, until a run records it.
+    pub(super) consent: Option<ConsentAgreement>,
+    /// The due questions as last reported.
+    pub(super) due_questions: Vec<DueQuestion>,
+}
+
+impl ActiveStudy {
+    pub(super) fn new(study: Study) -> ActiveStudy {
+        ActiveStudy { study, participant: None, consent: None, due_questions: Vec::new() }
+    }
+
+    /// Returns the next step of the participant, or `None` before one has come.
+    pub(super) fn next_step(&self) -> Result<Option<NextStep>, RunError> {
+        let Some(visit) = &self.participant else { return Ok(None) };
+        let step = match visit.next_step()? {
+            // The first run will record the consent.
+            NextStep::Consent(_) if self.consent.is_some() => visit.next_step_after_consent()?,
+            step => step,
+        };
+        if step == NextStep::Thanks {
+            visit.record_finished();
+        }
+        Ok(Some(step))
+    }
+}
+
+impl SessionThread {
+    pub(super) fn handle_study_request(&mut self, request: StudyRequest) {
+        match request {
+            StudyRequest::StartStudy(study) => {
+                self.study = Some(ActiveStudy::new(*study));
+                self.send_response(Response::Study(StudyResponse::Ready));
+            }
+            StudyRequest::IdentifyParticipant { label, rejected_labels: refused } => {
+                self.start_participant(&label, refused)
+            }
+            StudyRequest::Agree(given) => {
+                self.with_study(|desk| desk.consent = Some(given.given_now()));
+                self.send_next_step();
+            }
+            StudyRequest::Decline => {
+                self.with_study(|desk| desk.participant.iter().for_each(ParticipantSession::record_declined));
+                self.send_response(Response::Study(StudyResponse::ConsentDeclined));
+            }
+            StudyRequest::SkipPractice => {
+                self.with_study(|desk| desk.participant.iter().for_each(ParticipantSession::skip_practice));
+                self.send_next_step();
+            }
+            StudyRequest::Play => self.open_participant_run(),
+            StudyRequest::ShowNextStep => self.send_next_step(),
+            StudyRequest::RecordShownQuestion(due) => {
+                if let Some(ActiveRun::Live(session)) = &mut self.active_run {
+                    due.record_shown(session);
+                }
+            }
+            StudyRequest::SubmitAnswers(answers) => self.record_answers(&answers),
+            StudyRequest::Withdraw => self.erase_participant(),
+            StudyRequest::CheckCode(code) => {
+                let right = self.study.as_ref().and_then(|desk| {
+                    let protocol = &desk.study.protocol;
+                    protocol.access.code.is_some().then(|| protocol.accepts_code(Some(&code)))
+                });
+                if right != Some(true) {
+                    self.study.iter().for_each(|desk| record_rejected_code(&desk.study, &self.runs_folder));
+                }
+                if right == Some(true) {
+                    (self.study, self.lists_all_participants) = (None, true);
+                }
+                self.send_response(Response::Study(StudyResponse::CodeChecked(right)));
+            }
+        }
+    }
+
+    fn with_study(&mut self, work: impl FnOnce(&mut ActiveStudy)) {
+        if let Some(desk) = &mut self.study {
+            work(desk);
+        }
+    }
+
+    fn start_participant(&mut self, label: &str, refused: u32) {
+        let Some(desk) = &mut self.study else { return };
+        (desk.participant, desk.consent, desk.due_questions) = (None, None, Vec::new());
+        match ParticipantSession::start(desk.study.clone(), &self.runs_folder, label, refused) {
+            Ok(visit) => {
+                desk.participant = Some(visit);
+                self.send_next_step();
+            }
+            Err(problem) => {
+                self.send_response(Response::Study(StudyResponse::LabelRejected(problem.to_string())))
+            }
+        }
+    }
+
+    fn send_next_step(&self) {
+        let news = match self.study.as_ref().map_or(Ok(None), ActiveStudy::next_step) {
+            Ok(Some(step)) => StudyResponse::Next(step),
+            Ok(None) => StudyResponse::Ready,
+            Err(problem) => StudyResponse::Failed(problem.to_string()),
+        };
+        self.send_response(Response::Study(news));
+    }
+
+    fn open_participant_run(&mut self) {
+        let Some(desk) = &self.study else { return };
+        let Some(visit) = &desk.participant else { return };
+        let begin = |practice: bool| visit.create_run(practice, desk.consent.clone(), &self.configuration);
+        let opened = desk.next_step().and_then(|step| match step {
+            Some(NextStep::Practice { unfinished: None, .. }) => begin(true),
+            Some(NextStep::Session(None)) => begin(false),
+            Some(
+                NextStep::Practice { unfinished: Some(folder), .. }
+                | NextStep::Session(Some(folder))
+                | NextStep::Questions(folder),
+            ) => visit.open_run(&folder),
+            _ => Err(RunError::InvalidRequest("there is nothing to play".to_owned())),
+        });
+        self.show_opened_run(opened, "", None);
+    }
+
+    fn record_answers(&mut self, answers: &[GivenAnswer]) {
+        let (Some(desk), Some(ActiveRun::Live(session))) = (&mut self.study, &mut self.active_run) else {
+            return;
+        };
+        for GivenAnswer { due, value, shown_ms: for_ms, changes } in answers {
+            due.record_answer(session, value, *for_ms, *changes);
+        }
+        desk.due_questions = desk.study.due_questions(session);
+        let due = desk.due_questions.clone();
+        self.send_response(Response::Study(StudyResponse::AnswersRecorded(due)));
+    }
+
+    pub(super) fn report_due_questions(&mut self) {
+        let (Some(desk), Some(ActiveRun::Live(session))) = (&mut self.study, &self.active_run) else {
+            return;
+        };
+        let due = desk.study.due_questions(session);
+        if due != desk.due_questions {
+            desk.due_questions.clone_from(&due);
+            self.send_response(Response::Study(StudyResponse::QuestionsDue(due)));
+        }
+    }
+
+    /// Erases the participant's data; none of their runs is open.
+    fn erase_participant(&mut self) {
+        self.queries.disconnect();
+        let erased =
+            self.study.as_ref().and_then(|desk| desk.participant.as_ref()).map(ParticipantSession::withdraw);
+        match erased {
+            Some(Err(problem)) => {
+                self.send_response(Response::Study(StudyResponse::Failed(problem.to_string())))
+            }
+            Some(Ok(())) | None => self.send_next_step(),
+        }
+    }
+}

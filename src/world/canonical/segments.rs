@@ -1,0 +1,139 @@
+//! Hashes a large value on several threads.
+//!
+//! BLAKE3 is a tree over parts of its input, so each thread collects and hashes its own bytes while they are
+//! in its cache. The result equals the hash of all bytes in sequence.
+
+use std::ops::Range;
+
+use blake3::hazmat::{ChainingValue, HasherExt, Mode, merge_subtrees_non_root, merge_subtrees_root};
+use rayon::prelude::*;
+
+use super::CanonicalHasher;
+
+/// Bytes of one subtree of the hash: a power of two that fits into the cache of a core.
+const SUBTREE_BYTES: usize = 1 << 20;
+
+/// Subtrees that one thread hashes in a row to reuse its buffer. Smaller inputs use fewer, so that a second
+/// thread has work.
+const SUBTREES_PER_TASK: usize = 4;
+
+/// A sequence of canonical bytes with a known length.
+pub struct HashSegment<'a> {
+    length: usize,
+    feed: Box<dyn Fn(&mut CanonicalHasher) + Sync + 'a>,
+}
+
+impl<'a> HashSegment<'a> {
+    /// Creates a segment of `length` bytes that `feed` writes.
+    pub fn new(length: usize, feed: impl Fn(&mut CanonicalHasher) + Sync + 'a) -> HashSegment<'a> {
+        HashSegment { length, feed: Box::new(feed) }
+    }
+}
+
+/// Returns the hash of the bytes of all `stretches` in order.
+///
+/// # Panics
+/// If a segment feeds a different number of bytes than its length.
+pub fn hash_segments(stretches: &[HashSegment<'_>]) -> blake3::Hash {
+    let mut total = 0;
+    let begins: Vec<usize> = stretches
+        .iter()
+        .map(|stretch| {
+            total += stretch.length;
+            total - stretch.length
+        })
+        .collect();
+    let collect = |collector: &mut CanonicalHasher, from: usize, to: usize| -> Range<usize> {
+        let first = begins.partition_point(|begin| *begin <= from).max(1) - 1;
+        let last = begins.partition_point(|begin| *begin < to);
+        collector.pending.clear();
+        for (stretch, begin) in stretches[first..last].iter().zip(&begins[first..last]) {
+            (stretch.feed)(collector);
+            let until = begin + stretch.length - begins[first];
+            assert_eq!(collector.pending.len(), until, "a segment has its declared length");
+        }
+        let skipped = from - begins.get(first).unwrap_or(&0);
+        skipped..skipped + to - from
+    };
+    if total <= SUBTREE_BYTES {
+        let mut collector = CanonicalHasher::collector(total);
+        collect(&mut collector, 0, total);
+        return blake3::hash(&collector.pending);
+    }
+    let count = total.div_ceil(SUBTREE_BYTES);
+    let subtrees: Vec<ChainingValue> = (0..count)
+        .into_par_iter()
+        .with_min_len((count / 2).clamp(1, SUBTREES_PER_TASK))
+        .map_init(
+            || CanonicalHasher::collector(SUBTREE_BYTES + SUBTREE_BYTES / 2),
+            |collector, number| {
+                let (from, to) = (number * SUBTREE_BYTES, ((number + 1) * SUBTREE_BYTES).min(total));
+                let own = collect(collector, from, to);
+                let mut hasher = blake3::Hasher::new();
+                hasher.set_input_offset(from as u64);
+                hasher.update(&collector.pending[own]);
+                hasher.finalize_non_root()
+            },
+        )
+        .collect();
+    let (left, right) = split_tree(&subtrees);
+    merge_subtrees_root(&merge_subtrees(left), &merge_subtrees(right), Mode::Hash)
+}
+
+/// Returns the chaining value of a tree that is not the whole input.
+fn merge_subtrees(subtrees: &[ChainingValue]) -> ChainingValue {
+    match subtrees {
+        [single] => *single,
+        several => {
+            let (left, right) = split_tree(several);
+            merge_subtrees_non_root(&merge_subtrees(left), &merge_subtrees(right), Mode::Hash)
+        }
+    }
+}
+
+/// Splits at the largest power of two that leaves at least one subtree on the right.
+fn split_tree(subtrees: &[ChainingValue]) -> (&[ChainingValue], &[ChainingValue]) {
+    subtrees.split_at(subtrees.len().next_power_of_two() / 2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hash_segments_matches_hash_of_all_bytes() {
+        let lengths = [
+            0,
+            5,
+            SUBTREE_BYTES / 3,
+            1,
+            SUBTREE_BYTES / 2 + 77,
+            SUBTREE_BYTES,
+            2 * SUBTREE_BYTES + 1,
+            0,
+            300_000,
+            3 * SUBTREE_BYTES,
+        ];
+        for count in 0..=lengths.len() {
+            let texts: Vec<Vec<u8>> = lengths[..count]
+                .iter()
+                .zip(1..)
+                .map(|(length, seed)| {
+                    (0..*length as u32).map(|at| (at.wrapping_mul(seed) >> 7) as u8).collect()
+                })
+                .collect();
+            let stretch = |text| HashSegment::new(Vec::len(text), move |hasher| hasher.bytes(text));
+            let stretches: Vec<HashSegment<'_>> = texts.iter().map(stretch).collect();
+            assert_eq!(hash_segments(&stretches), blake3::hash(&texts.concat()), "{count} stretches");
+        }
+    }
+
+    #[test]
+    fn hash_segments_handles_complete_subtrees() {
+        for subtrees in 1..=9 {
+            let text = vec![7u8; subtrees * SUBTREE_BYTES];
+            let stretches = [HashSegment::new(text.len(), |hasher| hasher.bytes(&text))];
+            assert_eq!(hash_segments(&stretches), blake3::hash(&text), "{subtrees} subtrees");
+        }
+    }
+}

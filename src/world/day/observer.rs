@@ -1,0 +1,74 @@
+//! Observation of a day during its simulation. Observers cannot change it, so an observed day has the same result.
+
+use crate::context::DayContext;
+use crate::customers::Customers;
+use crate::customers::columns::Block;
+use crate::enterprise::{Enterprise, NegotiationContext};
+use crate::events::{DayFigures, Facts};
+use crate::identifiers::{ByGroup, Group};
+use crate::market::Market;
+use crate::market::arrivals::ArrivalContext;
+use crate::market::leads::LeadFactors;
+use crate::morning::Morning;
+use crate::params::Params;
+use crate::reputation::{ReputationContribution, ReputationWrite};
+use crate::retention::renewal::RenewalContext;
+use crate::state::World;
+
+/// An observer of the simulation of a day. Blocks are passed on any thread and in any order.
+pub trait DayObserver: Send + Sync {
+    /// Called at the start of the day with the world and the values fixed for the day.
+    fn on_morning(&self, _world: &World, _morning: &Morning, _params: &Params) {}
+
+    /// Called before the satisfaction of a block is updated.
+    fn before_satisfaction(&self, _group: Group, _block: &Block, _day: &DayContext<'_>) {}
+
+    /// Called before the subscribers of a block decide: issues are settled and satisfaction is updated.
+    fn before_decisions(&self, _group: Group, _block: &Block, _judgement: &RenewalContext<'_>) {}
+
+    /// Called before enterprises are lost, reply, or open threads.
+    fn before_negotiations(
+        &self,
+        _enterprise: &Enterprise,
+        _customers: &Customers,
+        _talks: &NegotiationContext<'_>,
+    ) {
+    }
+
+    /// Called after the last change of reputations today, by the subscribers' contributions.
+    fn on_reputation_settled(
+        &self,
+        _moods: &ByGroup<ReputationContribution>,
+        _market: &Market,
+        _params: &Params,
+    ) {
+    }
+
+    /// Called before leads arrive, with the market, the active subscriptions and the factors of each group.
+    fn on_expected_leads(
+        &self,
+        _arrivals: &ArrivalContext<'_>,
+        _subscribers: &ByGroup<u32>,
+        _factors: &ByGroup<LeadFactors>,
+    ) {
+    }
+
+    /// Called after a tool call between two days, with the facts that it recorded.
+    fn on_call_applied(&self, _facts: &Facts) {}
+
+    /// Called after a mechanism changed a reputation: cancellations of a block, a lost enterprise, a group's
+    /// own contributions, or spillover.
+    fn on_reputation_change(&self, _write: &ReputationWrite<'_>) {}
+
+    /// Called with the figures of the day before it ends.
+    fn on_day_figures(&self, _figures: &DayFigures) {}
+
+    /// Called at the end of the day with the final world and facts.
+    fn on_day_end(&self, _world: &World, _params: &Params, _facts: &Facts) {}
+}
+
+/// An observer that does nothing.
+#[derive(Debug, Clone, Copy)]
+pub struct NoObserver;
+
+impl DayObserver for NoObserver {}

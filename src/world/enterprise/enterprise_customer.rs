@@ -1,0 +1,109 @@
+//! Enterprises that negotiate: their fixed traits and their status.
+
+use crate::canonical::{Canonical, CanonicalHasher, CanonicalReader, Restore, canonical};
+use crate::customers::Customers;
+use crate::customers::columns::Subscriber;
+use crate::customers::persona::PersonaPicks;
+use crate::customers::traits::Negotiator;
+use crate::identifiers::Group;
+use crate::params::{EnterpriseParams as Sales, Params};
+use crate::random::{Part, Streams};
+
+/// An enterprise that has requested an offer and is still tracked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Company {
+    /// Customer number.
+    pub customer: u32,
+    /// Group.
+    pub group: Group,
+    /// Running number within the group.
+    pub n: u32,
+    /// Subscription number.
+    pub subscription: u32,
+    /// Negotiation traits.
+    pub negotiator: Negotiator,
+    /// Profile attributes.
+    pub persona: PersonaPicks,
+    /// Last day of the most recently agreed month; 0 before the first deal.
+    pub contract_end_day: u32,
+    /// Its current status.
+    pub standing: EnterpriseStatus,
+}
+
+/// Status of an enterprise.
+#[derive(Debug, Clone, PartialEq)]
+pub enum EnterpriseStatus {
+    /// It negotiates a first deal; the row that it will have as a subscriber.
+    Lead(Subscriber),
+    /// It is a subscriber; its row is in the columns.
+    Subscriber,
+    /// It was lost; its last row, kept while one of its threads still triggers.
+    Lost(Subscriber),
+}
+
+canonical! {
+    Company { customer, group, n, subscription, negotiator, persona, contract_end_day, standing }
+    Negotiator { reply_delay_mean, reply_delay_std, initial_offer_factor, max_negotiation_turns }
+}
+
+impl Canonical for EnterpriseStatus {
+    fn feed(&self, hasher: &mut CanonicalHasher) {
+        match self {
+            EnterpriseStatus::Lead(row) => (0u8, *row).feed(hasher),
+            EnterpriseStatus::Subscriber => 1u8.feed(hasher),
+            EnterpriseStatus::Lost(row) => (2u8, *row).feed(hasher),
+        }
+    }
+}
+
+impl Restore for EnterpriseStatus {
+    fn restore(reader: &mut CanonicalReader<'_>) -> Option<Self> {
+        Some(match reader.read::<u8>()? {
+            0 => EnterpriseStatus::Lead(reader.read()?),
+            1 => EnterpriseStatus::Subscriber,
+            2 => EnterpriseStatus::Lost(reader.read()?),
+            _ => return None,
+        })
+    }
+}
+
+impl Company {
+    /// Returns its row, from its status or from the columns.
+    pub fn row(&self, customers: &Customers) -> Option<Subscriber> {
+        match self.standing {
+            EnterpriseStatus::Lead(row) | EnterpriseStatus::Lost(row) => Some(row),
+            EnterpriseStatus::Subscriber => customers.groups[self.group].row(self.n),
+        }
+    }
+
+    /// Returns whether it has an active subscription.
+    pub fn is_subscriber(&self) -> bool {
+        self.standing == EnterpriseStatus::Subscriber
+    }
+
+    /// Sets its relationship in its status or in the columns.
+    pub fn set_relationship(&mut self, relationship: f64, customers: &mut Customers) {
+        match &mut self.standing {
+            EnterpriseStatus::Lead(row) | EnterpriseStatus::Lost(row) => row.relationship = relationship,
+            EnterpriseStatus::Subscriber => {
+                let own = &mut customers.groups[self.group];
+                if let Some((block, at)) = own.subscriber_position(self.n) {
+                    own.blocks[block].relationship[at] = relationship;
+                }
+            }
+        }
+    }
+
+    /// Returns the factor by which it misjudges quality in its first negotiation, constant for each enterprise.
+    pub fn first_impression_factor(&self, params: &Params, streams: &Streams) -> f64 {
+        let quality = &params.quality;
+        streams
+            .open_for_day(0, Part::NegotiationNoise, [self.group.index() as u64, u64::from(self.n)])
+            .between(quality.initial_decision_noise_min, quality.initial_decision_noise_max)
+    }
+}
+
+/// Returns the relationship after a change, clamped to its bounds.
+pub fn adjust_relationship(relationship: f64, change: f64, sales: &Sales) -> f64 {
+    (relationship + change).clamp(sales.relationship_min, sales.relationship_max)
+}

@@ -1,0 +1,183 @@
+//! Inputs outside the player's control that are fixed at the values of a week before when days are simulated
+//! again with one change. Normal days fix none.
+
+use super::identifiers::ByGroup;
+use super::market::leads::LeadFactors;
+use super::product::service::FixedService;
+
+/// The inputs that are fixed from a day on, with their values. Other inputs develop normally.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct FixedInputs {
+    /// The first fixed day; lists start with it.
+    pub from: u32,
+    /// Competitors make no moves.
+    pub competitors: bool,
+    /// Expectations and budgets do not drift.
+    pub drift: bool,
+    /// Channel yields stay constant.
+    pub yields: bool,
+    /// The economic index stays constant.
+    pub economy: bool,
+    /// Factor of demand surges by day; empty if surges develop normally.
+    pub surges: Vec<f64>,
+    /// Factor of the day of the month by day; empty if the calendar applies.
+    pub month_days: Vec<f64>,
+    /// Load and random draws of the service by day; empty if the service develops normally.
+    pub service: Vec<FixedService>,
+}
+
+impl FixedInputs {
+    /// Returns whether the drift of a day is suppressed.
+    pub fn fixes_drift(&self, day: u32) -> bool {
+        self.drift && day >= self.from
+    }
+
+    /// Returns the fixed service inputs of a day, if any.
+    pub fn fixed_service_on(&self, day: u32) -> Option<FixedService> {
+        self.value_on_day(day, &self.service)
+    }
+
+    /// Replaces lead factors of a day with fixed ones.
+    pub fn apply_to_leads(&self, day: u32, weekday: f64, factors: &mut ByGroup<LeadFactors>) {
+        let month_day = self.value_on_day(day, &self.month_days);
+        for own in factors.0.iter_mut().filter(|own| **own != LeadFactors::default()) {
+            own.calendar = month_day.map_or(own.calendar, |factor| weekday * factor);
+            own.surge = self.value_on_day(day, &self.surges).unwrap_or(own.surge);
+        }
+    }
+
+    fn value_on_day<T: Copy>(&self, day: u32, list: &[T]) -> Option<T> {
+        list.get(day.checked_sub(self.from)? as usize).copied()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::day::observer::NoObserver;
+    use crate::day::{step_day, step_day_observed};
+    use std::collections::{BTreeMap, BTreeSet};
+
+    use crate::events::{Arrival, DayFigures, Facts, SubscriptionStatus};
+    use crate::identifiers::{Channel, Group};
+    use crate::market::surges::Surge;
+    use crate::params::Params;
+    use crate::random::Streams;
+    use crate::settings::PerGroup;
+    use crate::state::World;
+    use crate::test_kit::policy_p;
+
+    const LOAD: f64 = 1000.0;
+
+    /// A company at the end of day `eve`, with its parameters and streams.
+    fn company(eve: u32) -> (World, Params, Streams) {
+        let (params, streams) = (Params::bundled(), Streams::new(9));
+        let mut facts = Facts::default();
+        let mut world = World::new(500, 1_000_000.0, &params, &mut facts);
+        policy_p(&mut world);
+        world.settings.core.capacity_tier = 7;
+        let ads = &mut world.settings.targeted_ads.targeted_spend;
+        ads.insert(Channel::SearchAds, PerGroup::from([(Group::parse("S1").expect("a group"), 20_000.0)]));
+        for _ in 0..eve {
+            step_day(&mut world, &params, &streams, &mut facts);
+        }
+        (world, params, streams)
+    }
+
+    fn next_day(eve: &(World, Params, Streams), held: &FixedInputs) -> (World, DayFigures) {
+        let (world, params, streams) = eve;
+        let mut world = world.clone();
+        let figures =
+            step_day_observed(&mut world, params, streams, held, &mut Facts::default(), &NoObserver).0;
+        (world, figures)
+    }
+
+    #[test]
+    fn fixed_inputs_stay_constant_and_others_change() {
+        let eve = company(89);
+        let held = |change: fn(&mut FixedInputs)| {
+            let mut held = FixedInputs { from: 90, ..FixedInputs::default() };
+            change(&mut held);
+            next_day(&eve, &held).0.market
+        };
+        let (before, free) = (&eve.0.market, held(|_| {}));
+        assert!(free.drift != before.drift && free.yields != before.yields);
+        assert!(free.economy.pmi != before.economy.pmi);
+        let drift = held(|held| held.drift = true);
+        assert_eq!(drift.drift.c_max, before.drift.c_max);
+        assert_eq!((&drift.yields, drift.economy.pmi), (&free.yields, free.economy.pmi));
+        let yields = held(|held| held.yields = true);
+        assert_eq!((&yields.yields, &yields.drift), (&before.yields, &free.drift));
+        let economy = held(|held| held.economy = true);
+        assert_eq!((economy.economy.pmi, &economy.yields), (before.economy.pmi, &free.yields));
+    }
+
+    #[test]
+    fn fixed_competitors_cause_no_events() {
+        let moves = |rivals: bool| {
+            let mut eve = company(89);
+            let held = FixedInputs { from: 90, competitors: rivals, ..FixedInputs::default() };
+            (0..60).for_each(|_| eve.0 = next_day(&eve, &held).0);
+            eve.0.market.competitors.len()
+        };
+        assert_eq!((moves(true), moves(false) > 2), (company(89).0.market.competitors.len(), true));
+    }
+
+    #[test]
+    fn fixed_factors_replace_lead_factors() {
+        let mut eve = company(59);
+        eve.0.market.surges.push(Surge { day: 58, end_day: 70, multiplier: 4.0 });
+        let leads = |held: FixedInputs| next_day(&eve, &FixedInputs { from: 60, ..held }).1.new_leads;
+        let free = leads(FixedInputs::default());
+        assert!(leads(FixedInputs { surges: vec![1.0], ..FixedInputs::default() }) * 2 < free);
+        assert!(leads(FixedInputs { month_days: vec![0.25], ..FixedInputs::default() }) * 2 < free);
+        // A list that has ended fixes nothing.
+        assert_eq!(leads(FixedInputs { surges: Vec::new(), ..FixedInputs::default() }), free);
+    }
+
+    #[test]
+    fn fixed_service_determines_overload_and_noise() {
+        let eve = company(59);
+        let service = |load: f64, luck_of: u32| {
+            let held = FixedInputs {
+                from: 60,
+                service: vec![FixedService { load_factor: load, draw_day: luck_of }],
+                ..FixedInputs::default()
+            };
+            next_day(&eve, &held).1
+        };
+        let free = next_day(&eve, &FixedInputs::default()).1;
+        assert_eq!(service(1.0, 60), free);
+        assert!(service(LOAD, 60).overload > 0.0 && free.overload == 0.0);
+        assert_ne!(service(1.0, 59).p95_ms, free.p95_ms);
+        // Usage itself does not change.
+        assert_eq!(service(LOAD, 60).total_usage, free.total_usage);
+    }
+
+    /// A lead that arrives with and without overload makes the same decision, because the service does not affect it.
+    #[test]
+    fn service_does_not_affect_lead_decisions() {
+        let (world, params, streams) = company(59);
+        let decisions = |load: f64| -> BTreeMap<(Group, u32), bool> {
+            let held = FixedInputs {
+                from: 60,
+                service: vec![FixedService { load_factor: load, draw_day: 60 }],
+                ..FixedInputs::default()
+            };
+            let mut facts = Facts::default();
+            step_day_observed(&mut world.clone(), &params, &streams, &held, &mut facts, &NoObserver);
+            let signed: BTreeSet<u32> = facts
+                .openings
+                .iter()
+                .filter(|opening| opening.status == SubscriptionStatus::Subscribed)
+                .map(|opening| opening.customer)
+                .collect();
+            let decided = |own: &Arrival| ((own.group, own.n), signed.contains(&own.customer));
+            facts.arrivals.iter().map(decided).collect()
+        };
+        let (calm, strained) = (decisions(1.0), decisions(LOAD));
+        let both: Vec<_> = calm.iter().filter(|(lead, _)| strained.contains_key(lead)).collect();
+        assert!(both.len() > 20 && both.iter().any(|(_, signed)| **signed));
+        assert!(both.into_iter().all(|(lead, signed)| strained[lead] == *signed));
+    }
+}

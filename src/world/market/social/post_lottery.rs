@@ -1,0 +1,354 @@
+//! Customers' posts: the selection of authors (docs/mechanics/market/social/crowd.md).
+//!
+//! Weighted drawing without replacement is equivalent to the order of exponential clocks whose rates are the
+//! weights. The first authors are therefore drawn while all subscribers are present, and customers who leave
+//! later in the day join with their own clocks.
+
+use super::Social;
+use super::engagement::draw_engagement;
+use super::opinions::OpinionContext;
+use super::sentiment::sentiment;
+use super::weights::{cancelled_weight, lost_company_weight, post_weight};
+use crate::customers::Customers;
+use crate::customers::columns::Block;
+use crate::customers::traits::draw_traits;
+use crate::enterprise::churn::{LostEnterprise, ThreadFailure};
+use crate::events::{Facts, Opinion, PostAuthor, PostCause, PostSubject, Sentiment, Theme, Troubles};
+use crate::identifiers::Group;
+use crate::params::{CustomerPosts, Params};
+use crate::random::{Part, Stream, Streams};
+use crate::retention::renewal::CancelledIndividual;
+
+/// Returns whether customers post on a day.
+pub fn is_posting_day(day: u32, params: &Params) -> bool {
+    match params.fidelity.customer_posts {
+        CustomerPosts::Weekly => day.is_multiple_of(params.run.days_per_week),
+        CustomerPosts::Daily => true,
+    }
+}
+
+/// Post weights of the rows of a block.
+pub struct BlockWeights {
+    /// Satisfaction of its rows before today's update.
+    before: Vec<f64>,
+    /// Sum of the weights.
+    weight: f64,
+}
+
+/// Computes the post weights of a block from the satisfaction before today's update.
+pub fn weigh_block(
+    group: Group,
+    block: &Block,
+    before: Vec<f64>,
+    scene: &OpinionContext<'_>,
+) -> BlockWeights {
+    let weight =
+        before.iter().enumerate().map(|(at, before)| row_weight(scene, group, block, at, *before)).sum();
+    BlockWeights { before, weight }
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Candidate {
+    /// Time of its exponential clock.
+    time: f64,
+    customer: u32,
+    group: Group,
+    n: u32,
+    /// Satisfaction that determines the tone; `None` for a complaint.
+    satisfaction: Option<f64>,
+    opinion: Opinion,
+}
+
+/// The selection of today's authors.
+pub struct PostLottery {
+    stream: Stream,
+    candidates: Vec<Candidate>,
+    remaining_posts: usize,
+}
+
+/// Starts the selection among all subscribers, right after the satisfaction update. `voices` belong to the
+/// non-empty blocks, in their order.
+pub fn from_subscribers(
+    mut voices: Vec<BlockWeights>,
+    customers: &Customers,
+    scene: &OpinionContext<'_>,
+    streams: &Streams,
+) -> PostLottery {
+    let mut stream = streams.open(Part::CustomerPosts, [u64::from(scene.day.day())]);
+    let places = scene.day.params.social.max_posts_per_day as usize;
+    let blocks: Vec<(Group, &Block)> = customers.blocks().collect();
+    let mut picked: Vec<(usize, usize)> = Vec::new();
+    let (mut candidates, mut time) = (Vec::new(), 0.0);
+    while candidates.len() < places {
+        let total: f64 = voices.iter().map(|own| own.weight).sum();
+        if total <= 0.0 {
+            break;
+        }
+        time += stream.exponential(1.0 / total);
+        let target = stream.uniform() * total;
+        let taken = |number: usize, at: usize| picked.contains(&(number, at));
+        let Some((number, at)) = find_row(&blocks, &voices, target, scene, taken) else { break };
+        picked.push((number, at));
+        let (group, block) = blocks[number];
+        let own = &mut voices[number];
+        let mood = own.before[at];
+        own.weight = (own.weight - row_weight(scene, group, block, at, mood)).max(0.0);
+        candidates.push(Candidate {
+            time,
+            customer: block.customer[at],
+            group,
+            n: block.n[at],
+            satisfaction: Some(block.satisfaction[at]),
+            opinion: scene.opinion(group, block, at, mood, stream.uniform()),
+        });
+    }
+    PostLottery { stream, candidates, remaining_posts: places }
+}
+
+#[inline]
+fn row_weight(scene: &OpinionContext<'_>, group: Group, block: &Block, at: usize, before: f64) -> f64 {
+    post_weight(&scene.weight_inputs(group, block, at, before), &scene.day.params.social)
+}
+
+/// Returns the row at which the running sum of the weights of remaining rows exceeds the target, or the last
+/// one if rounding prevents that.
+fn find_row(
+    blocks: &[(Group, &Block)],
+    voices: &[BlockWeights],
+    mut target: f64,
+    scene: &OpinionContext<'_>,
+    taken: impl Fn(usize, usize) -> bool,
+) -> Option<(usize, usize)> {
+    let mut last = None;
+    for (number, ((group, block), own)) in blocks.iter().zip(voices).enumerate() {
+        if own.weight <= 0.0 {
+            continue;
+        }
+        let mut rows = (0..block.len()).filter(|at| !taken(number, *at));
+        if target >= own.weight {
+            target -= own.weight;
+            last = rows.next_back().map(|at| (number, at)).or(last);
+            continue;
+        }
+        for at in rows {
+            last = Some((number, at));
+            target -= row_weight(scene, *group, block, at, own.before[at]);
+            if target < 0.0 {
+                return last;
+            }
+        }
+    }
+    last
+}
+
+impl PostLottery {
+    /// Adds individuals who cancelled and enterprises that were lost.
+    pub fn add_departed(
+        &mut self,
+        gave_up: &[CancelledIndividual],
+        lost: &[LostEnterprise],
+        params: &Params,
+    ) {
+        let law = &params.social;
+        for own in gave_up {
+            let weight = cancelled_weight(own.satisfaction, 1.0, law);
+            let theme = if own.satisfaction < 0.0 { Theme::Quality } else { Theme::Price };
+            let opinion = Opinion {
+                cause: PostCause::Cancelled,
+                troubles: Troubles::default(),
+                theme,
+                days_subscribed: own.days_subscribed,
+                plan: Some(own.plan),
+                price: own.price,
+                seats: 1,
+                waiting_days: 0,
+                downtime_minutes: 0,
+            };
+            self.add_candidate(weight, own.customer, own.group, own.n, opinion);
+        }
+        for own in lost {
+            let weight = lost_company_weight(f64::from(own.seats), law);
+            let opinion = Opinion {
+                cause: PostCause::Lost {
+                    thread: own.kind,
+                    unanswered: own.failure == ThreadFailure::Timeout,
+                },
+                troubles: Troubles::default(),
+                theme: Theme::Support,
+                days_subscribed: own.days_subscribed.unwrap_or(law.enterprise_churn_event_fallback_days),
+                plan: None,
+                price: 0.0,
+                seats: own.seats,
+                waiting_days: 0,
+                downtime_minutes: 0,
+            };
+            self.add_candidate(weight, own.customer, own.group, own.n, opinion);
+        }
+    }
+
+    fn add_candidate(&mut self, weight: f64, customer: u32, group: Group, n: u32, opinion: Opinion) {
+        let time = self.stream.exponential(1.0 / weight);
+        self.candidates.push(Candidate { time, customer, group, n, satisfaction: None, opinion });
+    }
+
+    /// Publishes the posts of the earliest candidates.
+    pub fn publish(mut self, social: &mut Social, params: &Params, streams: &Streams, facts: &mut Facts) {
+        self.candidates.sort_by(|one, other| one.time.total_cmp(&other.time));
+        self.candidates.truncate(self.remaining_posts);
+        for own in self.candidates {
+            let u = self.stream.uniform();
+            // Departed customers always complain.
+            let tone =
+                own.satisfaction.map_or(Sentiment::Negative, |mood| sentiment(mood, u, &params.social));
+            let engagement = draw_engagement(tone, own.group.id(), params, &mut self.stream);
+            let author = post_author(own.customer, own.group, own.n, own.opinion.seats, params, streams);
+            social.publish(Some(author), tone, engagement, PostSubject::Opinion(own.opinion), facts);
+        }
+    }
+}
+
+/// Returns a customer as an author, with the profile drawn at arrival.
+pub fn post_author(
+    customer: u32,
+    group: Group,
+    n: u32,
+    seats: u32,
+    params: &Params,
+    streams: &Streams,
+) -> PostAuthor {
+    // The speed of deals does not affect the profile.
+    let persona = draw_traits(group, n, 1.0, params, streams).persona;
+    PostAuthor { customer, group, n, persona, company: if group.is_enterprise() { seats } else { 0 } }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::LazyLock;
+
+    use super::*;
+    use crate::context::tests::with_day_context;
+    use crate::customers::columns::Subscriber;
+    use crate::events::{Post, ServiceDay, ThreadKind};
+    use crate::identifiers::Plan;
+    use crate::morning::tests::morning;
+    use crate::settings::Settings;
+    use crate::test_kit::subscriber;
+
+    fn group() -> Group {
+        Group::parse("S1").expect("a group")
+    }
+
+    /// The posts of a seventh day with these subscribers and departed customers.
+    fn posts(
+        rows: &[Subscriber],
+        gave_up: &[CancelledIndividual],
+        lost: &[LostEnterprise],
+        seed: u64,
+    ) -> Vec<Post> {
+        static PARAMS: LazyLock<Params> = LazyLock::new(Params::bundled);
+        let (params, streams) = (&*PARAMS, Streams::new(seed));
+        let settings = Settings::initial(params);
+        let mut social = Social::initial(&settings);
+        let mut customers = Customers::default();
+        rows.iter().for_each(|row| customers.groups[group()].activate(*row));
+        let day = morning(70);
+        let chronicle = social.chronicle.clone();
+        let quiet = ServiceDay::without_load();
+        let mut crowd = with_day_context(&day, &settings, &quiet, (params, &streams), |day| {
+            let scene = OpinionContext { day, chronicle: &chronicle };
+            let moods = |block: &Block| block.satisfaction.clone();
+            let voices = customers.map_blocks(|group, block| weigh_block(group, block, moods(block), &scene));
+            from_subscribers(voices, &customers, &scene, &streams)
+        });
+        crowd.add_departed(gave_up, lost, params);
+        let mut facts = Facts::default();
+        facts.start_day(70);
+        crowd.publish(&mut social, params, &streams, &mut facts);
+        facts.posts
+    }
+
+    fn content(n: u32, satisfaction: f64) -> Subscriber {
+        Subscriber { satisfaction, usage_rate: 0.0, ..subscriber(n) }
+    }
+
+    fn cancelled_individual() -> CancelledIndividual {
+        CancelledIndividual {
+            customer: 900,
+            group: group(),
+            n: 900,
+            satisfaction: -0.2,
+            days_subscribed: 30,
+            plan: Plan::A,
+            price: 12.0,
+        }
+    }
+
+    fn lost_company() -> LostEnterprise {
+        LostEnterprise {
+            customer: 800,
+            group: Group::parse("E1").expect("a group"),
+            n: 7,
+            seats: 120,
+            days_subscribed: None,
+            kind: ThreadKind::NewLead,
+            failure: ThreadFailure::Timeout,
+        }
+    }
+
+    #[test]
+    fn at_most_five_different_subscribers_post() {
+        let rows: Vec<Subscriber> = (1..=40).map(|n| content(n, 0.1)).collect();
+        let mut authors: Vec<u32> =
+            posts(&rows, &[], &[], 1).iter().filter_map(|post| post.author).map(|own| own.customer).collect();
+        authors.sort_unstable();
+        authors.dedup();
+        assert_eq!(authors.len(), 5);
+        assert_eq!(posts(&rows[..3], &[], &[], 1).len(), 3);
+        assert_eq!(posts(&[], &[], &[], 1).len(), 0);
+        assert_eq!(posts(&[], &[cancelled_individual()], &[], 1).len(), 1);
+        assert_eq!(posts(&rows, &[], &[], 1), posts(&rows, &[], &[], 1));
+    }
+
+    #[test]
+    fn first_author_is_drawn_by_weight() {
+        // Weights 1 + 10 |S|: 1, 2, 3, and 15 for an individual who cancelled at -0.2.
+        let rows = [content(1, 0.0), content(2, 0.1), content(3, 0.2)];
+        let runs = 4000;
+        let mut first = [0.0; 4];
+        for seed in 0..runs {
+            let posts = posts(&rows, &[cancelled_individual()], &[], seed);
+            let author = posts[0].author.expect("a customer").n;
+            first[if author == 900 { 3 } else { author as usize - 1 }] += 1.0 / runs as f64;
+        }
+        for (share, weight) in first.into_iter().zip([1.0, 2.0, 3.0, 15.0]) {
+            let expected: f64 = weight / 21.0;
+            let error = (expected * (1.0 - expected) / runs as f64).sqrt();
+            assert!((share - expected).abs() < 4.0 * error, "{first:?}");
+        }
+    }
+
+    #[test]
+    fn departed_customers_complain_with_cause() {
+        let found = posts(&[], &[cancelled_individual()], &[lost_company()], 3);
+        assert_eq!(found[0].author.map(|author| author.company), Some(120), "960 against 15");
+        assert!(found.iter().all(|post| post.sentiment == Sentiment::Negative));
+        let causes: Vec<PostCause> = found
+            .iter()
+            .map(|post| match post.matter {
+                PostSubject::Opinion(opinion) => opinion.cause,
+                _ => panic!("an opinion"),
+            })
+            .collect();
+        assert!(causes.contains(&PostCause::Cancelled));
+        assert!(causes.contains(&PostCause::Lost { thread: ThreadKind::NewLead, unanswered: true }));
+    }
+
+    #[test]
+    fn posting_day_is_every_seventh_day() {
+        let mut params = Params::bundled();
+        let days: Vec<u32> = (1..=21).filter(|day| is_posting_day(*day, &params)).collect();
+        assert_eq!(days, [7, 14, 21]);
+        params.fidelity.customer_posts = CustomerPosts::Daily;
+        assert!((1..=21).all(|day| is_posting_day(day, &params)));
+    }
+}

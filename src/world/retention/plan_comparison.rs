@@ -1,0 +1,120 @@
+//! The comparison of plans when an individual decides whether to stay (`docs/mechanics/retention/renewal.md`).
+
+use super::renewal::{RenewalContext, ongoing_discount};
+use crate::context::DayContext;
+use crate::customers::columns::Block;
+use crate::customers::curve::{Curve, required_quality};
+use crate::customers::drift::Expectation;
+use crate::identifiers::{ByPlan, Group, Plan};
+use crate::params::{Params, ServicePenalty};
+use crate::quality::{Experience, perceived_quality, quota_demand, quota_factor, relationship_bonus};
+
+/// The plans as an individual perceives them, and its requirements.
+#[derive(Debug, Clone, Copy)]
+pub struct PlanComparison {
+    /// Today's list prices minus the ongoing discounts, dollars a month.
+    pub prices: ByPlan<f64>,
+    /// The quality terms of each plan.
+    pub experiences: ByPlan<Experience>,
+    /// Quality lost to today's service, included in the delivered quality.
+    pub service_penalty: f64,
+    /// The individual's curve.
+    pub own_curve: Curve,
+    /// The market's change of the curve.
+    pub expectation: Expectation,
+    /// Macro multiplier of the budget.
+    pub willingness_to_pay: f64,
+}
+
+/// Compares the plans for the individual at a position of a block.
+pub fn compare_plans(
+    group: Group,
+    block: &Block,
+    at: usize,
+    judgement: &RenewalContext<'_>,
+) -> PlanComparison {
+    let &DayContext { morning, settings, params, .. } = judgement.day;
+    let service_penalty = match params.fidelity.service_penalty {
+        ServicePenalty::Satisfaction => 0.0,
+        ServicePenalty::Everywhere => judgement.day.service_penalty,
+    };
+    let prices = ByPlan::from_fn(|plan| {
+        let discount = ongoing_discount(block.customer[at], group, plan, settings, params);
+        (morning.core.prices[plan] - discount).max(params.billing.effective_price_min)
+    });
+    let quality = &params.quality;
+    let rate = block.usage_rate[at];
+    let demand = quota_demand(rate * morning.weekday, rate, params);
+    // (`docs/mechanics/product/quality.md#terms-of-each-decision`)
+    let experiences = ByPlan::from_fn(|plan| Experience {
+        delivered: morning.delivered(group, plan) - service_penalty,
+        relationship: relationship_bonus(block.relationship[at], quality),
+        tenure: judgement.day.tenure.bonus(morning.day - block.start_day[at]),
+        quota: quota_factor(morning.quotas[plan], demand, quality),
+        issues: quality.issue_penalty_per_open_day * f64::from(block.open_issue_days[at]),
+        ads: block.ads_quality_sensitivity[at] * judgement.day.ads.for_group(group),
+    });
+    PlanComparison {
+        prices,
+        experiences,
+        service_penalty,
+        own_curve: block.curve(at),
+        expectation: morning.expectations[group],
+        willingness_to_pay: judgement.willingness_to_pay[group],
+    }
+}
+
+impl PlanComparison {
+    /// Returns the perceived quality of each plan.
+    pub fn qualities(&self, params: &Params) -> ByPlan<f64> {
+        ByPlan::from_fn(|plan| perceived_quality(self.experiences[plan], params.fidelity.perceived_quality))
+    }
+
+    /// Returns the curve with the market's change, and the budget with the effect of the economy.
+    pub fn curve(&self, params: &Params) -> Curve {
+        let curve = drifted_curve(self.own_curve, self.expectation, params);
+        curve.with_budget(curve.c_max * self.willingness_to_pay)
+    }
+
+    /// Returns the best acceptable plan, if any.
+    pub fn choice(&self, params: &Params) -> Option<Plan> {
+        best_plan(&self.prices, &self.qualities(params), &self.curve(params), params)
+    }
+
+    /// Returns the quality of a plan in excess of what its price requires. A plan is acceptable from 0 on if
+    /// its price is within the budget.
+    pub fn surplus(&self, plan: Plan, params: &Params) -> f64 {
+        let quality = perceived_quality(self.experiences[plan], params.fidelity.perceived_quality);
+        quality - required_quality(self.prices[plan], &self.curve(params), params)
+    }
+}
+
+/// Returns the curve of an individual with the market's change.
+pub fn drifted_curve(own: Curve, expectation: Expectation, params: &Params) -> Curve {
+    own.with_drift(expectation.quality, expectation.c_max, params.quality.read_time_c_max_min)
+}
+
+/// Returns the acceptable plan with the largest surplus, the earlier one on a tie, or `None` if none is acceptable.
+///
+/// A plan is acceptable if its price is within the budget of the curve and its quality is at least the
+/// required quality.
+pub fn best_plan(
+    prices: &ByPlan<f64>,
+    qualities: &ByPlan<f64>,
+    curve: &Curve,
+    params: &Params,
+) -> Option<Plan> {
+    let mut best: Option<(f64, Plan)> = None;
+    for plan in Plan::ALL {
+        // No price requires less than the minimum of the curve, so most plans need no further evaluation.
+        let most = qualities[plan] - curve.q_min.min(curve.q_max);
+        if prices[plan] > curve.c_max || most < 0.0 || best.is_some_and(|(surplus, _)| most <= surplus) {
+            continue;
+        }
+        let surplus = qualities[plan] - required_quality(prices[plan], curve, params);
+        if surplus >= 0.0 && best.is_none_or(|(most, _)| surplus > most) {
+            best = Some((surplus, plan));
+        }
+    }
+    best.map(|(_, plan)| plan)
+}

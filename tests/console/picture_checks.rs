@@ -1,0 +1,84 @@
+//! Automatic checks of the layout: truncated words next to free space, and empty halves.
+
+use super::harness::Console;
+
+/// Window sizes: the minimum, the smallest supported, a usual one, a large one.
+pub const SIZES: [(u16, u16); 4] = [(60, 16), (80, 24), (120, 40), (200, 60)];
+
+/// Returns the screen in the usual window. Adds words truncated next to free space, in windows of all these sizes, to
+/// `complaints`. The size of the console does not change.
+pub fn snapshot_text(console: &mut Console, complaints: &mut Vec<String>) -> String {
+    let own = console.size;
+    let mut usual = String::new();
+    for size in SIZES {
+        console.size = size;
+        let letters = console.screen();
+        complaints
+            .extend(needlessly_truncated_lines(&letters).into_iter().map(|line| format!("{size:?}: {line}")));
+        if size == (120, 40) {
+            usual = letters;
+        }
+    }
+    console.size = own;
+    usual
+}
+
+/// Spaces after a truncated word that count as free space rather than a column gap.
+const MAX_COLUMN_GAP: usize = 4;
+
+/// Returns the lines with a word truncated next to free space, up to the next border.
+pub fn needlessly_truncated_lines(screen: &str) -> Vec<String> {
+    let wasteful = |line: &&str| {
+        line.match_indices('…').any(|(at, sign)| {
+            let behind = &line[at + sign.len()..];
+            let blanks = behind.chars().take_while(|letter| *letter == ' ').count();
+            let next = behind.chars().nth(blanks);
+            blanks >= MAX_COLUMN_GAP && matches!(next, Some('│' | '┃') | None) && next.is_some()
+        })
+    };
+    screen.lines().filter(wasteful).map(str::to_owned).collect()
+}
+
+/// Returns the share of non-empty cells in the emptiest half, horizontally or vertically, without borders.
+pub fn min_half_coverage(screen: &str, width: usize) -> f64 {
+    let rows: Vec<Vec<char>> = screen
+        .lines()
+        .map(|line| {
+            let mut cells: Vec<char> = line.chars().collect();
+            cells.resize(width, ' ');
+            cells
+        })
+        .collect();
+    let (rows_half, columns_half) = (rows.len() / 2, width / 2);
+    let share = |of: &dyn Fn(usize, usize) -> bool| {
+        let cells = rows
+            .iter()
+            .enumerate()
+            .flat_map(|(y, row)| row.iter().enumerate().map(move |(x, cell)| (x, y, *cell)));
+        let own: Vec<char> = cells.filter(|(x, y, _)| of(*x, *y)).map(|(_, _, cell)| cell).collect();
+        own.iter().filter(|cell| is_ink(**cell)).count() as f64 / own.len().max(1) as f64
+    };
+    let halves: [&dyn Fn(usize, usize) -> bool; 4] =
+        [&|x, _| x < columns_half, &|x, _| x >= columns_half, &|_, y| y < rows_half, &|_, y| y >= rows_half];
+    halves.into_iter().map(share).fold(1.0, f64::min)
+}
+
+fn is_ink(cell: char) -> bool {
+    !" \u{2800}─│┌┐└┘├┤┬┴┼━┃┏┓┗┛".contains(cell)
+}
+
+#[test]
+fn truncation_is_reported_only_with_free_space() {
+    assert_eq!(needlessly_truncated_lines("│ a long na…        │"), ["│ a long na…        │"]);
+    assert!(
+        needlessly_truncated_lines("│ a long na…  12 │\n│ a long name…│\n at the end of the line…")
+            .is_empty()
+    );
+}
+
+#[test]
+fn empty_half_is_reported() {
+    let half = "xxxxx     \n".repeat(4);
+    assert!(min_half_coverage(&half, 10) < 1e-9);
+    assert!(min_half_coverage(&"x x x x x \n".repeat(4), 10) > 0.39);
+}

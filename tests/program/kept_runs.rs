@@ -1,0 +1,123 @@
+//! `novamind lab metrics` and `novamind lab diff`: hidden figures of runs that may be inspected.
+
+use crate::support::home::Home;
+
+/// Saves runs of the policy P0; returns the figures that were written.
+fn keep_run(home: &Home, seed: &str) -> String {
+    let file = home.0.path().join(format!("{seed}.csv"));
+    let path = file.to_str().expect("a path");
+    let said =
+        home.run(&["run", "--policy", "P0", "--seed", seed, "--days", "28", "--save", "--metrics", path]);
+    assert_eq!(said.exit_code, 0, "{}", said.stderr);
+    std::fs::read_to_string(file).expect("figures")
+}
+
+#[test]
+fn metrics_of_a_kept_run_match_those_written_while_playing() {
+    let home = Home::new();
+    let live = keep_run(&home, "3");
+    let said = home.run(&["lab", "metrics", "latest"]);
+    assert_eq!((said.exit_code, said.stderr.as_str()), (0, ""));
+    assert!(said.stdout == live, "{} and {} bytes", said.stdout.len(), live.len());
+    // The inspection is recorded, and the run verifies.
+    assert_eq!(home.run(&["replay", "latest", "--verify"]).exit_code, 0);
+}
+
+#[test]
+fn two_kept_runs_are_compared() {
+    let home = Home::new();
+    keep_run(&home, "3");
+    keep_run(&home, "4");
+    let runs: Vec<String> = std::fs::read_dir(home.runs())
+        .expect("a folder")
+        .map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned())
+        .filter(|name| name.len() == 8)
+        .collect();
+    let [one, other] = &runs[..] else { panic!("{runs:?}") };
+    let said = home.run(&["lab", "diff", one, other]);
+    assert_eq!(said.exit_code, 0, "{}", said.stderr);
+    assert!(said.stdout.starts_with("the runs differ from day 1\nday 1\ndiffers: "), "{}", said.stdout);
+    let said = home.run(&["lab", "diff", one, other, "28", "--json"]);
+    let told: serde_json::Value = serde_json::from_str(&said.stdout).expect("JSON");
+    assert_eq!((&told["first_day"], &told["day"]), (&1.into(), &28.into()));
+    for arguments in
+        [&["lab", "diff", one, one][..], &["lab", "diff", one, other, "29"], &["lab", "diff", one]]
+    {
+        assert_ne!(home.run(arguments).exit_code, 0, "{arguments:?}");
+    }
+}
+
+#[test]
+fn unfinished_sandbox_cannot_be_inspected() {
+    let home = Home::new();
+    home.two_weeks();
+    for arguments in [
+        &["lab", "metrics", "latest"][..],
+        &["lab", "diff", "latest", "latest"],
+        &["replay", "latest", "--xray"],
+        &["replay", "latest", "--xray", "--week", "1"],
+    ] {
+        let said = home.run(arguments);
+        assert_ne!(said.exit_code, 0);
+        assert!(said.stderr.contains("debug runs and in runs that are over"), "{}", said.stderr);
+        assert_eq!(said.stdout, "");
+    }
+}
+
+#[test]
+fn why_shows_causes_without_hidden_state() {
+    let lines = "set_prices A=12 B=25 C=55\nset_model_tiers A=2 B=3 C=4\nset_usage_quotas A=60000 B=250000 C=1200000\n\
+                 set_targeted_ad_spend {\"search_ads\": {\"S1\": 9000}}\nnext \"on\" naive\nnext \"on\" naive\nset_prices A=40\nnext \"on\" naive\nreport\n\
+                 why new_subscribers(S1) 3\nwhy reputation(S1)\nwhy chrun(S1)\nwhy\n";
+    for mode in ["debug", "sandbox", "baseline"] {
+        let home = Home::new();
+        let mut options = vec!["--mode", mode, "--seed", "7", "--echo"];
+        options.extend(if mode == "baseline" { &["--participant", "P01"][..] } else { &["--days", "84"] });
+        let said = home.play(&options, lines);
+        let [played, answers @ ..] = &said.stdout.split("> why ").collect::<Vec<_>>()[..] else {
+            panic!("{}", said.stdout)
+        };
+        // The report on the week lists settings and changes, without causes.
+        let (_, report) = played.split_once("> report").expect("a report");
+        assert!(report.contains("decisions before it: price A: 12 → 40 $/month"), "{report}");
+        for word in ["because", "due to", "cause", "may be", "led to", "thanks to", "blame"] {
+            assert!(!report.contains(word), "{word}: {report}");
+        }
+        let trajectory = std::fs::read_to_string(home.only_run().join("trajectory.jsonl")).expect("lines");
+        let looks: Vec<&str> = trajectory.lines().filter(|line| line.contains("\"kind\":\"xray\"")).collect();
+        if mode == "baseline" {
+            let refused = answers
+                .iter()
+                .all(|answer| answer.contains("refused not_in_this_mode: why and what-if simulate"));
+            assert!(refused && looks.is_empty(), "{}", said.stdout);
+            continue;
+        }
+        assert!(answers[0].contains("new subscribers of S1, week 3: "), "{}", said.stdout);
+        assert!(answers[0].contains("price"), "{}", said.stdout);
+        assert!(answers[2].contains("there is no figure chrun; did you mean churn"), "{}", said.stdout);
+        assert!(said.stdout.contains("why needs a figure: cash_change"), "{}", said.stdout);
+        let mood = answers[1];
+        if mode == "debug" {
+            assert!(mood.contains("reputation of S1, week 3: "), "{mood}");
+            assert!(looks.len() == 1 && looks[0].contains("\"which\":\"reputation(S1)\""), "{looks:?}");
+        } else {
+            assert!(
+                mood.contains(
+                    "refused not_in_this_mode (figure): reputation of S1 is hidden in unfinished runs"
+                ),
+                "{mood}"
+            );
+            assert!(looks.is_empty(), "{looks:?}");
+        }
+    }
+}
+
+#[test]
+fn the_replay_of_a_kept_run_on_the_x_ray_screen_needs_a_terminal() {
+    let home = Home::new();
+    keep_run(&home, "3");
+    let said = home.run(&["replay", "latest", "--xray"]);
+    assert_eq!(said.exit_code, 2, "{}", said.stderr);
+    assert!(said.stderr.contains("a replay needs a terminal"), "{}", said.stderr);
+    assert_eq!(home.run(&["replay", "latest", "--xray", "--verify"]).exit_code, 2);
+}

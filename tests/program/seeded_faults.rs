@@ -1,0 +1,99 @@
+//! The answers to the seeded faults: every first difference and every figure on the page is what the program shows.
+
+use crate::support::home::{Home, ProgramOutput};
+
+const WALKTHROUGH: &str = include_str!("../../docs/debugging-walkthrough.md");
+const ANSWERS: &str = include_str!("../../docs/debugging-answers.md");
+
+/// A row of the page: the number of the fault, its first difference, the commands that show it, and what they show.
+struct Row {
+    number: String,
+    first: String,
+    commands: Vec<String>,
+    shown: String,
+}
+
+fn answer_rows() -> Vec<Row> {
+    let of = |line: &str| {
+        let cells: Vec<&str> = line.split('|').map(str::trim).collect();
+        let [_, number, _, _, first, shows, _] = cells[..] else { panic!("{line}") };
+        let (asked, shown) = shows.split_once(": ").unwrap_or_else(|| panic!("{line}"));
+        Row {
+            number: number.to_owned(),
+            first: first.to_owned(),
+            commands: asked.split('`').skip(1).step_by(2).map(str::to_owned).collect(),
+            shown: shown.to_owned(),
+        }
+    };
+    let is_row =
+        |line: &&str| line.trim_start_matches("| ").starts_with(|first: char| first.is_ascii_digit());
+    ANSWERS.lines().filter(is_row).map(of).collect()
+}
+
+/// Returns the decisions of the walkthrough.
+fn walkthrough_decisions() -> String {
+    let from = WALKTHROUGH.find("set_prices {").expect("decisions");
+    WALKTHROUGH[from..].split("```").next().expect("their end").to_owned()
+}
+
+/// Returns the decimal figures in a text.
+fn figures(text: &str) -> Vec<&str> {
+    let words = text.split(|letter: char| letter.is_whitespace() || ",;:`()".contains(letter));
+    let clean = words.map(|word| word.trim_matches(|letter| "+-.$".contains(letter)));
+    let is_figure = |word: &&str| {
+        word.contains('.')
+            && word.starts_with(|first: char| first.is_ascii_digit())
+            && word.parse::<f64>().is_ok()
+    };
+    clean.filter(is_figure).collect()
+}
+
+fn play(home: &Home, planted: Option<&str>) -> String {
+    let mut options = vec!["--seed", "7", "--mode", "debug", "--days", "200"];
+    options.extend(planted.into_iter().flat_map(|number| ["--planted", number]));
+    let said = home.play(&options, &walkthrough_decisions());
+    assert_eq!(said.exit_code, 0, "{}", said.stderr);
+    // `run 02fe6680 · seed 7 · …`
+    said.stdout.split_whitespace().nth(1).expect("the name of the run").to_owned()
+}
+
+fn ask(home: &Home, run: &str, commands: &[String]) -> String {
+    let ProgramOutput { stdout: out, stderr: err, .. } = home.play(&["--run", run], &commands.join("\n"));
+    assert!(!err.contains("refused") && !out.contains("did you mean"), "{commands:?}: {out}{err}");
+    out
+}
+
+#[test]
+#[ignore = "slow: .ci/full runs it"]
+fn debugging_answers_match_the_program() {
+    let home = Home::new();
+    let sound = play(&home, None);
+    let all = answer_rows();
+    assert_eq!(all.len(), 10);
+    for row in all {
+        let faulty = play(&home, Some(&row.number));
+        let diff = home.run(&["lab", "diff", &sound, &faulty]).stdout;
+        let (day, what) = row.first.split_once(',').unwrap_or((&row.first, ""));
+        match day.strip_prefix("day ") {
+            Some(day) => {
+                assert!(
+                    diff.starts_with(&format!("the runs differ from day {day}")),
+                    "{}: {diff}",
+                    row.number
+                );
+                let named = what.trim().split(' ').next().unwrap_or_default();
+                assert!(diff.contains(named), "{}: {what}: {diff}", row.number);
+            }
+            None => assert!(diff.starts_with("the runs are equal on every day"), "{}: {diff}", row.number),
+        }
+        let shown = ask(&home, &faulty, &row.commands);
+        // The figures of the correct run are listed, too; a row of a changed figure would change them.
+        let moves_on = row.commands.iter().any(|line| line.starts_with("run "));
+        let beside = if moves_on { String::new() } else { ask(&home, &sound, &row.commands) };
+        let told = figures(&row.shown);
+        assert!(!told.is_empty(), "{}: {}", row.number, row.shown);
+        for figure in told {
+            assert!(shown.contains(figure) || beside.contains(figure), "{}: {figure} in {shown}", row.number);
+        }
+    }
+}

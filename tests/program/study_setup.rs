@@ -1,0 +1,214 @@
+//! Preparation and supervision of a study: check, assign, watch, notes.
+
+use std::fs;
+use std::path::PathBuf;
+
+use crate::support::home::{Home, ProgramOutput, run_with_input};
+
+/// A study of four weeks without questions and practice.
+struct Lab(Home);
+
+impl Lab {
+    fn new() -> Lab {
+        let lab = Lab(Home::new());
+        assert_eq!(lab.0.run(&["study", "new", &lab.folder()]).exit_code, 0);
+        lab.edit("# days = 84 ", "days = 28 #");
+        lab.edit("offer = \"required\"", "offer = \"none\"");
+        for questions in ["1-before", "2-effort", "3-end"] {
+            fs::remove_file(lab.path(&format!("pilot/questions/{questions}.toml"))).expect("gone");
+        }
+        lab
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.0.path().join(name)
+    }
+
+    fn folder(&self) -> String {
+        self.path("pilot").display().to_string()
+    }
+
+    fn edit(&self, from: &str, to: &str) {
+        let path = self.path("pilot/study.toml");
+        let text = fs::read_to_string(&path).expect("a protocol");
+        assert!(text.contains(from), "{from}");
+        fs::write(path, text.replace(from, to)).expect("written");
+    }
+
+    fn run(&self, command: &str, options: &[&str]) -> ProgramOutput {
+        self.0.run(&[&["study", command, &self.folder()], options].concat())
+    }
+
+    fn play_session(&self, machine: &str, lines: &str) -> ProgramOutput {
+        let mut program = self.0.program();
+        program.env("NOVAMIND_RUNS", self.path(machine));
+        run_with_input(program.args(["--study", &self.folder()]), lines)
+    }
+
+    fn assignment(&self) -> String {
+        fs::read_to_string(self.path("pilot/assignment.csv")).expect("an assignment")
+    }
+}
+
+#[test]
+fn removed_settings_are_reported_and_ignored() {
+    let lab = Lab::new();
+    let clean = lab.run("check", &[]).stdout;
+    assert!(!clean.contains("removed"), "{clean}");
+    lab.edit("[access]", "[integrity]\nwitness = \"share\"\ncode_words = true\n\n[access]");
+    fs::create_dir(lab.path("pilot/share")).expect("a folder");
+    let checked = lab.run("check", &[]);
+    assert_eq!(checked.exit_code, 0, "{}{}", checked.stdout, checked.stderr);
+    for key in ["witness", "code_words"] {
+        let words = format!("note  settings    [integrity] {key} was removed and has no effect");
+        assert!(checked.stdout.contains(&words), "{}", checked.stdout);
+    }
+    let visit = lab.play_session("m1", "P1\nyes\nnext \"a\" naive\nquit\n");
+    assert!(visit.exit_code == 0 && !visit.stdout.contains("code:"), "{}{}", visit.stdout, visit.stderr);
+    assert_eq!(lab.path("pilot/share").read_dir().expect("a folder").count(), 0);
+    let audited = lab.run("audit", &[&lab.path("m1").display().to_string()]);
+    assert_eq!(audited.exit_code, 0, "{}{}", audited.stdout, audited.stderr);
+    assert!(audited.stderr.contains("[integrity] witness was removed"), "{}", audited.stderr);
+    // A key that never existed is still rejected.
+    lab.edit("code_words = true", "code_word = true");
+    lab.run("check", &[]).assert_fails(3, &["study.toml", "code_word"]);
+}
+
+#[test]
+fn check_reports_impossible_designs() {
+    let lab = Lab::new();
+    let questionnaire = |weeks: &str| {
+        let text = format!(
+            "title = \"Week\"\nwhen = \"weeks\"\nweeks = [{weeks}]\n[[question]]\nid = \"a\"\ntext = \"How?\"\nform = \"text\"\n"
+        );
+        fs::write(lab.path("pilot/questions/week.toml"), text).expect("written");
+    };
+    questionnaire("2, 9");
+    let told = lab.run("check", &[]);
+    assert_eq!(told.exit_code, 0, "{}", told.stderr);
+    for words in [
+        "ok    world       scenario default\n",
+        "note  questions   questions/week.toml is due after week 9: a session has 4 weeks",
+        "note  forecasts   of 4 weeks' forecasts come due: 4 looking 7 days ahead, 1 looking 28 days ahead, 0 looking 84",
+    ] {
+        assert!(told.stdout.contains(words), "{words} is missing in\n{}", told.stdout);
+    }
+    questionnaire("9");
+    let told = lab.run("check", &[]);
+    assert!(
+        told.exit_code == 1 && told.stdout.contains("WRONG questions   questions/week.toml is due"),
+        "{}",
+        told.stdout
+    );
+    questionnaire("2");
+    lab.edit("# week_minutes = 20", "week_minutes = 2");
+    lab.edit("# warning_minutes = 2", "warning_minutes = 2");
+    lab.run("check", &[])
+        .assert_fails(3, &["limits.warning_minutes", "week_minutes = 2 would show from the start"]);
+    lab.edit("warning_minutes = 2", "warning_minutes = 1");
+    lab.edit("offer = \"none\"", "offer = \"optional\"");
+    let told = lab.run("check", &[]).stdout;
+    assert!(told.contains("scenario default, for the practice practice\n"), "{told}");
+}
+
+#[test]
+fn assign_add_keeps_existing_rows() {
+    let lab = Lab::new();
+    lab.edit(
+        "plan = \"one\" ",
+        "plan = \"blocks\"\nblock = [11, 12, 13]\nconditions = [\"A\", \"B\"]\ndraw = 5 ",
+    );
+    lab.run("assign", &["--add", "3"]).assert_fails(2, &["no assignment yet"]);
+    lab.run("assign", &["--participants", "8", "--draw", "6"]).assert_fails(2, &["draw = 5"]);
+    let made = lab.run("assign", &["--participants", "8"]);
+    assert!(made.stdout.contains("the last block has 2 of 6 cells; with 12 participants"), "{}", made.stdout);
+    let told = lab.run("check", &[]).stdout;
+    assert!(told.contains("8 labels in blocks of 6: the last block has 2 of 6 cells"), "{told}");
+    let first = lab.assignment();
+    lab.run("assign", &["--participants", "12"]).assert_fails(1, &["--add N"]);
+    let added = lab.run("assign", &["--add", "4"]);
+    assert!(
+        added.exit_code == 0 && added.stdout.contains("12 participants"),
+        "{}{}",
+        added.stdout,
+        added.stderr
+    );
+    let second = lab.assignment();
+    assert!(second.starts_with(&first) && second.contains("\nP12,"), "{second}");
+    let mut cells: Vec<&str> =
+        second.lines().skip(7).map(|line| line.split_once(',').expect("a label").1).collect();
+    cells.iter_mut().for_each(|cell| *cell = cell.rsplit_once(',').expect("an order").0);
+    cells.sort_unstable();
+    assert_eq!(cells, ["A,11", "A,12", "A,13", "B,11", "B,12", "B,13"]);
+    // Rows edited by hand do not change, and neither does the file.
+    let by_hand = second.replacen(",A,", ",C,", 1);
+    fs::write(lab.path("pilot/assignment.csv"), &by_hand).expect("written");
+    lab.run("assign", &["--add", "1"]).assert_fails(1, &["were not drawn with seed 5", "by hand"]);
+    assert_eq!(lab.assignment(), by_hand);
+}
+
+#[test]
+fn remark_is_stored_next_to_the_runs() {
+    let lab = Lab::new();
+    assert_eq!(lab.run("assign", &["--participants", "3"]).exit_code, 0);
+    lab.play_session("m1", "P01\nyes\nquit\n");
+    lab.play_session("m2", "P02\nyes\nquit\n");
+    let machines = [lab.path("m1").display().to_string(), lab.path("m2").display().to_string()];
+    let note =
+        |label: &str, text: &str| lab.run("watch", &[&machines[0], &machines[1], "--note", label, text]);
+    let said = note("P02", "came late");
+    assert!(
+        said.stdout.contains("recorded a note for P02 in") && said.stdout.contains("m2/remarks.jsonl"),
+        "{}",
+        said.stdout
+    );
+    assert!(note("P01", "asked what a lead is").stdout.contains("m1/remarks.jsonl"));
+    assert_eq!(note("P03", "has not come").exit_code, 0, "a label of the assignment");
+    assert_eq!(note("P02", "left early").exit_code, 0);
+    note("P99", "who is it?").assert_fails(2, &["P99 is not a label of this study", "Nothing was recorded"]);
+    let shown = lab.run("watch", &[&machines[0], &machines[1], "--once"]).stdout;
+    let texts = ["came late", "asked what a lead is", "has not come", "left early"];
+    let places: Vec<usize> = texts.iter().map(|text| shown.find(text).expect(text)).collect();
+    assert!(places.is_sorted(), "by time\n{shown}");
+}
+
+#[test]
+fn protocol_lists_randomization_and_limits() {
+    let lab = Lab::new();
+    lab.edit(
+        "plan = \"one\" ",
+        "plan = \"blocks\"\nblock = [11, 12]\nconditions = [\"A\", \"B\"]\ndraw = 5 ",
+    );
+    lab.edit("# week_minutes = 20", "week_minutes = 20");
+    lab.edit("# warning_minutes = 2", "warning_minutes = 3");
+    lab.edit("at_limit = \"remind\"", "at_limit = \"naive\"");
+    lab.edit("offer = \"none\"", "offer = \"optional\"");
+    assert_eq!(lab.run("assign", &["--participants", "4"]).exit_code, 0);
+    let bare = lab.run("protocol", &[]).stdout;
+    assert!(bare.contains("There is no lab key"), "{bare}");
+    let made = lab.run("key", &[]).stdout;
+    let fingerprint = made.lines().find_map(|line| line.strip_prefix("fingerprint ")).expect("one");
+    let digest = blake3::hash(lab.assignment().as_bytes()).to_hex().to_string();
+    let said = lab.run("protocol", &[]).stdout;
+    for words in [
+        format!("signed by the lab key {fingerprint}"),
+        format!(
+            "4 labels are assigned (in blocks of 4, drawn with seed 5, BLAKE3 hash of assignment.csv {digest})"
+        ),
+        "Conditions: A, B. They label and balance participants. The program is the same".to_owned(),
+        "The practice uses the same rules".to_owned(),
+        "| The practice starts with the tour (console) | yes |".to_owned(),
+        "| Active minutes per week of the company | 20 |".to_owned(),
+        "| Active minutes per session | no limit |".to_owned(),
+        "warned | 3 |".to_owned(),
+        "of a week: it is filed with naive forecasts".to_owned(),
+        "if no other follows within 60 s".to_owned(),
+        "no; the week report and the Cash and Journal screens".to_owned(),
+    ] {
+        assert!(said.contains(&words), "{words} is missing in\n{said}");
+    }
+    fs::write(lab.path("pilot/assignment.csv"), lab.assignment().replacen(",A,", ",B,", 1)).expect("written");
+    assert!(
+        lab.run("protocol", &[]).stdout.contains("not as `novamind study assign` draws them with seed 5")
+    );
+}

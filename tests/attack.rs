@@ -115,11 +115,11 @@ fn outcome_problem(attack: &Attack, outcome: &Result<QueryResult, QueryError>) -
         ("answered", Ok(rows)) => value.is_empty() || first_cell(rows) == value,
         _ => false,
     };
-    let told = match outcome {
+    let text = match outcome {
         Ok(rows) => format!("answered with {} rows, first {}", rows.rows.len(), first_cell(rows)),
         Err(error) => format!("refused {}: {}", error.code, error.message),
     };
-    (!fits).then(|| format!("{}\n    expected {}, got {told}", attack.sql, attack.head))
+    (!fits).then(|| format!("{}\n    expected {}, got {text}", attack.sql, attack.head))
 }
 
 fn run_attacks(connection: &QueryConnection, attacks: &[Attack], secrets: &[String]) {

@@ -37,7 +37,7 @@ pub fn grids() -> Vec<BundledFile> {
 /// Returns the lessons, by name, in the order of the course.
 pub fn lessons() -> Vec<BundledFile> {
     let mut lessons = bundled_files(&LESSONS);
-    let place = |name: &str| LESSON_ORDER.iter().position(|own| *own == name).unwrap_or(LESSON_ORDER.len());
+    let place = |name: &str| LESSON_ORDER.iter().position(|text| *text == name).unwrap_or(LESSON_ORDER.len());
     lessons.sort_by_key(|(name, _)| place(name));
     lessons
 }

@@ -140,7 +140,7 @@ pub struct PairedDifference {
 impl PairedDifference {
     /// Computes the difference of pairs. Skips pairs with a missing value; `None` without pairs.
     pub fn from_pairs(pairs: impl IntoIterator<Item = (f64, f64)>) -> Option<PairedDifference> {
-        let differences = pairs.into_iter().map(|(own, other)| own - other);
+        let differences = pairs.into_iter().map(|(value, other)| value - other);
         let differences: Vec<f64> = differences.filter(|own| !own.is_nan()).collect();
         (!differences.is_empty()).then(|| PairedDifference {
             mean: mean(&differences),
@@ -193,10 +193,14 @@ mod tests {
 
     #[test]
     fn paired_difference_compares_pairs() {
-        let own = PairedDifference::from_pairs([(3.0, 1.0), (12.0, 10.0), (f64::NAN, 1.0)]).expect("pairs");
-        assert_eq!(own, PairedDifference { mean: 2.0, interval: None, first_greater: 2, pair_count: 2 });
-        let own = PairedDifference::from_pairs([(3.0, 1.0); MIN_SAMPLE_SIZE]).expect("pairs");
-        assert_eq!(own.interval, Some(Interval { low: 2.0, high: 2.0 }));
+        let paired_difference =
+            PairedDifference::from_pairs([(3.0, 1.0), (12.0, 10.0), (f64::NAN, 1.0)]).expect("pairs");
+        assert_eq!(
+            paired_difference,
+            PairedDifference { mean: 2.0, interval: None, first_greater: 2, pair_count: 2 }
+        );
+        let difference = PairedDifference::from_pairs([(3.0, 1.0); MIN_SAMPLE_SIZE]).expect("pairs");
+        assert_eq!(difference.interval, Some(Interval { low: 2.0, high: 2.0 }));
         assert_eq!(PairedDifference::from_pairs([(f64::NAN, 1.0)]), None);
     }
 }

@@ -98,7 +98,7 @@ pub fn run(options: Options, context: &Context) -> Result<(), Failure> {
         }
         ClassCommand::Collect { folder, places } => collect_class(&folder, &places),
         ClassCommand::Show { folder, student, decision, figure, hide_names, html, text } => {
-            let shown = ClassDisplayOptions {
+            let display_options = ClassDisplayOptions {
                 hides_names: hide_names,
                 highlighted_student: student,
                 decision,
@@ -106,7 +106,7 @@ pub fn run(options: Options, context: &Context) -> Result<(), Failure> {
             };
             let is_seen = std::io::stdout().is_terminal() && std::io::stdin().is_terminal();
             let on_screen = is_seen && !text && html.is_none();
-            show_class(&folder, shown, html.as_deref(), on_screen.then_some(context))
+            show_class(&folder, display_options, html.as_deref(), on_screen.then_some(context))
         }
     }
 }
@@ -131,9 +131,9 @@ fn create_class(what: &HandoutSource, students: u32, out: &Path) -> Result<(), F
 fn collect_class(folder: &Path, places: &[PathBuf]) -> Result<(), Failure> {
     remove_partial_files_on_signals();
     let class = Class::read(folder)?;
-    let own = [folder.to_owned()];
+    let paths = [folder.to_owned()];
     let sources =
-        CollectionInput { class: &class, folder, places: if places.is_empty() { &own } else { places } };
+        CollectionInput { class: &class, folder, places: if places.is_empty() { &paths } else { places } };
     let mut bar = None;
     let collection = ClassCollection::collect(&sources, calls_for_waiting_threads, &mut |done, all| {
         bar.get_or_insert_with(|| progress_bar(all as u64, "runs")).set_position(done as u64);
@@ -165,12 +165,12 @@ fn collect_class(folder: &Path, places: &[PathBuf]) -> Result<(), Failure> {
 
 fn show_class(
     folder: &Path,
-    shown: ClassDisplayOptions,
+    display_options: ClassDisplayOptions,
     html: Option<&Path>,
     screen: Option<&Context>,
 ) -> Result<(), Failure> {
     let class = CollectedClass::read(folder)?;
-    let view = ClassView::new(&class, shown);
+    let view = ClassView::new(&class, display_options);
     view.check().map_err(Failure::usage)?;
     if let Some(context) = screen {
         let start = Effect::Request(Request::ReadClass(folder.to_owned(), view.display));

@@ -350,8 +350,9 @@ fn ignore_file_size_signal() {
 /// Passes `--code` on to the tool that an agent calls if no study is given, because tools have arguments of that name, too.
 #[cfg(feature = "server")]
 fn pass_code_to_tool(mut arguments: Arguments) -> Arguments {
-    let own = arguments.code.clone().filter(|code| std::env::var("NOVAMIND_CODE").as_ref() != Ok(code));
-    if let (None, Some(Command::Agent(options)), Some(code)) = (&arguments.study, &mut arguments.command, own)
+    let text = arguments.code.clone().filter(|code| std::env::var("NOVAMIND_CODE").as_ref() != Ok(code));
+    if let (None, Some(Command::Agent(options)), Some(code)) =
+        (&arguments.study, &mut arguments.command, text)
     {
         options.restore_code_argument(code);
     }

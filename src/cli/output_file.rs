@@ -64,9 +64,9 @@ fn replace_file(place: &Path, write: impl FnOnce(&mut BufWriter<File>) -> io::Re
 pub fn check_signature(place: &Path, expected: &str) -> Result<(), Failure> {
     let is_file = std::fs::metadata(place).is_ok_and(|found| found.is_file());
     let there = if is_file { read_signature(place) } else { Ok(Vec::new()) };
-    let own: Vec<u8> = expected.bytes().take(SIGNATURE_BYTES as usize).collect();
+    let bytes: Vec<u8> = expected.bytes().take(SIGNATURE_BYTES as usize).collect();
     match there {
-        Ok(there) if there.is_empty() || there == own => Ok(()),
+        Ok(there) if there.is_empty() || there == bytes => Ok(()),
         Ok(_) => Err(Failure::failed(format!("{}: {OTHER_FILE_MESSAGE}", place.display()))),
         Err(error) => Err(Failure::failed(format!("{}: {error}", place.display()))),
     }
@@ -121,8 +121,8 @@ mod tests {
             out.write_all(b"# report two")?;
             Err(io::Error::other("the disk is full"))
         });
-        let said = half.expect_err("it fails").to_string();
-        assert!(said.ends_with("the disk is full; the file was not written, the run is kept"), "{said}");
+        let text = half.expect_err("it fails").to_string();
+        assert!(text.ends_with("the disk is full; the file was not written, the run is kept"), "{text}");
         assert_eq!(std::fs::read_to_string(&place).expect("a file"), "# report one");
         write_text(&place, "# report two").expect("written");
         assert_eq!(std::fs::read_to_string(&place).expect("a file"), "# report two");
@@ -135,8 +135,8 @@ mod tests {
         let place = folder.path().join("trajectory.jsonl");
         for there in ["{\"seq\":0}\n", "name = \"mine\"\n", "run,policy\n"] {
             std::fs::write(&place, there).expect("a file");
-            let said = write_text(&place, "<svg>").expect_err("refused").to_string();
-            assert!(said.contains("was not written by this command"), "{said}");
+            let text = write_text(&place, "<svg>").expect_err("refused").to_string();
+            assert!(text.contains("was not written by this command"), "{text}");
             assert_eq!(std::fs::read_to_string(&place).expect("a file"), there);
         }
         std::fs::write(&place, "").expect("an empty file");

@@ -174,12 +174,15 @@ fn create_run(new: NewRun, context: &Context) -> Result<Session, Failure> {
                     "you did not agree; no run was created and nothing was recorded".to_owned(),
                 ));
             }
-            let given = ConsentGiven {
+            let consent_given = ConsentGiven {
                 means: ConsentMeans::Prompt,
                 scrolled_to_end: true,
                 read_ms: monotonic_time().saturating_sub(shown).as_millis() as u64,
             };
-            Ok(Session::create(NewRun { agreed: Some(given.given_now()), ..new }, &context.configuration)?)
+            Ok(Session::create(
+                NewRun { agreed: Some(consent_given.given_now()), ..new },
+                &context.configuration,
+            )?)
         }
         created => Ok(created?),
     }

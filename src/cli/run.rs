@@ -131,9 +131,9 @@ fn play_seeds(
     std::thread::spawn(move || {
         pool.install(|| {
             seeds.into_par_iter().with_max_len(1).for_each_with(done, |done, seed| {
-                let own = RunSpec { seed, ..spec.clone() };
+                let run_spec = RunSpec { seed, ..spec.clone() };
                 let mut collector = if wanted { Collector::new(days.clone()) } else { Collector::disabled() };
-                let outcome = play(&policy, &own, &configuration, &mut collector);
+                let outcome = play(&policy, &run_spec, &configuration, &mut collector);
                 // The receiver is gone after an earlier seed has failed.
                 let _ = done.send((seed, outcome, collector));
             });
@@ -206,7 +206,12 @@ fn open_metrics(path: &PathBuf) -> Result<BufWriter<File>, Failure> {
 
 /// Formats the figures of a run as rows for `--metrics`.
 pub fn figure_rows(seed: &str, figures: &[MetricValue]) -> String {
-    let row = |own: &MetricValue| format!("{seed},{},{},{},{}\n", own.day, own.figure, own.group, own.value);
+    let row = |metric_value: &MetricValue| {
+        format!(
+            "{seed},{},{},{},{}\n",
+            metric_value.day, metric_value.figure, metric_value.group, metric_value.value
+        )
+    };
     format!("{CSV_HEADER}\n{}", figures.iter().map(row).collect::<String>())
 }
 

@@ -35,13 +35,13 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
             return Ok(());
         }
     }
-    let held = BoundPort::bind(options.port)?;
+    let bound_port = BoundPort::bind(options.port)?;
     let session = options.which.open(context)?;
     let http = HttpOptions { token: options.token.clone() };
     let mut told = Ok(());
     serve_http(
         session,
-        held,
+        bound_port,
         &http,
         |ready| told = print(&format!("{}\n", json!(ready))),
         |words| eprintln!("{words}"),

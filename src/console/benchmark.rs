@@ -80,7 +80,7 @@ impl MeasuredConsole {
             return Err(io::Error::other(words.clone().unwrap_or_else(|| "the console exited".to_owned())));
         }
         let headless = &mut self.headless;
-        self.terminal.draw(|whole| headless.draw_into(whole.buffer_mut()))?;
+        self.terminal.draw(|frame| headless.draw_into(frame.buffer_mut()))?;
         Ok(())
     }
 

@@ -46,8 +46,8 @@ impl ConsentText {
     /// Returns how the user agrees, or `None` if the end of the text was not on the screen yet.
     pub fn consent(&self) -> Option<ConsentGiven> {
         let read_ms = monotonic_time().saturating_sub(self.shown_at).as_millis() as u64;
-        let given = ConsentGiven { means: ConsentMeans::Screen, scrolled_to_end: true, read_ms };
-        self.is_read.get().then_some(given)
+        let consent_given = ConsentGiven { means: ConsentMeans::Screen, scrolled_to_end: true, read_ms };
+        self.is_read.get().then_some(consent_given)
     }
 
     /// Scrolls the text. Returns whether the action was a scroll action.
@@ -121,7 +121,11 @@ mod tests {
             long.handle_scroll(Action::PageDown);
             draw_to_text(&long, 16);
         }
-        assert!(long.consent().is_some_and(|given| given.scrolled_to_end), "{}", draw_to_text(&long, 16));
+        assert!(
+            long.consent().is_some_and(|consent_given| consent_given.scrolled_to_end),
+            "{}",
+            draw_to_text(&long, 16)
+        );
         assert!(draw_to_text(&long, 16).contains("line 30.") && draw_to_text(&long, 16).contains("y agree"));
         long.handle_scroll(Action::First);
         assert!(draw_to_text(&long, 16).contains("line 1."));

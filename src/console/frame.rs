@@ -426,8 +426,12 @@ fn progress_text(busy: &BusyState, width: u16, stop: &str) -> String {
     };
     let (done, all) = (days.current.saturating_sub(days.from), days.to.saturating_sub(days.from).max(1));
     let gauge = bar(f64::from(done) / f64::from(all), 10);
-    let came_to = days.figures.filter(|_| width >= 80).map_or(String::new(), |told| {
-        format!(" cash {} · subs {}", short_dollars(told.cash), compact_number(f64::from(told.subscribers)))
+    let came_to = days.figures.filter(|_| width >= 80).map_or(String::new(), |simulated_day| {
+        format!(
+            " cash {} · subs {}",
+            short_dollars(simulated_day.cash),
+            compact_number(f64::from(simulated_day.subscribers))
+        )
     });
     format!("{} day {done} of {all} {gauge}{came_to} {seconds:.1} s", busy.label)
 }
@@ -440,8 +444,8 @@ mod tests {
 
     #[test]
     fn progress_text_counts_simulated_days() {
-        let told = Some(SimulatedDay { cash: 1_234_567.0, subscribers: 12_345 });
-        let days = SimulationProgress { from: 70, to: 77, current: 73, figures: told };
+        let simulated_day = Some(SimulatedDay { cash: 1_234_567.0, subscribers: 12_345 });
+        let days = SimulationProgress { from: 70, to: 77, current: 73, figures: simulated_day };
         let busy = |days| BusyState { progress: Some(days), ..BusyState::new("the week runs") };
         let text = progress_text(&busy(days), 80, "esc");
         assert!(text.starts_with("the week runs day 3 of 7 "), "{text}");

@@ -27,16 +27,16 @@ pub fn closed_reason(screen: ScreenId, company: &DisplayedCompany) -> Option<Str
     let lesson = company.running_lesson()?;
     let screens = lesson.screens.as_ref()?;
     let queries = lesson.tools.as_ref().is_none_or(|tools| tools.contains(&ToolId::Query));
-    let open = |own: ScreenId| {
-        let asks = own == ScreenId::Sql && queries;
-        asks || ALWAYS_OPEN_SCREENS.contains(&own)
-            || screens.iter().any(|name| name.eq_ignore_ascii_case(own.record_name()))
+    let open = |screen_id: ScreenId| {
+        let asks = screen_id == ScreenId::Sql && queries;
+        asks || ALWAYS_OPEN_SCREENS.contains(&screen_id)
+            || screens.iter().any(|name| name.eq_ignore_ascii_case(screen_id.record_name()))
     };
     // Hidden state has its own permission.
     if screen == ScreenId::Xray || open(screen) {
         return None;
     }
-    let title = |own: ScreenId| own.action().entry().title;
+    let title = |id: ScreenId| id.action().entry().title;
     let all: Vec<&str> = ScreenId::ALL.into_iter().filter(|own| open(*own)).map(title).collect();
     Some(format!("{} is closed in this lesson; open screens: {}", title(screen), all.join(", ")))
 }

@@ -8,13 +8,14 @@ use novamind_tui::theme::Theme;
 /// # Errors
 /// There is no theme of this name, or its file is invalid.
 pub fn find_theme(name: &str, configuration: &Configuration) -> Result<Theme, String> {
-    let own = configuration.read_file(format!("themes/{name}.toml")).map_err(|error| error.to_string())?;
-    if let Some(source) = own {
+    let parameter_source =
+        configuration.read_file(format!("themes/{name}.toml")).map_err(|error| error.to_string())?;
+    if let Some(source) = parameter_source {
         return Theme::parse(name, &source.text).map_err(|problem| format!("{}: {problem}", source.name));
     }
     Theme::bundled(name).ok_or_else(|| {
-        let own = configuration.toml_names("themes");
-        let known: Vec<&str> = bundled_names().chain(own.iter().map(String::as_str)).collect();
+        let texts = configuration.toml_names("themes");
+        let known: Vec<&str> = bundled_names().chain(texts.iter().map(String::as_str)).collect();
         format!("there is no theme {name}; there are {}", known.join(", "))
     })
 }
@@ -22,8 +23,8 @@ pub fn find_theme(name: &str, configuration: &Configuration) -> Result<Theme, St
 /// Returns every theme that can be parsed, the bundled ones first. An invalid file of the user is left out; [`find_theme`]
 /// reports what is wrong with it.
 pub fn all_themes(configuration: &Configuration) -> Vec<Theme> {
-    let own = configuration.toml_names("themes");
-    let others = own.iter().map(String::as_str).filter(|own| bundled_names().all(|name| name != *own));
+    let texts = configuration.toml_names("themes");
+    let others = texts.iter().map(String::as_str).filter(|text| bundled_names().all(|name| name != *text));
     bundled_names().chain(others).filter_map(|name| find_theme(name, configuration).ok()).collect()
 }
 

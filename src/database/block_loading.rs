@@ -71,7 +71,7 @@ impl FileBlocks {
     /// Loads missing tables. Returns false if a day is damaged or loading was stopped.
     pub fn load(&mut self, connection: &Connection, tables: &[String]) -> bool {
         for (table, load) in LOADERS {
-            if !tables.iter().any(|own| own == table) || self.loaded.contains(table) {
+            if !tables.iter().any(|text| text == table) || self.loaded.contains(table) {
                 continue;
             }
             if load(connection, &mut self.store).is_none() {

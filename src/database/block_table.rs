@@ -171,7 +171,7 @@ fn constraint_code<K: BlockTableDefinition>(column: c_int, operator: IndexConstr
     match operator {
         SQLITE_INDEX_CONSTRAINT_EQ if column == CUSTOMER_COLUMN => Some('c'),
         SQLITE_INDEX_CONSTRAINT_EQ
-            if K::NUMBER.is_some_and(|own| column == own || column == ROWID_COLUMN) =>
+            if K::NUMBER.is_some_and(|number| column == number || column == ROWID_COLUMN) =>
         {
             Some('n')
         }
@@ -426,8 +426,8 @@ unsafe impl<K: BlockTableDefinition> VTabCursor for BlockCursor<'_, K> {
     }
 
     fn rowid(&self) -> rusqlite::Result<i64> {
-        let own = self.row_data().and_then(K::row_number);
-        Ok(own.or_else(|| self.row_number()).unwrap_or_default())
+        let number = self.row_data().and_then(K::row_number);
+        Ok(number.or_else(|| self.row_number()).unwrap_or_default())
     }
 }
 

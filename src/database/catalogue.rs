@@ -78,7 +78,7 @@ impl Scope {
             None => table(name).is_none(),
         };
         let mut own = self.tables().filter(|_| is_there);
-        own.find(|table| table.hidden_name().is_some_and(|own| own.eq_ignore_ascii_case(name)))
+        own.find(|table| table.hidden_name().is_some_and(|text| text.eq_ignore_ascii_case(name)))
     }
 }
 

@@ -39,10 +39,10 @@ impl<R: RowRun> CustomerIndex<R> {
         let mut rows = vec![R::Row::default(); count];
         for_each_run::<R>(days, |first_number, run| {
             for (at, customer) in run.customers().iter().enumerate() {
-                let own = &mut next[place(*customer)];
-                numbers[*own as usize] = first_number + at as i64;
-                rows[*own as usize] = run.row(at);
-                *own += 1;
+                let number = &mut next[place(*customer)];
+                numbers[*number as usize] = first_number + at as i64;
+                rows[*number as usize] = run.row(at);
+                *number += 1;
             }
         })?;
         Some(CustomerIndex { first_customer: customers.start, row_starts: begins, numbers, rows })

@@ -114,13 +114,13 @@ impl HandledConstraint {
 
     /// Returns the two letters of the index text.
     fn encode(self) -> String {
-        let letter = Comparison::ALL.iter().find(|(own, _)| *own == self.comparison);
+        let letter = Comparison::ALL.iter().find(|(comparison, _)| *comparison == self.comparison);
         format!("{}{}", self.column, letter.map_or('=', |(_, letter)| *letter))
     }
 
     fn decode(pair: &[u8]) -> Option<HandledConstraint> {
         let &[column, letter] = pair else { return None };
-        let comparison = Comparison::ALL.iter().find(|(_, own)| *own == char::from(letter))?.0;
+        let comparison = Comparison::ALL.iter().find(|(_, character)| *character == char::from(letter))?.0;
         Some(HandledConstraint { column: c_int::from(column.wrapping_sub(b'0')), comparison })
     }
 }
@@ -181,7 +181,9 @@ unsafe impl<'vtab, K: DayTableDefinition> VTab<'vtab> for DayTable<K> {
 
     fn best_index(&self, info: &mut IndexInfo) -> rusqlite::Result<bool> {
         let usable = info.constraints().enumerate().filter(|(_, constraint)| constraint.is_usable());
-        let is_text = |own: &HandledConstraint| own.column == KIND || own.column == K::TEXT;
+        let is_text = |handled_constraint: &HandledConstraint| {
+            handled_constraint.column == KIND || handled_constraint.column == K::TEXT
+        };
         let handled: Vec<(usize, HandledConstraint)> = usable
             .filter_map(|(at, constraint)| {
                 Some((
@@ -190,7 +192,7 @@ unsafe impl<'vtab, K: DayTableDefinition> VTab<'vtab> for DayTable<K> {
                 ))
             })
             // Texts are compared byte by byte, unlike NOCASE.
-            .filter(|(at, own)| !is_text(own) || info.collation(*at).is_ok_and(|own| own == "BINARY"))
+            .filter(|(at, own)| !is_text(own) || info.collation(*at).is_ok_and(|text| text == "BINARY"))
             .collect();
         for (argument, (at, own)) in (1..).zip(&handled) {
             let mut usage = info.constraint_usage(*at);
@@ -401,7 +403,7 @@ unsafe impl<K: DayTableDefinition> VTabCursor for DayCursor<'_, K> {
             }
         }
         let order = [RowOrder::ByNumber, RowOrder::ByKind, RowOrder::ByDayAndKind];
-        let order = order.into_iter().find(|own| *own as c_int == order_number);
+        let order = order.into_iter().find(|row_order| *row_order as c_int == order_number);
         let order = order.unwrap_or(RowOrder::ByNumber);
         self.passes = self.plan_passes(days, kinds, order);
         (self.pass, self.place) = (0, 0);

@@ -146,13 +146,13 @@ pub(super) fn empty_result_hint(sql: &str, scope: Scope) -> Option<String> {
 /// Returns the pairs of column and text of comparisons, in either order. As in the engine, a name in double quotes is a text if
 /// no column has it.
 fn text_comparisons(sql: &str, scope: Scope) -> Vec<(String, String)> {
-    let own = tokenize(sql);
+    let tokens = tokenize(sql);
     let mut found = Vec::new();
-    for (at, token) in own.iter().enumerate() {
-        let doubled = own.get(at + 1).is_some_and(|next| next.is_symbol("="));
+    for (at, token) in tokens.iter().enumerate() {
+        let doubled = tokens.get(at + 1).is_some_and(|next| next.is_symbol("="));
         let compares = (token.is_symbol("=") && !doubled) || token.is_word("IS");
-        let Some(left) = own[..at].iter().rfind(|before| !before.is_symbol("=")) else { continue };
-        let Some(right) = own.get(at + 1).filter(|_| compares) else { continue };
+        let Some(left) = tokens[..at].iter().rfind(|before| !before.is_symbol("=")) else { continue };
+        let Some(right) = tokens.get(at + 1).filter(|_| compares) else { continue };
         for (column, text) in [(left, right), (right, left)] {
             if is_text_literal(text, scope) && column.can_be_name() && !is_text_literal(column, scope) {
                 found.push((column.unquoted().into_owned(), text.unquoted().into_owned()));

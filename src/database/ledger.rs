@@ -107,7 +107,8 @@ impl LedgerDay {
             let (category, amount, length) =
                 (unpacker.read_u32()?, unpacker.read_float()?, unpacker.read_u32()?);
             let note = std::str::from_utf8(unpacker.read_bytes(length as usize)?).ok()?.to_owned();
-            let category = u8::try_from(category).ok().filter(|own| usize::from(*own) < CATEGORIES.len())?;
+            let category =
+                u8::try_from(category).ok().filter(|number| usize::from(*number) < CATEGORIES.len())?;
             others.push(OtherEntry { category, amount, note });
         }
         let movements = LeadsAndPayments::unpack(&packed)?;
@@ -201,7 +202,7 @@ impl PackedRows for LedgerDay {
         }
         let place = place.max(packed);
         let mut others = self.others.iter().skip((place - packed) as usize);
-        others.position(|own| kinds & 1 << own.category != 0).map(|at| place + at as u64)
+        others.position(|other_entry| kinds & 1 << other_entry.category != 0).map(|at| place + at as u64)
     }
 }
 
@@ -227,9 +228,12 @@ impl LedgerDay {
                     let (customer, amount) = movements.payments[at];
                     (number, CATEGORIES[PAYMENT_CATEGORY], amount, payment_note(customer))
                 }
-                LedgerRow::Other(own) => {
-                    (number, CATEGORIES[usize::from(own.category)], own.amount, own.note.clone())
-                }
+                LedgerRow::Other(other_entry) => (
+                    number,
+                    CATEGORIES[usize::from(other_entry.category)],
+                    other_entry.amount,
+                    other_entry.note.clone(),
+                ),
             }
         })
     }

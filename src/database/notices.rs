@@ -133,7 +133,7 @@ impl NoticeDay {
         let count = unpacker.read_u32()?;
         let types = unpacker.read_bytes(count as usize)?.to_vec();
         let texts = PatternTexts::unpack(&mut unpacker, count)?;
-        let sound = types.iter().all(|own| usize::from(*own) < NOTICE_TYPES.len()) && before <= count;
+        let sound = types.iter().all(|number| usize::from(*number) < NOTICE_TYPES.len()) && before <= count;
         (sound && unpacker.is_empty()).then_some(NoticeDay {
             day,
             first,
@@ -338,9 +338,9 @@ mod tests {
                 NoticeSlot::Stored(2)
             ]
         );
-        let of_type = |own: u8| {
-            let next = |place: &u64| day.next_of_kinds(1 << own, place + 1);
-            std::iter::successors(day.next_of_kinds(1 << own, 0), next).collect::<Vec<_>>()
+        let of_type = |number: u8| {
+            let next = |place: &u64| day.next_of_kinds(1 << number, place + 1);
+            std::iter::successors(day.next_of_kinds(1 << number, 0), next).collect::<Vec<_>>()
         };
         assert_eq!(
             (of_type(2), of_type(LEAD_LOST), of_type(5), of_type(0)),

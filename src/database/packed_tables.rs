@@ -53,7 +53,7 @@ impl DayTableDefinition for Ledger {
         match day.entry_at(place) {
             LedgerRow::Lead(_) => LEAD_COST_CATEGORY,
             LedgerRow::Payment(_) => PAYMENT_CATEGORY,
-            LedgerRow::Other(own) => own.category.into(),
+            LedgerRow::Other(other_entry) => other_entry.category.into(),
         }
     }
 
@@ -64,7 +64,7 @@ impl DayTableDefinition for Ledger {
         match row.day.entry_at(row.place) {
             LedgerRow::Lead(at) => lead_note(leads[at]).into(),
             LedgerRow::Payment(at) => payment_note(payments[at].0).into(),
-            LedgerRow::Other(own) => own.note.as_str().into(),
+            LedgerRow::Other(other_entry) => other_entry.note.as_str().into(),
         }
     }
 
@@ -76,7 +76,7 @@ impl DayTableDefinition for Ledger {
         context.set_result(match row.day.entry_at(row.place) {
             LedgerRow::Lead(_) => row.day.lead_cost,
             LedgerRow::Payment(at) => row.unpacked.payments[at].1,
-            LedgerRow::Other(own) => own.amount,
+            LedgerRow::Other(other_entry) => other_entry.amount,
         })
     }
 

@@ -185,20 +185,20 @@ impl QueryConnection {
         let mut statements = self.released.statements(sql);
         let mut done = Ok(());
         for number in 1.. {
-            let own = QueryLimits {
+            let query_limits = QueryLimits {
                 time: limits.time.min(end.saturating_duration_since(Instant::now())),
                 ..limits
             };
-            self.interrupt.begin_statement(own.time, own.steps);
+            self.interrupt.begin_statement(query_limits.time, query_limits.steps);
             let answer = match statements.next() {
                 Ok(None) => break,
-                Ok(Some(reading)) => self.run_statement(reading, sql, own),
+                Ok(Some(reading)) => self.run_statement(reading, sql, query_limits),
                 Err(fault) => Err(fault),
             };
             match answer {
                 Ok(rows) => answered(rows),
                 Err(fault) => {
-                    done = Err(at(number)(self.fault_to_error(sql, fault, own)));
+                    done = Err(at(number)(self.fault_to_error(sql, fault, query_limits)));
                     break;
                 }
             }
@@ -435,8 +435,8 @@ fn is_write_statement(sql: &str) -> bool {
         "INSERT", "REPLACE", "UPDATE", "DELETE", "CREATE", "DROP", "ALTER", "ATTACH", "DETACH", "REINDEX",
         "VACUUM",
     ];
-    let own = tokenize(strip_explain_query_plan(sql));
-    let first = own.iter().find(|token| !token.is_symbol(";") && !token.is_word("EXPLAIN"));
+    let tokens = tokenize(strip_explain_query_plan(sql));
+    let first = tokens.iter().find(|token| !token.is_symbol(";") && !token.is_word("EXPLAIN"));
     first.is_some_and(|first| WORDS.iter().any(|word| first.is_word(word)))
 }
 

@@ -113,15 +113,16 @@ impl Interrupt {
 
     /// Returns whether the running query must end now.
     pub(super) fn should_stop(&self) -> bool {
-        let own = &self.0;
-        if bytes_in_use() > own.max_memory_bytes.load(Ordering::Relaxed) {
-            own.cause.store(1, Ordering::Relaxed);
+        let interrupt_state = &self.0;
+        if bytes_in_use() > interrupt_state.max_memory_bytes.load(Ordering::Relaxed) {
+            interrupt_state.cause.store(1, Ordering::Relaxed);
             return true;
         }
-        let looks = own.remaining_checks.load(Ordering::Relaxed);
-        own.remaining_checks.store(looks.saturating_sub(1), Ordering::Relaxed);
+        let looks = interrupt_state.remaining_checks.load(Ordering::Relaxed);
+        interrupt_state.remaining_checks.store(looks.saturating_sub(1), Ordering::Relaxed);
         looks == 0
             || self.is_stop_requested()
-            || own.started.elapsed().as_millis() as u64 > own.deadline.load(Ordering::Relaxed)
+            || interrupt_state.started.elapsed().as_millis() as u64
+                > interrupt_state.deadline.load(Ordering::Relaxed)
     }
 }

@@ -62,7 +62,7 @@ fn mask_word<'a>(word: &'a str, sql: &str) -> &'a str {
     };
     let asked = || {
         let mut contents = tokenize(sql).into_iter().map(|token| token.unquoted());
-        contents.any(|content| content.split(|letter| !is_word_character(letter)).any(|own| own == word))
+        contents.any(|content| content.split(|letter| !is_word_character(letter)).any(|text| text == word))
     };
     if language || LOWERCASE_WORDS.contains(&word) || table(word).is_some() || column() || asked() {
         return word;

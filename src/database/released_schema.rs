@@ -120,11 +120,11 @@ impl ReleasedSchema {
 
     /// Replaces `main.` and rowids in a statement, where that does not change the program.
     fn rewrite_for_views(&self, sql: String) -> String {
-        let own = tokenize(&sql);
+        let tokens = tokenize(&sql);
         let places: Vec<ReplaceableName> =
-            (0..own.len()).filter_map(|at| ReplaceableName::at_token(&own, at)).collect();
+            (0..tokens.len()).filter_map(|at| ReplaceableName::at_token(&tokens, at)).collect();
         let Some(program) = self.program(&sql).filter(|_| !places.is_empty()) else { return sql };
-        let qualifiers = qualifiers(&own);
+        let qualifiers = qualifiers(&tokens);
         let mut spelled = sql.clone();
         let mut attempts = 0;
         // From the end, so that earlier offsets stay valid.
@@ -243,8 +243,8 @@ fn qualifiers<'a>(tokens: &[Token<'a>]) -> Vec<&'a str> {
 
 /// Returns whether a statement has a RIGHT or FULL JOIN.
 fn has_right_join(sql: &str) -> bool {
-    let own = tokenize(sql);
-    own.windows(2).any(|pair| {
+    let tokens = tokenize(sql);
+    tokens.windows(2).any(|pair| {
         (pair[0].is_word("RIGHT") || pair[0].is_word("FULL"))
             && (pair[1].is_word("JOIN") || pair[1].is_word("OUTER"))
     })
@@ -252,8 +252,9 @@ fn has_right_join(sql: &str) -> bool {
 
 /// Returns a statement without a leading `EXPLAIN FIGURE_NAME_PREFIX LESSON_TOML`.
 pub(super) fn strip_explain_query_plan(sql: &str) -> &str {
-    let own = tokenize(sql);
+    let tokens = tokenize(sql);
     let head = ["EXPLAIN", "QUERY", "PLAN"];
-    let explains = own.len() > head.len() && own.iter().zip(head).all(|(token, word)| token.is_word(word));
-    if explains { &sql[own[head.len()].offset..] } else { sql }
+    let explains =
+        tokens.len() > head.len() && tokens.iter().zip(head).all(|(token, word)| token.is_word(word));
+    if explains { &sql[tokens[head.len()].offset..] } else { sql }
 }

@@ -130,14 +130,14 @@ fn copy_ads(transaction: &Transaction<'_>, store: &BlockStore) -> rusqlite::Resu
 }
 
 fn copy_inbox(transaction: &Transaction<'_>, inbox: &Inbox) -> rusqlite::Result<()> {
-    let mut own = transaction.prepare("INSERT INTO notice_rows VALUES (?1, ?2, ?3, ?4)")?;
+    let mut statement = transaction.prepare("INSERT INTO notice_rows VALUES (?1, ?2, ?3, ?4)")?;
     let mut repeating = transaction.prepare("INSERT INTO repeating_days VALUES (?1, ?2, ?3)")?;
     for day in inbox.days.iter() {
         let number = |place: u64| (day.first + place) as i64;
         for place in 0..day.len() {
             if let NoticeSlot::Stored(at) = day.slot_at(place) {
                 let notice_type = NOTICE_TYPES[usize::from(day.type_at(at))];
-                own.execute(params![number(place), day.day, notice_type, day.text_at(at)])?;
+                statement.execute(params![number(place), day.day, notice_type, day.text_at(at)])?;
             }
         }
         repeating.execute(params![day.day, number(u64::from(day.before_repeats)), day.repeats])?;

@@ -373,9 +373,9 @@ fn query_plan_names_no_internal_table() {
     );
     assert_eq!(plan("SELECT day FROM daily_usage u WHERE u.day = 3"), ["SCAN u"]);
     for table in super::tables() {
-        let told = plan(&format!("SELECT DISTINCT * FROM {} ORDER BY 2 DESC", table.name)).join("\n");
+        let text = plan(&format!("SELECT DISTINCT * FROM {} ORDER BY 2 DESC", table.name)).join("\n");
         for inside in ["_rows", "words", "axis", "inner_", "clock", "_by_", "blocks", "autoindex"] {
-            assert!(!told.contains(inside), "{told}");
+            assert!(!text.contains(inside), "{text}");
         }
     }
 }

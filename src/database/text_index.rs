@@ -70,7 +70,7 @@ impl TextIndexes {
         make: impl FnOnce() -> Vec<TextRow>,
     ) -> Option<Arc<TextIndex>> {
         let mut all = self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-        let held: usize = all.values().map(|own| own.rows).sum();
+        let held: usize = all.values().map(|text_lookups| text_lookups.rows).sum();
         let lookups = all.entry((days.start, days.end)).or_default();
         lookups.count += 1;
         let fits = (held as u64 + rows).saturating_mul(size_of::<TextRow>() as u64) <= MAX_INDEX_BYTES as u64;

@@ -203,12 +203,13 @@ mod tests {
             .iter()
             .map(Subject::Term)
             .chain(specs().map(Subject::Tool))
-            .chain(
-                specs().flat_map(|spec| spec.arguments.iter().map(move |own| Subject::Argument(spec, own))),
-            )
+            .chain(specs().flat_map(|spec| {
+                spec.arguments.iter().map(move |argument| Subject::Argument(spec, argument))
+            }))
             .chain(tables().map(Subject::Table))
             .chain(
-                tables().flat_map(|table| table.columns.iter().map(move |own| Subject::Column(table, own))),
+                tables()
+                    .flat_map(|table| table.columns.iter().map(move |column| Subject::Column(table, column))),
             );
         let numbers = ParameterNumbers::bundled();
         for subject in subjects {

@@ -67,7 +67,7 @@ pub fn term(id: &str) -> Option<&'static Term> {
 
 /// Returns the terms that a screen or dialog shows, by action name.
 pub fn terms_shown_on(place: &str) -> impl Iterator<Item = &'static Term> {
-    TERMS.iter().filter(move |term| term.places.iter().any(|own| own == place))
+    TERMS.iter().filter(move |term| term.places.iter().any(|text| text == place))
 }
 
 #[cfg(test)]

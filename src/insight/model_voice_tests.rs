@@ -78,9 +78,9 @@ fn branch_with_decisions_copies_voice_scores() {
     let on = &mut |_| std::ops::ControlFlow::Continue(());
     let kept = create_branch_with_decisions(&session, 1, &[], Mode::Sandbox, on).expect("a branch").session;
     assert_eq!(kept.state_hash(), session.state_hash());
-    let own = kept.folder().expect("a folder").to_owned();
-    let lines = Trajectory::read(&own.join("trajectory.jsonl")).expect("a trajectory").lines;
+    let path = kept.folder().expect("a folder").to_owned();
+    let lines = Trajectory::read(&path.join("trajectory.jsonl")).expect("a trajectory").lines;
     assert!(lines.iter().any(|line| matches!(line.record, Record::Voice(VoiceAnswer::Scores(_)))));
     drop(kept);
-    verify(&own).expect("it replays");
+    verify(&path).expect("it replays");
 }

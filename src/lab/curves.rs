@@ -14,14 +14,14 @@ const PRICE_STEPS: u32 = 100;
 const PRICES_PER_ROW: usize = 5;
 
 /// Returns a customer with the mean traits of a group.
-fn mean_customer(own: &GroupParams, params: &Params) -> Curve {
+fn mean_customer(group_params: &GroupParams, params: &Params) -> Curve {
     let bounds = &params.customer_generation;
     Curve {
         steepness_left: bounds.steepness_left_exp_scale + bounds.steepness_left_offset,
         steepness_right: bounds.steepness_right_exp_scale + bounds.steepness_right_offset,
-        c_max: own.c_max_mean,
-        q_min: own.q_min_mean,
-        q_max: own.q_min_mean + own.q_range_mean,
+        c_max: group_params.c_max_mean,
+        q_min: group_params.q_min_mean,
+        q_max: group_params.q_min_mean + group_params.q_range_mean,
     }
 }
 
@@ -43,12 +43,12 @@ pub fn all_curves_report(params: &Params) -> LabReport {
         columns,
     );
     for group in Group::all() {
-        let own = params.group(group);
-        let curve = mean_customer(own, params);
+        let group_params = params.group(group);
+        let curve = mean_customer(group_params, params);
         let at = |share: f64| CellValue::number(required_quality(share * curve.c_max, &curve, params));
         table.rows.push(vec![
             CellValue::text(group.id()),
-            CellValue::text(&own.name),
+            CellValue::text(&group_params.name),
             CellValue::number(curve.c_max),
             at(0.0),
             at(0.25),
@@ -88,8 +88,8 @@ fn mean_curve_graph(of: &str, groups: impl Iterator<Item = Group>, params: &Para
 
 /// Returns the curve of a group's mean customer and the quality that satisfies 10 %, 50 % and 90 % of its customers.
 pub fn group_curve_report(group: Group, params: &Params) -> LabReport {
-    let own = params.group(group);
-    let curve = mean_customer(own, params);
+    let group_params = params.group(group);
+    let curve = mean_customer(group_params, params);
     let sample = true_curve(group, params);
     let columns = vec![
         Column::number("price", "price", Measure::Dollars),
@@ -111,7 +111,7 @@ pub fn group_curve_report(group: Group, params: &Params) -> LabReport {
         ]);
     }
     let mut exhibit =
-        LabReport::with_table(format!("Participation curve of {}: {}", group.id(), own.name), table);
+        LabReport::with_table(format!("Participation curve of {}: {}", group.id(), group_params.name), table);
     let drawn = |name: &str, of: &dyn Fn(&novamind_insight::CurvePoint) -> f64| Series {
         name: name.to_owned(),
         points: sample.iter().map(|point| (point.price, of(point))).filter(|(_, y)| y.is_finite()).collect(),

@@ -77,7 +77,7 @@ impl ThreadTypes {
     fn contains(&self, kind: &str) -> bool {
         match self {
             ThreadTypes::All | ThreadTypes::Word(_) => true,
-            ThreadTypes::List(list) => list.iter().any(|own| own == kind),
+            ThreadTypes::List(list) => list.iter().any(|text| text == kind),
         }
     }
 }
@@ -133,8 +133,11 @@ impl EnterpriseRule {
     fn offer(&self, thread: &WaitingThread) -> Value {
         let factor = self.factor.factor_after(thread.offers_so_far);
         let cents = |price: f64| (price * factor * 100.0).round() / 100.0;
-        let offerings: Vec<Value> =
-            self.offerings.iter().map(|own| json!([own.plan.id(), cents(own.price)])).collect();
+        let offerings: Vec<Value> = self
+            .offerings
+            .iter()
+            .map(|offering_rule| json!([offering_rule.plan.id(), cents(offering_rule.price)]))
+            .collect();
         json!([thread.customer, offerings])
     }
 }
@@ -190,9 +193,9 @@ mod tests {
 
     #[test]
     fn thread_types_can_be_selected() {
-        let own = rule(&format!("{P10_TOML}types = [\"new_lead\"]\n")).expect("a rule");
-        assert!(own.calls(&[thread(1, "plan_change", 0)]).is_empty());
-        assert_eq!(own.calls(&[thread(1, "new_lead", 0)]).len(), 1);
+        let enterprise_rule = rule(&format!("{P10_TOML}types = [\"new_lead\"]\n")).expect("a rule");
+        assert!(enterprise_rule.calls(&[thread(1, "plan_change", 0)]).is_empty());
+        assert_eq!(enterprise_rule.calls(&[thread(1, "new_lead", 0)]).len(), 1);
         assert!(rule(&format!("{P10_TOML}types = \"all\"\n")).is_ok());
         for wrong in ["types = \"some\"\n", "types = [\"renewed\"]\n", "types = 3\n"] {
             let problem = rule(&format!("{P10_TOML}{wrong}")).expect_err(wrong);

@@ -42,7 +42,7 @@ pub fn measure_naive_bands(runs: &[PlayedWeeks], horizons: &[u32], seeds: u64) -
     let errors: Vec<(GrowthStage, u32, f64)> = all
         .flat_map(|(horizon, run)| {
             let made = hindcasts(&run.weeks, horizon, ErrorBands::bundled());
-            made.into_iter().map(move |own| (own.stage, horizon, own.error))
+            made.into_iter().map(move |hindcast| (hindcast.stage, horizon, hindcast.error))
         })
         .collect();
     let policies = policy_names(runs).len();
@@ -60,7 +60,7 @@ pub fn band_coverage(
 ) -> Coverage {
     let own = runs.iter().filter(|run| policy.is_none_or(|policy| run.policy == policy));
     let made: Vec<Hindcast> = own.flat_map(|run| hindcasts(&run.weeks, horizon, bands)).collect();
-    let held = made.iter().filter(|own| own.is_covered).count();
+    let held = made.iter().filter(|hindcast| hindcast.is_covered).count();
     // Rounded to the displayed digits to keep the file readable.
     let share = if made.is_empty() { 0.0 } else { held as f64 / made.len() as f64 };
     Coverage { horizon, forecasts: made.len(), held: (share * 1e4).round() / 1e4 }
@@ -102,11 +102,14 @@ mod tests {
         let mut compared = 0;
         for horizon in [7, 28] {
             let made = hindcasts(session.weeks(), horizon, ErrorBands::bundled());
-            for (own, (day, forecasts)) in made.iter().zip(&filed) {
+            for (hindcast, (day, forecasts)) in made.iter().zip(&filed) {
                 let forecast = forecasts.iter().find(|one| one.horizon_days == horizon).expect("filed");
                 let outcome = session.cash_by_day()[(day + horizon) as usize];
                 let inside = (forecast.lower..=forecast.upper).contains(&outcome);
-                assert_eq!(inside, own.is_covered, "day {day}, {horizon} ahead: {outcome}, {forecast:?}");
+                assert_eq!(
+                    inside, hindcast.is_covered,
+                    "day {day}, {horizon} ahead: {outcome}, {forecast:?}"
+                );
                 compared += 1;
             }
         }

@@ -172,7 +172,7 @@ pub fn compare_with_reference(reference: &ReferenceFigures, runs: &[Vec<MetricVa
     let countable = reference.cells.iter().filter(|(_, sample)| sample.count >= MIN_SEEDS);
     for (cell @ (figure, group, day), sample) in countable {
         let Some(values) = own.get(&(figure.as_str(), group.as_str(), *day)) else {
-            let known = own.keys().any(|(own, split, _)| own == figure && split == group);
+            let known = own.keys().any(|(text, split, _)| text == figure && split == group);
             if !known {
                 missing.insert(if group.is_empty() { figure.clone() } else { format!("{figure} {group}") });
             }
@@ -180,7 +180,7 @@ pub fn compare_with_reference(reference: &ReferenceFigures, runs: &[Vec<MetricVa
         };
         let logarithms =
             LOG_COMPARED_FIGURES.contains(&figure.as_str()).then(|| reference.per_seed.get(cell)).flatten();
-        let (theirs, ours) = match logarithms {
+        let (sample_statistics, statistics) = match logarithms {
             Some(singles) => (
                 SampleStatistics::from_values(&log1p_values(singles)),
                 SampleStatistics::from_values(&log1p_values(values)),
@@ -193,7 +193,7 @@ pub fn compare_with_reference(reference: &ReferenceFigures, runs: &[Vec<MetricVa
             day: *day,
             reference: *sample,
             measured: SampleStatistics::from_values(values),
-            z: z_score(&theirs, &ours),
+            z: z_score(&sample_statistics, &statistics),
         };
         if UNJUDGED_FIGURES.contains(&figure.as_str()) {
             comparison.unjudged.push(compared);
@@ -210,13 +210,13 @@ fn log1p_values(values: &[f64]) -> Vec<f64> {
 }
 
 /// Returns the difference of two means in standard errors: 0 if they agree to a millionth, 99 if neither varies.
-fn z_score(reference: &SampleStatistics, own: &SampleStatistics) -> f64 {
-    let difference = own.mean - reference.mean;
+fn z_score(reference: &SampleStatistics, sample_statistics: &SampleStatistics) -> f64 {
+    let difference = sample_statistics.mean - reference.mean;
     if difference.abs() < 1e-9 + 1e-6 * reference.mean.abs() {
         return 0.0;
     }
     let variance = |sample: &SampleStatistics| sample.std * sample.std / sample.count.max(1) as f64;
-    let error = (variance(reference) + variance(own)).sqrt();
+    let error = (variance(reference) + variance(sample_statistics)).sqrt();
     if error == 0.0 { 99.0f64.copysign(difference) } else { difference / error }
 }
 
@@ -247,10 +247,10 @@ impl GoldenComparison {
             let scores: Vec<f64> = cells.iter().map(|cell| cell.z).collect();
             let worst = cells.iter().max_by(|left, right| left.z.abs().total_cmp(&right.z.abs()))?;
             let middle = median(&scores)?;
-            let (mean, error, own) = (worst.reference.mean, worst.standard_error(), worst.measured.mean);
+            let (mean, error, value) = (worst.reference.mean, worst.standard_error(), worst.measured.mean);
             let place = format!("{} day {}", worst.group, worst.day);
             Some(format!(
-                "{figure:<32} {:>3} cells  median z {middle:>6.2}  worst {:>6.2} ({}: {mean:.4} \u{b1} {error:.4}, ours {own:.4})",
+                "{figure:<32} {:>3} cells  median z {middle:>6.2}  worst {:>6.2} ({}: {mean:.4} \u{b1} {error:.4}, ours {value:.4})",
                 cells.len(),
                 worst.z,
                 place.trim_start()
@@ -352,9 +352,9 @@ mod tests {
             comparison.cells.iter().find(|cell| cell.figure == figure).expect("it is compared").z
         };
         assert!((z("subs_total") - 1.0).abs() < 1e-12, "{}", z("subs_total"));
-        let ours: Vec<f64> = singles(2).collect();
-        let mean = ours.iter().sum::<f64>() / 5.0;
-        let variance = ours.iter().map(|own| (own - mean) * (own - mean)).sum::<f64>() / 4.0;
+        let values: Vec<f64> = singles(2).collect();
+        let mean = values.iter().sum::<f64>() / 5.0;
+        let variance = values.iter().map(|own| (own - mean) * (own - mean)).sum::<f64>() / 4.0;
         assert!((z("cash") - (mean - 4.0) / (variance / 5.0).sqrt()).abs() < 1e-12, "{}", z("cash"));
     }
 }

@@ -121,7 +121,7 @@ pub fn check_plays(lesson: &Arc<Lesson>, seeds: &[u64]) -> Result<LessonCheck, R
 
 fn run_play(lesson: &Arc<Lesson>, play: &ReferencePlay, seed: u64) -> Result<PlayResult, RunError> {
     let mut result = PlayResult { seed, goals: Vec::new(), pitfalls: Vec::new() };
-    for (part, own) in lesson.plan.parts.iter().enumerate() {
+    for (part, lesson_part) in lesson.plan.parts.iter().enumerate() {
         let of_part = PartPlay {
             lesson,
             part,
@@ -133,9 +133,9 @@ fn run_play(lesson: &Arc<Lesson>, play: &ReferencePlay, seed: u64) -> Result<Pla
         };
         let session = play_part(&of_part, calls_for_waiting_threads)?;
         let Some(standing) = session.lesson() else { continue };
-        for (step, own) in own.steps.iter().enumerate() {
+        for (step, lesson_step) in lesson_part.steps.iter().enumerate() {
             let judged = standing.goal_results(step);
-            result.goals.extend(own.goals.iter().enumerate().map(|(at, goal)| {
+            result.goals.extend(lesson_step.goals.iter().enumerate().map(|(at, goal)| {
                 let note = judged.get(at);
                 GoalResult {
                     text: goal.text.clone(),
@@ -174,7 +174,8 @@ fn measure_figures(lesson: &Arc<Lesson>) -> Result<Vec<FigureResult>, RunError> 
     let of_runs = of_runs?;
     let mean = |figure: &MeasuredFigure| {
         let of_play = runs.iter().zip(&of_runs).filter_map(|((play, _), values)| {
-            let at = plays[*play].iter().position(|own| std::ptr::eq(*own, figure))?;
+            let at =
+                plays[*play].iter().position(|measured_figure| std::ptr::eq(*measured_figure, figure))?;
             values[at]
         });
         let values: Vec<f64> = of_play.collect();
@@ -197,7 +198,7 @@ fn figure_values(
         part: first.part,
         seed: Some(seed),
         scheduled_calls: &first.plays,
-        weeks: figures.iter().map(|own| own.week.unwrap_or(last)).max(),
+        weeks: figures.iter().map(|measured_figure| measured_figure.week.unwrap_or(last)).max(),
         is_judged: false,
         needs_database: figures.iter().any(|own| own.measurement.needs_database()),
     };

@@ -91,10 +91,16 @@ mod tests {
         let opponents = opponents.expect("they play").expect("they are not stopped");
         assert_eq!((opponents.day, opponents.policies.len()), (56, 5));
         assert!(opponents.policies.is_sorted_by(|one, next| one.score() >= next.score()));
-        for own in &opponents.policies {
-            let alone = play(&found(&own.policy), &spec, &configuration, &mut Collector::disabled());
+        for opponent_result in &opponents.policies {
+            let alone =
+                play(&found(&opponent_result.policy), &spec, &configuration, &mut Collector::disabled());
             let alone = alone.expect("it plays");
-            assert_eq!((own.cash, own.day, &own.stopped), (alone.cash, alone.day, &None), "{}", own.policy);
+            assert_eq!(
+                (opponent_result.cash, opponent_result.day, &opponent_result.stopped),
+                (alone.cash, alone.day, &None),
+                "{}",
+                opponent_result.policy
+            );
         }
         assert_eq!(opponents.count_ahead_of(f64::MAX), 0);
         assert_eq!(play_opponents(&folder, &configuration, &|| false), Ok(None));

@@ -35,7 +35,7 @@ pub fn concordance(rankings: &[Vec<f64>]) -> Option<f64> {
         return None;
     }
     let sums: Vec<f64> =
-        (0..things as usize).map(|at| rankings.iter().map(|own| own[at]).sum::<f64>()).collect();
+        (0..things as usize).map(|at| rankings.iter().map(|values| values[at]).sum::<f64>()).collect();
     let squares: f64 = sums.iter().map(|sum| sum * sum).sum();
     let ties: f64 = rankings.iter().map(|own| tie_correction(own)).sum();
     let spread = judges * judges * things * (things * things - 1.0) - judges * ties;
@@ -70,10 +70,10 @@ mod tests {
         assert_eq!(concordance(&[up]), None);
         // Three judges, four items (Kendall 1948): R = 6, 5, 9, 10.
         let judges = [[2.0, 1.0, 3.0, 4.0], [1.0, 3.0, 2.0, 4.0], [3.0, 1.0, 4.0, 2.0]].map(Vec::from);
-        let own = concordance(&judges).expect("rankings");
+        let value = concordance(&judges).expect("rankings");
         let sums = [6.0, 5.0, 9.0, 10.0];
         let spread: f64 = sums.iter().map(|sum: &f64| (sum - 7.5) * (sum - 7.5)).sum();
-        assert!((own - 12.0 * spread / (9.0 * 60.0)).abs() < 1e-12, "{own}");
+        assert!((value - 12.0 * spread / (9.0 * 60.0)).abs() < 1e-12, "{value}");
     }
     #[test]
     fn concordance_ignores_magnitudes() {

@@ -142,7 +142,9 @@ pub fn advance_week(session: &mut Session, filing: WeekFiling) -> CommandRespons
     match session.advance_with_json(&rationale, &predictions, naive, Via::Plain, &mut |_| {}) {
         Ok(week) => week_response("next", session, &week),
         Err(refusal) if refusal.code == "rationale_missing" => {
-            let fills = session.lesson().is_some_and(|own| own.access().uses_naive_forecasts());
+            let fills = session
+                .lesson()
+                .is_some_and(|lesson_progress| lesson_progress.access().uses_naive_forecasts());
             let form = if fills { "next \"WHY\"" } else { "next \"WHY\" naive" };
             let message = format!("{}; write {form}; help next explains more", refusal.message);
             CommandResponse::rejected("next", Rejection { message, ..refusal })
@@ -344,8 +346,8 @@ mod tests {
         assert!(advance_week(&mut session, filing).is_success());
         submit_guess(&mut session, 1.0).expect("a guess");
         let filing = parse_filing(&[], &session, true).expect("it is filed");
-        let told = advance_week(&mut session, filing).to_text();
-        assert!(told.contains("run ended: lesson \u{b7} day 14\n") && !told.contains("score"), "{told}");
+        let text = advance_week(&mut session, filing).to_text();
+        assert!(text.contains("run ended: lesson \u{b7} day 14\n") && !text.contains("score"), "{text}");
     }
 
     #[test]

@@ -415,10 +415,10 @@ impl Interpreter {
 
     fn redo(&mut self) -> CommandResponse {
         match self.session.redo(Via::Plain) {
-            Ok(again) => CommandResponse::success(
+            Ok(setting_changes) => CommandResponse::success(
                 "redo",
-                describe_changes("redone", &again),
-                json!({ "set_again": again }),
+                describe_changes("redone", &setting_changes),
+                json!({ "set_again": setting_changes }),
             ),
             Err(refusal) => CommandResponse::rejected("redo", refusal),
         }
@@ -438,7 +438,7 @@ fn find_tool(word: &str) -> Option<&'static dyn AnyTool> {
         Some((module, name)) => (Some(module), name),
         None => (None, word),
     };
-    let fits = |module: &str, own: ToolModule| own.id() == module;
+    let fits = |module: &str, tool_module: ToolModule| tool_module.id() == module;
     novamind_tools::find(name)
         .filter(|tool| tool.spec().kind != ToolKind::Time && tool.spec().name() != "query")
         .filter(|tool| module.is_none_or(|module| fits(module, tool.spec().module)))

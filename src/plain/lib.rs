@@ -98,12 +98,12 @@ fn command_loop(
     study: Option<&Study>,
 ) -> io::Result<EndReason> {
     greet(out, &interpreter.session, style)?;
-    if let Some(held) = interpreter.restore_limit_pause() {
-        print_response(out, style, lines.number(), None, &held, interpreter.session.day())?;
+    if let Some(command_response) = interpreter.restore_limit_pause() {
+        print_response(out, style, lines.number(), None, &command_response, interpreter.session.day())?;
     }
     loop {
-        for told in interpreter.check_limits() {
-            print_response(out, style, lines.number(), None, &told, interpreter.session.day())?;
+        for response in interpreter.check_limits() {
+            print_response(out, style, lines.number(), None, &response, interpreter.session.day())?;
         }
         if let Some(end) = ask_questions(interpreter, lines, style, study)? {
             return Ok(end);

@@ -60,8 +60,8 @@ impl Interpreter {
 
     /// Reports limits that are near or reached, and applies their consequences.
     pub(super) fn check_limits(&mut self) -> Vec<CommandResponse> {
-        let told = self.session.activity().check_limits();
-        told.into_iter().flat_map(|limit| self.apply_limit(&limit)).collect()
+        let limits = self.session.activity().check_limits();
+        limits.into_iter().flat_map(|limit| self.apply_limit(&limit)).collect()
     }
 
     fn apply_limit(&mut self, limit: &Limit) -> Vec<CommandResponse> {

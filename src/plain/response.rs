@@ -224,9 +224,9 @@ mod tests {
             "refused customer_not_found: there is no customer 99\n  results:\n    customer_id  error\n    \
              99           not found\n    5            not enterprise"
         );
-        let told =
+        let value =
             json!([{"customer_id": 99, "error": "not found"}, {"customer_id": 5, "error": "not enterprise"}]);
-        assert_eq!(refused.to_json(4, 0)["results"], told);
+        assert_eq!(refused.to_json(4, 0)["results"], value);
         let rows = QueryResult {
             columns: vec!["category".to_owned(), "total".to_owned()],
             rows: vec![vec![Cell::Text("initial_funding".to_owned()), Cell::Real(1_000_000.0)]],

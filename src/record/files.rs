@@ -41,7 +41,7 @@ pub fn append_synced(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
 /// A folder cannot be created or synced. New folders are removed, so that the next attempt creates and syncs them.
 pub fn create_folder(folder: &Path) -> Result<(), RunError> {
     let missing: Vec<&Path> =
-        folder.ancestors().take_while(|own| !own.as_os_str().is_empty() && !own.exists()).collect();
+        folder.ancestors().take_while(|path| !path.as_os_str().is_empty() && !path.exists()).collect();
     std::fs::create_dir_all(folder).map_err(RunError::io(folder))?;
     let synced = missing.iter().rev().try_for_each(|own| sync_folder(parent_folder(own)));
     synced.inspect_err(|_| missing.iter().for_each(|own| drop(std::fs::remove_dir(own))))

@@ -95,7 +95,7 @@ impl Anonymizer {
     /// Returns an error if a table or column is missing, or if two names would become the same.
     pub fn anonymize(&mut self, tables: &[NamedTable]) -> Result<AnonymizedTables, String> {
         let all = |name: &str| {
-            let found = tables.iter().find(|(own, _)| own == name).map(|(_, rows)| rows.as_slice());
+            let found = tables.iter().find(|(text, _)| text == name).map(|(_, rows)| rows.as_slice());
             found.filter(|rows| !rows.is_empty()).ok_or_else(|| format!("the table {name}.csv is missing"))
         };
         let runs = all("runs")?;
@@ -128,9 +128,11 @@ impl Anonymizer {
         let mut made = Vec::new();
         let mut described = vec![["table", "column", "unit", "meaning"].map(str::to_owned).to_vec()];
         for (name, columns) in table_headings() {
-            let kept: Vec<ColumnHeading> =
-                columns.into_iter().filter(|own| !self.is_omitted(name, &own.name)).collect();
-            described.extend(kept.iter().map(|own| column_description(name, own)));
+            let kept: Vec<ColumnHeading> = columns
+                .into_iter()
+                .filter(|column_heading| !self.is_omitted(name, &column_heading.name))
+                .collect();
+            described.extend(kept.iter().map(|heading| column_description(name, heading)));
             made.push((name.to_owned(), self.anonymize_table(name, &kept, all(name)?)?));
         }
         made.push(("columns".to_owned(), described));
@@ -139,7 +141,8 @@ impl Anonymizer {
     }
 
     fn is_omitted(&self, table: &str, column: &str) -> bool {
-        IDENTIFYING_COLUMNS.contains(&(table, column)) || self.omitted_columns.iter().any(|own| own == column)
+        IDENTIFYING_COLUMNS.contains(&(table, column))
+            || self.omitted_columns.iter().any(|text| text == column)
     }
 
     /// Checks that the columns to omit exist and that no table needs them.
@@ -147,8 +150,11 @@ impl Anonymizer {
     /// # Errors
     /// Names the first column that does not exist or that joins the tables.
     pub fn check_omitted_columns(&self) -> Result<(), String> {
-        let known =
-            |name: &str| table_headings().iter().any(|(_, own)| own.iter().any(|own| own.name == *name));
+        let known = |name: &str| {
+            table_headings().iter().any(|(_, column_headings)| {
+                column_headings.iter().any(|column_heading| column_heading.name == *name)
+            })
+        };
         for name in &self.omitted_columns {
             if REQUIRED_COLUMNS.contains(&name.as_str()) {
                 return Err(format!("{name} cannot be left out: it joins the tables"));
@@ -166,7 +172,7 @@ impl Anonymizer {
             let moment = novamind_record::clock::parse_nanoseconds(&row[at]);
             self.first_visits
                 .entry(row[label].clone())
-                .and_modify(|own| *own = moment.min(*own))
+                .and_modify(|number| *number = moment.min(*number))
                 .or_insert(moment);
         }
         Ok(())
@@ -194,8 +200,10 @@ impl Anonymizer {
         columns: &[ColumnHeading],
         rows: &[Vec<String>],
     ) -> Result<Vec<Vec<String>>, String> {
-        let places =
-            columns.iter().map(|own| column_index(rows, &own.name)).collect::<Result<Vec<_>, _>>()?;
+        let places = columns
+            .iter()
+            .map(|column_heading| column_index(rows, &column_heading.name))
+            .collect::<Result<Vec<_>, _>>()?;
         let mut made = Vec::new();
         for row in &rows[1..] {
             let known: BTreeMap<&str, &str> =
@@ -211,7 +219,7 @@ impl Anonymizer {
         }
         // The original order reveals when participants came. Lines within a run keep theirs.
         made.sort_by(|one: &((String, String), Vec<String>), other| one.0.cmp(&other.0));
-        let head = columns.iter().map(|own| anonymized_column_name(own).to_owned()).collect();
+        let head = columns.iter().map(|heading| anonymized_column_name(heading).to_owned()).collect();
         Ok(std::iter::once(head).chain(made.into_iter().map(|(_, row)| row)).collect())
     }
 
@@ -320,6 +328,6 @@ fn column_description(table: &str, column: &ColumnHeading) -> Vec<String> {
 }
 
 fn column_index(rows: &[Vec<String>], name: &str) -> Result<usize, String> {
-    let found = rows.first().and_then(|head| head.iter().position(|own| own == name));
+    let found = rows.first().and_then(|head| head.iter().position(|text| text == name));
     found.ok_or_else(|| format!("the column {name} is missing: use this version to collect the study again"))
 }

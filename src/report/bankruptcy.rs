@@ -42,32 +42,32 @@ pub fn cost_shares(totals: &BTreeMap<&str, f64>) -> Vec<CostShare> {
 /// Describes turning points: the last peak of cash, revenue and subscribers, and the weeks after.
 pub fn describe_turning_points(weeks: &[WeekFigures]) -> Vec<String> {
     let Some(last) = weeks.last() else { return Vec::new() };
-    let mut told = Vec::new();
+    let mut texts = Vec::new();
     let high = |figure: fn(&WeekFigures) -> f64| {
         weeks.iter().rev().max_by(|left, right| figure(left).total_cmp(&figure(right)))
     };
     let people = |week: &WeekFigures| f64::from(week.individual_subscribers);
     match high(people).filter(|week| people(week) > 0.0) {
-        None => told.push("No one subscribed: there were costs and no income.".to_owned()),
-        Some(top) if top.day < last.day => told.push(format!(
+        None => texts.push("No one subscribed: there were costs and no income.".to_owned()),
+        Some(top) if top.day < last.day => texts.push(format!(
             "Peak: {} subscribers on day {}; {} at the end.",
             format_whole(people(top)),
             top.day,
             format_whole(people(last))
         )),
         Some(top) => {
-            told.push(format!("Subscribers were still growing at the end: {}.", format_whole(people(top))))
+            texts.push(format!("Subscribers were still growing at the end: {}.", format_whole(people(top))))
         }
     }
     if let Some(week) = weeks.iter().rev().find(|week| week.cash_change > 0.0) {
-        told.push(format!("The last profitable week ended on day {}.", week.day));
+        texts.push(format!("The last profitable week ended on day {}.", week.day));
     } else {
-        told.push("No week was profitable.".to_owned());
+        texts.push("No week was profitable.".to_owned());
     }
     let recent = &weeks[weeks.len().saturating_sub(4)..];
     let mean = |figure: fn(&WeekFigures) -> f64| recent.iter().map(figure).sum::<f64>() / recent.len() as f64;
     let (income, costs) = (mean(|week| week.payments), mean(|week| week.costs));
-    told.push(format!(
+    texts.push(format!(
         "In the last {} weeks, income was {} a week and running costs {}.",
         recent.len(),
         format_money(income),
@@ -75,14 +75,14 @@ pub fn describe_turning_points(weeks: &[WeekFigures]) -> Vec<String> {
     ));
     let outgrown = weeks.iter().find(|week| week.cancellations > week.new_individual_subscribers);
     if let Some(week) = outgrown.filter(|week| week.cancellations > 20) {
-        told.push(format!(
+        texts.push(format!(
             "In the week to day {}, cancellations ({}) exceeded new subscribers ({}) for the first time.",
             week.day,
             format_whole(f64::from(week.cancellations)),
             format_whole(f64::from(week.new_individual_subscribers))
         ));
     }
-    told
+    texts
 }
 
 #[cfg(test)]

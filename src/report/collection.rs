@@ -158,7 +158,7 @@ fn archive_conflicts(
         for (number, record) in records.iter().enumerate() {
             let archive = folder.join(format!("{run}-{}.tar.gz", number + 1));
             let kept = Export::prepare(&record.folder, &folder, &keys.sealing_key_or_default())
-                .and_then(|own| own.write(&archive, true, keys.signing_key));
+                .and_then(|export| export.write(&archive, true, keys.signing_key));
             notes.extend(kept.err().map(|error| CollectNote::Unreadable {
                 path: record.source.clone(),
                 problem: error.to_string(),

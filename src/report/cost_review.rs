@@ -122,8 +122,8 @@ mod tests {
         let on_b = number_at(&session.query(sql).expect("a count").rows[0], 0);
         let payers = format!("{} have B", pluralize(on_b as u32, "subscriber"));
         assert!(on_b > 1.0, "{payers}");
-        let told = format!("A and B now differ only in price ($12 and $22); {payers}");
-        assert_eq!(identical_plan_lines(&session.company().observe()), [told]);
+        let text = format!("A and B now differ only in price ($12 and $22); {payers}");
+        assert_eq!(identical_plan_lines(&session.company().observe()), [text]);
         // The more expensive plan is determined by price, not by letter.
         call(&mut session, "set_prices", json!({"A": 30.5}));
         let turned = identical_plan_lines(&session.company().observe());

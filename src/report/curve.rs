@@ -21,35 +21,35 @@ pub fn describe_basis(basis: &CurveBasis) -> String {
 }
 
 /// Returns the column names of [`rows`].
-pub fn column_names(own: &CurveExplorer) -> Vec<String> {
+pub fn column_names(curve_explorer: &CurveExplorer) -> Vec<String> {
     let names = ["price", "1 in 10", "half", "9 in 10", "half, at least", "half, at most"];
-    let shown = if own.shows_true_values() { 4 } else { 6 };
+    let shown = if curve_explorer.shows_true_values() { 4 } else { 6 };
     names[..shown].iter().map(|name| (*name).to_owned()).collect()
 }
 
 /// Returns the quality that 10%, 50% and 90% of the leads accept, at several prices.
-pub fn rows(own: &CurveExplorer) -> Vec<Vec<String>> {
+pub fn rows(curve_explorer: &CurveExplorer) -> Vec<Vec<String>> {
     let row = |point: &CurvePoint| {
         let (least, most) = point.median_range;
         let mut cells = vec![price_to_cents(point.price)];
         cells.extend([point.p10, point.median, point.p90].map(format_quality));
-        if !own.shows_true_values() {
+        if !curve_explorer.shows_true_values() {
             cells.extend([least, most].map(format_quality));
         }
         cells
     };
-    own.points.iter().step_by(POINTS_PER_ROW).map(row).collect()
+    curve_explorer.points.iter().step_by(POINTS_PER_ROW).map(row).collect()
 }
 
 /// Explains the dash in the rows and the assumptions.
-pub fn footnotes(own: &CurveExplorer) -> Vec<String> {
+pub fn footnotes(curve_explorer: &CurveExplorer) -> Vec<String> {
     let mut lines = Vec::new();
-    if rows(own).iter().flatten().any(|cell| cell == UNREACHABLE) {
+    if rows(curve_explorer).iter().flatten().any(|cell| cell == UNREACHABLE) {
         lines.push(format!(
             "{UNREACHABLE} the price is above the budget of too many leads: no quality is sufficient"
         ));
     }
-    if !own.shows_true_values() {
+    if !curve_explorer.shows_true_values() {
         lines.push(
             "studies estimate means only; spread and slope of the curve are assumed to be the same for all groups"
                 .to_owned(),
@@ -108,14 +108,14 @@ mod tests {
     #[test]
     fn unfinished_run_shows_ranges_and_assumptions() {
         let mut session = play_weeks(0);
-        let own =
+        let curve_explorer =
             CurveExplorer::open(&mut session, Group::parse("S1").expect("a group")).expect("an explorer");
-        assert_eq!(describe_basis(&own.basis), "estimates of day 0, ±65%");
-        assert_eq!(column_names(&own).len(), 6);
-        assert_eq!(rows(&own).len(), 11);
-        assert!(rows(&own)[0][0] == "$0" && rows(&own)[10][3] == "–");
-        assert_eq!(footnotes(&own).len(), 2);
-        let told = describe_outcome(&own.outcome_at(20.0, 0.4));
+        assert_eq!(describe_basis(&curve_explorer.basis), "estimates of day 0, ±65%");
+        assert_eq!(column_names(&curve_explorer).len(), 6);
+        assert_eq!(rows(&curve_explorer).len(), 11);
+        assert!(rows(&curve_explorer)[0][0] == "$0" && rows(&curve_explorer)[10][3] == "–");
+        assert_eq!(footnotes(&curve_explorer).len(), 2);
+        let told = describe_outcome(&curve_explorer.outcome_at(20.0, 0.4));
         assert!(told.contains(" to ") && told.contains("revenue per lead $"), "{told}");
         let companies =
             CurveExplorer::open(&mut session, Group::parse("E1").expect("a group")).expect("an explorer");

@@ -219,11 +219,11 @@ mod tests {
         for book in books.groups.iter().filter(|book| !book.group.is_enterprise()) {
             let mut active = 0.0;
             for (at, week) in session.company().group_weeks().iter().enumerate() {
-                let own = &week[book.group];
-                active += f64::from(own.signed) - f64::from(own.left);
+                let group_week = &week[book.group];
+                active += f64::from(group_week.signed) - f64::from(group_week.left);
                 assert_eq!(book.active[at + 1], active, "{} in week {}", book.group, at + 1);
                 assert_eq!(book.seats[at + 1], active, "an individual has one seat");
-                left_before_the_end += if at < 8 { own.left } else { 0 };
+                left_before_the_end += if at < 8 { group_week.left } else { 0 };
             }
             let came: u32 = session.company().group_weeks().iter().map(|week| week[book.group].leads).sum();
             assert_eq!(book.leads, f64::from(came), "{}", book.group);

@@ -15,9 +15,9 @@ pub fn describe_deals(tool: ToolId, arguments: &Value, names: &EnterpriseNames) 
         return None;
     }
     let deals = arguments.get("deals")?.as_array()?;
-    let told: Option<Vec<String>> =
+    let texts: Option<Vec<String>> =
         deals.iter().take(MAX_LISTED_DEALS).map(|deal| describe_deal(deal, names)).collect();
-    let mut words = told.filter(|told| !told.is_empty())?.join(" · ");
+    let mut words = texts.filter(|told| !told.is_empty())?.join(" · ");
     if deals.len() > MAX_LISTED_DEALS {
         words += &format!(" · {} more", pluralize((deals.len() - MAX_LISTED_DEALS) as u32, "enterprise"));
     }

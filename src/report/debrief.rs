@@ -22,30 +22,32 @@ const MAX_LISTED_SETTINGS: usize = 6;
 const MAX_LISTED_CALLS: usize = 2;
 
 /// Summarizes the result of the part in a sentence.
-pub fn headline(own: &Debrief) -> String {
+pub fn headline(debrief: &Debrief) -> String {
     let last = |cash: &[f64]| format_money(cash.last().copied().unwrap_or(0.0));
-    let day = own.cash_by_day.len().saturating_sub(1);
-    let end = match own.ended {
+    let day = debrief.cash_by_day.len().saturating_sub(1);
+    let end = match debrief.ended {
         Some(RunEndReason::Bankruptcy) => format!("You went bankrupt on day {day}"),
-        _ => format!("You had {} on day {day}", last(&own.cash_by_day)),
+        _ => format!("You had {} on day {day}", last(&debrief.cash_by_day)),
     };
     let other = |curve: &Option<ReferenceCurve>, name: &str| {
         curve.as_ref().map(|curve| format!("{name} play {}", last(&curve.cash_by_day)))
     };
     let cash_of = |curve: &Option<ReferenceCurve>| curve.as_ref().map(|curve| last(&curve.cash_by_day));
-    let others: Vec<String> = match cash_of(&own.reference) {
-        Some(cash) if cash_of(&own.bad_play).as_ref() == Some(&cash) => {
+    let others: Vec<String> = match cash_of(&debrief.reference) {
+        Some(cash) if cash_of(&debrief.bad_play).as_ref() == Some(&cash) => {
             vec![format!("reference and bad play both {cash}")]
         }
-        _ => {
-            [other(&own.reference, "reference"), other(&own.bad_play, "bad")].into_iter().flatten().collect()
-        }
+        _ => [other(&debrief.reference, "reference"), other(&debrief.bad_play, "bad")]
+            .into_iter()
+            .flatten()
+            .collect(),
     };
     let cash = match others.is_empty() {
         true => format!("{end}."),
         false => format!("{end}; {}.", others.join(", ")),
     };
-    own.judged_by
+    debrief
+        .judged_by
         .as_ref()
         .and_then(describe_judged_figure)
         .map_or(cash.clone(), |judged| format!("{judged} {cash}"))
@@ -54,14 +56,14 @@ pub fn headline(own: &Debrief) -> String {
 fn describe_judged_figure(judged: &JudgedFigure) -> Option<String> {
     let last = |curve: &[(u32, f64)]| curve.last().map(|(_, value)| format_figure(judged.figure, *value));
     let (day, _) = judged.actual.last()?;
-    let mut said =
+    let mut text =
         format!("{} on day {day}: yours {}", capitalize(judged.figure.name()), last(&judged.actual)?);
     for (name, curve) in [("reference", &judged.reference), ("bad", &judged.bad_play)] {
         if let Some(value) = curve.as_deref().and_then(last) {
-            said += &format!(", the {name} play's {value}");
+            text += &format!(", the {name} play's {value}");
         }
     }
-    Some(said + ".")
+    Some(text + ".")
 }
 
 fn format_figure(figure: WeekFigure, value: f64) -> String {
@@ -79,21 +81,21 @@ fn capitalize(text: &str) -> String {
 }
 
 /// Returns the debrief as paragraphs.
-pub fn debrief_paragraphs(own: &Debrief) -> Vec<String> {
-    let part = own.part.as_ref().map(|part| format!(" · {part}")).unwrap_or_default();
-    let mut lines = vec![format!("{}{part}", own.title), headline(own), String::new()];
-    lines.extend(describe_comparison(own));
-    for step in &own.steps {
+pub fn debrief_paragraphs(debrief: &Debrief) -> Vec<String> {
+    let part = debrief.part.as_ref().map(|part| format!(" · {part}")).unwrap_or_default();
+    let mut lines = vec![format!("{}{part}", debrief.title), headline(debrief), String::new()];
+    lines.extend(describe_comparison(debrief));
+    for step in &debrief.steps {
         lines.push(String::new());
         lines.extend(describe_step(step));
     }
-    if !own.pitfalls.is_empty() {
+    if !debrief.pitfalls.is_empty() {
         lines.push(String::new());
-        lines.extend(own.pitfalls.iter().map(|(day, say)| format!("Day {day}: {say}")));
+        lines.extend(debrief.pitfalls.iter().map(|(day, say)| format!("Day {day}: {say}")));
     }
-    if let Some(text) = &own.text {
+    if let Some(text) = &debrief.text {
         lines.extend(split_paragraphs(text).into_iter().flat_map(|own| [String::new(), own]));
-        lines.extend([String::new(), describe_figure_source(own)]);
+        lines.extend([String::new(), describe_figure_source(debrief)]);
         lines.push(String::new());
         lines.extend(named_terms(text).iter().map(|term| format!("{}: {}", term.title, term.text)));
     }
@@ -101,8 +103,8 @@ pub fn debrief_paragraphs(own: &Debrief) -> Vec<String> {
 }
 
 /// Describes the first decisions that differ from the reference play, and their effect.
-pub fn describe_comparison(own: &Debrief) -> Vec<String> {
-    match &own.comparison {
+pub fn describe_comparison(debrief: &Debrief) -> Vec<String> {
+    match &debrief.comparison {
         DecisionComparison::Same => {
             vec!["You made the same decisions as the reference play, week by week.".to_owned()]
         }
@@ -115,21 +117,22 @@ pub fn describe_comparison(own: &Debrief) -> Vec<String> {
                 let text = play.as_ref().and_then(|play| play.text.as_ref());
                 text.map(|text| format!("The {name} play: {text}"))
             };
-            let mut lines: Vec<String> = [told("reference", &own.reference), told("bad", &own.bad_play)]
-                .into_iter()
-                .flatten()
-                .collect();
+            let mut lines: Vec<String> =
+                [told("reference", &debrief.reference), told("bad", &debrief.bad_play)]
+                    .into_iter()
+                    .flatten()
+                    .collect();
             lines.push(format!("Your decisions first differ in week {}, day {}:", parting.week, parting.day));
-            let names = own.company_names();
+            let names = debrief.company_names();
             lines.extend(parting.decisions.iter().map(|one| format!("  {}", describe_decision(one, &names))));
-            lines.push(describe_effect(parting, own));
+            lines.push(describe_effect(parting, debrief));
             lines
         }
     }
 }
 
 fn describe_decision(decision: &DifferentDecision, names: &EnterpriseNames) -> String {
-    let said = match &decision.difference {
+    let text = match &decision.difference {
         DecisionDifference::Settings { settings } => {
             let one = |setting: &SettingDifference| {
                 format!(
@@ -145,12 +148,12 @@ fn describe_decision(decision: &DifferentDecision, names: &EnterpriseNames) -> S
             };
             settings.iter().take(MAX_LISTED_SETTINGS).map(one).collect::<Vec<_>>().join("; ") + &more
         }
-        DecisionDifference::Calls { own, good } => {
+        DecisionDifference::Calls { own: values, good } => {
             let told = |calls| describe_calls(decision.tool, calls, names);
-            format!("{}; reference play: {}", told(own), told(good))
+            format!("{}; reference play: {}", told(values), told(good))
         }
     };
-    format!("{}: {said}", decision.tool.name())
+    format!("{}: {text}", decision.tool.name())
 }
 
 fn format_argument(value: &Value) -> String {
@@ -216,22 +219,22 @@ fn describe_effect(parting: &FirstDifference, own: &Debrief) -> String {
 }
 
 /// Explains the result if the first different decisions of the reference play alone make it worse.
-fn describe_single_or_joint_effect(effect: ReferenceEffect, own: &Debrief) -> String {
+fn describe_single_or_joint_effect(effect: ReferenceEffect, debrief: &Debrief) -> String {
     let (mine, with) = effect.judged.unwrap_or((effect.own, effect.with));
     if with >= mine {
         return String::new();
     }
     let is_missed = |step: &DebriefStep| step.goals.iter().any(|goal| goal.met == Some(false));
-    if effect.judged.is_none() && own.steps.iter().any(is_missed) {
+    if effect.judged.is_none() && debrief.steps.iter().any(is_missed) {
         return " Cash alone does not measure this part; see its goals.".to_owned();
     }
-    let good = match (&own.judged_by, effect.judged) {
+    let good = match (&debrief.judged_by, effect.judged) {
         (Some(judged), Some(_)) => {
             judged.reference.as_ref().and_then(|good| Some((good.last()?.1, judged.figure)))
         }
         _ => None,
     };
-    let cash = own.reference.as_ref().and_then(|good| good.cash_by_day.last());
+    let cash = debrief.reference.as_ref().and_then(|good| good.cash_by_day.last());
     let (reached, words) = match (good, cash) {
         (Some((value, figure)), _) => (value, format_figure(figure, value)),
         (None, Some(cash)) => (*cash, format_money(*cash)),
@@ -262,11 +265,11 @@ fn describe_effort(step: &DebriefStep) -> String {
     format!("{tries}, {used} of {}", pluralize(all as u32, "hint"))
 }
 
-fn describe_figure_source(own: &Debrief) -> String {
+fn describe_figure_source(debrief: &Debrief) -> String {
     let (from, to) = (MEASURED_SEEDS.start(), MEASURED_SEEDS.end());
     format!(
         "Amounts in this text are averages over seeds {from} to {to}; your company has seed {}.",
-        own.seed
+        debrief.seed
     )
 }
 
@@ -296,42 +299,42 @@ pub fn named_terms(text: &str) -> Vec<&'static Term> {
     found
 }
 
-pub(super) fn debrief_page(own: &Debrief) -> Page {
-    let mut blocks = vec![Block::Facts(summary_facts(own))];
-    if let Some(judged) = &own.judged_by {
+pub(super) fn debrief_page(debrief: &Debrief) -> Page {
+    let mut blocks = vec![Block::Facts(summary_facts(debrief))];
+    if let Some(judged) = &debrief.judged_by {
         blocks.push(Block::Heading("Target"));
-        blocks.push(Block::Chart(judged_chart(judged, &headline(own))));
+        blocks.push(Block::Chart(judged_chart(judged, &headline(debrief))));
     }
     blocks.push(Block::Heading("Cash"));
-    blocks.push(Block::Chart(cash_chart(own)));
+    blocks.push(Block::Chart(cash_chart(debrief)));
     blocks.push(Block::Heading("Comparison with the reference play"));
-    blocks.extend(describe_comparison(own).into_iter().map(|line| Block::Text(line.trim().to_owned())));
-    blocks.extend(guess_blocks(own));
-    blocks.extend(goal_blocks(own));
-    if !own.pitfalls.is_empty() {
+    blocks.extend(describe_comparison(debrief).into_iter().map(|line| Block::Text(line.trim().to_owned())));
+    blocks.extend(guess_blocks(debrief));
+    blocks.extend(goal_blocks(debrief));
+    if !debrief.pitfalls.is_empty() {
         blocks.push(Block::Heading("Pitfalls"));
         let row = |(day, say): &(u32, String)| vec![day.to_string(), say.clone()];
         blocks.push(Block::Table(Table {
             columns: vec![("day", true), ("explanation", false)],
-            rows: own.pitfalls.iter().map(row).collect(),
+            rows: debrief.pitfalls.iter().map(row).collect(),
         }));
     }
-    if let Some(text) = &own.text {
+    if let Some(text) = &debrief.text {
         blocks.push(Block::Heading("The mechanism"));
         blocks.extend(split_paragraphs(text).into_iter().map(Block::Text));
-        blocks.push(Block::Text(describe_figure_source(own)));
+        blocks.push(Block::Text(describe_figure_source(debrief)));
         let row = |term: &&Term| vec![term.title.clone(), term.text.clone()];
         let rows: Vec<Vec<String>> = named_terms(text).iter().map(row).collect();
         if !rows.is_empty() {
             blocks.push(Block::Table(Table { columns: vec![("term", false), ("meaning", false)], rows }));
         }
     }
-    let mut tags = vec![format!("run {}", own.run), format!("seed {}", own.seed)];
-    tags.extend(own.part.iter().cloned());
-    tags.extend(own.participant.iter().map(|who| format!("played by {who}")));
+    let mut tags = vec![format!("run {}", debrief.run), format!("seed {}", debrief.seed)];
+    tags.extend(debrief.part.iter().cloned());
+    tags.extend(debrief.participant.iter().map(|who| format!("played by {who}")));
     Page {
-        title: format!("Debrief · {}", own.title),
-        headline: headline(own),
+        title: format!("Debrief · {}", debrief.title),
+        headline: headline(debrief),
         tags,
         blocks,
         footer: format!(
@@ -341,11 +344,11 @@ pub(super) fn debrief_page(own: &Debrief) -> Page {
     }
 }
 
-fn summary_facts(own: &Debrief) -> Vec<NamedValue> {
+fn summary_facts(debrief: &Debrief) -> Vec<NamedValue> {
     let last = |cash: &[f64]| format_money(cash.last().copied().unwrap_or(0.0));
-    let day = format!("day {}", own.cash_by_day.len().saturating_sub(1));
-    let mut facts = vec![NamedValue::new("You", last(&own.cash_by_day), day)];
-    for (name, curve) in [("Reference play", &own.reference), ("Bad play", &own.bad_play)] {
+    let day = format!("day {}", debrief.cash_by_day.len().saturating_sub(1));
+    let mut facts = vec![NamedValue::new("You", last(&debrief.cash_by_day), day)];
+    for (name, curve) in [("Reference play", &debrief.reference), ("Bad play", &debrief.bad_play)] {
         let told = |curve: &ReferenceCurve| {
             NamedValue::new(name, last(&curve.cash_by_day), curve.text.clone().unwrap_or_default())
         };
@@ -354,22 +357,23 @@ fn summary_facts(own: &Debrief) -> Vec<NamedValue> {
     facts
 }
 
-fn cash_chart(own: &Debrief) -> Chart {
+fn cash_chart(debrief: &Debrief) -> Chart {
     let curve = |name: &str, cash: &[f64]| Curve {
         name: name.to_owned(),
         points: cash.iter().enumerate().map(|(day, cash)| (day as f64, *cash)).collect(),
     };
-    let references = [("reference play", &own.reference), ("bad play", &own.bad_play)];
-    let others =
-        references.into_iter().filter_map(|(name, own)| Some(curve(name, &own.as_ref()?.cash_by_day)));
+    let references = [("reference play", &debrief.reference), ("bad play", &debrief.bad_play)];
+    let others = references
+        .into_iter()
+        .filter_map(|(name, reference_curve)| Some(curve(name, &reference_curve.as_ref()?.cash_by_day)));
     Chart {
         title: "Cash by day".to_owned(),
-        summary: headline(own),
+        summary: headline(debrief),
         x_label: "day",
         is_in_dollars: true,
         y_limits: None,
         plot: Plot::Lines {
-            curves: std::iter::once(curve("you", &own.cash_by_day)).chain(others).collect(),
+            curves: std::iter::once(curve("you", &debrief.cash_by_day)).chain(others).collect(),
             band: None,
         },
     }
@@ -395,8 +399,8 @@ fn judged_chart(judged: &JudgedFigure, summary: &str) -> Chart {
     }
 }
 
-fn guess_blocks(own: &Debrief) -> Vec<Block> {
-    let asked = own.steps.iter().filter_map(|step| Some((step, step.question.as_ref()?)));
+fn guess_blocks(debrief: &Debrief) -> Vec<Block> {
+    let asked = debrief.steps.iter().filter_map(|step| Some((step, step.question.as_ref()?)));
     let rows: Vec<Vec<String>> = asked
         .map(|(step, question)| {
             let said =
@@ -411,7 +415,7 @@ fn guess_blocks(own: &Debrief) -> Vec<Block> {
     vec![Block::Heading("Guesses"), Block::Table(Table { columns, rows })]
 }
 
-fn goal_blocks(own: &Debrief) -> Vec<Block> {
+fn goal_blocks(debrief: &Debrief) -> Vec<Block> {
     let row = |step: &DebriefStep| {
         let met = |met| match met {
             Some(true) => "reached",
@@ -432,7 +436,7 @@ fn goal_blocks(own: &Debrief) -> Vec<Block> {
         };
         step.goals.iter().map(one).collect::<Vec<_>>()
     };
-    let rows: Vec<Vec<String>> = own.steps.iter().flat_map(row).collect();
+    let rows: Vec<Vec<String>> = debrief.steps.iter().flat_map(row).collect();
     if rows.is_empty() {
         return Vec::new();
     }

@@ -32,8 +32,8 @@ pub struct DecisionPeriod {
 
 /// Describes a change: `price A: 0 → 14 $/month`.
 pub fn describe_change(change: &SettingChange) -> String {
-    let told = format!("{}: {} → {}", change.setting, format_number(change.old), format_number(change.new));
-    change.setting.unit().map_or(told.clone(), |unit| format!("{told} {unit}"))
+    let text = format!("{}: {} → {}", change.setting, format_number(change.old), format_number(change.new));
+    change.setting.unit().map_or(text.clone(), |unit| format!("{text} {unit}"))
 }
 
 /// Describes changes, one line per family of settings: `price: A 0 → 14, B 0 → 49 $/month`.
@@ -54,9 +54,9 @@ pub fn describe_changes(changes: &[SettingChange]) -> Vec<String> {
     let line = |(family, members): (String, Vec<&SettingChange>)| match members[..] {
         [only] => describe_change(only),
         _ => {
-            let told: Vec<String> = members.iter().map(member).collect();
+            let texts: Vec<String> = members.iter().map(member).collect();
             let unit = members[0].setting.unit().map_or(String::new(), |unit| format!(" {unit}"));
-            format!("{family}: {}{unit}", told.join(", "))
+            format!("{family}: {}{unit}", texts.join(", "))
         }
     };
     families.into_iter().map(line).collect()
@@ -68,7 +68,7 @@ pub fn decision_periods(
     journal: &[JournalEntry],
     start_cash: f64,
 ) -> Vec<DecisionPeriod> {
-    let mut told: Vec<DecisionPeriod> = Vec::new();
+    let mut periods: Vec<DecisionPeriod> = Vec::new();
     let mut parts = journal.split_inclusive(|entry| matches!(entry, JournalEntry::Week { .. }));
     let mut cash = start_cash;
     for decided in decisions {
@@ -87,17 +87,17 @@ pub fn decision_periods(
             cash_change: after - cash,
         };
         cash = after;
-        match told.last_mut() {
+        match periods.last_mut() {
             Some(before) if before.is_continued_by(&chapter) => {
                 before.last_week = chapter.last_week;
                 before.end_day = chapter.end_day;
                 before.cash = chapter.cash;
                 before.cash_change += chapter.cash_change;
             }
-            _ => told.push(chapter),
+            _ => periods.push(chapter),
         }
     }
-    told
+    periods
 }
 
 impl DecisionPeriod {
@@ -153,19 +153,23 @@ mod tests {
     #[test]
     fn weeks_without_decisions_extend_the_previous_period() {
         let session = test_kit::play_weeks(5);
-        let told = decision_periods(session.company().decisions(), session.journal(), 1_000_000.0);
-        let weeks: Vec<(u32, u32)> = told.iter().map(|chapter| (chapter.week, chapter.last_week)).collect();
+        let periods = decision_periods(session.company().decisions(), session.journal(), 1_000_000.0);
+        let weeks: Vec<(u32, u32)> =
+            periods.iter().map(|chapter| (chapter.week, chapter.last_week)).collect();
         assert_eq!(weeks, [(1, 2), (3, 3), (4, 5)], "the third week has its own rationale");
         let prices = "price: A 0 → 12, B 0 → 25, C 0 → 55 $/month";
-        assert!(told[0].changes.contains(&prices.to_owned()), "{:?}", told[0].changes);
+        assert!(periods[0].changes.contains(&prices.to_owned()), "{:?}", periods[0].changes);
         let post = "post: “NovaMind <opens> today | with *three* plans & fair prices.”";
-        assert_eq!(told[0].actions, [post]);
-        assert_eq!(told[1].changes, ["price B: 25 → 22 $/month"]);
-        assert_eq!(told[1].rationale, "If B is cheaper, more will take it; otherwise we go back | <b>B</b>");
-        let total: f64 = told.iter().map(|chapter| chapter.cash_change).sum();
+        assert_eq!(periods[0].actions, [post]);
+        assert_eq!(periods[1].changes, ["price B: 25 → 22 $/month"]);
+        assert_eq!(
+            periods[1].rationale,
+            "If B is cheaper, more will take it; otherwise we go back | <b>B</b>"
+        );
+        let total: f64 = periods.iter().map(|chapter| chapter.cash_change).sum();
         assert!((total - (session.company().observe().cash - 1_000_000.0)).abs() < 0.01);
         assert_eq!(
-            told.last().map(|chapter| (chapter.end_day, chapter.cash)),
+            periods.last().map(|chapter| (chapter.end_day, chapter.cash)),
             Some((35, session.company().observe().cash))
         );
     }

@@ -154,15 +154,15 @@ pub struct Fit {
 /// Returns the fit of every known group, in their fixed order.
 pub fn fits(session: &Session) -> Vec<Fit> {
     let (quality, weeks) = (session.company().delivered_quality(), session.company().group_weeks());
-    let delivered = |group: Group| quality.iter().find(|own| own.group == group);
-    let of = |own: &Estimates| {
-        Some(group_fit(own, delivered(own.group)?, session.settings(), weeks, session.day()))
+    let delivered = |group: Group| quality.iter().find(|delivered_quality| delivered_quality.group == group);
+    let of = |estimates: &Estimates| {
+        Some(group_fit(estimates, delivered(estimates.group)?, session.settings(), weeks, session.day()))
     };
     session.company().estimates().iter().filter_map(of).collect()
 }
 
 fn group_fit(
-    own: &Estimates,
+    estimates: &Estimates,
     quality: &DeliveredQuality,
     settings: &Settings,
     weeks: &[ByGroup<GroupWeek>],
@@ -170,19 +170,19 @@ fn group_fit(
 ) -> Fit {
     let recent = &weeks[weeks.len().saturating_sub(RECENT_WEEKS)..];
     Fit {
-        group: own.group,
-        level: own.level,
-        max_relative_error: own.max_relative_error,
-        study_day: own.as_of,
-        age_days: day.saturating_sub(own.as_of),
-        floor: TrueValueRange::from_estimate(own.required_quality, own.max_relative_error),
-        budget: TrueValueRange::from_estimate(own.budget, own.max_relative_error),
-        usage: own.account_usage_range().into(),
-        plans: ByPlan::from_fn(|plan| plan_fit(own.group, plan, quality.by_plan[plan], settings)),
-        last_week: weeks.last().map(|week| LeadFlow::from_week(&week[own.group])),
+        group: estimates.group,
+        level: estimates.level,
+        max_relative_error: estimates.max_relative_error,
+        study_day: estimates.as_of,
+        age_days: day.saturating_sub(estimates.as_of),
+        floor: TrueValueRange::from_estimate(estimates.required_quality, estimates.max_relative_error),
+        budget: TrueValueRange::from_estimate(estimates.budget, estimates.max_relative_error),
+        usage: estimates.account_usage_range().into(),
+        plans: ByPlan::from_fn(|plan| plan_fit(estimates.group, plan, quality.by_plan[plan], settings)),
+        last_week: weeks.last().map(|week| LeadFlow::from_week(&week[estimates.group])),
         recent: recent
             .iter()
-            .map(|week| LeadFlow::from_week(&week[own.group]))
+            .map(|week| LeadFlow::from_week(&week[estimates.group]))
             .fold(LeadFlow::default(), LeadFlow::add),
     }
 }
@@ -247,30 +247,30 @@ impl LeadFlow {
 impl Fit {
     /// Compares a plan in one aspect. Returns `None` for the price of enterprises, which negotiate it.
     pub fn position(&self, plan: Plan, concern: FitCriterion) -> Option<RangePosition> {
-        let own = &self.plans[plan];
+        let plan_fit = &self.plans[plan];
         match concern {
             FitCriterion::Price if self.group.is_enterprise() => None,
-            FitCriterion::Price => Some(self.budget.position_of(own.lead_price)),
-            FitCriterion::Quality => Some(self.floor.position_of(own.quality)),
-            FitCriterion::Quota => Some(self.usage.position_of(own.quota)),
+            FitCriterion::Price => Some(self.budget.position_of(plan_fit.lead_price)),
+            FitCriterion::Quality => Some(self.floor.position_of(plan_fit.quality)),
+            FitCriterion::Quota => Some(self.usage.position_of(plan_fit.quota)),
         }
     }
 
     /// Returns the smallest deficit that the whole range allows; `None` if no deficit is certain.
     pub fn certain_gap(&self, plan: Plan, concern: FitCriterion) -> Option<f64> {
-        let own = &self.plans[plan];
+        let plan_fit = &self.plans[plan];
         match (concern, self.position(plan, concern)?) {
-            (FitCriterion::Price, RangePosition::Above) => Some(own.lead_price - self.budget.most),
-            (FitCriterion::Quality, RangePosition::Below) => Some(self.floor.least - own.quality),
-            (FitCriterion::Quota, RangePosition::Below) => Some(self.usage.least - own.quota),
+            (FitCriterion::Price, RangePosition::Above) => Some(plan_fit.lead_price - self.budget.most),
+            (FitCriterion::Quality, RangePosition::Below) => Some(self.floor.least - plan_fit.quality),
+            (FitCriterion::Quota, RangePosition::Below) => Some(self.usage.least - plan_fit.quota),
             _ => None,
         }
     }
 
     /// Describes what a plan lacks, and the aspects that are uncertain.
     pub fn describe_gaps(&self, plan: Plan) -> String {
-        let own = &self.plans[plan];
-        if own.list_price <= 0.0 {
+        let plan_fit = &self.plans[plan];
+        if plan_fit.list_price <= 0.0 {
             return "has no price".to_owned();
         }
         let certain = |concern: &FitCriterion| Some((*concern, self.certain_gap(plan, *concern)?));
@@ -314,7 +314,7 @@ impl Fit {
             format!(
                 "  quality  required {}; {}",
                 self.floor.format_quality(),
-                self.format_plans(|own| format!("{:.4}", own.quality))
+                self.format_plans(|plan_fit| format!("{:.4}", plan_fit.quality))
             ),
             format!(
                 "  price    budget {}{}; {}",
@@ -326,7 +326,7 @@ impl Fit {
                 "  quota    usage {} units a day{}; {}",
                 self.usage.format_units(),
                 if company { " of the smallest enterprise" } else { "" },
-                self.format_plans(|own| format_whole(own.quota))
+                self.format_plans(|fit| format_whole(fit.quota))
             ),
         ];
         match self.last_week {
@@ -342,7 +342,7 @@ impl Fit {
 
     fn format_plans(&self, write: impl Fn(&PlanFit) -> String) -> String {
         let plans: Vec<String> =
-            self.plans.iter().map(|own| format!("{} {}", own.plan, write(own))).collect();
+            self.plans.iter().map(|plan_fit| format!("{} {}", plan_fit.plan, write(plan_fit))).collect();
         plans.join(", ")
     }
 }
@@ -369,14 +369,14 @@ fn describe_gap((concern, amount): (FitCriterion, f64)) -> String {
     }
 }
 
-fn format_price(own: &PlanFit) -> String {
-    let list = price_to_cents(own.list_price);
+fn format_price(plan_fit: &PlanFit) -> String {
+    let list = price_to_cents(plan_fit.list_price);
     let mut less = Vec::new();
-    if own.lead_price < own.list_price {
-        less.push(format!("{} for leads", price_to_cents(own.lead_price)));
+    if plan_fit.lead_price < plan_fit.list_price {
+        less.push(format!("{} for leads", price_to_cents(plan_fit.lead_price)));
     }
-    if own.billed_price < own.list_price {
-        less.push(format!("{} billed", price_to_cents(own.billed_price)));
+    if plan_fit.billed_price < plan_fit.list_price {
+        less.push(format!("{} billed", price_to_cents(plan_fit.billed_price)));
     }
     if less.is_empty() { list } else { format!("{list} ({})", less.join(", ")) }
 }
@@ -448,8 +448,8 @@ mod tests {
         let all = fits(&session);
         let fit = &all[0];
         let [budget, usage, floor] = {
-            let own = session.params().group(fit.group);
-            [own.c_max_mean, own.usage_demand_mean, own.q_min_mean]
+            let group_params = session.params().group(fit.group);
+            [group_params.c_max_mean, group_params.usage_demand_mean, group_params.q_min_mean]
         };
         assert!(
             fit.budget.position_of(budget) == RangePosition::InRange

@@ -43,31 +43,31 @@ pub fn funnels(session: &Session) -> Vec<Funnel> {
 }
 
 fn funnel(
-    own: &Estimates,
+    estimates: &Estimates,
     quality: &[DeliveredQuality],
     weeks: &[ByGroup<GroupWeek>],
     quotas: &[f64; 3],
 ) -> Funnel {
     let lately = &weeks[weeks.len().saturating_sub(4)..];
     let sum_of = |weeks: &[ByGroup<GroupWeek>], figure: fn(&GroupWeek) -> u32| -> u32 {
-        weeks.iter().map(|week| figure(&week[own.group])).sum()
+        weeks.iter().map(|week| figure(&week[estimates.group])).sum()
     };
     let sum = |figure: fn(&GroupWeek) -> u32| sum_of(weeks, figure);
-    let best = quality.iter().find(|quality| quality.group == own.group).and_then(|quality| {
+    let best = quality.iter().find(|quality| quality.group == estimates.group).and_then(|quality| {
         let plans = Plan::ALL.into_iter().map(|plan| (plan, quality.by_plan[plan]));
         plans.max_by(|left, right| left.1.total_cmp(&right.1))
     });
     Funnel {
-        group: own.group,
+        group: estimates.group,
         enterprises: sum(|week| week.leads),
         requests: sum(|week| week.asked),
         deals: sum(|week| week.signed),
         recently_lost: sum_of(lately, |week| week.leads - week.asked),
         best_quality: best,
         quota: best.map_or(0.0, |(plan, _)| quotas[plan.index()]),
-        usage: own.account_usage_range().into(),
-        floor: TrueValueRange::from_estimate(own.required_quality, own.max_relative_error),
-        study_day: own.as_of,
+        usage: estimates.account_usage_range().into(),
+        floor: TrueValueRange::from_estimate(estimates.required_quality, estimates.max_relative_error),
+        study_day: estimates.as_of,
     }
 }
 
@@ -135,7 +135,7 @@ mod tests {
                 .observe()
                 .waiting
                 .iter()
-                .map(|own| json!([own.customer, [["C", 4.0], ["B", 3.0]]]))
+                .map(|waiting_thread| json!([waiting_thread.customer, [["C", 4.0], ["B", 3.0]]]))
                 .collect();
             if !deals.is_empty() {
                 session
@@ -146,7 +146,7 @@ mod tests {
             session.advance("as planned", &forecasts, Via::Script, &mut |_| {}).expect("a week");
         }
         let all = funnels(&session);
-        assert_eq!(all.iter().map(|own| own.group.id()).collect::<Vec<_>>(), ["E1", "E2", "E3"]);
+        assert_eq!(all.iter().map(|funnel| funnel.group.id()).collect::<Vec<_>>(), ["E1", "E2", "E3"]);
         let mut number =
             |sql: String| novamind_database::number_at(&session.query(&sql).expect("rows").rows[0], 0) as u32;
         for own in &all {

@@ -57,7 +57,7 @@ fn block_html(block: &Block, shape: &mut BlockContext) -> String {
             let class = if facts.len().is_multiple_of(3) { "facts thirds" } else { "facts" };
             format!("<dl class=\"{class}\">\n{}</dl>\n", facts.iter().map(fact_html).collect::<String>())
         }
-        Block::Table(own) => table_html(own),
+        Block::Table(table) => table_html(table),
         Block::Bars(bars) => {
             format!("<ol class=\"bars\">\n{}</ol>\n", bars.iter().map(bar_html).collect::<String>())
         }

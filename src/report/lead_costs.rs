@@ -43,10 +43,10 @@ impl AdWindow {
         let upto = (from + WINDOW_WEEKS).min(weeks.len());
         let sum = weeks[from..upto].iter().map(|week| &week[group].paid[channel]).fold(
             PaidLeads::default(),
-            |sum, own| PaidLeads {
-                leads: sum.leads + own.leads,
-                spend: sum.spend + own.spend,
-                billed: sum.billed + own.billed,
+            |sum, paid_leads| PaidLeads {
+                leads: sum.leads + paid_leads.leads,
+                spend: sum.spend + paid_leads.spend,
+                billed: sum.billed + paid_leads.billed,
             },
         );
         AdWindow {

@@ -29,8 +29,8 @@ pub fn describe_note(note: &LessonNote) -> String {
         LessonEvent::Pitfall => format!("step {}: pitfall {}", note.step, note.name.as_deref().unwrap_or("")),
         LessonEvent::Outcome => format!("step {}: the outcome was {value}", note.step),
         LessonEvent::Goal => {
-            let met = if note.met == Some(true) { "reached" } else { "missed" };
-            format!("step {}: goal {number} {met} with {value}", note.step)
+            let text = if note.met == Some(true) { "reached" } else { "missed" };
+            format!("step {}: goal {number} {text} with {value}", note.step)
         }
     }
 }

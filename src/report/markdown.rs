@@ -26,7 +26,7 @@ fn block_markdown(block: &Block) -> String {
         Block::Text(text) => escape(text),
         Block::Note(text) => format!("*{}*", escape(text)),
         Block::Warning(text) => format!("> **{}**", escape(text)),
-        Block::Table(own) => table_markdown(own),
+        Block::Table(table) => table_markdown(table),
         Block::Facts(facts) => table_markdown(&Table {
             columns: vec![("", false), ("", true), ("", false)],
             rows: facts
@@ -113,7 +113,7 @@ fn curve_values(curve: &Curve) -> Vec<f64> {
 
 /// Draws values as one row of bars, scaled from the smallest to the largest; costs count by their amount.
 fn sparkline(values: &[f64]) -> String {
-    let is_cost = values.iter().all(|own| *own <= 0.0);
+    let is_cost = values.iter().all(|value| *value <= 0.0);
     let sizes: Vec<f64> =
         sample_values(values).into_iter().map(|own| if is_cost { -own } else { own }).collect();
     sparkline_between(&sizes, min_and_max(&sizes))
@@ -144,8 +144,9 @@ pub fn escape(text: &str) -> String {
     let letters: Vec<char> = flat.join(" ").chars().filter(|letter| !is_control_or_bidi(*letter)).collect();
     let mut safe = String::with_capacity(letters.len());
     for (at, letter) in letters.iter().enumerate() {
-        let inside_word =
-            |at: Option<usize>| at.and_then(|at| letters.get(at)).is_some_and(|own| own.is_alphanumeric());
+        let inside_word = |at: Option<usize>| {
+            at.and_then(|at| letters.get(at)).is_some_and(|character| character.is_alphanumeric())
+        };
         let marks = match letter {
             '\\' | '`' | '*' | '[' | ']' | '<' | '>' | '|' | '~' | '&' => true,
             // Names of tools and channels are easier to read unescaped.
@@ -177,12 +178,12 @@ mod tests {
 
     #[test]
     fn table_columns_are_aligned() {
-        let own = Table {
+        let table = Table {
             columns: vec![("group", false), ("leads", true)],
             rows: vec![vec!["S1".to_owned(), "1,200".to_owned()], vec!["D_S01".to_owned(), "7".to_owned()]],
         };
         assert_eq!(
-            table_markdown(&own),
+            table_markdown(&table),
             "| group | leads |\n| ----- | ----: |\n| S1    | 1,200 |\n| D_S01 |     7 |"
         );
     }

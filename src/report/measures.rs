@@ -403,11 +403,14 @@ mod tests {
             ads("S1", "linkedin", 0.0, 50.0),
             ads("S3", "referral_program", 0.0, 20.0),
         ];
-        let told = true_best_channel_share(&rows, best).expect("money was spent");
-        assert_eq!((told.share, told.groups["S1"], told.groups["S3"]), (0.5, 0.375, 1.0));
+        let channel_spend = true_best_channel_share(&rows, best).expect("money was spent");
+        assert_eq!(
+            (channel_spend.share, channel_spend.groups["S1"], channel_spend.groups["S3"]),
+            (0.5, 0.375, 1.0)
+        );
         // All spending on one wrong channel: no comparison, and no share on the best.
         let wrong = [ads("S1", "linkedin", 50.0, 100.0)];
-        assert_eq!(true_best_channel_share(&wrong, best).map(|told| told.share), Some(0.0));
+        assert_eq!(true_best_channel_share(&wrong, best).map(|spend| spend.share), Some(0.0));
         assert_eq!(best_tried_channel_share(&wrong).and_then(|skill| skill.share), None);
         assert_eq!(true_best_channel_share(&rows, |_| None), None, "an unfinished run");
         assert_eq!(true_best_channel_share(&[], best), None);

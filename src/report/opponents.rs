@@ -60,6 +60,6 @@ impl OpponentResults {
 
     /// Returns how many have a higher score.
     pub fn count_ahead_of(&self, score: f64) -> usize {
-        self.policies.iter().filter(|own| own.score() > score).count()
+        self.policies.iter().filter(|opponent_result| opponent_result.score() > score).count()
     }
 }

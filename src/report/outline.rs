@@ -132,7 +132,7 @@ fn ranking_blocks(story: &RunReport) -> Vec<Block> {
         share: (place.cash / most).clamp(0.0, 1.0),
         is_highlighted: place.owner == ResultOwner::ThisRun,
     };
-    let told = match standing.rank {
+    let text = match standing.rank {
         Some(_) => {
             format!("{}: final cash, the best of three runs of each agent.", capitalize(&standing.describe()))
         }
@@ -143,7 +143,7 @@ fn ranking_blocks(story: &RunReport) -> Vec<Block> {
     };
     let mut blocks = vec![
         Block::Heading("Comparison with published results"),
-        Block::Text(told),
+        Block::Text(text),
         Block::Bars(standing.entries.iter().map(bar).collect()),
     ];
     blocks.extend(standing.caveat.clone().map(Block::Note));

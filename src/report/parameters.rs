@@ -35,9 +35,14 @@ pub fn describe_changed_parameters(changed: &ChangedParameters) -> Vec<String> {
         1 => vec![format!("1 parameter differs from {against}:")],
         count => vec![format!("{count} parameters differ from {against}:")],
     };
-    lines.extend(
-        changed.in_force.iter().map(|own| format!("  {}: {} → {}", own.key, format_value(&own.old), own.new)),
-    );
+    lines.extend(changed.in_force.iter().map(|changed_parameter| {
+        format!(
+            "  {}: {} → {}",
+            changed_parameter.key,
+            format_value(&changed_parameter.old),
+            changed_parameter.new
+        )
+    }));
     if !changed.waiting.is_empty() {
         lines.push("scheduled for a later day:".to_owned());
     }

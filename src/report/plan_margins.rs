@@ -146,7 +146,7 @@ impl PlanSales {
 
     fn by_group(&self, plan: Plan) -> Vec<(Group, PlanUsage)> {
         let of = |group: Group| (group, self.sum(|own, of| own == group && of == plan));
-        Group::all().map(of).filter(|(_, own)| own.customers > 0.0).collect()
+        Group::all().map(of).filter(|(_, plan_usage)| plan_usage.customers > 0.0).collect()
     }
 
     fn sum(&self, counts: impl Fn(Group, Plan) -> bool) -> PlanUsage {
@@ -205,11 +205,11 @@ impl MarginSetting {
     pub fn apply(self, mut terms: ByPlan<DraftPlanTerms>, arguments: &Value) -> ByPlan<DraftPlanTerms> {
         for plan in Plan::ALL {
             let Some(value) = arguments.get(plan.id()).and_then(Value::as_f64) else { continue };
-            let own = &mut terms[plan];
+            let plan_terms = &mut terms[plan];
             match self {
-                MarginSetting::Price => own.price = value,
-                MarginSetting::Tier => own.tier = value as u8,
-                MarginSetting::Quota => own.quota = value,
+                MarginSetting::Price => plan_terms.price = value,
+                MarginSetting::Tier => plan_terms.tier = value as u8,
+                MarginSetting::Quota => plan_terms.quota = value,
             }
         }
         terms
@@ -231,7 +231,7 @@ pub fn margin_lines(
     let tiers: String = models.iter().map(|(tier, _)| format!("{:>8}", format!("T{tier} "))).collect();
     lines.push(format!("{:<16}{tiers}", "a month and seat").trim_end().to_owned());
     for plan in Plan::ALL {
-        let (own, set) = (sales.usage_of_plan(plan), terms[plan]);
+        let (plan_usage, set) = (sales.usage_of_plan(plan), terms[plan]);
         let row = |label: String, margin: &dyn Fn(f64) -> Option<f64>| {
             let cell = |(tier, unit_cost): &(u8, f64)| {
                 format!("{:>8}", format_cell(margin(*unit_cost), *tier == set.tier))
@@ -239,19 +239,19 @@ pub fn margin_lines(
             let cells: String = models.iter().map(cell).collect();
             format!("{label:<16}{cells}").trim_end().to_owned()
         };
-        let Some(paid) = own.measured_revenue_per_seat() else {
+        let Some(paid) = plan_usage.measured_revenue_per_seat() else {
             lines.push(format!("{plan} no usage on day {day}"));
             continue;
         };
-        lines.push(row(format!("{plan} paid {}", cents(paid)), &|unit_cost| own.margin(unit_cost)));
+        lines.push(row(format!("{plan} paid {}", cents(paid)), &|unit_cost| plan_usage.margin(unit_cost)));
         match lever {
             MarginSetting::Price if differs_by_a_cent(set.price, paid) => {
                 let label = format!("{plan} list {}", cents(set.price));
-                lines.push(row(label, &|unit_cost| margin(set.price, own.compute_cost(unit_cost)?)));
+                lines.push(row(label, &|unit_cost| margin(set.price, plan_usage.compute_cost(unit_cost)?)));
             }
             MarginSetting::Quota => {
                 let label = format!("{plan} at quota {}", compact_number(set.quota));
-                lines.push(row(label, &|unit_cost| own.margin_at_full_quota(set.quota, unit_cost)));
+                lines.push(row(label, &|unit_cost| plan_usage.margin_at_full_quota(set.quota, unit_cost)));
             }
             _ => {}
         }
@@ -272,19 +272,19 @@ pub fn margin_summary(
         return vec![NO_USAGE_MESSAGE.to_owned()];
     }
     let line = |plan: Plan| {
-        let (own, set) = (sales.usage_of_plan(plan), terms[plan]);
-        let Some(paid) = own.measured_revenue_per_seat() else {
+        let (plan_usage, set) = (sales.usage_of_plan(plan), terms[plan]);
+        let Some(paid) = plan_usage.measured_revenue_per_seat() else {
             return format!("{plan} no usage on day {day}");
         };
         let unit_cost = set.unit_cost(models);
         let told = |margin: &dyn Fn(f64) -> Option<f64>| format_margin(unit_cost.and_then(margin));
         let also = match lever {
             MarginSetting::Price if differs_by_a_cent(set.price, paid) => {
-                let margin = told(&|unit_cost| margin(set.price, own.compute_cost(unit_cost)?));
+                let margin = told(&|unit_cost| margin(set.price, plan_usage.compute_cost(unit_cost)?));
                 format!(", list {} {margin}", cents(set.price))
             }
             MarginSetting::Quota => {
-                let margin = told(&|unit_cost| own.margin_at_full_quota(set.quota, unit_cost));
+                let margin = told(&|unit_cost| plan_usage.margin_at_full_quota(set.quota, unit_cost));
                 format!(", at quota {} {margin}", compact_number(set.quota))
             }
             _ => String::new(),
@@ -293,7 +293,7 @@ pub fn margin_summary(
             "{plan} T{}: paid {} {}{also}",
             set.tier,
             cents(paid),
-            told(&|unit_cost| own.margin(unit_cost))
+            told(&|unit_cost| plan_usage.margin(unit_cost))
         )
     };
     let head = format!("gross margin at day-{day} usage");
@@ -313,14 +313,14 @@ fn describe_groups(
     models: &[(u8, f64)],
 ) -> Option<String> {
     let unit_cost = set.unit_cost(models)?;
-    let told = |(group, own): &(Group, PlanUsage)| {
-        let margin = own.margin(unit_cost).map_or("–".to_owned(), |margin| percent(margin, 0));
-        format!("{group} {margin} of {}", own.revenue_per_seat().map_or("–".to_owned(), format_money))
+    let told = |(group, plan_usage): &(Group, PlanUsage)| {
+        let margin = plan_usage.margin(unit_cost).map_or("–".to_owned(), |margin| percent(margin, 0));
+        format!("{group} {margin} of {}", plan_usage.revenue_per_seat().map_or("–".to_owned(), format_money))
     };
     let groups = sales.by_group(plan);
     (groups.len() > 1).then(|| {
-        let told: Vec<String> = groups.iter().map(told).collect();
-        format!("{plan} by group on T{}: {}", set.tier, told.join(", "))
+        let texts: Vec<String> = groups.iter().map(told).collect();
+        format!("{plan} by group on T{}: {}", set.tier, texts.join(", "))
     })
 }
 
@@ -366,10 +366,10 @@ mod tests {
                     WHERE u.day = 42 AND o.plan = 'B')";
         let row = session.query(sql).expect("figures").rows.remove(0);
         let (paid, units) = (number_at(&row, 0), number_at(&row, 1));
-        let own = sales.usage_of_plan(Plan::B);
+        let plan_usage = sales.usage_of_plan(Plan::B);
         for unit_cost in [0.0003, 0.002, 0.03] {
             let expected = 1.0 - units * unit_cost / paid;
-            assert!((own.margin(unit_cost).expect("a margin") - expected).abs() < 1e-9);
+            assert!((plan_usage.margin(unit_cost).expect("a margin") - expected).abs() < 1e-9);
         }
         let models = session.company().tool_limits().unit_costs();
         let now = terms(&session.settings().core);
@@ -377,7 +377,7 @@ mod tests {
         let lines = margin_lines(&sales, &draft, MarginSetting::Tier, &models, 42);
         assert!(lines[0].contains("at day-42 usage"), "{lines:?}");
         let line = lines.iter().find(|line| line.starts_with("B paid ")).expect("plan B");
-        let on_3 = format!("[{}]", percent(own.margin(models[2].1).expect("a margin"), 0));
+        let on_3 = format!("[{}]", percent(plan_usage.margin(models[2].1).expect("a margin"), 0));
         assert!(line.contains(&cents(paid)) && line.contains(&on_3), "{line} without {on_3}");
         let dear = MarginSetting::Price.apply(now, &json!({"B": 250}));
         let lines = margin_lines(&sales, &dear, MarginSetting::Price, &models, 42);
@@ -387,7 +387,9 @@ mod tests {
         let full_quota = MarginSetting::Quota.apply(now, &json!({"B": 300}));
         let lines = margin_lines(&sales, &full_quota, MarginSetting::Quota, &models, 42);
         let line = lines.iter().find(|line| line.starts_with("B at quota 300")).expect("the quota");
-        let full = 1.0 - own.measured_subscriptions * 300.0 / own.measured_seats * 30.0 * models[1].1 / paid;
+        let full = 1.0
+            - plan_usage.measured_subscriptions * 300.0 / plan_usage.measured_seats * 30.0 * models[1].1
+                / paid;
         assert!(line.contains(&format!("[{}]", percent(full, 0))), "{line} without {full}");
         // The summary for small windows shows the same margins.
         for (lever, draft) in
@@ -399,12 +401,12 @@ mod tests {
             let expected: Vec<String> = lines.iter().filter(of_b).filter_map(|line| set(line)).collect();
             let summary = margin_summary(&sales, draft, lever, &models, 42);
             let line = summary.iter().find(|line| line.starts_with("B ")).expect("plan B");
-            let told: Vec<&str> = line
+            let texts: Vec<&str> = line
                 .split(' ')
                 .map(|word| word.trim_end_matches(','))
                 .filter(|word| word.ends_with('%'))
                 .collect();
-            assert_eq!(told, expected, "{line}");
+            assert_eq!(texts, expected, "{line}");
             assert!(summary[0].contains("day-42") && summary.len() == 4, "{summary:?}");
         }
     }

@@ -80,7 +80,7 @@ pub fn plot_in(frame: &PlotArea, drawn: &[PlotSeries<'_>]) -> String {
     let (columns, rows) = (frame.width.saturating_sub(LABEL_WIDTH).max(8), frame.height.max(2));
     let placed = |(x, y): &(f64, f64)| (frame.x_scale.position(*x), frame.y_scale.position(*y));
     let all = || {
-        let points = drawn.iter().flat_map(|own| own.points);
+        let points = drawn.iter().flat_map(|plot_series| plot_series.points);
         points.filter(|own| placed(own).0.is_finite() && placed(own).1.is_finite())
     };
     let Some((left, right)) = padded_range(all().map(|point| point.0)) else { return String::new() };
@@ -95,16 +95,16 @@ pub fn plot_in(frame: &PlotArea, drawn: &[PlotSeries<'_>]) -> String {
             cells[row][column] = sign;
         }
     };
-    for own in drawn {
-        let points: Vec<(f64, f64)> = own.points.iter().map(placed).collect();
-        points.iter().for_each(|(x, y)| put(*x, *y, own.mark));
-        for pair in points.windows(2).filter(|_| own.is_line) {
+    for series in drawn {
+        let points: Vec<(f64, f64)> = series.points.iter().map(placed).collect();
+        points.iter().for_each(|(x, y)| put(*x, *y, series.mark));
+        for pair in points.windows(2).filter(|_| series.is_line) {
             for at in 0..=columns {
                 let share = at as f64 / columns as f64;
                 put(
                     interpolate(pair[0].0, pair[1].0, share),
                     interpolate(pair[0].1, pair[1].1, share),
-                    own.mark,
+                    series.mark,
                 );
             }
         }
@@ -145,8 +145,8 @@ fn interpolate(from: f64, to: f64, share: f64) -> f64 {
 
 /// Returns the range of the values, widened if it is empty; `None` without values.
 fn padded_range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
-    let (least, most) =
-        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), own| (least.min(own), most.max(own)));
+    let (least, most) = values
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| (least.min(value), most.max(value)));
     let apart = most - least > 1e-9 * most.abs().max(least.abs()).min(1.0);
     (least <= most).then_some(match least {
         _ if apart => (least, most),

@@ -11,7 +11,7 @@ pub fn lead_lines_around(day: u32, weeks: &[ByGroup<GroupWeek>], known: &[Group]
     let Some(later) = weeks.get(after).filter(|_| day.is_multiple_of(7)) else { return Vec::new() };
     let before = after.checked_sub(1).and_then(|at| weeks.get(at));
     let count = |week: &ByGroup<GroupWeek>, group: Group| format_whole(f64::from(week[group].leads));
-    let told: Vec<String> = known
+    let texts: Vec<String> = known
         .iter()
         .map(|group| {
             let earlier = before.map_or("–".to_owned(), |week| count(week, *group));
@@ -19,7 +19,7 @@ pub fn lead_lines_around(day: u32, weeks: &[ByGroup<GroupWeek>], known: &[Group]
         })
         .collect();
     vec![
-        format!("Leads in the week before → in the week after: {}", told.join(", ")),
+        format!("Leads in the week before → in the week after: {}", texts.join(", ")),
         "Other changes of these weeks also affect these counts.".to_owned(),
     ]
 }
@@ -34,7 +34,7 @@ mod tests {
     fn leads_are_counted_on_both_sides_of_the_day() {
         let mut session = play_weeks(4);
         let known = session.company().observe().known_groups;
-        let told = lead_lines_around(14, session.company().group_weeks(), &known);
+        let texts = lead_lines_around(14, session.company().group_weeks(), &known);
         let mut leads = |from: u32| {
             let sql = format!(
                 "SELECT count(*) FROM customers WHERE group_id = 'S1' AND created_day > {from} AND created_day <= {from} + 7"
@@ -42,7 +42,7 @@ mod tests {
             format_whole(number_at(&session.query(&sql).expect("a count").rows[0], 0))
         };
         let expected = format!("S1 {} → {}", leads(7), leads(14));
-        assert!(told[0].contains(&expected), "{told:?} without {expected}");
+        assert!(texts[0].contains(&expected), "{texts:?} without {expected}");
         let first = lead_lines_around(0, session.company().group_weeks(), &known);
         assert!(first[0].contains("S1 – → "), "{first:?}");
         assert!(

@@ -245,7 +245,7 @@ fn wrap_chars(letters: Vec<(char, TextStyle)>, first: &str, next: &str, width: u
         }
         for (letter, face) in row {
             match line.last_mut() {
-                Some((piece, own)) if *own == face => piece.push(letter),
+                Some((piece, text_style)) if *text_style == face => piece.push(letter),
                 _ => line.push((letter.to_string(), face)),
             }
         }

@@ -196,7 +196,7 @@ fn limit_rows(limits: &TimeLimits) -> String {
         ("Active minutes per session", limits.session_minutes),
         ("Active minutes per run, over all sessions", limits.study_minutes),
     ];
-    let minutes = |own: Option<u32>, none: &str| own.map_or(none.to_owned(), |own| own.to_string());
+    let minutes = |number: Option<u32>, none: &str| number.map_or(none.to_owned(), |own| own.to_string());
     let row = |(what, own): (&str, Option<u32>)| format!("| {what} | {} |\n", minutes(own, "no limit"));
     let text: String = all.into_iter().map(row).collect();
     if all.iter().all(|(_, own)| own.is_none()) {
@@ -238,9 +238,10 @@ fn questions_section(study: &Study) -> String {
         return "## Questions\n\nNone.\n".to_owned();
     }
     let mut text = "## Questions\n".to_owned();
-    for own in &study.questionnaires {
-        text += &format!("\n**{}** ({})\n\n", own.title, describe_questionnaire_time(own));
-        for question in &own.questions {
+    for questionnaire in &study.questionnaires {
+        text +=
+            &format!("\n**{}** ({})\n\n", questionnaire.title, describe_questionnaire_time(questionnaire));
+        for question in &questionnaire.questions {
             let required = if question.required { ", required" } else { ", optional" };
             text += &format!(
                 "- `{}`: {} ({}{required})\n",
@@ -253,11 +254,11 @@ fn questions_section(study: &Study) -> String {
     text
 }
 
-fn describe_questionnaire_time(own: &Questionnaire) -> String {
-    match own.when {
+fn describe_questionnaire_time(questionnaire: &Questionnaire) -> String {
+    match questionnaire.when {
         Occasion::Before => "before the first week".to_owned(),
         Occasion::Weeks => {
-            let weeks: Vec<String> = own.weeks.iter().map(u32::to_string).collect();
+            let weeks: Vec<String> = questionnaire.weeks.iter().map(u32::to_string).collect();
             format!("after weeks {}", weeks.join(", "))
         }
         Occasion::Break => {

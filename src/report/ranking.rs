@@ -101,8 +101,8 @@ pub struct Ranking {
 impl Ranking {
     /// Returns the best results and those around this run's.
     pub fn top_and_neighbors(&self, best: usize, beside: usize) -> Vec<&RankedRun> {
-        let own = self.entries.iter().position(|place| place.owner == ResultOwner::ThisRun);
-        let wanted = |at: usize| at < best || own.is_some_and(|own| own.abs_diff(at) <= beside);
+        let number = self.entries.iter().position(|place| place.owner == ResultOwner::ThisRun);
+        let wanted = |at: usize| at < best || number.is_some_and(|own| own.abs_diff(at) <= beside);
         self.entries.iter().enumerate().filter(|(at, _)| wanted(*at)).map(|(_, place)| place).collect()
     }
 
@@ -161,12 +161,12 @@ pub fn published_targeted_shares() -> (f64, f64) {
 }
 
 fn caveat(seen: &Observation) -> Option<String> {
-    let own = match seen.seed {
+    let text = match seen.seed {
         Some(PUBLISHED_SEED) => return None,
         Some(seed) => format!("seed {seed}"),
         None => "a seed that is not shown".to_owned(),
     };
-    Some(format!("{}; this run: {own}.", describe_published_conditions()))
+    Some(format!("{}; this run: {text}.", describe_published_conditions()))
 }
 
 /// Describes the terms of the published runs, without a full stop.

@@ -173,8 +173,8 @@ mod tests {
     #[test]
     fn late_projects_are_named() {
         let session = run(28, Mode::Sandbox);
-        let told = outlook_lines(&session.company().research_outlook(2));
-        assert_eq!(told, ["no project started now can finish before day 30, after the last day (28)"]);
+        let texts = outlook_lines(&session.company().research_outlook(2));
+        assert_eq!(texts, ["no project started now can finish before day 30, after the last day (28)"]);
         let mut session = run(200, Mode::Sandbox);
         for tier in 12..=20 {
             let _ = session.call("start_research_project", &json!({ "tier": tier }), Via::Script);

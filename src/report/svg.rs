@@ -65,14 +65,14 @@ impl Scale {
     }
 
     fn for_axis(kind: AxisScale, values: impl Iterator<Item = f64>, steps: f64, round_ends: bool) -> Scale {
-        let own = Scale::new(values.map(|value| kind.position(value)), steps, round_ends);
+        let scale = Scale::new(values.map(|value| kind.position(value)), steps, round_ends);
         match kind {
-            AxisScale::Linear => own,
-            AxisScale::Whole => Scale { step: own.step.max(1.0), kind, ..own },
+            AxisScale::Linear => scale,
+            AxisScale::Whole => Scale { step: scale.step.max(1.0), kind, ..scale },
             AxisScale::Logarithmic if round_ends => {
-                Scale { from: own.from.floor(), to: own.to.ceil(), kind, ..own }
+                Scale { from: scale.from.floor(), to: scale.to.ceil(), kind, ..scale }
             }
-            AxisScale::Logarithmic => Scale { kind, ..own },
+            AxisScale::Logarithmic => Scale { kind, ..scale },
         }
     }
 
@@ -530,9 +530,9 @@ mod tests {
 
     #[test]
     fn decades_are_evenly_spaced_on_log_axis() {
-        let own = Scale::for_axis(AxisScale::Logarithmic, [3.0, 70_000.0].into_iter(), 5.0, true);
-        assert_eq!(own.ticks(), [1.0, 10.0, 100.0, 1e3, 1e4, 1e5]);
-        let shares: Vec<f64> = own.ticks().into_iter().map(|value| own.share(value)).collect();
+        let scale = Scale::for_axis(AxisScale::Logarithmic, [3.0, 70_000.0].into_iter(), 5.0, true);
+        assert_eq!(scale.ticks(), [1.0, 10.0, 100.0, 1e3, 1e4, 1e5]);
+        let shares: Vec<f64> = scale.ticks().into_iter().map(|value| scale.share(value)).collect();
         assert!(shares.windows(2).all(|pair| (pair[1] - pair[0] - 0.2).abs() < 1e-12), "{shares:?}");
         let few = Scale::for_axis(AxisScale::Logarithmic, [10.0, 100.0].into_iter(), 5.0, true);
         assert_eq!(few.ticks(), [10.0, 20.0, 50.0, 100.0]);

@@ -113,7 +113,7 @@ fn participation_curve() -> TermPicture {
 
 /// Compares the plans with the first group among those with the narrowest estimates.
 fn estimates_and_plans(fits: &[Fit]) -> TermPicture {
-    let individuals = fits.iter().filter(|own| !own.group.is_enterprise());
+    let individuals = fits.iter().filter(|fit| !fit.group.is_enterprise());
     let Some(own) =
         individuals.min_by(|one, other| one.max_relative_error.total_cmp(&other.max_relative_error))
     else {
@@ -177,7 +177,9 @@ fn spillover(numbers: &ParameterNumbers) -> TermPicture {
 /// Charts the quality added to the product. How much of it competitors have copied is hidden.
 fn quality_bank(seen: &VisibleFigures<'_>) -> TermPicture {
     let (base, shared) = seen.quality_base;
-    let of_group = |own: &DeliveredQuality| (format!("added for {}", own.group), own.group_bonus);
+    let of_group = |delivered_quality: &DeliveredQuality| {
+        (format!("added for {}", delivered_quality.group), delivered_quality.group_bonus)
+    };
     let groups = seen.quality.iter().map(of_group).filter(|own| own.1 > 0.0);
     let first = [("base quality".to_owned(), base), ("added for all groups".to_owned(), shared)];
     TermPicture {
@@ -216,7 +218,7 @@ impl TermPicture {
     /// Returns the picture as lines of text.
     pub fn to_text(&self) -> String {
         let drawn = self.drawing.as_ref().map_or(String::new(), |drawing| match drawing {
-            TermDrawing::Lines(own) => own.to_text(),
+            TermDrawing::Lines(term_lines) => term_lines.to_text(),
             TermDrawing::Bars(bars) => bars_to_text(bars),
         });
         format!("{}\n{drawn}", self.caption)
@@ -322,8 +324,10 @@ mod tests {
 
     #[test]
     fn small_influence_has_no_spillover() {
-        let Some(TermDrawing::Lines(own)) = picture("spill-over", 0).drawing else { panic!("no lines") };
-        let points = &own.lines[0].1;
+        let Some(TermDrawing::Lines(term_lines)) = picture("spill-over", 0).drawing else {
+            panic!("no lines")
+        };
+        let points = &term_lines.lines[0].1;
         let numbers = ParameterNumbers::bundled();
         let value = |key: &str| numbers.value(key).expect("a number");
         let least = value("reputation.cross_delta_min_abs");

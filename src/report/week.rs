@@ -257,8 +257,8 @@ impl WeekReport {
 
 /// Describes the lengths of the last two weeks if they differ.
 fn describe_unequal_weeks(weeks: &[WeekFigures]) -> Option<String> {
-    let [.., before, own] = weeks else { return None };
-    describe_short_week(own.days_run, before.days_run)
+    let [.., before, week_figures] = weeks else { return None };
+    describe_short_week(week_figures.days_run, before.days_run)
 }
 
 /// Returns the day on which a time limit filed a week.
@@ -419,8 +419,8 @@ mod tests {
     fn two_weeks(before: WeekFigures, week: WeekFigures, more: usize) -> WeekReport {
         let mut weeks: Vec<WeekFigures> = (0..more).map(|_| before).collect();
         weeks.extend([before, week]);
-        for (at, own) in weeks.iter_mut().enumerate() {
-            (own.day, own.days_run) = (7 * (at as u32 + 1), 7);
+        for (at, week_figures) in weeks.iter_mut().enumerate() {
+            (week_figures.day, week_figures.days_run) = (7 * (at as u32 + 1), 7);
         }
         let sources = WeekReportInput {
             weeks: &weeks,

@@ -54,8 +54,9 @@ pub fn describe_decisions(branch: &BranchFigures, days_per_week: u32) -> Vec<Str
     let differing = group_equal_differences(&branch.call_differences)
         .into_iter()
         .map(|calls| describe_call_differences(&calls, week));
-    let parameters =
-        branch.parameter_differences.iter().map(|own| describe_parameter_difference(own, week(own.day)));
+    let parameters = branch.parameter_differences.iter().map(|parameter_difference| {
+        describe_parameter_difference(parameter_difference, week(parameter_difference.day))
+    });
     let refused = branch
         .rejected
         .iter()
@@ -75,8 +76,8 @@ pub fn describe_decisions(branch: &BranchFigures, days_per_week: u32) -> Vec<Str
         .collect()
 }
 
-fn describe_parameter_difference(own: &ParameterDifference, week: u32) -> String {
-    let ParameterDifference { key, recorded: was, edited: is, .. } = own;
+fn describe_parameter_difference(parameter_difference: &ParameterDifference, week: u32) -> String {
+    let ParameterDifference { key, recorded: was, edited: is, .. } = parameter_difference;
     match (was, is) {
         (_, Some(is)) => format!("week {week}: {key} is set to {is}"),
         (Some(was), None) => format!("week {week}: {key} is not set to {was}"),
@@ -87,8 +88,9 @@ fn describe_parameter_difference(own: &ParameterDifference, week: u32) -> String
 fn group_equal_differences(differences: &[CallDifference]) -> Vec<Vec<&CallDifference>> {
     let mut all: Vec<Vec<&CallDifference>> = Vec::new();
     for call in differences {
-        let same = |own: &&mut Vec<&CallDifference>| {
-            (own[0].tool, &own[0].recorded, &own[0].edited) == (call.tool, &call.recorded, &call.edited)
+        let same = |call_differences: &&mut Vec<&CallDifference>| {
+            (call_differences[0].tool, &call_differences[0].recorded, &call_differences[0].edited)
+                == (call.tool, &call.recorded, &call.edited)
         };
         match all.iter_mut().find(same) {
             Some(own) => own.push(call),
@@ -260,9 +262,9 @@ pub fn difference_line(
 }
 
 /// Describes a run in the tree of related runs.
-pub fn related_run_line(kin: &RelatedRun, own: &str) -> String {
+pub fn related_run_line(kin: &RelatedRun, text: &str) -> String {
     let run = &kin.run;
-    let mark = if run.id == own { " (this run)" } else { "" };
+    let mark = if run.id == text { " (this run)" } else { "" };
     let left = kin.branched_in_week.map_or(String::new(), |week| format!(" · branched in week {week}"));
     let change = match (&kin.first_change, kin.branched_in_week) {
         (Some(change), Some(_)) => format!(", first change {}", describe_first_change(change)),
@@ -322,12 +324,12 @@ mod tests {
             call(14, Some(20), Some(30.0), None),
             call(21, Some(31), Some(10.0), Some(9.5)),
         ];
-        let told: Vec<String> = group_equal_differences(&differences)
+        let texts: Vec<String> = group_equal_differences(&differences)
             .iter()
             .map(|calls| describe_call_differences(calls, |day| day / 7 + 1))
             .collect();
         assert_eq!(
-            told,
+            texts,
             [
                 "week 2: set_prices {\"B\":9.5} is added; the run calls set_prices again in week 3 (line 20)",
                 "weeks 2 to 4: set_prices {\"B\":10.0} → {\"B\":9.5} (2 calls)",

@@ -51,8 +51,8 @@ pub fn equation(why: &ChangeExplanation) -> String {
 /// Writes the figure in both weeks, and their lengths if they differ: `week 20: 195 → 1,137`.
 pub fn heading(why: &ChangeExplanation) -> String {
     let value = |value| format_figure(why.quantity.unit(), value);
-    let [before, own] = why.days;
-    let short = describe_short_week(own, before).map_or(String::new(), |short| format!(" ({short})"));
+    let [before, number] = why.days;
+    let short = describe_short_week(number, before).map_or(String::new(), |short| format!(" ({short})"));
     format!("{}, week {}: {} → {}{short}", why.quantity.name(), why.week, value(why.before), value(why.after))
 }
 
@@ -128,15 +128,18 @@ mod tests {
     #[test]
     fn equation_names_every_cause_and_the_residual() {
         let price = Cause::Calls(ToolId::SetPrices);
-        let told =
+        let change_explanation =
             why(WeekFigure::Cancellations, 195.0, 1137.0, &[(price, 938.0), (Cause::Competitors, 3.5)]);
-        let equation_told = equation(&told);
+        let equation_told = equation(&change_explanation);
         assert_eq!(equation_told, "cancellations +942 = price +938 · rivals +3.5 · residual +0.5");
-        assert_eq!(heading(&told), "cancellations, week 20: 195 → 1,137");
-        let short = ChangeExplanation { days: [7, 3], ..told };
+        assert_eq!(heading(&change_explanation), "cancellations, week 20: 195 → 1,137");
+        let short = ChangeExplanation { days: [7, 3], ..change_explanation };
         assert_eq!(heading(&short), "cancellations, week 20: 195 → 1,137 (of 3 days, the week before of 7)");
-        let told = why(WeekFigure::Conversion, 0.2, 0.19, &[(price, -0.01), (Cause::Service, 0.0)]);
-        assert_eq!(equation(&told), "conversion -1.00 pt = price -1.00 pt · load and outages 0 · residual 0");
+        let explanation = why(WeekFigure::Conversion, 0.2, 0.19, &[(price, -0.01), (Cause::Service, 0.0)]);
+        assert_eq!(
+            equation(&explanation),
+            "conversion -1.00 pt = price -1.00 pt · load and outages 0 · residual 0"
+        );
         let told = why(WeekFigure::CashChange, 100.0, -4_900.4, &[(Cause::Market, -5_000.0)]);
         assert_eq!(equation(&told), "cash change -$5,000 = market -$5,000 · residual 0");
     }

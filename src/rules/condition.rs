@@ -49,19 +49,19 @@ impl Field {
 
     /// Returns the value of a thread; `None` if it has none.
     fn value_of(self, thread: &ThreadContext) -> Option<Value> {
-        let (own, number) = (&thread.waiting, |value: u32| Value::Number(f64::from(value)));
+        let (waiting_thread, number) = (&thread.waiting, |value: u32| Value::Number(f64::from(value)));
         Some(match self {
-            Field::Group => Value::Word(own.group.to_owned()),
-            Field::Type => Value::Word(own.kind.to_owned()),
+            Field::Group => Value::Word(waiting_thread.group.to_owned()),
+            Field::Type => Value::Word(waiting_thread.kind.to_owned()),
             Field::AskedPlan => Value::Word(thread.asked_plan.map(Plan::id)?.to_owned()),
-            Field::Seats => number(own.seats),
-            Field::Asked => Value::Number(own.asked?),
-            Field::LastOffer => Value::Number(lowest(&own.last_offer)?),
-            Field::Offers => number(own.offers_so_far),
-            Field::Turn => number(own.turn),
-            Field::DaysLeft => number(own.days_left),
+            Field::Seats => number(waiting_thread.seats),
+            Field::Asked => Value::Number(waiting_thread.asked?),
+            Field::LastOffer => Value::Number(lowest(&waiting_thread.last_offer)?),
+            Field::Offers => number(waiting_thread.offers_so_far),
+            Field::Turn => number(waiting_thread.turn),
+            Field::DaysLeft => number(waiting_thread.days_left),
             Field::RequiredQuota => Value::Number(thread.required_quota?),
-            Field::Customer => number(own.customer),
+            Field::Customer => number(waiting_thread.customer),
         })
     }
 }

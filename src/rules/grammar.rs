@@ -162,15 +162,15 @@ impl RuleParser<'_> {
     }
 
     fn accept(&mut self, word: &str) -> bool {
-        let found = self.peek().is_some_and(|own| own.eq_ignore_ascii_case(word));
+        let found = self.peek().is_some_and(|text| text.eq_ignore_ascii_case(word));
         self.at += usize::from(found);
         found
     }
 
     fn word(&mut self) -> Option<String> {
-        let own = self.peek()?.to_owned();
+        let text = self.peek()?.to_owned();
         self.at += 1;
-        Some(own)
+        Some(text)
     }
 
     fn error_here(&self, text: impl Into<String>) -> RuleError {

@@ -75,7 +75,12 @@ impl PlanEconomics {
             let model = terms.models.iter().find(|model| model.tier == core.tiers[plan]);
             model.map_or(0.0, |model| model.unit_cost)
         };
-        let studied = session.company().estimates().into_iter().map(|own| (own.group, own.usage)).collect();
+        let studied = session
+            .company()
+            .estimates()
+            .into_iter()
+            .map(|estimates| (estimates.group, estimates.usage))
+            .collect();
         PlanEconomics {
             list_prices: Plan::ALL.map(|plan| core.prices[plan]),
             quotas: Plan::ALL.map(|plan| core.quotas[plan].units()),
@@ -131,7 +136,8 @@ impl ThreadContext {
         let usage = SeatUsage::from_rows(&session.query_unrecorded(SEAT_USAGE_SQL)?);
         let market = PlanEconomics::from_session(session, usage);
         let waiting = session.company().observe().waiting;
-        let threads = waiting.iter().map(|own| ThreadContext::new(own, &letters, &market));
+        let threads =
+            waiting.iter().map(|waiting_thread| ThreadContext::new(waiting_thread, &letters, &market));
         Ok((threads.collect(), market))
     }
 

@@ -38,12 +38,12 @@ impl CurrentRequest {
     }
 
     fn stop_if(&self, wanted: impl Fn(&RunningRequest) -> bool) {
-        let held = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        held.iter().filter(|held| wanted(held)).for_each(|held| held.interrupt.stop());
+        let running_request = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        running_request.iter().filter(|request| wanted(request)).for_each(|held| held.interrupt.stop());
     }
 
-    fn set(&self, held: Option<RunningRequest>) {
-        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = held;
+    fn set(&self, running_request: Option<RunningRequest>) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = running_request;
     }
 }
 
@@ -64,7 +64,8 @@ impl RequestWatch {
 impl Drop for RequestWatch {
     fn drop(&mut self) {
         if !self.is_answered {
-            self.running.stop_if(|held| held.is_code && held.number == self.number);
+            self.running
+                .stop_if(|running_request| running_request.is_code && running_request.number == self.number);
         }
     }
 }

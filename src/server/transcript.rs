@@ -84,18 +84,19 @@ impl ForeignTranscript {
         let mut played = PlayedTranscript::default();
         session.disable_python();
         for call in &self.calls {
-            let said = handle_request(
+            let api_response = handle_request(
                 session,
                 ApiRequest::for_tool(&call.tool, call.arguments.clone().into(), Value::Null),
                 Via::Script,
             );
-            let accepted = said.is_success();
-            let is_not_run =
-                || said.body["error"].as_str().is_some_and(|told| told.contains(PYTHON_DISABLED_MESSAGE));
+            let accepted = api_response.is_success();
+            let is_not_run = || {
+                api_response.body["error"].as_str().is_some_and(|text| text.contains(PYTHON_DISABLED_MESSAGE))
+            };
             if is_not_run() {
                 played.not_run += 1;
             } else if call.accepted.is_some_and(|before| before != accepted) {
-                let told = said.body["error"].as_str().unwrap_or("it is accepted here").to_owned();
+                let told = api_response.body["error"].as_str().unwrap_or("it is accepted here").to_owned();
                 played.mismatches.push((call.position, call.tool.clone(), told));
             }
             played.call_count += 1;
@@ -109,7 +110,7 @@ impl ForeignTranscript {
 pub(super) fn tool_name(name: &str) -> Option<&'static str> {
     let bare = name.rsplit(['.', '/', ':']).next().unwrap_or(name);
     let bare = bare.rsplit_once("__").map_or(bare, |(_, bare)| bare);
-    let known = |name: &str| ToolId::all().map(ToolId::name).find(|own| *own == name);
+    let known = |name: &str| ToolId::all().map(ToolId::name).find(|text| *text == name);
     known(bare).or_else(|| find(bare).map(|tool| tool.spec().name()))
 }
 
@@ -143,14 +144,14 @@ fn from_steps(whole: &Map<String, Value>) -> ForeignTranscript {
 /// Returns whether the observation of a step says that a call was accepted, or `None` if it does not say.
 fn step_acceptance(step: &Value, id: &Value) -> Option<bool> {
     let results = step["observation"]["results"].as_array()?;
-    let own = results.iter().find(|result| result["source_call_id"] == *id)?;
-    is_acceptance(own["content"].as_str()?)
+    let value = results.iter().find(|result| result["source_call_id"] == *id)?;
+    is_acceptance(value["content"].as_str()?)
 }
 
 /// Returns whether an answer says that its call was accepted, or `None` if it does not say.
 pub(super) fn is_acceptance(answer: &str) -> Option<bool> {
-    let said: Value = serde_json::from_str(answer).ok()?;
-    match (&said["success"], said.get("dashboard")) {
+    let value: Value = serde_json::from_str(answer).ok()?;
+    match (&value["success"], value.get("dashboard")) {
         (Value::Bool(success), _) => Some(*success),
         (_, Some(_)) => Some(true),
         _ => None,

@@ -167,12 +167,12 @@ struct WorkerState {
 }
 
 impl WorkerState {
-    fn run(mut self, asked: &Receiver<QueuedRequest>, advancing: &PendingWeeks) -> Result<(), RunError> {
+    fn run(mut self, receiver: &Receiver<QueuedRequest>, advancing: &PendingWeeks) -> Result<(), RunError> {
         let interface = Interface { name: self.door.interface, window: None };
         if let Some(session) = &mut self.session {
             session.activity().attach(interface);
         }
-        while let Ok(QueuedRequest { number, request, reply }) = asked.recv() {
+        while let Ok(QueuedRequest { number, request, reply }) = receiver.recv() {
             let is_week = matches!(request, ApiRequest::NextWeek { .. });
             if reply.is_closed() && request.runs_code() {
                 // The client disconnected before the request started.

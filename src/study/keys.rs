@@ -93,8 +93,8 @@ mod tests {
         assert!(seal != SealKey::default());
         std::fs::remove_file(folder.path().join(SEAL_KEY_FILE)).expect("gone");
         assert!(load_seal_key(folder.path()).expect("none") == SealKey::default());
-        let (again, written) = make_keys(folder.path()).expect("keys");
-        assert_eq!((again, written), (public, vec![folder.path().join(SEAL_KEY_FILE)]));
+        let (public_key, written) = make_keys(folder.path()).expect("keys");
+        assert_eq!((public_key, written), (public, vec![folder.path().join(SEAL_KEY_FILE)]));
         assert!(load_seal_key(folder.path()).expect("a key") == seal);
         assert_eq!(load_lab_public_key(folder.path()).expect("a key"), Some(public));
         // A new lab.key would not match the files of an earlier one.

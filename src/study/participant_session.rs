@@ -139,7 +139,7 @@ impl ParticipantSession {
 
     fn next_step_with_runs(&self, own: &[ParticipantRun]) -> Result<NextStep, RunError> {
         let is = |manifest: &Manifest, practice| {
-            manifest.study.as_ref().is_some_and(|own| own.practice == practice)
+            manifest.study.as_ref().is_some_and(|study_stamp| study_stamp.practice == practice)
         };
         let find = |practice| own.iter().find(|(manifest, _)| is(manifest, practice)).map(|(_, run)| run);
         let (practice, session) = (find(true), find(false));
@@ -244,9 +244,9 @@ impl ParticipantSession {
     /// # Errors
     /// Fails if a run is in use or cannot be removed.
     pub fn withdraw(&self) -> Result<(), RunError> {
-        let own: Vec<String> = self.study_runs()?.into_iter().map(|(_, run)| run.id).collect();
-        own.iter().try_for_each(|run| delete_run(&self.runs, run))?;
-        WithdrawalRecord::new(&own, &self.study.digest).write(&self.runs)?;
+        let texts: Vec<String> = self.study_runs()?.into_iter().map(|(_, run)| run.id).collect();
+        texts.iter().try_for_each(|run| delete_run(&self.runs, run))?;
+        WithdrawalRecord::new(&texts, &self.study.digest).write(&self.runs)?;
         self.log.append(&self.label, VisitEvent::Withdrew);
         Ok(())
     }
@@ -272,7 +272,7 @@ impl ParticipantSession {
         let text = self.consent_text()?;
         let digest = text.digest();
         let agreed = |(manifest, _): &ParticipantRun| {
-            manifest.consent.as_ref().is_some_and(|own| own.digest == digest)
+            manifest.consent.as_ref().is_some_and(|consent| consent.digest == digest)
         };
         (!own.iter().any(agreed)).then_some(text)
     }

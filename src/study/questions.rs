@@ -251,17 +251,17 @@ impl Questionnaire {
         let tables = tables.get("question").and_then(toml::Value::as_array).cloned().unwrap_or_default();
         let mut known = std::collections::BTreeSet::new();
         for (question, table) in questionnaire.questions.iter().zip(&tables) {
-            let own = [&["id", "text", "form", "required"], question.form.allowed_keys()].concat();
+            let texts = [&["id", "text", "form", "required"], question.form.allowed_keys()].concat();
             let unknown = table
                 .as_table()
                 .into_iter()
                 .flat_map(toml::Table::keys)
-                .find(|key| !own.contains(&key.as_str()));
+                .find(|key| !texts.contains(&key.as_str()));
             if let Some(key) = unknown {
                 let problem = format!(
                     "{}: {key} is not a key of this form; its keys are {}",
                     question.id,
-                    own.join(", ")
+                    texts.join(", ")
                 );
                 return Err(ParameterError::for_key(&source, text, key, problem));
             }

@@ -62,9 +62,9 @@ pub fn session_statuses(study: &Study, runs: &Path) -> Vec<SessionStatus> {
         let is_own = manifest.study.as_ref().is_some_and(|stamp| stamp.digest == study.digest);
         is_own.then(|| session_status(&folder, &manifest))
     });
-    let mut own: Vec<SessionStatus> = own.collect();
-    own.sort_by(|one, other| (&one.participant, &one.run).cmp(&(&other.participant, &other.run)));
-    own
+    let mut status: Vec<SessionStatus> = own.collect();
+    status.sort_by(|one, other| (&one.participant, &one.run).cmp(&(&other.participant, &other.run)));
+    status
 }
 
 fn session_status(folder: &Path, manifest: &Manifest) -> SessionStatus {
@@ -100,12 +100,12 @@ fn last_save_error(lines: &[Line]) -> Option<String> {
 }
 
 fn session_state(lines: &[Line], locked: bool) -> SessionState {
-    let said = lines.iter().rev().find_map(|line| match &line.record {
+    let state = lines.iter().rev().find_map(|line| match &line.record {
         Record::End(_) => Some(SessionState::Over),
         Record::Activity(Activity::Clock(clock)) if clock.event == ClockEvent::Stopped => {
             Some(SessionState::Paused)
         }
-        Record::Activity(Activity::Session(own)) => match own.event {
+        Record::Activity(Activity::Session(presence)) => match presence.event {
             PresenceEvent::Closed => Some(SessionState::Left),
             PresenceEvent::Idle | PresenceEvent::Suspended => Some(SessionState::Idle),
             _ => Some(SessionState::Plays),
@@ -115,7 +115,7 @@ fn session_state(lines: &[Line], locked: bool) -> SessionState {
         }
         _ => None,
     });
-    match said.unwrap_or(SessionState::Plays) {
+    match state.unwrap_or(SessionState::Plays) {
         // The run is not locked, and no line records that it was closed.
         SessionState::Plays | SessionState::Idle | SessionState::Paused if !locked => SessionState::Stopped,
         said => said,

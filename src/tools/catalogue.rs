@@ -166,11 +166,11 @@ mod tests {
 
     #[test]
     fn catalogue_has_34_benchmark_tools_and_two_reads() {
-        let mut own: Vec<&str> = CATALOGUE.iter().map(|tool| tool.spec().name()).collect();
+        let mut texts: Vec<&str> = CATALOGUE.iter().map(|tool| tool.spec().name()).collect();
         let mut expected: Vec<&str> = EXPECTED_TOOLS.split(' ').collect();
-        own.sort_unstable();
+        texts.sort_unstable();
         expected.sort_unstable();
-        assert_eq!(own, expected);
+        assert_eq!(texts, expected);
     }
 
     #[test]

@@ -54,7 +54,7 @@ pub struct NamedStatements(Vec<(String, String)>);
 impl NamedStatements {
     /// Returns the statements of a name.
     pub fn get(&self, name: &str) -> Option<&str> {
-        self.0.iter().find(|(own, _)| own == name).map(|(_, code)| code.as_str())
+        self.0.iter().find(|(text, _)| text == name).map(|(_, code)| code.as_str())
     }
 
     /// Returns all names.
@@ -64,7 +64,7 @@ impl NamedStatements {
 
     /// Returns all names except one.
     pub fn names_without(&self, name: &str) -> Vec<&str> {
-        self.names().into_iter().filter(|own| *own != name).collect()
+        self.names().into_iter().filter(|text| *text != name).collect()
     }
 
     /// Returns names and statements.
@@ -73,14 +73,14 @@ impl NamedStatements {
     }
 
     fn store(&mut self, name: &str, code: &str) {
-        match self.0.iter_mut().find(|(own, _)| own == name) {
+        match self.0.iter_mut().find(|(text, _)| text == name) {
             Some((_, old)) => code.clone_into(old),
             None => self.0.push((name.to_owned(), code.to_owned())),
         }
     }
 
     fn remove(&mut self, name: &str) {
-        self.0.retain(|(own, _)| own != name);
+        self.0.retain(|(text, _)| text != name);
     }
 }
 

@@ -96,8 +96,8 @@ impl ParameterNumbers {
 
 /// Returns the name of an entry of a list of tables.
 fn entry_name(entry: &Value) -> Option<String> {
-    let own = ["level", "tier", "id"].into_iter().find_map(|key| entry.get(key))?;
-    Some(own.as_str().map_or_else(|| own.to_string(), str::to_owned))
+    let value = ["level", "tier", "id"].into_iter().find_map(|key| entry.get(key))?;
+    Some(value.as_str().map_or_else(|| value.to_string(), str::to_owned))
 }
 
 /// Formats a small whole number as a word, others in digits.

@@ -504,13 +504,13 @@ fn send_enterprise_deal_rejects_invalid_deals() {
 fn fully_rejected_deals_report_each_reason() {
     let mut company = company_with_enterprises();
     let deals = json!({"deals": [[99, [["B", 5]]], [2, []], [5, [["B", 5]]], [6, [["B", 5]]]]});
-    let told = json!([
+    let value = json!([
         {"customer_id": 2, "error": "offerings required"},
         {"customer_id": 99, "error": "not found"},
         {"customer_id": 5, "error": "not enterprise"},
         {"customer_id": 6, "error": "no subscription"},
     ]);
-    assert_eq!(company.rejected_results("send_enterprise_deal", deals), told);
+    assert_eq!(company.rejected_results("send_enterprise_deal", deals), value);
     let deals = json!({"deals": [77, "x"]});
     let told = json!([{"error": "invalid format"}, {"customer_id": 77, "error": "no active thread"}]);
     assert_eq!(company.rejected_results("reject_enterprise_deal", deals), told);

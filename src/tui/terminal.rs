@@ -86,9 +86,9 @@ impl TerminalScreen {
     /// Writing to the terminal fails.
     pub fn draw(&mut self, paint: impl FnOnce(&mut Buffer) -> Option<Position>) -> io::Result<()> {
         execute!(self.terminal.backend_mut(), BeginSynchronizedUpdate)?;
-        self.terminal.draw(|whole| {
-            if let Some(cursor) = paint(whole.buffer_mut()) {
-                whole.set_cursor_position(cursor);
+        self.terminal.draw(|frame| {
+            if let Some(cursor) = paint(frame.buffer_mut()) {
+                frame.set_cursor_position(cursor);
             }
         })?;
         execute!(self.terminal.backend_mut(), EndSynchronizedUpdate)

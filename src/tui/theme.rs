@@ -137,7 +137,9 @@ impl Theme {
     /// Returns whether `count` series can be distinguished by color alone.
     pub fn has_distinct_series_colors(&self, count: usize) -> bool {
         let colours = || (0..count).map(|number| self.style(Role::Series(number)).fg);
-        colours().enumerate().all(|(at, own)| own.is_some() && colours().take(at).all(|other| other != own))
+        colours()
+            .enumerate()
+            .all(|(at, color)| color.is_some() && colours().take(at).all(|other| other != color))
     }
 
     /// Returns the style of a role.

@@ -76,11 +76,11 @@ fn fill_phrases(
     let pairs = (phrases.openings.len() * phrases.cores.len()) as u32;
     let pair = (u64::from(turn.message) * u64::from(STRIDE) % u64::from(pairs)) as usize;
     let (opening, core) = (pair / phrases.cores.len(), pair % phrases.cores.len());
-    let mut said = phrases.cores[core].to_owned();
+    let mut text = phrases.cores[core].to_owned();
     for (name, value) in facts {
-        said = said.replace(name, value);
+        text = text.replace(name, value);
     }
-    format!("{} {said} {}", phrases.openings[opening], closing_sentence(turn, personas))
+    format!("{} {text} {}", phrases.openings[opening], closing_sentence(turn, personas))
 }
 
 /// Returns the closing sentence: the decision style, the primary concern, or the length of the negotiation.
@@ -112,15 +112,15 @@ struct EnterpriseProfile<'a> {
 
 impl<'a> EnterpriseProfile<'a> {
     fn from_turn(turn: &ThreadTurn, personas: &'a Personas) -> EnterpriseProfile<'a> {
-        let own = &personas.group[Group::index(turn.group)];
+        let group_persona = &personas.group[Group::index(turn.group)];
         let [.., culture, decision, concern] = turn.persona.0;
         let word = |list: &'a [String], at: u8, otherwise: &'a str| {
             list.get(usize::from(at)).map_or(otherwise, String::as_str)
         };
         EnterpriseProfile {
-            culture: word(&own.culture, culture, "practical"),
-            decision: word(&own.decision_style, decision, "pragmatic"),
-            concern: word(&own.primary_concern, concern, "value"),
+            culture: word(&group_persona.culture, culture, "practical"),
+            decision: word(&group_persona.decision_style, decision, "pragmatic"),
+            concern: word(&group_persona.primary_concern, concern, "value"),
         }
     }
 }

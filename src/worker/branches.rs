@@ -60,9 +60,9 @@ impl Question for BranchesQuestion {
         let kept = thread.what_if_cache.clone();
         reply.answer_on_thread(move |reply| {
             let mut kept = lock_cache(&kept);
-            let own = kept.get_or_open(folder?)?;
-            own.set_shows_hidden(is_recorded);
-            answer_question(&self, own, reply)
+            let what_if = kept.get_or_open(folder?)?;
+            what_if.set_shows_hidden(is_recorded);
+            answer_question(&self, what_if, reply)
         });
     }
 }
@@ -103,13 +103,13 @@ impl SessionThread {
 
 fn answer_question(
     question: &BranchesQuestion,
-    own: &mut WhatIf,
+    what_if: &mut WhatIf,
     reply: &Reply<BranchesQuestion>,
 ) -> Result<Option<BranchesAnswer>, Rejection> {
-    let told = Mutex::new(Instant::now());
+    let instant = Mutex::new(Instant::now());
     let progress = |done, all| {
         // Every thread reports every day, which is more often than the screen needs.
-        if let Ok(mut told) = told.try_lock()
+        if let Ok(mut told) = instant.try_lock()
             && told.elapsed() >= DAY_REPORT_INTERVAL
         {
             *told = Instant::now();
@@ -119,10 +119,10 @@ fn answer_question(
     };
     let (week, alternatives, futures) = match question {
         BranchesQuestion::Decisions => {
-            return Ok(Some(BranchesAnswer::Decisions(own.decisions(1)?, own.days_per_week())));
+            return Ok(Some(BranchesAnswer::Decisions(what_if.decisions(1)?, what_if.days_per_week())));
         }
         BranchesQuestion::Compare { week, alternatives, futures } => (*week, alternatives, *futures),
     };
-    let found = own.compare_with_futures((week, None), alternatives, futures, &progress)?;
+    let found = what_if.compare_with_futures((week, None), alternatives, futures, &progress)?;
     Ok(found.map(|(compared, drawn)| BranchesAnswer::Compared(Box::new(compared), drawn.map(Box::new))))
 }

@@ -12,11 +12,11 @@ use novamind_session::{Access, Session};
 
 impl SessionThread {
     /// Reads a class. Reports an error if it lacks data for the requested display.
-    pub(super) fn read_class(&self, folder: &Path, shown: ClassDisplayOptions) {
+    pub(super) fn read_class(&self, folder: &Path, display_options: ClassDisplayOptions) {
         let read = CollectedClass::read(&expand_home(folder)).map_err(|error| error.to_string());
         let checked = read.and_then(|class| {
-            ClassView::new(&class, shown.clone()).check()?;
-            Ok((class, shown))
+            ClassView::new(&class, display_options.clone()).check()?;
+            Ok((class, display_options))
         });
         self.send_response(Response::ClassRead(Box::new(checked)));
     }

@@ -89,7 +89,7 @@ impl Question for InspectionQuestion {
 
     /// If the inspection changed the run, the changed company is sent before the answer.
     fn answer(self, thread: &mut SessionThread, reply: Reply<Self>) {
-        let changes_run = matches!(&self, InspectionQuestion::Command(_, asked) if asked.changes_run());
+        let changes_run = matches!(&self, InspectionQuestion::Command(_, inspection_command) if inspection_command.changes_run());
         let found = match thread.read_only_rejection().filter(|_| changes_run) {
             Some(refusal) => Err(refusal),
             None => thread.inspection_session(false).and_then(|session| run_inspection(session, &self)),
@@ -179,20 +179,25 @@ fn run_inspection(
             describe_quality(&session.inspect().quality_equation(*group, Some(*day))?)
         }
         InspectionQuestion::Satisfaction(group, day) => {
-            let own = session.inspect().satisfaction_equation(*group, Some(*day))?;
-            let days = own.recent_days.iter().map(|value| value.unwrap_or(f64::NAN)).collect();
-            return Ok(result_with_curve(describe_satisfaction(&own), RECENT_DAYS_PREFIX, days));
+            let satisfaction_equation = session.inspect().satisfaction_equation(*group, Some(*day))?;
+            let days =
+                satisfaction_equation.recent_days.iter().map(|value| value.unwrap_or(f64::NAN)).collect();
+            return Ok(result_with_curve(
+                describe_satisfaction(&satisfaction_equation),
+                RECENT_DAYS_PREFIX,
+                days,
+            ));
         }
         InspectionQuestion::Reputation(group, day) => {
-            let own = session.inspect().reputation_equation(*group, Some(*day))?;
-            let lines = describe_reputation(&own);
-            return Ok(result_with_curve(lines, RECENT_DAYS_PREFIX, own.recent_days));
+            let reputation_equation = session.inspect().reputation_equation(*group, Some(*day))?;
+            let lines = describe_reputation(&reputation_equation);
+            return Ok(result_with_curve(lines, RECENT_DAYS_PREFIX, reputation_equation.recent_days));
         }
         InspectionQuestion::Spillover(day) => {
-            let own = session.inspect().spillover(Some(*day))?;
-            let map = Some(SpilloverMap::new(&own));
+            let spillover = session.inspect().spillover(Some(*day))?;
+            let map = Some(SpilloverMap::new(&spillover));
             return Ok(InspectionAnswer {
-                lines: describe_spillover(&own),
+                lines: describe_spillover(&spillover),
                 map,
                 ..InspectionAnswer::default()
             });
@@ -207,7 +212,7 @@ fn run_inspection(
         InspectionQuestion::Customer(customer, day) => {
             match session.inspect().customer_view(*customer, Some(*day))? {
                 CustomerView::Individual(lens) => {
-                    let days = lens.days.iter().map(|own| own.satisfaction).collect();
+                    let days = lens.days.iter().map(|individual_day| individual_day.satisfaction).collect();
                     let day = lens.day_shown().map_or(lens.signup.day, |own| own.day);
                     let found = result_with_curve(describe_individual(&lens), SATISFACTION_PREFIX, days);
                     return Ok(InspectionAnswer { day: Some(day), ..found });
@@ -216,7 +221,7 @@ fn run_inspection(
             }
         }
         InspectionQuestion::Breakpoints(work) => return run_breakpoint_command(session, work),
-        InspectionQuestion::Command(_, asked) => asked.run(session)?.describe(),
+        InspectionQuestion::Command(_, inspection_command) => inspection_command.run(session)?.describe(),
     };
     Ok(InspectionAnswer { lines, ..InspectionAnswer::default() })
 }
@@ -229,10 +234,12 @@ fn inspect_leads(
 ) -> Result<InspectionAnswer, Rejection> {
     let days = session.inspect().lead_equations(group, Some(day))?;
     let lines = describe_lead_equation(&days, held);
-    let value = |own: &LeadEquation, factor| if own.is_known { own.factor(factor) } else { f64::NAN };
+    let value = |lead_equation: &LeadEquation, factor| {
+        if lead_equation.is_known { lead_equation.factor(factor) } else { f64::NAN }
+    };
     let curve = |factor| InspectionCurve {
         line_index: factor_line_index(factor),
-        values_by_day: days.iter().map(|own| value(own, factor)).collect(),
+        values_by_day: days.iter().map(|equation| value(equation, factor)).collect(),
     };
     let is_known = days.last().is_some_and(|own| own.is_known);
     let curves = if is_known { LeadFactor::ALL.map(curve).to_vec() } else { Vec::new() };
@@ -260,8 +267,8 @@ fn run_breakpoint_command(
         BreakpointCommand::Set(condition) => drop(session.inspect().set_breakpoint(*condition)?),
         BreakpointCommand::Remove(number) => drop(session.inspect().clear_breakpoints(Some(*number))?),
         BreakpointCommand::History => {
-            let told = session.inspect().breakpoint_histories(None)?;
-            return found(told.iter().flat_map(describe_condition_history).collect(), session);
+            let condition_histories = session.inspect().breakpoint_histories(None)?;
+            return found(condition_histories.iter().flat_map(describe_condition_history).collect(), session);
         }
     }
     let set = session.inspect().breakpoints()?;

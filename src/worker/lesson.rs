@@ -13,8 +13,8 @@ use novamind_session::Session;
 use novamind_tools::Rejection;
 
 impl SessionThread {
-    pub(super) fn handle_lesson_request(&mut self, asked: LessonRequest) {
-        match asked {
+    pub(super) fn handle_lesson_request(&mut self, lesson_request: LessonRequest) {
+        match lesson_request {
             LessonRequest::Guess(value) => self.respond_with(|run| {
                 let refused = submit_guess(run.session, value).err();
                 Response::LessonUpdated(refused, run.company())

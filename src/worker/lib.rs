@@ -317,7 +317,7 @@ impl SessionThread {
             Request::ListRuns => self.list_runs(None),
             Request::EndRun(id) => self.end_run(&id),
             Request::DeleteRun(id) => self.delete_run(&id),
-            Request::ReadClass(folder, shown) => self.read_class(&folder, shown),
+            Request::ReadClass(folder, display_options) => self.read_class(&folder, display_options),
             Request::OpenHandout(path) => self.open_handout(&path),
             Request::Create(new) => self.create_run(*new),
             Request::Open(id, access) => self.open_run(&id, access),
@@ -335,7 +335,7 @@ impl SessionThread {
             Request::SetNotes(text) => self.respond_with(|run| run.set_notes(&text)),
             Request::BuildRunReport => self.respond_with(|run| run.build_run_report()),
             Request::RenderReportFiles => self.respond_with(|run| run.render_report_files()),
-            Request::Lesson(asked) => self.handle_lesson_request(asked),
+            Request::Lesson(lesson_request) => self.handle_lesson_request(lesson_request),
             Request::Study(request) => self.handle_study_request(request),
         }
     }
@@ -344,7 +344,7 @@ impl SessionThread {
     fn with_run<T>(&mut self, work: impl FnOnce(&mut OpenRun<'_>) -> T) -> Option<T> {
         let SessionThread {
             active_run: Some(open),
-            last_company: shown,
+            last_company: displayed_company,
             messages: news,
             queries,
             interrupt: stop,
@@ -355,7 +355,7 @@ impl SessionThread {
         };
         let result = work(&mut OpenRun {
             session: open.session(),
-            last_company: shown,
+            last_company: displayed_company,
             messages: news,
             queries,
             interrupt: stop,

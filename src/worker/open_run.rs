@@ -36,7 +36,7 @@ impl OpenRun<'_> {
     }
 
     pub(super) fn call_tool(&mut self, tool: ToolId, arguments: &Value) -> Response {
-        let hold = |own| *self.interrupt.lock().unwrap_or_else(PoisonError::into_inner) = own;
+        let hold = |interrupt| *self.interrupt.lock().unwrap_or_else(PoisonError::into_inner) = interrupt;
         hold(
             self.session
                 .up_to_date_database()
@@ -96,13 +96,14 @@ impl OpenRun<'_> {
 
 /// Returns a function that reports simulated days, with a minimum interval.
 pub(super) fn day_reporter(news: &Sender<Message>) -> impl FnMut(&DayReport<'_>) + use<> {
-    let (news, mut told) = (news.clone(), Instant::now());
+    let (news, mut instant) = (news.clone(), Instant::now());
     move |report| {
-        if told.elapsed() >= DAY_REPORT_INTERVAL {
-            told = Instant::now();
+        if instant.elapsed() >= DAY_REPORT_INTERVAL {
+            instant = Instant::now();
             let figures = report.figures;
-            let told = SimulatedDay { cash: figures.cash, subscribers: figures.individual_subscribers };
-            let _ = news.send(Message::Response(Response::DaySimulated(figures.day, Some(told))));
+            let simulated_day =
+                SimulatedDay { cash: figures.cash, subscribers: figures.individual_subscribers };
+            let _ = news.send(Message::Response(Response::DaySimulated(figures.day, Some(simulated_day))));
         }
     }
 }

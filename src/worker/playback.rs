@@ -106,15 +106,15 @@ impl SessionThread {
         if follow {
             playback.start_following();
         }
-        let mut told = Instant::now();
-        playback.seek(goal, &mut |day| self.report_day(&mut told, day))?;
+        let mut instant = Instant::now();
+        playback.seek(goal, &mut |day| self.report_day(&mut instant, day))?;
         Ok(playback)
     }
 
     /// Reports a day, with a minimum interval.
-    fn report_day(&self, told: &mut Instant, day: u32) -> ControlFlow<()> {
-        if told.elapsed() >= DAY_REPORT_INTERVAL {
-            *told = Instant::now();
+    fn report_day(&self, instant: &mut Instant, day: u32) -> ControlFlow<()> {
+        if instant.elapsed() >= DAY_REPORT_INTERVAL {
+            *instant = Instant::now();
             let _ = self.messages.send(Message::Response(Response::DaySimulated(day, None)));
         }
         ControlFlow::Continue(())
@@ -129,10 +129,10 @@ impl SessionThread {
 
     fn seek_to(&mut self, goal: SeekTarget, stop: &AtomicBool) -> Option<PlaybackUpdate> {
         let Some(ActiveRun::Playback(mut playback)) = self.active_run.take() else { return None };
-        let mut told = Instant::now();
+        let mut instant = Instant::now();
         let went = playback.seek(goal, &mut |day| match stop.load(Ordering::Relaxed) {
             true => ControlFlow::Break(()),
-            false => self.report_day(&mut told, day),
+            false => self.report_day(&mut instant, day),
         });
         // Errors during seeking have created a new session, too.
         let anew = !matches!(went, Ok(SeekResult::Reached | SeekResult::Stopped));
@@ -158,8 +158,8 @@ impl SessionThread {
         let parent = playback.session().manifest().id.clone();
         match branch {
             Ok(session) => {
-                let (own, day) = (session.manifest().id.clone(), session.day());
-                let remark = format!("now playing run {own} from day {day}; run {parent} is unchanged");
+                let (text, day) = (session.manifest().id.clone(), session.day());
+                let remark = format!("now playing run {text} from day {day}; run {parent} is unchanged");
                 self.show_opened_run(Ok(session), "", Some(remark));
             }
             Err(refusal) => self.send_response(Response::NotOpened(refusal.to_string(), None)),

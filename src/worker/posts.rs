@@ -93,14 +93,15 @@ pub fn read_posts(session: &Session, known: Option<&Posts>) -> Posts {
     let last = known.and_then(|posts| posts.first()).map(|post| post.number);
     let mut limit = if last.is_some() { PostLimit::Newest(INITIAL_POSTS) } else { PostLimit::All };
     loop {
-        let told =
+        let social_posts =
             session.company().read_tool(&GetSocialPosts, limit).map_or(Vec::new(), |answer| answer.posts);
         let is_new = |post: &Post| last.is_none_or(|last| post.number > last);
-        let fresh: Vec<Arc<Post>> = told.iter().map(to_post).take_while(is_new).map(Arc::new).collect();
+        let fresh: Vec<Arc<Post>> =
+            social_posts.iter().map(to_post).take_while(is_new).map(Arc::new).collect();
         // If all of them are new, there may be more new ones before them.
         if let PostLimit::Newest(most) = limit
-            && !told.is_empty()
-            && fresh.len() == told.len()
+            && !social_posts.is_empty()
+            && fresh.len() == social_posts.len()
         {
             limit = if most > 10_000 { PostLimit::All } else { PostLimit::Newest(most * 8) };
             continue;
@@ -113,11 +114,11 @@ pub fn read_posts(session: &Session, known: Option<&Posts>) -> Posts {
     }
 }
 
-fn to_post(told: &SocialPost) -> Post {
-    let group = told.group_id.map_or("–", Group::id);
+fn to_post(social_post: &SocialPost) -> Post {
+    let group = social_post.group_id.map_or("–", Group::id);
     // Press posts carry the first group and no persona; customers of discovered groups have no persona either.
-    let is_press = told.group_id.is_some() && told.group_id == Group::at(0);
-    let (kind, author) = match (told.reply_to_agent_post_id, told.persona_name.as_deref()) {
+    let is_press = social_post.group_id.is_some() && social_post.group_id == Group::at(0);
+    let (kind, author) = match (social_post.reply_to_agent_post_id, social_post.persona_name.as_deref()) {
         (Some(_), name) => (PostKind::Comments, format!("{} · {group}", name.unwrap_or("someone"))),
         (None, Some(name)) => (PostKind::Customers, format!("{name} · {group}")),
         (None, None) if is_press => (PostKind::Press, "press".to_owned()),
@@ -125,11 +126,11 @@ fn to_post(told: &SocialPost) -> Post {
     };
     Post {
         kind,
-        number: told.post_id,
-        day: told.day,
+        number: social_post.post_id,
+        day: social_post.day,
         author,
-        text: told.content.clone(),
-        answered_post: told.reply_to_agent_post_id,
+        text: social_post.content.clone(),
+        answered_post: social_post.reply_to_agent_post_id,
         views: 0,
         comments: 0,
     }
@@ -175,8 +176,8 @@ mod tests {
                 let forecasts = session.company().naive_forecasts();
                 session.advance("as planned", &forecasts, Via::Form, &mut |_| {}).expect("a week");
             }
-            let (grown, whole) = (read_posts(&session, Some(known)), read_posts(&session, None));
-            assert_eq!(grown, whole);
+            let (grown, posts) = (read_posts(&session, Some(known)), read_posts(&session, None));
+            assert_eq!(grown, posts);
             assert!(grown.len() > known.len());
         }
         let again = read_posts(&session, Some(&first));

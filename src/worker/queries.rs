@@ -130,9 +130,11 @@ impl QueryThreads {
         let database = session.database();
         let user = database.open_connection().ok();
         self.set_interrupt(user.as_ref().map(QueryConnection::interrupt));
-        for (thread, own) in [(&self.user, user), (&self.screens, database.open_connection().ok())] {
-            if let Some(own) = own {
-                let _ = thread.send(QueryJob::Connect(Box::new(own), limits));
+        for (thread, query_connection) in
+            [(&self.user, user), (&self.screens, database.open_connection().ok())]
+        {
+            if let Some(connection) = query_connection {
+                let _ = thread.send(QueryJob::Connect(Box::new(connection), limits));
             }
         }
     }
@@ -169,18 +171,18 @@ impl QueryThreads {
 }
 
 fn start_thread(jobs: Sender<Job>, ask: AskDatabase) -> Sender<QueryJob> {
-    let (asked, questions) = channel();
+    let (sender, questions) = channel();
     std::thread::spawn(move || {
         let mut connection: Option<Connection> = None;
         while let Ok(job) = questions.recv() {
             match job {
-                QueryJob::Connect(own, limits) => connection = Some((own, limits)),
+                QueryJob::Connect(query_connection, limits) => connection = Some((query_connection, limits)),
                 QueryJob::Disconnect => connection = None,
                 QueryJob::Ask(question) => answer(question, &mut connection, ask, &jobs),
             }
         }
     });
-    asked
+    sender
 }
 
 fn answer(
@@ -235,7 +237,7 @@ mod tests {
     fn query_thread_answers_after_a_panic_and_asks_for_a_new_connection() {
         let session = played_session(0);
         let (news, answers) = channel();
-        let (jobs, asked) = channel();
+        let (jobs, receiver) = channel();
         let thread = start_thread(jobs, ask_or_panic);
         let connect = || {
             let connection = session.database().open_connection().expect("a connection");
@@ -258,9 +260,9 @@ mod tests {
         // The connection is dropped after the panic.
         assert_eq!(answer("SELECT 1").expect_err("no connection").code, "sql_error");
         let noted = |job| matches!(job, Job::RecordQuery(..));
-        assert!(noted(asked.recv().expect("a job")));
-        assert!(matches!(asked.recv().expect("a job"), Job::Reconnect));
-        assert!(noted(asked.recv().expect("a job")));
+        assert!(noted(receiver.recv().expect("a job")));
+        assert!(matches!(receiver.recv().expect("a job"), Job::Reconnect));
+        assert!(noted(receiver.recv().expect("a job")));
         connect();
         assert!(answer("SELECT 1").is_ok());
     }

@@ -70,9 +70,9 @@ impl<Q: Question> Pending<Q> {
     /// Asks a question, and cancels the previous one.
     pub fn ask(&mut self, question: Q) -> OutgoingQuestion {
         let slot = Arc::default();
-        let asked = TypedQuestion { question: question.clone(), slot: Arc::downgrade(&slot) };
+        let typed_question = TypedQuestion { question: question.clone(), slot: Arc::downgrade(&slot) };
         self.0 = Some((question, slot));
-        OutgoingQuestion(Arc::new(asked))
+        OutgoingQuestion(Arc::new(typed_question))
     }
 
     /// Returns the unanswered question.
@@ -237,7 +237,7 @@ mod test_support {
     impl OutgoingQuestion {
         /// Returns the question if it has this type.
         pub fn question<Q: Question>(&self) -> Option<&Q> {
-            self.as_typed().map(|asked| &asked.question)
+            self.as_typed().map(|typed_question| &typed_question.question)
         }
 
         /// Returns a reply to the page if the question has this type.

@@ -166,7 +166,8 @@ impl Request {
 
     /// Returns whether it is rejected while a week runs, because it was meant for the state before the week.
     pub fn is_rejected_during_week(&self) -> bool {
-        let of_lesson = matches!(self, Request::Lesson(asked) if *asked != LessonRequest::Debrief);
+        let of_lesson =
+            matches!(self, Request::Lesson(lesson_request) if *lesson_request != LessonRequest::Debrief);
         of_lesson || matches!(self, Request::Call { .. } | Request::Undo | Request::Redo)
     }
 

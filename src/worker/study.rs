@@ -46,8 +46,8 @@ impl SessionThread {
             StudyRequest::IdentifyParticipant { label, rejected_labels: refused } => {
                 self.start_participant(&label, refused)
             }
-            StudyRequest::Agree(given) => {
-                self.with_study(|desk| desk.consent = Some(given.given_now()));
+            StudyRequest::Agree(consent_given) => {
+                self.with_study(|desk| desk.consent = Some(consent_given.given_now()));
                 self.send_next_step();
             }
             StudyRequest::Decline => {

@@ -145,8 +145,8 @@ impl World {
                 self.enterprise.reject_threads(&threads, self.day, facts)
             }
             ResolvedCommand::Post(made) => {
-                let own = OwnPost::new(self.day, made.content.clone(), made.reply_to);
-                self.market.social.own.push(own);
+                let own_post = OwnPost::new(self.day, made.content.clone(), made.reply_to);
+                self.market.social.own.push(own_post);
                 facts.own_posts.push(made);
             }
         }

@@ -59,7 +59,7 @@ pub fn step_day_observed(
     world: &mut World,
     params: &Params,
     streams: &Streams,
-    held: &FixedInputs,
+    fixed_inputs: &FixedInputs,
     facts: &mut Facts,
     watch: &dyn DayObserver,
 ) -> (DayFigures, DayTrace) {
@@ -72,27 +72,34 @@ pub fn step_day_observed(
     let morning = compute_morning(world, params);
     watch.on_morning(world, &morning, params);
     let World { settings, finance, product, customers, issue_desk, market, enterprise, .. } = world;
-    if drift::is_drift_day(day - 1, &params.drift) && !held.fixes_drift(day - 1) {
+    if drift::is_drift_day(day - 1, &params.drift) && !fixed_inputs.fixes_drift(day - 1) {
         refresh_requirements(customers, &morning, params);
     }
 
     // Usage, and the service under that load.
     let metered = usage::meter(customers, &morning, params, facts);
-    let service =
-        service::observe_service(metered.total, &morning, held.fixed_service_on(day), params, streams, facts);
+    let service = service::observe_service(
+        metered.total,
+        &morning,
+        fixed_inputs.fixed_service_on(day),
+        params,
+        streams,
+        facts,
+    );
     research::complete_due_projects(day, product, facts);
     studies::complete_due_studies(day, market, params, facts);
 
     // The market changes.
     let seats = ByGroup::from_fn(|group| market.economy.multiplier(group, Dimension::SeatCount, params));
-    if !held.fixes_drift(day) && drift::apply_drift(day, &mut market.drift, customers, &seats, params) {
+    if !fixed_inputs.fixes_drift(day) && drift::apply_drift(day, &mut market.drift, customers, &seats, params)
+    {
         refresh_requirements(customers, &morning, params);
     }
-    if !held.yields {
+    if !fixed_inputs.yields {
         yields::vary_yields(day, &mut market.yields, params, streams);
     }
-    economy::step(day, &mut market.economy, held.economy, params, streams, facts);
-    if !held.competitors {
+    economy::step(day, &mut market.economy, fixed_inputs.economy, params, streams, facts);
+    if !fixed_inputs.competitors {
         let (events, drift) = (&mut market.competitors, &mut market.drift);
         competitors::apply_move(day, total_days, events, product, drift, params, streams);
     }
@@ -148,7 +155,7 @@ pub fn step_day_observed(
     let coming = arrivals::ArrivalContext { day: &today, market };
     let subscribers = customers.active_by_group();
     let mut factors = arrivals::expected_leads(&coming, &subscribers);
-    held.apply_to_leads(day, morning.weekday, &mut factors);
+    fixed_inputs.apply_to_leads(day, morning.weekday, &mut factors);
     watch.on_expected_leads(&coming, &subscribers, &factors);
     let leads = arrivals::process_arrivals(&coming, &factors, customers, enterprise, facts);
     finance.cash -= f64::from(leads.all) * params.leads.lead_acquisition_cost;

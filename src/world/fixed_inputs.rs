@@ -40,9 +40,9 @@ impl FixedInputs {
     /// Replaces lead factors of a day with fixed ones.
     pub fn apply_to_leads(&self, day: u32, weekday: f64, factors: &mut ByGroup<LeadFactors>) {
         let month_day = self.value_on_day(day, &self.month_days);
-        for own in factors.0.iter_mut().filter(|own| **own != LeadFactors::default()) {
-            own.calendar = month_day.map_or(own.calendar, |factor| weekday * factor);
-            own.surge = self.value_on_day(day, &self.surges).unwrap_or(own.surge);
+        for lead_factors in factors.0.iter_mut().filter(|own| **own != LeadFactors::default()) {
+            lead_factors.calendar = month_day.map_or(lead_factors.calendar, |factor| weekday * factor);
+            lead_factors.surge = self.value_on_day(day, &self.surges).unwrap_or(lead_factors.surge);
         }
     }
 
@@ -84,11 +84,12 @@ mod tests {
         (world, params, streams)
     }
 
-    fn next_day(eve: &(World, Params, Streams), held: &FixedInputs) -> (World, DayFigures) {
+    fn next_day(eve: &(World, Params, Streams), fixed_inputs: &FixedInputs) -> (World, DayFigures) {
         let (world, params, streams) = eve;
         let mut world = world.clone();
         let figures =
-            step_day_observed(&mut world, params, streams, held, &mut Facts::default(), &NoObserver).0;
+            step_day_observed(&mut world, params, streams, fixed_inputs, &mut Facts::default(), &NoObserver)
+                .0;
         (world, figures)
     }
 
@@ -96,14 +97,14 @@ mod tests {
     fn fixed_inputs_stay_constant_and_others_change() {
         let eve = company(89);
         let held = |change: fn(&mut FixedInputs)| {
-            let mut held = FixedInputs { from: 90, ..FixedInputs::default() };
-            change(&mut held);
-            next_day(&eve, &held).0.market
+            let mut fixed_inputs = FixedInputs { from: 90, ..FixedInputs::default() };
+            change(&mut fixed_inputs);
+            next_day(&eve, &fixed_inputs).0.market
         };
         let (before, free) = (&eve.0.market, held(|_| {}));
         assert!(free.drift != before.drift && free.yields != before.yields);
         assert!(free.economy.pmi != before.economy.pmi);
-        let drift = held(|held| held.drift = true);
+        let drift = held(|inputs| inputs.drift = true);
         assert_eq!(drift.drift.c_max, before.drift.c_max);
         assert_eq!((&drift.yields, drift.economy.pmi), (&free.yields, free.economy.pmi));
         let yields = held(|held| held.yields = true);
@@ -116,8 +117,8 @@ mod tests {
     fn fixed_competitors_cause_no_events() {
         let moves = |rivals: bool| {
             let mut eve = company(89);
-            let held = FixedInputs { from: 90, competitors: rivals, ..FixedInputs::default() };
-            (0..60).for_each(|_| eve.0 = next_day(&eve, &held).0);
+            let fixed_inputs = FixedInputs { from: 90, competitors: rivals, ..FixedInputs::default() };
+            (0..60).for_each(|_| eve.0 = next_day(&eve, &fixed_inputs).0);
             eve.0.market.competitors.len()
         };
         assert_eq!((moves(true), moves(false) > 2), (company(89).0.market.competitors.len(), true));
@@ -127,7 +128,8 @@ mod tests {
     fn fixed_factors_replace_lead_factors() {
         let mut eve = company(59);
         eve.0.market.surges.push(Surge { day: 58, end_day: 70, multiplier: 4.0 });
-        let leads = |held: FixedInputs| next_day(&eve, &FixedInputs { from: 60, ..held }).1.new_leads;
+        let leads =
+            |fixed_inputs: FixedInputs| next_day(&eve, &FixedInputs { from: 60, ..fixed_inputs }).1.new_leads;
         let free = leads(FixedInputs::default());
         assert!(leads(FixedInputs { surges: vec![1.0], ..FixedInputs::default() }) * 2 < free);
         assert!(leads(FixedInputs { month_days: vec![0.25], ..FixedInputs::default() }) * 2 < free);
@@ -139,12 +141,12 @@ mod tests {
     fn fixed_service_determines_overload_and_noise() {
         let eve = company(59);
         let service = |load: f64, luck_of: u32| {
-            let held = FixedInputs {
+            let fixed_inputs = FixedInputs {
                 from: 60,
                 service: vec![FixedService { load_factor: load, draw_day: luck_of }],
                 ..FixedInputs::default()
             };
-            next_day(&eve, &held).1
+            next_day(&eve, &fixed_inputs).1
         };
         let free = next_day(&eve, &FixedInputs::default()).1;
         assert_eq!(service(1.0, 60), free);
@@ -159,20 +161,21 @@ mod tests {
     fn service_does_not_affect_lead_decisions() {
         let (world, params, streams) = company(59);
         let decisions = |load: f64| -> BTreeMap<(Group, u32), bool> {
-            let held = FixedInputs {
+            let fixed_inputs = FixedInputs {
                 from: 60,
                 service: vec![FixedService { load_factor: load, draw_day: 60 }],
                 ..FixedInputs::default()
             };
             let mut facts = Facts::default();
-            step_day_observed(&mut world.clone(), &params, &streams, &held, &mut facts, &NoObserver);
+            step_day_observed(&mut world.clone(), &params, &streams, &fixed_inputs, &mut facts, &NoObserver);
             let signed: BTreeSet<u32> = facts
                 .openings
                 .iter()
                 .filter(|opening| opening.status == SubscriptionStatus::Subscribed)
                 .map(|opening| opening.customer)
                 .collect();
-            let decided = |own: &Arrival| ((own.group, own.n), signed.contains(&own.customer));
+            let decided =
+                |arrival: &Arrival| ((arrival.group, arrival.n), signed.contains(&arrival.customer));
             facts.arrivals.iter().map(decided).collect()
         };
         let (calm, strained) = (decisions(1.0), decisions(LOAD));

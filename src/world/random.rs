@@ -139,7 +139,7 @@ impl Streams {
     /// that day, it uses the original keys.
     pub fn open_for_day<const KEYS: usize>(&self, day: u32, part: Part, entity: [u64; KEYS]) -> Stream {
         let keys = match &self.original {
-            Some((last, own)) if day <= *last => own,
+            Some((last, bytes)) if day <= *last => bytes,
             _ => &self.keys,
         };
         Stream::from_key(stream_key(&keys[part as usize], entity))

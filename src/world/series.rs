@@ -66,13 +66,13 @@ impl Series {
 
     /// Returns the competitor event of a day, if there was one.
     pub fn competitor_event(&self, day: u32) -> Option<Option<RecordedEvent>> {
-        let found = self.competitor_events.iter().find(|(own, _, _)| *own == day);
+        let found = self.competitor_events.iter().find(|(number, _, _)| *number == day);
         self.pmi(day).map(|_| found.map(|&(_, size, u)| RecordedEvent { size, u }))
     }
 
     /// Returns the demand surge that was drawn for a day, if there was one.
     pub fn demand_surge(&self, day: u32) -> Option<Option<RecordedSurge>> {
-        let found = self.demand_surges.iter().find(|(own, _, _)| *own == day);
+        let found = self.demand_surges.iter().find(|(number, _, _)| *number == day);
         self.pmi(day).map(|_| found.map(|&(_, days, multiplier)| RecordedSurge { days, multiplier }))
     }
 

@@ -68,7 +68,7 @@ impl World {
             LedgerEntry { category: Category::InitialFunding, amount: cash, note: LedgerNote::General };
         world.finance.book(funding, facts);
         facts.settings.push(SettingsChange::Core(world.settings.core));
-        facts.knowledge.extend(world.market.knowledge.pairs().map(|(group, own)| (group, *own)));
+        facts.knowledge.extend(world.market.knowledge.pairs().map(|(group, knowledge)| (group, *knowledge)));
         world
     }
 
@@ -139,7 +139,7 @@ mod tests {
 
     fn changed_parts(world: &World, other: &World) -> Vec<&'static str> {
         let pairs = world.part_hashes().into_iter().zip(other.part_hashes());
-        pairs.filter(|(own, other)| own.hash != other.hash).map(|(own, _)| own.part).collect()
+        pairs.filter(|(part_hash, other)| part_hash.hash != other.hash).map(|(hash, _)| hash.part).collect()
     }
 
     #[test]
@@ -202,7 +202,7 @@ mod tests {
         ];
         assert_eq!(lengths.iter().sum::<usize>(), bytes.len());
         let mut begin = 0;
-        for (part, length) in parts.iter().map(|own| own.part).zip(lengths) {
+        for (part, length) in parts.iter().map(|part_hash| part_hash.part).zip(lengths) {
             let mut tried = 0;
             for at in (begin..begin + length).step_by(length.div_ceil(150)) {
                 let mut other = bytes.clone();

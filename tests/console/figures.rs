@@ -344,7 +344,7 @@ fn figures_with_one_name_have_one_value() {
         for day in days {
             let runs = tempfile::tempdir().expect("a folder");
             copy_played_run(policy, seed, day, runs.path());
-            let told = database_figures(runs.path(), day);
+            let values = database_figures(runs.path(), day);
             let mut first: BTreeMap<usize, ShownNumber> = BTreeMap::new();
             for (place, text) in shown_texts(runs.path()) {
                 for (figure, written, line) in shown_figures(&text) {
@@ -357,7 +357,7 @@ fn figures_with_one_name_have_one_value() {
                     let cost = COST_FIGURES.contains(&FIGURES[figure].0[0]);
                     let sign = |value: f64| if cost { value.abs() } else { value };
                     let other = *first.entry(figure).or_insert(written);
-                    let (should, leeway) = match told[figure] {
+                    let (should, leeway) = match values[figure] {
                         Some(value) => (value, 0.0),
                         None => (other.value, other.rounding),
                     };

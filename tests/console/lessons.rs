@@ -93,8 +93,8 @@ fn lesson_is_played_to_its_end_with_the_task_pane() {
     console.assert_shows("1 Cash");
     console.press("2 enter n");
     console.assert_shows("Debrief");
-    for said in ["You had ", "the good play", "set_prices: A 20, the good play 12"] {
-        console.assert_shows(said);
+    for text in ["You had ", "the good play", "set_prices: A 20, the good play 12"] {
+        console.assert_shows(text);
     }
     console.press("G");
     console.assert_shows("Conversion");
@@ -169,13 +169,16 @@ fn guesses_and_hints_survive_a_restart() {
     drop(console);
     let runs = folder.path().join("runs");
     let mut console = Console::in_latest_run(&runs, WIDE);
-    for said in ["You guessed 25%", "Hint 2: Try another price.", "hints 2/2"] {
-        console.assert_shows(said);
+    for text in ["You guessed 25%", "Hint 2: Try another price.", "hints 2/2"] {
+        console.assert_shows(text);
     }
     let run = console.app.run().expect("a run").company.folder.clone().expect("a folder");
     drop(console);
     let session = Session::open(&run, Access::Read, false).expect("it opens");
-    assert_eq!(session.lesson().map(|own| (own.guess(0), own.hint_count(0))), Some((Some(0.25), 2)));
+    assert_eq!(
+        session.lesson().map(|lesson_progress| (lesson_progress.guess(0), lesson_progress.hint_count(0))),
+        Some((Some(0.25), 2))
+    );
     assert!(find_run(&runs, "latest").is_ok());
 }
 
@@ -216,7 +219,11 @@ fn finished_part_continues_with_the_next() {
     assert!(!console.screen().contains("The good play:"));
     console.press("p");
     assert_eq!(
-        console.app.run().and_then(|run| run.company.lesson.clone()).and_then(|own| own.next_part),
+        console
+            .app
+            .run()
+            .and_then(|run| run.company.lesson.clone())
+            .and_then(|lesson_status| lesson_status.next_part),
         None
     );
     console.assert_shows("hints 0/3");
@@ -241,8 +248,8 @@ fn step_without_a_question_confirms_before_its_first_week() {
     let guess = "[part.step.guess]\nquestion = \"What will there be more of?\"\nchoices = [\"Cash\", \"Subscribers\"]\nanswer = 2\n";
     let plan =
         two_week_lesson(&[(guess, ""), ("weeks = 1\nhints = [\"Wait.\"]", "weeks = 2\nhints = [\"Wait.\"]")]);
-    let own = configuration_with(&folder.path().join("own"), &plan);
-    let mut console = console_in_lesson_with(own, folder.path(), WIDE);
+    let configuration = configuration_with(&folder.path().join("own"), &plan);
+    let mut console = console_in_lesson_with(configuration, folder.path(), WIDE);
     console.press("n '0.4' enter n n");
     console.assert_shows("Step 2 starts: Go on, 2 weeks. Run its first week?");
     // The accidental key only cancels, and says so.
@@ -282,8 +289,8 @@ fn sent_rules_are_offered_again_each_week() {
             "week = 4\ncalls = ['rules: offer rest: C 200']",
         ),
     ]);
-    let own = configuration_with(&folder.path().join("own"), &plan);
-    let mut console = console_in_lesson_with(own, folder.path(), WIDE);
+    let configuration = configuration_with(&folder.path().join("own"), &plan);
+    let mut console = console_in_lesson_with(configuration, folder.path(), WIDE);
     let waiting = |console: &Console| console.app.run().expect("a run").company.observation.waiting.len();
     let day = |console: &Console| console.app.run().expect("a run").company.observation.day;
     assert!(waiting(&console) > 0, "letters");

@@ -55,18 +55,18 @@ fn true_values_are_shown_next_to_estimates() {
     // The displayed values are those of the simulator.
     let mut session = Session::open(&folder, Access::Write, false).expect("it opens");
     let group = Group::parse("S1").expect("a group");
-    let own = session.inspect().hidden_values(None).expect("values").groups[group];
+    let group_values = session.inspect().hidden_values(None).expect("values").groups[group];
     let reputation = session.inspect().reputation_equation(group, None).expect("an equation").after;
-    assert_eq!(own.reputation.to_bits(), reputation.to_bits());
+    assert_eq!(group_values.reputation.to_bits(), reputation.to_bits());
     let leads = session.inspect().lead_equations(group, None).expect("equations");
-    let expected = leads.last().map(|own| own.expected_leads());
-    assert_eq!(Some(own.expected_leads), expected);
+    let expected = leads.last().map(|lead_equation| lead_equation.expected_leads());
+    assert_eq!(Some(group_values.expected_leads), expected);
     let mood = session
         .debug_hidden_state()
         .expect("a debug run")
         .mean_satisfaction(group)
         .map(|(satisfaction, _)| satisfaction);
-    assert_eq!(own.satisfaction, mood);
+    assert_eq!(group_values.satisfaction, mood);
     assert!(customers.contains(&format!("{reputation:.3}")), "{reputation} in\n{customers}");
 }
 
@@ -86,8 +86,8 @@ fn each_shown_day_is_recorded_as_an_inspection() {
         assert_eq!(screen.contains("true values of day 21"), shows, "{screen}");
         drop(console);
         let folder = run_folder(runs);
-        let told = inspections(&read_trajectory(&folder));
-        assert_eq!(told.len(), if shows { 2 } else { 0 }, "{told:?}");
+        let texts = inspections(&read_trajectory(&folder));
+        assert_eq!(texts.len(), if shows { 2 } else { 0 }, "{texts:?}");
         Session::open(&folder, Access::Read, false).expect("it opens").state_hash()
     });
     assert_eq!(hashes[0], hashes[1]);

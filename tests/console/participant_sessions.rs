@@ -138,12 +138,16 @@ fn recorded_questions(run: &Path) -> Vec<String> {
     let trajectory = Trajectory::read(&run.join("trajectory.jsonl")).expect("it reads");
     let after = read_afterwards(run, &trajectory).expect("it reads");
     let told = |line: &novamind::record::trajectory::Line| match &line.record {
-        Record::Activity(Activity::Question(asked)) => {
-            Some(format!("{} asked {} {}", line.day, asked.occasion, asked.id))
+        Record::Activity(Activity::Question(question_shown)) => {
+            Some(format!("{} asked {} {}", line.day, question_shown.occasion, question_shown.id))
         }
-        Record::Activity(Activity::Answer(given)) => Some(format!(
+        Record::Activity(Activity::Answer(question_answer)) => Some(format!(
             "{} {} {} {} changes {}",
-            line.day, given.occasion, given.id, given.value, given.changes
+            line.day,
+            question_answer.occasion,
+            question_answer.id,
+            question_answer.value,
+            question_answer.changes
         )),
         _ => None,
     };
@@ -220,8 +224,8 @@ fn participant_session_runs_from_label_to_thanks() {
     );
     let trajectory = Trajectory::read(&runs[0].join("trajectory.jsonl")).expect("it reads");
     let Record::Start(start) = &trajectory.lines[0].record else { panic!("the first line") };
-    let given = start.consent.as_ref().and_then(|consent| consent.given).expect("it was given");
-    assert_eq!((given.means, given.scrolled_to_end), (ConsentMeans::Screen, true));
+    let consent_given = start.consent.as_ref().and_then(|consent| consent.given).expect("it was given");
+    assert_eq!((consent_given.means, consent_given.scrolled_to_end), (ConsentMeans::Screen, true));
     assert_eq!(start.study.as_ref().map(|study| study.refused_labels), Some(2));
     let seen: Vec<VisitEvent> = lab.events().into_iter().map(|(_, event)| event).collect();
     use VisitEvent::{Came, Finished, LabelRefused};

@@ -55,8 +55,8 @@ pub fn min_half_coverage(screen: &str, width: usize) -> f64 {
             .iter()
             .enumerate()
             .flat_map(|(y, row)| row.iter().enumerate().map(move |(x, cell)| (x, y, *cell)));
-        let own: Vec<char> = cells.filter(|(x, y, _)| of(*x, *y)).map(|(_, _, cell)| cell).collect();
-        own.iter().filter(|cell| is_ink(**cell)).count() as f64 / own.len().max(1) as f64
+        let characters: Vec<char> = cells.filter(|(x, y, _)| of(*x, *y)).map(|(_, _, cell)| cell).collect();
+        characters.iter().filter(|cell| is_ink(**cell)).count() as f64 / characters.len().max(1) as f64
     };
     let halves: [&dyn Fn(usize, usize) -> bool; 4] =
         [&|x, _| x < columns_half, &|x, _| x >= columns_half, &|_, y| y < rows_half, &|_, y| y >= rows_half];

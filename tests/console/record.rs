@@ -94,9 +94,9 @@ fn activities_are_recorded_in_order() {
     advance_clock(&mut console, 1);
     console.press("esc 2 q");
     drop(console);
-    let told = activity_lines(runs.path());
-    let term = told.iter().find(|line| line.starts_with("help ")).cloned().unwrap_or_default();
-    assert!(term.ends_with(" in cash"), "{told:#?}");
+    let texts = activity_lines(runs.path());
+    let term = texts.iter().find(|line| line.starts_with("help ")).cloned().unwrap_or_default();
+    assert!(term.ends_with(" in cash"), "{texts:#?}");
     let expected = [
         "start",
         "session Opened",
@@ -115,7 +115,7 @@ fn activities_are_recorded_in_order() {
         "view cash from customers 0 s",
         "session Closed",
     ];
-    assert_eq!(told, expected);
+    assert_eq!(texts, expected);
 }
 
 #[test]
@@ -184,10 +184,10 @@ fn run_is_hidden_while_the_clock_is_stopped() {
     advance_clock(&mut console, 100);
     console.press("; p esc");
     drop(console);
-    let told = activity_lines(runs.path());
+    let texts = activity_lines(runs.path());
     let expected = ["start", "session Opened", "view overview from  5 s", "clock Stopped", "clock Started"];
-    assert_eq!(told[..5], expected, "{told:#?}");
-    assert!(told.iter().filter(|line| *line == "clock Stopped").count() == 2, "{told:#?}");
+    assert_eq!(texts[..5], expected, "{texts:#?}");
+    assert!(texts.iter().filter(|line| *line == "clock Stopped").count() == 2, "{texts:#?}");
     // A clock that was stopped when the program ended starts when the run is opened again.
     let mut console = Console::in_latest_run(runs.path(), (120, 40));
     console.assert_shows("NovaMind");

@@ -67,16 +67,16 @@ fn xray_screen_matches_plain_mode_and_records_inspections() {
     let screen = console.screen();
     drop(console);
     let folder = run_folder(runs.path());
-    let told = inspections(&read_trajectory(&folder));
-    assert_eq!(told, ["leads S1 28", "leads S2 28", "leads S2 27", "leads S2 26", "leads S2 19"]);
+    let texts = inspections(&read_trajectory(&folder));
+    assert_eq!(texts, ["leads S1 28", "leads S2 28", "leads S2 27", "leads S2 26", "leads S2 19"]);
     assert_eq!(verify(&folder).expect("it verifies").day, 28);
     let mut session = Session::open(&folder, Access::Write, false).expect("it opens");
     let group = Group::parse("S2").expect("a group");
     let days = session.inspect().lead_equations(group, Some(19)).expect("a look");
-    let own = days.last().expect("a day");
+    let lead_equation = days.last().expect("a day");
     for part in [
         "leads of S2 on day 19".to_owned(),
-        format!("λ {:.2}, actual {}", own.expected_leads(), own.actual_leads),
+        format!("λ {:.2}, actual {}", lead_equation.expected_leads(), lead_equation.actual_leads),
     ] {
         assert!(screen.contains(&part), "{part} is missing in\n{screen}");
     }
@@ -162,8 +162,8 @@ fn a_debug_run_runs_to_a_breakpoint_that_is_set_on_the_screen() {
     console.press("e 'leads(S2)>=1' enter delete e 'cash<850000' enter r '20' enter");
     console.assert_shows("stopped on day");
     drop(console);
-    let told = inspections(&read_trajectory(&run_folder(runs.path())));
-    assert!(told.contains(&"breakpoint leads(S1) > 1 42".to_owned()), "{told:?}");
+    let texts = inspections(&read_trajectory(&run_folder(runs.path())));
+    assert!(texts.contains(&"breakpoint leads(S1) > 1 42".to_owned()), "{texts:?}");
 }
 
 #[test]
@@ -229,11 +229,11 @@ fn read_only_run_records_inspections() {
 #[test]
 fn replay_of_a_debug_run_in_use_cannot_be_inspected() {
     let runs = tempfile::tempdir().expect("a folder");
-    let held = create_run(runs.path(), Mode::Debug, 2);
+    let session = create_run(runs.path(), Mode::Debug, 2);
     let mut console = console_in_replay(runs.path(), (120, 40), SeekTarget::Week(1));
     console.press("g x");
     assert!(!console.screen().contains("leads of S1 on day"), "{}", console.screen());
-    drop(held);
+    drop(session);
 }
 
 #[test]
@@ -267,8 +267,8 @@ fn debug_commands_match_plain_mode_and_are_recorded() {
     console.assert_shows("did you mean find?");
     drop(console);
     let folder = run_folder(runs.path());
-    let told = inspections(&read_trajectory(&folder));
-    assert_eq!(told.len(), 4, "{told:?}");
+    let texts = inspections(&read_trajectory(&folder));
+    assert_eq!(texts.len(), 4, "{texts:?}");
     let mut session = Session::open(&folder, Access::Write, false).expect("it opens");
     let shows = |screen: &str, part: &str| assert!(screen.contains(part), "{part:?} is missing in\n{screen}");
     let days =
@@ -288,7 +288,7 @@ fn debug_commands_match_plain_mode_and_are_recorded() {
     let value = session
         .company()
         .debug_parameters()
-        .and_then(|own| own.value("group.S1.c_max_mean"))
+        .and_then(|debug_parameters| debug_parameters.value("group.S1.c_max_mean"))
         .expect("a value");
     shows(&screens[4], &format!("group.S1.c_max_mean = {value}"));
 }
@@ -347,8 +347,8 @@ fn hidden_table_queries_are_recorded_as_inspections() {
     console.assert_shows("Result · x-ray");
     console.assert_shows("21");
     drop(console);
-    let told = inspections(&read_trajectory(&run_folder(runs.path())));
-    assert!(told.contains(&"sql SELECT count(*) AS days FROM hidden.pmi 21".to_owned()), "{told:?}");
+    let texts = inspections(&read_trajectory(&run_folder(runs.path())));
+    assert!(texts.contains(&"sql SELECT count(*) AS days FROM hidden.pmi 21".to_owned()), "{texts:?}");
 }
 
 #[test]

@@ -200,9 +200,9 @@ fn queries_match_plain_tables_within_step_limit() {
     let (mut problems, mut empty) = (Vec::new(), Vec::new());
     for (heading, sql) in statements {
         let problem = match connection.query(sql, LIMITS) {
-            Ok(own) => {
-                empty.extend(own.rows.is_empty().then_some(sql));
-                result_difference(sql, &own, &query_plain_tables(&plain, sql))
+            Ok(query_result) => {
+                empty.extend(query_result.rows.is_empty().then_some(sql));
+                result_difference(sql, &query_result, &query_plain_tables(&plain, sql))
             }
             Err(error) => Some(format!("refused {}: {}", error.code, error.message)),
         };

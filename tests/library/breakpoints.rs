@@ -79,12 +79,20 @@ fn record_days(session: &mut Session) -> Vec<DayRecord> {
                 ..DayRecord::default()
             };
             let groups: BTreeMap<u32, Group> =
-                facts.arrivals.iter().map(|own| (own.customer, own.group)).collect();
-            groups.values().for_each(|own| seen.leads[*own] += 1);
-            for opening in facts.openings.iter().filter(|own| format!("{:?}", own.status) == "Subscribed") {
+                facts.arrivals.iter().map(|arrival| (arrival.customer, arrival.group)).collect();
+            groups.values().for_each(|group| seen.leads[*group] += 1);
+            for opening in facts
+                .openings
+                .iter()
+                .filter(|subscription_opened| format!("{:?}", subscription_opened.status) == "Subscribed")
+            {
                 seen.signed[groups[&opening.customer]] += 1;
             }
-            for ending in facts.endings.iter().filter(|own| format!("{:?}", own.status) == "Cancelled") {
+            for ending in facts
+                .endings
+                .iter()
+                .filter(|subscription_ended| format!("{:?}", subscription_ended.status) == "Cancelled")
+            {
                 seen.left[ending.group] += 1;
             }
             for own in Group::all() {
@@ -203,8 +211,13 @@ fn breakpoints_match_a_full_scan() {
     // Searching the finished run without breakpoints finds the same days.
     for (text, holds) in CONDITIONS {
         let own = condition(text);
-        let found: Vec<u32> =
-            alone.inspect().find_condition_days(own).expect("a look").iter().map(|own| own.day).collect();
+        let found: Vec<u32> = alone
+            .inspect()
+            .find_condition_days(own)
+            .expect("a look")
+            .iter()
+            .map(|condition_state| condition_state.day)
+            .collect();
         let of_it = expected.iter().filter(|(_, text)| *text == own.to_string());
         assert_eq!(found, of_it.map(|(day, _)| *day).collect::<Vec<_>>(), "{text}");
         let back = alone.inspect().condition_history(own).expect("a look");
@@ -297,15 +310,15 @@ fn check_writers(
     let floor = session.params().reputation.reputation_floor;
     let mut causes: BTreeMap<String, u32> = BTreeMap::new();
     for (target, day) in targets.iter().flat_map(|target| days.iter().map(move |day| (*target, *day))) {
-        let own = session.inspect().figure_writes(target, Some(day)).expect("a look");
-        for (value, day) in [(own.opening_value, day - 1), (own.closing_value, day)] {
+        let figure_writes = session.inspect().figure_writes(target, Some(day)).expect("a look");
+        for (value, day) in [(figure_writes.opening_value, day - 1), (figure_writes.closing_value, day)] {
             assert!(
                 recorded(target, day).is_none_or(|known| known == value),
                 "{target} on day {day}: {value}"
             );
         }
-        let mut now = own.opening_value;
-        for write in &own.writes {
+        let mut now = figure_writes.opening_value;
+        for write in &figure_writes.writes {
             assert_eq!(write.before.to_bits(), now.to_bits(), "{target} on day {day}: {write:?}");
             now = match target {
                 WriteTarget::Reputation(_) => apply_changes(now, &write.changes, floor),
@@ -316,7 +329,12 @@ fn check_writers(
             let cause = cause.split(['{', ' ']).next().unwrap_or_default().to_owned();
             *causes.entry(cause).or_default() += 1;
         }
-        assert_eq!(now.to_bits(), own.closing_value.to_bits(), "{target} on day {day}: {:?}", own.writes);
+        assert_eq!(
+            now.to_bits(),
+            figure_writes.closing_value.to_bits(),
+            "{target} on day {day}: {:?}",
+            figure_writes.writes
+        );
     }
     causes
 }
@@ -394,9 +412,9 @@ fn record_days_up_to(session: &mut Session, day: u32) -> Vec<DayRecord> {
         let mut keep = |report: &novamind::session::DayReport<'_>| {
             let xray = report.xray.expect("a debug run");
             let mut seen = DayRecord { cash: report.figures.cash, ..DayRecord::default() };
-            for own in Group::all() {
-                seen.subscribers[own] = xray.subscribers(own);
-                seen.reputation[own] = xray.reputation(own);
+            for group in Group::all() {
+                seen.subscribers[group] = xray.subscribers(group);
+                seen.reputation[group] = xray.reputation(group);
             }
             all.push(seen);
         };
@@ -422,9 +440,9 @@ fn spillover_has_the_sign_of_its_source() {
             WriteSource::Reputation(ReputationCause::Contributions(_)) => Some(write.changes[0]),
             _ => None,
         });
-        let own =
+        let figure_writes =
             session.inspect().figure_writes(WriteTarget::Reputation(group("S3")), Some(day)).expect("a look");
-        for write in own.writes {
+        for write in figure_writes.writes {
             let WriteSource::Reputation(ReputationCause::Spillover(spill)) = write.source else { continue };
             if spill.source == group("S1") {
                 assert_eq!(Some(spill.change), mood);
@@ -452,7 +470,7 @@ fn hidden_figures_cannot_stop_unfinished_runs() {
         let (before, own) = (lines(), condition("reputation(S3) falls"));
         let reputation = WriteTarget::Reputation(group("S3"));
         let mut inside = session.inspect();
-        let told = [
+        let rejections = [
             inside.set_breakpoint(own).expect_err("hidden"),
             inside.breakpoints().expect_err("hidden"),
             inside.clear_breakpoints(None).expect_err("hidden"),
@@ -465,7 +483,7 @@ fn hidden_figures_cannot_stop_unfinished_runs() {
             inside.figure_writes(WriteTarget::Cash, Some(9000)).expect_err("hidden"),
         ];
         drop(inside);
-        for refusal in told {
+        for refusal in rejections {
             assert_eq!(
                 refusal.to_string(),
                 "not_in_this_mode: the x-ray works in debug runs and in runs that are over"
@@ -556,8 +574,8 @@ proptest! {
     #[test]
     fn no_condition_panics(text in "\\PC{0,60}", wild in "[a-z(S1)<>=0-9.%_ #-]{0,40}") {
         for text in [text, wild] {
-            if let Ok(own) = text.parse::<Condition>() {
-                prop_assert_eq!(own.to_string().parse(), Ok(own));
+            if let Ok(condition) = text.parse::<Condition>() {
+                prop_assert_eq!(condition.to_string().parse(), Ok(condition));
             }
             let _ = WriteTarget::parse_with_day(&text);
         }
@@ -574,8 +592,11 @@ fn breakpoint_search_distinguishes_always_true_from_never_true() {
     }
     let run = session.inspect().run_until_breakpoint(5, &mut |_| {}).expect("days");
     assert_eq!(run.hits, []);
-    let told: Vec<_> =
-        run.still_true.iter().map(|own| (own.hit.breakpoint.number, own.last_true_day)).collect();
+    let told: Vec<_> = run
+        .still_true
+        .iter()
+        .map(|true_breakpoint| (true_breakpoint.hit.breakpoint.number, true_breakpoint.last_true_day))
+        .collect();
     assert_eq!(told, [(1, 19)]);
     assert_eq!(session.company().observe().cash_change_days, 5);
 }
@@ -588,11 +609,17 @@ fn change_conditions_start_at_the_second_value() {
     session.inspect().set_breakpoint(condition("churn(S1) >= 0")).expect("it is set");
     let run = session.inspect().run_until_breakpoint(69, &mut |_| {}).expect("days");
     assert_eq!(run.hits, [], "it is true from the start, which is not a change");
-    let told: Vec<_> = run.still_true.iter().map(|own| own.first_value_day).collect();
-    let began = told[0].expect("it became true on one of the days");
+    let numbers: Vec<_> =
+        run.still_true.iter().map(|true_breakpoint| true_breakpoint.first_value_day).collect();
+    let began = numbers[0].expect("it became true on one of the days");
     assert!(began > 30, "{began}");
     let found = session.inspect().find_condition_days(condition("churn(S1) >= 0")).expect("days");
-    let told: Vec<_> = found.iter().map(|own| (own.day, own.is_first_value, own.becomes_true())).collect();
+    let told: Vec<_> = found
+        .iter()
+        .map(|condition_state| {
+            (condition_state.day, condition_state.is_first_value, condition_state.becomes_true())
+        })
+        .collect();
     assert_eq!(told, [(began, true, false)], "a condition that is true from the start is reported as such");
     // Conditions on values of a day are checked from the first day on.
     assert_eq!(

@@ -213,8 +213,12 @@ fn class_of_thirty_is_collected_completely() {
 
 fn check_tables(school: &TestClass, collection: &ClassCollection) {
     let lesson = school.class.stored_lesson(&school.folder()).expect("kept");
-    let view =
-        |shown| ClassView { class: &school.class, lesson: lesson.as_ref(), collection, display: shown };
+    let view = |display_options| ClassView {
+        class: &school.class,
+        lesson: lesson.as_ref(),
+        collection,
+        display: display_options,
+    };
     let plain = view(ClassDisplayOptions::default());
     let table = rows(&plain);
     assert_eq!(table.len(), collection.runs.len() + 1);
@@ -299,35 +303,35 @@ fn handout_resumes_its_run_and_retries_keep_its_stamp() {
     play_weeks(&folder, 40.0, 3);
     assert_eq!(school.begin("S02", "one"), folder, "the finished run is shown");
     let first = Session::open(&folder, Access::Write, true).expect("it opens");
-    let again = retry_step(&first, 0).expect("a try");
+    let session = retry_step(&first, 0).expect("a try");
     drop(first);
-    let id = again.manifest().id.clone();
-    drop(again);
-    let own = school.begin("S02", "one");
-    assert_eq!(own, folder.with_file_name(&id), "the open attempt continues");
-    play_weeks(&own, 8.0, 3);
+    let id = session.manifest().id.clone();
+    drop(session);
+    let path = school.begin("S02", "one");
+    assert_eq!(path, folder.with_file_name(&id), "the open attempt continues");
+    play_weeks(&path, 8.0, 3);
     let collection = school.collect(&[school.machine("one")]);
     assert_eq!(collection.runs.iter().filter(|run| run.verdict == RunVerdict::Finished).count(), 2);
     assert_eq!(collection.runs.iter().map(|run| run.evidence.tries).max(), Some(2));
     assert_eq!(collection.findings, [ClassFinding::Missing { label: "S01".to_owned() }]);
 
     // An easier lesson in a handout with a new seal: its runs have another digest.
-    let easier = Session::open(&own, Access::Read, false).expect("it opens").manifest().id.clone();
-    forge_all(&own, |at, line| {
+    let easier = Session::open(&path, Access::Read, false).expect("it opens").manifest().id.clone();
+    forge_all(&path, |at, line| {
         if at == 0 {
             line["lesson"]["digest"] = json!("0".repeat(64));
         }
     });
     let label = "S02".to_owned();
-    let other = school.collect(std::slice::from_ref(&own)).findings;
+    let other = school.collect(std::slice::from_ref(&path)).findings;
     assert!(other.contains(&ClassFinding::OtherLesson { label, run: easier }), "{other:?}");
-    forge_all(&own, |at, line| {
+    forge_all(&path, |at, line| {
         if at == 0 {
             line["lesson"]["digest"] = json!(school.class.lesson.as_ref().expect("a lesson").digest);
             line["lesson"]["part"] = json!(0);
         }
     });
-    let other = school.collect(std::slice::from_ref(&own)).findings;
+    let other = school.collect(std::slice::from_ref(&path)).findings;
     assert!(matches!(&other[..], [ClassFinding::Missing { .. }, ClassFinding::Altered { .. }]), "{other:?}");
 
     // A handout of another student, with the own label in the first line.
@@ -372,8 +376,9 @@ fn handout_of_a_run_has_separate_labels_and_names() {
     let verdicts: Vec<RunVerdict> = collection.runs.iter().map(|run| run.verdict).collect();
     assert_eq!(verdicts, [RunVerdict::NotFinished, RunVerdict::NotFinished]);
     assert!(collection.findings.contains(&ClassFinding::Missing { label: "S03".to_owned() }));
-    let shown = ClassDisplayOptions::default();
-    let view = ClassView { class: &school.class, lesson: None, collection: &collection, display: shown };
+    let display_options = ClassDisplayOptions::default();
+    let view =
+        ClassView { class: &school.class, lesson: None, collection: &collection, display: display_options };
     let text = class_to_text(&view);
     assert!(text.contains("Ranked by cash on the last day that every run has reached"), "{text}");
 

@@ -66,7 +66,7 @@ fn debrief(session: &Session) -> Debrief {
 
 fn reference(play: &ReferencePlay) -> Vec<f64> {
     let lesson = lesson();
-    let own = PartPlay {
+    let part_play = PartPlay {
         lesson: &lesson,
         part: 0,
         seed: Some(3),
@@ -75,7 +75,7 @@ fn reference(play: &ReferencePlay) -> Vec<f64> {
         is_judged: true,
         needs_database: lesson.needs_database(),
     };
-    let session = play_part(&own, calls_for_waiting_threads).expect("a play");
+    let session = play_part(&part_play, calls_for_waiting_threads).expect("a play");
     session.cash_by_day().to_vec()
 }
 
@@ -138,10 +138,10 @@ fn debrief_uses_the_figure_of_the_goal() {
     let (before, with) = parting.effect.as_simulated().and_then(|effect| effect.judged).expect("an effect");
     assert_eq!((Some(before), Some(with)), (own.last().map(|own| own.1), good.last().map(|good| good.1)));
     let markdown = debrief_to_markdown(&found);
-    for said in
+    for text in
         ["Recurring revenue on day 14: yours $", "the reference play's $", "Recurring revenue by week"]
     {
-        assert!(markdown.contains(said), "{said}:\n{markdown}");
+        assert!(markdown.contains(text), "{text}:\n{markdown}");
     }
     let of_cash = debrief(&play_lesson(&folder.path().join("other"), 30, 0));
     assert_eq!(of_cash.judged_by, None);
@@ -151,21 +151,24 @@ fn debrief_uses_the_figure_of_the_goal() {
 fn retry_starts_at_the_same_day() {
     let folder = tempfile::tempdir().expect("a folder");
     let first = play_lesson(folder.path(), 30, 0);
-    let mut again = retry_step(&first, 0).expect("another try");
+    let mut session = retry_step(&first, 0).expect("another try");
     let begun = student(&folder.path().join("other"));
-    assert_eq!(again.settings(), begun.settings());
-    assert_eq!(again.lesson().map(|own| (own.attempt(0), own.guess(0))), Some((2, Some(1.0))));
-    assert_eq!(submit_guess(&mut again, 2.0).err().map(|refusal| refusal.code), Some("no_question"));
+    assert_eq!(session.settings(), begun.settings());
+    assert_eq!(
+        session.lesson().map(|lesson_progress| (lesson_progress.attempt(0), lesson_progress.guess(0))),
+        Some((2, Some(1.0)))
+    );
+    assert_eq!(submit_guess(&mut session, 2.0).err().map(|refusal| refusal.code), Some("no_question"));
     for _ in 0..2 {
-        if again.day() == 0 {
-            call_tool(&mut again, "set_prices", json!({"A": 30, "B": 30, "C": 30}));
+        if session.day() == 0 {
+            call_tool(&mut session, "set_prices", json!({"A": 30, "B": 30, "C": 30}));
         } else {
-            submit_guess(&mut again, 1.0).expect("the step after it asks");
+            submit_guess(&mut session, 1.0).expect("the step after it asks");
         }
-        advance_week(&mut again);
+        advance_week(&mut session);
     }
-    assert_eq!(again.cash_by_day(), first.cash_by_day());
-    let (one, other) = (debrief(&first), debrief(&again));
+    assert_eq!(session.cash_by_day(), first.cash_by_day());
+    let (one, other) = (debrief(&first), debrief(&session));
     assert_eq!(one.comparison, other.comparison);
     assert_eq!(other.steps[0].tries, 2);
 }
@@ -186,7 +189,7 @@ fn debrief_pages_are_complete_and_self_contained() {
     let folder = tempfile::tempdir().expect("a folder");
     let found = debrief(&play_lesson(folder.path(), 30, 0));
     let (markdown, html) = (debrief_to_markdown(&found), debrief_to_html(&found));
-    for said in [
+    for text in [
         "reference play",
         "set_prices",
         "Open the shop",
@@ -194,8 +197,8 @@ fn debrief_pages_are_complete_and_self_contained() {
         "Somebody bought",
         "Conversion",
     ] {
-        assert!(markdown.contains(said), "{said}:\n{markdown}");
-        assert!(html.contains(said), "{said}");
+        assert!(markdown.contains(text), "{text}:\n{markdown}");
+        assert!(html.contains(text), "{text}");
     }
     assert!(!html.contains("<script") && !html.contains("http"));
 }

@@ -55,10 +55,10 @@ fn difference_starts_on_the_day_of_the_change() {
     let told = last.figures.iter().find(|(name, ..)| name == "cash").expect("cash differs");
     assert_eq!((told.1, told.2), (one.cash_by_day()[21], other.cash_by_day()[21]));
     let subscribers =
-        |name: &str| last.figures.iter().find(|(own, ..)| own == name).map(|own| (own.1, own.2));
-    let (own, others) = subscribers("individual subscribers").expect("they differ");
+        |name: &str| last.figures.iter().find(|(text, ..)| text == name).map(|own| (own.1, own.2));
+    let (value, others) = subscribers("individual subscribers").expect("they differ");
     let (only_own, only_others) = last.only_in_one;
-    assert_eq!(own - others, only_own as f64 - only_others as f64, "{last:?}");
+    assert_eq!(value - others, only_own as f64 - only_others as f64, "{last:?}");
     assert!(last.first_customers.len() <= 10 && last.differing_customers + only_own + only_others > 10);
     assert_eq!(
         one.inspect().compare_with_run(&mut other, Some(22)).expect_err("no such day").code,
@@ -84,7 +84,11 @@ fn difference_of_two_days_lists_changes_without_side_effects() {
     let cash = found.figures.iter().find(|(name, ..)| name == "cash").expect("cash");
     assert_eq!((cash.1, cash.2), (session.cash_by_day()[11], session.cash_by_day()[18]));
     assert!(found.only_in_one.1 > 0, "somebody came");
-    let customer = found.first_customers.iter().find(|own| own.subscribes == (true, true)).expect("one");
+    let customer = found
+        .first_customers
+        .iter()
+        .find(|customer_difference| customer_difference.subscribes == (true, true))
+        .expect("one");
     assert!(customer.columns.iter().any(|(name, ..)| *name == "satisfaction"), "{customer:?}");
     assert!(session.inspect().compare_days(9, 9).expect("a look").is_empty());
     assert_eq!(session.inspect().compare_days(9, 22).expect_err("no such day").code, "day_unknown");
@@ -133,7 +137,7 @@ fn difference_requires_permission_and_is_recorded() {
         advance_week(&mut session);
         let place = session.folder().expect("a folder").to_owned();
         let mut inside = session.inspect();
-        let told = [
+        let texts = [
             inside.compare_days(1, 2).expect_err("hidden").to_string(),
             inside.compare_days(0, 9000).expect_err("hidden").to_string(),
             inside.compare_with_run(&mut debug, Some(9000)).expect_err("hidden").to_string(),
@@ -142,8 +146,8 @@ fn difference_requires_permission_and_is_recorded() {
         drop(inside);
         let from_debug =
             debug.inspect().compare_with_run(&mut session, None).expect_err("hidden").to_string();
-        assert_eq!(from_debug, told[0]);
-        assert!(told.iter().all(|one| one.starts_with("not_in_this_mode: the x-ray works")), "{told:?}");
+        assert_eq!(from_debug, texts[0]);
+        assert!(texts.iter().all(|one| one.starts_with("not_in_this_mode: the x-ray works")), "{texts:?}");
         drop(session);
         let refused = open_for_inspection(&place, Default::default()).err().expect("hidden").to_string();
         assert!(refused.contains("debug runs and in runs that are over"), "{refused}");

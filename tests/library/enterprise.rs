@@ -337,7 +337,9 @@ fn check_plan_request_rows() {
     for _ in 0..20 {
         advance_week(&mut session);
         let (threads, _) = ThreadContext::read_all(&mut session).expect("threads");
-        let wish = |own: &&ThreadContext| own.waiting.kind == "plan_change" && own.waiting.asked.is_none();
+        let wish = |thread_context: &&ThreadContext| {
+            thread_context.waiting.kind == "plan_change" && thread_context.waiting.asked.is_none()
+        };
         for thread in threads.iter().filter(wish) {
             check_plan_request_text(&mut session, thread);
             wishes += 1;
@@ -373,9 +375,9 @@ fn check_rules_match_tables(run: &mut Session) {
         }
         let last: Vec<Value> =
             thread.waiting.last_offer.iter().map(|(plan, price)| json!([plan.id(), price])).collect();
-        let told =
+        let value =
             ours.first().map_or(json!([]), |row| serde_json::from_str(text_at(row, 1)).expect("offers"));
-        let told = told.as_array().expect("a list").iter();
+        let told = value.as_array().expect("a list").iter();
         assert_eq!(last, told.map(|own| json!([own["plan"], own["price_per_seat"]])).collect::<Vec<_>>());
     }
     assert!(asked > 3, "{asked} companies asked");

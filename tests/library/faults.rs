@@ -61,7 +61,7 @@ fn parameter(session: &Session, key: &str) -> f64 {
     session
         .company()
         .debug_parameters()
-        .and_then(|own| own.value(key))
+        .and_then(|debug_parameters| debug_parameters.value(key))
         .expect("a parameter")
         .as_f64()
         .expect("a number")
@@ -141,8 +141,9 @@ fn symptom(fault: Fault) -> Symptom {
         }),
         Fault::ComputeOfOnePlan => at(30, |session| {
             let writes = session.inspect().figure_writes(WriteTarget::Cash, Some(28)).expect("a look").writes;
-            let compute =
-                writes.iter().find(|own| own.source == WriteSource::LedgerEntries(Category::Compute));
+            let compute = writes
+                .iter()
+                .find(|figure_write| figure_write.source == WriteSource::LedgerEntries(Category::Compute));
             let paid = -compute.expect("compute is booked").requested_change();
             let used = query_number(session, "SELECT sum(usage_units) FROM daily_usage WHERE day = 28");
             let unit = |tier: u32| parameter(session, &format!("model_tier.{tier}.unit_cost"));
@@ -196,32 +197,37 @@ fn fault_persists_with_its_run_and_is_not_disclosed() {
         advance_weeks(&mut session, 1);
         assert!(session.company().observe().has_own_parameters, "it is never ranked");
         assert_eq!(
-            session.company().debug_parameters().and_then(|own| own.changes()).expect("a debug run").in_force,
+            session
+                .company()
+                .debug_parameters()
+                .and_then(|debug_parameters| debug_parameters.changes())
+                .expect("a debug run")
+                .in_force,
             [],
             "it is not a parameter"
         );
-        let own = run_folder(&session);
+        let path = run_folder(&session);
         let branch = session.branch(3, Mode::Debug).expect("a branch");
         assert_eq!(branch.manifest().fault, Some(fault));
         let refused = session.branch(3, Mode::Sandbox).err().expect("no sandbox has a fault");
         assert_eq!(refused.code, "not_in_this_mode");
         let branch_place = run_folder(&branch);
         drop((session, branch));
-        for place in [&own, &branch_place] {
+        for place in [&path, &branch_place] {
             verify(place).expect("it verifies");
         }
         // The manifest can be lost: the first line has the number of the fault, and nothing else about it.
-        let text = std::fs::read_to_string(own.join("run.toml")).expect("a manifest");
+        let text = std::fs::read_to_string(path.join("run.toml")).expect("a manifest");
         assert!(text.contains(&format!("\nfault = {}\n", fault.number())), "{text}");
-        std::fs::remove_file(own.join("run.toml")).expect("it goes");
-        assert_eq!(read_manifest(&own).expect("of the line").fault, Some(fault));
-        let lines = Trajectory::read(&own.join("trajectory.jsonl")).expect("lines").lines;
+        std::fs::remove_file(path.join("run.toml")).expect("it goes");
+        assert_eq!(read_manifest(&path).expect("of the line").fault, Some(fault));
+        let lines = Trajectory::read(&path.join("trajectory.jsonl")).expect("lines").lines;
         assert!(matches!(&lines[0].record, Record::Start(start) if start.fault == Some(fault)));
-        let told = std::fs::read_to_string(own.join("trajectory.jsonl")).expect("lines");
+        let told = std::fs::read_to_string(path.join("trajectory.jsonl")).expect("lines");
         assert!(!told.contains(&format!("{fault:?}")));
         // Another number is another run.
         let other = Fault::ALL.into_iter().find(|other| *other != fault).expect("another");
-        let mut forged = read_manifest(&own).expect("of the line");
+        let mut forged = read_manifest(&path).expect("of the line");
         forged.fault = Some(other);
         assert!(forged.load_params().is_err(), "the digests differ");
         forged.fault = None;
@@ -253,12 +259,12 @@ fn faults_require_a_debug_run() {
     }
     // A manifest with a fault in another mode is rejected.
     let session = create_company(folder.path(), Some(Fault::DriftTwice), 7);
-    let own = run_folder(&session);
+    let path = run_folder(&session);
     drop(session);
-    let text = std::fs::read_to_string(own.join("run.toml")).expect("a manifest");
-    std::fs::write(own.join("run.toml"), text.replace("mode = \"debug\"", "mode = \"sandbox\""))
+    let text = std::fs::read_to_string(path.join("run.toml")).expect("a manifest");
+    std::fs::write(path.join("run.toml"), text.replace("mode = \"debug\"", "mode = \"sandbox\""))
         .expect("a file");
-    let read = novamind::record::folder::manifest::Manifest::read(&own);
+    let read = novamind::record::folder::manifest::Manifest::read(&path);
     assert!(matches!(read, Err(RunError::InvalidRequest(_))), "{read:?}");
 }
 

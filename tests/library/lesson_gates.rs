@@ -76,28 +76,28 @@ fn hidden_state_requires_the_last_part_to_be_over() {
     advance_lesson_week(&mut first).expect("a week");
     advance_lesson_week(&mut first).expect("a week");
     assert!(first.ended().is_some());
-    let own = run_folder(&first);
+    let path = run_folder(&first);
     let hidden = |session: &mut Session| {
         assert!(!session.can_inspect());
         let refused = session.check_inspection().expect_err("it is refused");
         assert!(refused.message.contains("after its last part"), "{refused}");
         // The causes are those of an unfinished run: without hidden figures and inspections.
-        let asked: WeekQuestion = "satisfaction 3".parse().expect("a question");
-        assert_eq!(rejection_code(record_figure_inspection(session, &asked)), "not_in_this_mode");
+        let week_question: WeekQuestion = "satisfaction 3".parse().expect("a question");
+        assert_eq!(rejection_code(record_figure_inspection(session, &week_question)), "not_in_this_mode");
         assert!(!can_inspect(session.manifest(), session.ended(), session.folder()));
     };
     hidden(&mut first);
     let mut second = start_part(&first, 1).expect("the second part");
     hidden(&mut first);
     drop(first);
-    let playback = Playback::open(&own).expect("a replay");
+    let playback = Playback::open(&path).expect("a replay");
     assert!(!playback.can_inspect());
-    assert!(open_for_inspection(&own, SealKey::default()).is_err());
+    assert!(open_for_inspection(&path, SealKey::default()).is_err());
     advance_lesson_week(&mut second).expect("a week");
     assert!(second.ended().is_some() && second.can_inspect());
     drop(second);
-    let mut first = Session::open(&own, Access::Write, true).expect("it opens");
-    assert!(first.can_inspect() && Playback::open(&own).expect("a replay").can_inspect());
+    let mut first = Session::open(&path, Access::Write, true).expect("it opens");
+    assert!(first.can_inspect() && Playback::open(&path).expect("a replay").can_inspect());
     first.inspect().quality_equation(Group::parse("S1").expect("a group"), None).expect("a look");
 }
 
@@ -130,17 +130,21 @@ fn interrupted_retry_is_counted_on_open() {
     let mut session = begin_lesson(folder.path(), "gates", PARTS);
     advance_lesson_week(&mut session).expect("a week");
     let again = retry_step(&session, 0).expect("another try");
-    let own = run_folder(&again);
+    let path = run_folder(&again);
     let standing = again.lesson().expect("a lesson").clone();
     assert_eq!(standing.attempt(0), 2);
     drop((again, session));
-    let whole = std::fs::read_to_string(own.join("trajectory.jsonl")).expect("lines");
+    let whole = std::fs::read_to_string(path.join("trajectory.jsonl")).expect("lines");
     let lines: Vec<&str> = whole.lines().collect();
     let branch = lines.iter().position(|line| line.contains("\"kind\":\"branch\"")).expect("a branch");
     for kept in branch + 1..=lines.len() {
-        truncate_run(&own, &lines[..kept]);
-        let again = Session::open(&own, Access::Write, true).expect("it opens");
-        assert_eq!(again.lesson().map(|own| own.attempt(0)), Some(2), "{kept} lines were left");
+        truncate_run(&path, &lines[..kept]);
+        let again = Session::open(&path, Access::Write, true).expect("it opens");
+        assert_eq!(
+            again.lesson().map(|lesson_progress| lesson_progress.attempt(0)),
+            Some(2),
+            "{kept} lines were left"
+        );
     }
 }
 
@@ -162,7 +166,7 @@ const RULE_LESSON: &str = include_str!("../data/lessons/answers-by-rules.toml");
 fn goal_compares_with_a_reference_play_that_uses_rules() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = begin_lesson(folder.path(), "gates", RULE_LESSON);
-    let own = run_folder(&session);
+    let path = run_folder(&session);
     for _ in 0..3 {
         advance_lesson_week(&mut session).expect("a week");
     }
@@ -171,7 +175,7 @@ fn goal_compares_with_a_reference_play_that_uses_rules() {
     assert!(session.lesson().expect("a lesson").goal_results(0).is_empty());
     assert_eq!(rejection_code(advance_lesson_week(&mut session)), "step_not_begun");
     drop(session);
-    let mut session = Session::open(&own, Access::Write, true).expect("it opens");
+    let mut session = Session::open(&path, Access::Write, true).expect("it opens");
     session.set_rule_evaluator(calls_for_waiting_threads);
     let standing = session.lesson().expect("a lesson").clone();
     let goal = standing.goal_results(0)[0].clone();
@@ -233,14 +237,14 @@ value = 1
         };
         play_part(&play, calls_for_waiting_threads).expect("a play")
     };
-    let [played, own] = [play(&elsewhere), play(&here)];
+    let [played, session] = [play(&elsewhere), play(&here)];
     assert_eq!(
-        (played.manifest().scenario.as_str(), own.manifest().scenario.as_str()),
+        (played.manifest().scenario.as_str(), session.manifest().scenario.as_str()),
         ("competitor-off", "default")
     );
     assert!(
         played.params().competitor.competitor_events_disabled
-            && !own.params().competitor.competitor_events_disabled
+            && !session.params().competitor.competitor_events_disabled
     );
     let wrong = measured.replace("competitor-off", "no-such-world");
     let said = write_lesson(folder.path(), "gates", &(PARTS.to_owned() + &wrong)).expect_err("it is refused");

@@ -193,10 +193,10 @@ fn lesson_run_verifies_and_resumes() {
     submit_guess(&mut session, 1.0).expect("a guess");
     take_hint(&mut session).expect("a hint");
     advance_lesson_week(&mut session).expect("a week");
-    let (hash, own) = (session.state_hash(), session.folder().expect("a folder").to_owned());
+    let (hash, path) = (session.state_hash(), session.folder().expect("a folder").to_owned());
     let page = LessonStatus::from_session(&mut session).expect("a page");
     drop(session);
-    let mut again = Session::open(&own, Access::Write, true).expect("it opens");
+    let mut again = Session::open(&path, Access::Write, true).expect("it opens");
     assert_eq!(again.state_hash(), hash);
     assert_eq!(LessonStatus::from_session(&mut again).expect("a page"), page);
     advance_lesson_week(&mut again).expect("a week");
@@ -205,7 +205,7 @@ fn lesson_run_verifies_and_resumes() {
     advance_lesson_week(&mut again).expect("a week");
     assert_eq!(again.lesson().expect("a lesson").outcome(1).expect("an outcome").met, Some(false));
     drop(again);
-    verify(&own).expect("the record is sound");
+    verify(&path).expect("the record is sound");
 }
 
 #[test]
@@ -215,14 +215,14 @@ fn bankruptcy_in_a_lesson_is_evaluated_once() {
         let mut session = begin_lesson(folder.path());
         let spend = json!({"operations": operations, "development": 0});
         session.call("set_daily_spend", &spend, Via::Plain).expect("spending");
-        for own in 0..=step {
+        for number in 0..=step {
             submit_guess(&mut session, 1.0).expect("a guess");
             for _ in 0..2 {
                 if session.ended().is_none() {
                     advance_lesson_week(&mut session).expect("a week");
                 }
             }
-            assert_eq!(session.ended().is_some(), own == step, "{operations}");
+            assert_eq!(session.ended().is_some(), number == step, "{operations}");
         }
         assert_eq!(session.ended(), Some(RunEndReason::Bankruptcy));
         assert!(!session.day().is_multiple_of(7), "the cash runs out within a week");
@@ -232,11 +232,11 @@ fn bankruptcy_in_a_lesson_is_evaluated_once() {
         assert_eq!(standing.goal_results(step)[0].met, Some(false));
         assert_eq!(standing.goal_results(step)[0].value, Some(cash));
         assert_eq!(standing.met_pitfalls(), ["costly"]);
-        let own = session.folder().expect("a folder").to_owned();
+        let path = session.folder().expect("a folder").to_owned();
         drop(session);
-        let again = Session::open(&own, Access::Write, true).expect("it opens");
+        let again = Session::open(&path, Access::Write, true).expect("it opens");
         assert_eq!(again.lesson(), Some(&standing));
-        assert!(!own.join("afterwards.jsonl").exists(), "nothing comes after the end");
+        assert!(!path.join("afterwards.jsonl").exists(), "nothing comes after the end");
     }
 }
 

@@ -170,12 +170,12 @@ fn dashboard_changes_only_with_the_week() {
     set(&mut session, 12.0);
     assert!(session.company().dashboard().contains("Prices: A $12"), "before the first week it is fresh");
     let forecasts = session.company().naive_forecasts();
-    let told = session.advance("on", &forecasts, Via::Script, &mut |_| {}).expect("a week").dashboard;
+    let text = session.advance("on", &forecasts, Via::Script, &mut |_| {}).expect("a week").dashboard;
     set(&mut session, 13.0);
-    assert!(told.contains("Prices: A $12"), "{told}");
+    assert!(text.contains("Prices: A $12"), "{text}");
     assert_eq!(
         (session.company().dashboard(), session.company().observe().dashboard),
-        (told.clone(), told.clone())
+        (text.clone(), text.clone())
     );
     session.save().expect("saved");
     let folder = session.folder().expect("a folder").to_owned();
@@ -183,7 +183,7 @@ fn dashboard_changes_only_with_the_week() {
     // With the snapshot, and without it.
     for _ in 0..2 {
         let again = Session::open(&folder, Access::Read, true).expect("it opens");
-        assert_eq!(again.company().dashboard(), told);
+        assert_eq!(again.company().dashboard(), text);
         std::fs::remove_file(folder.join("snapshot.bin")).ok();
     }
     let mut again = Session::open(&folder, Access::Write, true).expect("it opens");

@@ -74,7 +74,7 @@ fn money_and_customer_rows(session: &mut Session) -> Vec<Vec<novamind::database:
 fn run_with_overrides_resumes_and_verifies() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = run_with_overrides(folder.path());
-    let (own, day, hash) = (run_folder(&session), session.day(), session.state_hash());
+    let (path, day, hash) = (run_folder(&session), session.day(), session.state_hash());
     let seen = money_and_customer_rows(&mut session);
     let unchanged = {
         let mut other = begin_run(folder.path(), Mode::Debug, 140);
@@ -87,23 +87,23 @@ fn run_with_overrides_resumes_and_verifies() {
     let charged = "SELECT DISTINCT amount FROM ledger WHERE category = 'lead_acquisition_cost' ORDER BY 1";
     assert_eq!(query_rows(&mut session, charged).len(), 2, "rows are made with the parameters of their day");
     drop(session);
-    let kinds = Trajectory::read(&own.join("trajectory.jsonl")).expect("lines").lines;
+    let kinds = Trajectory::read(&path.join("trajectory.jsonl")).expect("lines").lines;
     assert_eq!(kinds.iter().filter(|line| line.record.kind() == "override").count(), 8);
 
     // By replaying every line, by the snapshot, and by a combination of both.
-    assert_eq!(verify(&own).expect("it verifies").day, day);
+    assert_eq!(verify(&path).expect("it verifies").day, day);
     for gone in [&[][..], &["snapshot.bin"], &["world.db"], &["snapshot.bin", "world.db"]] {
         for name in gone {
-            std::fs::remove_file(own.join(name)).expect("removed");
+            std::fs::remove_file(path.join(name)).expect("removed");
         }
-        let mut again = Session::open(&own, Access::Write, true).expect("it opens");
+        let mut again = Session::open(&path, Access::Write, true).expect("it opens");
         assert_eq!((again.day(), again.state_hash()), (day, hash.clone()), "{gone:?}");
         assert_eq!(money_and_customer_rows(&mut again), seen, "{gone:?}");
         again.save().expect("saved");
     }
 
     // Forward and backward.
-    let mut playback = Playback::open(&own).expect("it opens");
+    let mut playback = Playback::open(&path).expect("it opens");
     let on = &mut |_| ControlFlow::Continue(());
     for goal in [
         SeekTarget::Last,
@@ -118,7 +118,7 @@ fn run_with_overrides_resumes_and_verifies() {
     assert_eq!(playback.session().state_hash(), hash);
 
     // The x-ray simulates the days again.
-    let mut again = Session::open(&own, Access::Write, false).expect("it opens");
+    let mut again = Session::open(&path, Access::Write, false).expect("it opens");
     let s1 = Group::parse("S1").expect("a group");
     assert_eq!(again.inspect().lead_equations(s1, Some(day)).expect("a look").len(), 28);
 }
@@ -126,12 +126,12 @@ fn run_with_overrides_resumes_and_verifies() {
 #[test]
 fn killed_run_keeps_its_overrides() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut whole = run_with_overrides(folder.path());
-    set_parameter(&mut whole, "operations.base_outage_prob", json!(0.9), Some(70));
-    advance_weeks(&mut whole, 4);
-    let expected = states(&run_folder(&whole));
-    let path = run_folder(&whole).join("trajectory.jsonl");
-    drop(whole);
+    let mut session = run_with_overrides(folder.path());
+    set_parameter(&mut session, "operations.base_outage_prob", json!(0.9), Some(70));
+    advance_weeks(&mut session, 4);
+    let expected = states(&run_folder(&session));
+    let path = run_folder(&session).join("trajectory.jsonl");
+    drop(session);
     let text = std::fs::read_to_string(&path).expect("lines");
     let lines: Vec<&str> = text.split_inclusive('\n').collect();
     // A kill after each line with a setting, before a week, and within a line.
@@ -156,10 +156,12 @@ fn killed_run_keeps_its_overrides() {
             let waiting = again
                 .company()
                 .debug_parameters()
-                .and_then(|own| own.changes())
+                .and_then(|debug_parameters| debug_parameters.changes())
                 .expect("a debug run")
                 .waiting;
-            let outages = waiting.iter().any(|own| own.key == "operations.base_outage_prob");
+            let outages = waiting
+                .iter()
+                .any(|changed_parameter| changed_parameter.key == "operations.base_outage_prob");
             if outages {
                 advance_weeks(&mut again, 4);
                 assert_eq!(states(&run_folder(&again)), expected);
@@ -212,23 +214,23 @@ fn overrides_require_a_debug_run() {
         apply_opening_decisions(&mut session);
         let before = states(&run_folder(&session)).len();
         let tried = |session: &mut Session| {
-            let mut told = Vec::new();
+            let mut texts = Vec::new();
             for (key, value, from) in [
                 ("group.S1.c_max_mean", json!(300), None),
                 ("no.such.key", json!(null), Some(0)),
                 ("", json!({}), Some(u32::MAX)),
             ] {
-                told.push(session.set_parameter(key, &value, from).expect_err("refused").to_string());
-                told.push(
+                texts.push(session.set_parameter(key, &value, from).expect_err("refused").to_string());
+                texts.push(
                     session
                         .company()
                         .debug_parameters()
-                        .and_then(|own| own.value(key))
+                        .and_then(|debug_parameters| debug_parameters.value(key))
                         .expect_err("refused")
                         .to_string(),
                 );
             }
-            told.push(
+            texts.push(
                 session
                     .company()
                     .debug_parameters()
@@ -236,7 +238,7 @@ fn overrides_require_a_debug_run() {
                     .expect_err("refused")
                     .to_string(),
             );
-            told
+            texts
         };
         let told = tried(&mut session);
         assert!(told.iter().all(|one| *one == "not_in_this_mode: parameters can be set in debug runs only"));
@@ -256,8 +258,8 @@ fn invalid_overrides_are_rejected_without_effect() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = begin_run(folder.path(), Mode::Debug, 140);
     advance_week(&mut session);
-    let own = run_folder(&session);
-    let lines = || Trajectory::read(&own.join("trajectory.jsonl")).expect("lines").lines.len();
+    let path = run_folder(&session);
+    let lines = || Trajectory::read(&path.join("trajectory.jsonl")).expect("lines").lines.len();
     let (before, hash) = (lines(), session.state_hash());
     let mut deep = json!(1);
     for _ in 0..100 {
@@ -291,7 +293,7 @@ fn invalid_overrides_are_rejected_without_effect() {
         session
             .company()
             .debug_parameters()
-            .and_then(|own| own.value("group.S9"))
+            .and_then(|debug_parameters| debug_parameters.value("group.S9"))
             .expect_err("no group")
             .code,
         "parameter_unknown"
@@ -361,13 +363,17 @@ fn run_with_overrides_is_excluded_from_comparisons() {
     let before = session
         .company()
         .debug_parameters()
-        .and_then(|own| own.value("operations.base_outage_prob"))
+        .and_then(|debug_parameters| debug_parameters.value("operations.base_outage_prob"))
         .expect("a value");
     set_parameter(&mut session, "operations.base_outage_prob", json!(0.9), Some(100));
     assert!(session.company().observe().has_own_parameters && own(&id));
     set_parameter(&mut session, "operations.base_outage_prob", before, None);
     assert!(session.company().observe().has_own_parameters, "the settings stay in the record");
-    let changed = session.company().debug_parameters().and_then(|own| own.changes()).expect("a debug run");
+    let changed = session
+        .company()
+        .debug_parameters()
+        .and_then(|parameters| parameters.changes())
+        .expect("a debug run");
     assert_eq!(
         (changed.scenario.as_deref(), changed.in_force.len(), changed.waiting.len()),
         (Some("default"), 0, 1)
@@ -431,7 +437,11 @@ fn every_parameter_can_be_overridden() {
     let (mut accepted, mut refused) = (0, 0);
     let all = parameter_kinds(&serde_json::to_value(session.params()).expect("JSON"));
     for (at, key) in all.into_iter().enumerate() {
-        let old = session.company().debug_parameters().and_then(|own| own.value(&key)).expect("its value");
+        let old = session
+            .company()
+            .debug_parameters()
+            .and_then(|debug_parameters| debug_parameters.value(&key))
+            .expect("its value");
         let value = [json!(0), json!(8)][at % 2].clone();
         if session.set_parameter(&key, &value, None).is_err() {
             refused += 1;
@@ -485,14 +495,14 @@ fn excessive_leads_are_rejected_and_the_run_stays_intact() {
 fn override_keys_must_exist_and_lists_use_names() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = begin_run(folder.path(), Mode::Debug, 140);
-    for (key, value, said) in [
+    for (key, value, text) in [
         ("group", json!({}), "the table contains no parameter"),
         ("group", json!({ "S1": {} }), "the table contains no parameter"),
         ("calendar", json!({}), "the table contains no parameter"),
     ] {
         let refused = session.set_parameter(key, &value, None).expect_err("nothing is set");
         assert_eq!(refused.code, "parameter_not_allowed");
-        assert!(refused.message.contains(said), "{}", refused.message);
+        assert!(refused.message.contains(text), "{}", refused.message);
     }
     let refused = session.set_parameter("group.S1.c_max_mean", &json!("much"), None).expect_err("no number");
     assert_eq!(refused.field.as_deref(), Some("group.S1.c_max_mean"), "{refused}");

@@ -160,8 +160,8 @@ fn scripts_cannot_block_the_run() {
     }
     let flood =
         "import sys\nfor _ in range(20000):\n    print('x' * 999)\n    print('é' * 999, file=sys.stderr)";
-    let said = run_script(&mut session, flood);
-    let length = |field: &str| said[field].as_str().map_or(0, |text| text.chars().count());
+    let value = run_script(&mut session, flood);
+    let length = |field: &str| value[field].as_str().map_or(0, |text| text.chars().count());
     assert_eq!((length("stdout"), length("stderr")), (5000, 2000));
     // Invalid requests on the socket.
     let noise = "import os\nfor place in range(3, 64):\n    try: os.write(place, b'{}\\n\\xff\\n' * 100)\n    except OSError: pass\nprint('over')";
@@ -253,6 +253,6 @@ fn replay_uses_recorded_script_output() {
         create_branch_with_decisions(&session, 2, &[], Mode::Sandbox, &mut |_| ControlFlow::Continue(()));
     let branch = again.unwrap_or_else(|refusal| panic!("{refusal}")).session;
     assert_eq!(branch.state_hash(), session.state_hash());
-    let said = &branch.company().calculation_outputs()[0].output;
-    assert!(said.starts_with("failed: Python is not run"), "{said}");
+    let text = &branch.company().calculation_outputs()[0].output;
+    assert!(text.starts_with("failed: Python is not run"), "{text}");
 }

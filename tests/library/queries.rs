@@ -54,7 +54,7 @@ fn run_named_query(session: &mut Session, name: &str) -> QueryResult {
 }
 
 fn column(rows: &QueryResult, name: &str) -> usize {
-    rows.columns.iter().position(|own| own == name).unwrap_or_else(|| panic!("no column {name}"))
+    rows.columns.iter().position(|text| text == name).unwrap_or_else(|| panic!("no column {name}"))
 }
 
 fn sum(rows: &QueryResult, name: &str) -> f64 {
@@ -86,7 +86,8 @@ fn due_bills_are_paid_by_active_subscribers() {
     let mut payments = 0;
     for (row, day) in due.rows.iter().zip(today + 1..) {
         assert_eq!(number_at(row, column(&due, "day")), f64::from(day));
-        let billed: Vec<&Vec<f64>> = before.iter().filter(|own| own[1] == f64::from(day % 30)).collect();
+        let billed: Vec<&Vec<f64>> =
+            before.iter().filter(|values| values[1] == f64::from(day % 30)).collect();
         assert_eq!(number_at(row, column(&due, "customers")), billed.len() as f64, "day {day}");
         let dollars = billed.iter().map(|own| own[2]).sum::<f64>();
         assert!((number_at(row, column(&due, "dollars_due")) - dollars).abs() < 0.01, "day {day}");

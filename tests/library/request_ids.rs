@@ -29,9 +29,9 @@ fn advance_week(
     session
         .advance_once(&request, Via::Http)
         .map(|week| {
-            let mut told = week.to_json();
-            told.as_object_mut().expect("an object").remove("notifications");
-            told
+            let mut value = week.to_json();
+            value.as_object_mut().expect("an object").remove("notifications");
+            value
         })
         .map_err(|refusal| refusal.code)
 }

@@ -134,8 +134,11 @@ fn redo_reapplies_until_a_new_setting() {
     session.undo(Via::Form).expect("undone");
     session.undo(Via::Form).expect("undone");
     assert_eq!(session.company().current_arguments("set_prices")["A"], 10);
-    let again = session.redo(Via::Form).expect("redone");
-    assert_eq!((again[0].setting.to_string().as_str(), again[0].old, again[0].new), ("price A", 10.0, 12.0));
+    let setting_changes = session.redo(Via::Form).expect("redone");
+    assert_eq!(
+        (setting_changes[0].setting.to_string().as_str(), setting_changes[0].old, setting_changes[0].new),
+        ("price A", 10.0, 12.0)
+    );
     session.undo(Via::Form).expect("a redo can be undone");
     session.redo(Via::Form).expect("and redone");
     session.redo(Via::Form).expect("redone");
@@ -210,8 +213,8 @@ fn finished_run_rejects_calls() {
     for tool in ["set_prices", "start_research_project"] {
         assert_eq!(session.call(tool, &json!({"A": 5}), Via::Script).expect_err("over").code, "run_over");
     }
-    let again = session.advance("more", &forecasts, Via::Script, &mut |_| {}).expect_err("over");
-    assert_eq!(again.code, "run_over");
+    let rejection = session.advance("more", &forecasts, Via::Script, &mut |_| {}).expect_err("over");
+    assert_eq!(rejection.code, "run_over");
     assert!(session.call("get_cost_info", &json!({}), Via::Script).is_ok());
     assert_eq!(query_number(&mut session, "SELECT max(day) FROM service_day"), 10.0);
     let place = session.folder().expect("a folder").to_owned();
@@ -308,8 +311,8 @@ fn runs_are_listed_found_and_named() {
     assert_eq!((first.manifest().earlier_runs, second.manifest().earlier_runs), (0, 1));
     let list = list_runs(folder.path()).expect("a list");
     assert_eq!(list.len(), 2);
-    let own = list.iter().find(|run| run.id == first.manifest().id).expect("the first");
-    assert_eq!((own.day, own.cash), (7, first.company().observe().cash));
+    let run_summary = list.iter().find(|run| run.id == first.manifest().id).expect("the first");
+    assert_eq!((run_summary.day, run_summary.cash), (7, first.company().observe().cash));
     assert!(find_run(folder.path(), &second.manifest().id[..6]).is_ok());
     assert!(find_run(folder.path(), "latest").is_ok());
     assert!(find_run(folder.path(), "zz").is_err());
@@ -448,10 +451,10 @@ fn journal_lists_decisions_and_scores_forecasts() {
     let id = run.manifest().id.clone();
     let journal = run.journal().to_vec();
     drop(run);
-    let again = Session::open(&folder.path().join(id), Access::Write, true).expect("opens");
-    assert_eq!(again.journal(), journal);
-    assert_eq!(again.company().forecast_scores(), scores);
-    assert_eq!(again.notes().expect("readable"), "prices were a guess");
+    let session = Session::open(&folder.path().join(id), Access::Write, true).expect("opens");
+    assert_eq!(session.journal(), journal);
+    assert_eq!(session.company().forecast_scores(), scores);
+    assert_eq!(session.notes().expect("readable"), "prices were a guess");
 }
 
 #[test]
@@ -471,8 +474,8 @@ fn player_post_gets_reactions_comments_and_a_notice() {
     assert_eq!((&made["agent_post_id"], &made["day"]), (&json!(1), &json!(14)));
     let again = session.call("post_social_media", &json!({"content": "More."}), Via::Script);
     assert_eq!(again.expect_err("one a day").code, "already_posted");
-    let own = "SELECT views FROM agent_social_media_posts";
-    assert_eq!(query_number(&mut session, own), 0.0);
+    let text = "SELECT views FROM agent_social_media_posts";
+    assert_eq!(query_number(&mut session, text), 0.0);
     let insult = |session: &mut Session| {
         call_tool(
             session,
@@ -488,7 +491,7 @@ fn player_post_gets_reactions_comments_and_a_notice() {
         session.company().dashboard()
     );
     insult(&mut session);
-    let views = query_number(&mut session, own);
+    let views = query_number(&mut session, text);
     assert!(views >= 300.0, "six groups of at least 50: {views}");
     let notice = query_text(&mut session, "SELECT message FROM notifications WHERE type = 'social_media'");
     assert!(notice.contains("Every plan is $2 off") && notice.contains("S1 +"), "{notice}");
@@ -500,7 +503,7 @@ fn player_post_gets_reactions_comments_and_a_notice() {
         judged[0].effect,
         judged[0].reason()
     );
-    let viral = judged.iter().filter(|own| own.effect.abs() >= 0.6).count() as f64;
+    let viral = judged.iter().filter(|judgement| judgement.effect.abs() >= 0.6).count() as f64;
     let comments = "SELECT count(*) FROM social_media_posts WHERE reply_to_agent_post_id = 1";
     assert_eq!(query_number(&mut session, comments), viral);
     let listed = query_text(

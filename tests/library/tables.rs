@@ -71,15 +71,15 @@ fn visible_tables_and_columns_are_the_listed_ones() {
     let documented: Vec<(String, Vec<(String, String)>)> = novamind::database::tables()
         .iter()
         .map(|table| {
-            let columns = table.columns.iter().map(|own| (own.name.clone(), own.kind.clone()));
+            let columns = table.columns.iter().map(|column| (column.name.clone(), column.kind.clone()));
             (table.name.clone(), columns.collect())
         })
         .collect();
     assert_eq!(documented, listed);
     let mut session = create(&[]);
     for (table, columns) in listed {
-        let own = session.query(&format!("SELECT * FROM {table}")).expect("an answer").columns;
-        assert_eq!(own, columns.into_iter().map(|(name, _)| name).collect::<Vec<_>>(), "{table}");
+        let texts = session.query(&format!("SELECT * FROM {table}")).expect("an answer").columns;
+        assert_eq!(texts, columns.into_iter().map(|(name, _)| name).collect::<Vec<_>>(), "{table}");
     }
 }
 

@@ -18,15 +18,15 @@ use crate::support::company::{advance_week, advance_weeks, apply_opening_decisio
 /// Returns the words that would reveal a group: its name, and profile words that no initially known group uses.
 fn revealing_words(group: Group, params: &Params) -> BTreeSet<String> {
     let words = |group: Group| {
-        let own = &params.personas.group[group.index()];
+        let group_persona = &params.personas.group[group.index()];
         [
-            &own.industry,
-            &own.role,
-            &own.work_style,
-            &own.culture,
-            &own.company_size,
-            &own.decision_style,
-            &own.primary_concern,
+            &group_persona.industry,
+            &group_persona.role,
+            &group_persona.work_style,
+            &group_persona.culture,
+            &group_persona.company_size,
+            &group_persona.decision_style,
+            &group_persona.primary_concern,
         ]
         .into_iter()
         .flatten()

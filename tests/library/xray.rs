@@ -44,15 +44,15 @@ fn unfinished_non_debug_runs_cannot_be_inspected() {
         let lines = || Trajectory::read(&place.join("trajectory.jsonl")).expect("lines").lines.len();
         let before = lines();
         // The rejection is the same for a known group, an unknown one, and a missing day.
-        let told: Vec<String> =
+        let texts: Vec<String> =
             [(s2(), None), (Group::at(25).expect("a group"), Some(3)), (s2(), Some(9000))]
                 .into_iter()
                 .map(|(group, day)| {
                     session.inspect().lead_equations(group, day).expect_err("hidden").to_string()
                 })
                 .collect();
-        assert!(told.iter().all(|one| *one == told[0]), "{told:?}");
-        assert_eq!(told[0], "not_in_this_mode: the x-ray works in debug runs and in runs that are over");
+        assert!(texts.iter().all(|one| *one == texts[0]), "{texts:?}");
+        assert_eq!(texts[0], "not_in_this_mode: the x-ray works in debug runs and in runs that are over");
         assert_eq!(lines(), before, "no inspection happened, so no line is recorded");
         // After abandoning the run, the user can inspect it, but not continue it.
         session.abandon().expect("it ends");
@@ -82,7 +82,12 @@ fn inspections_are_recorded_without_changing_the_state() {
         session.call("set_prices", &json!({"A": 13}), Via::Script).expect("a price");
     }
     assert_eq!(
-        watched.inspect().lead_equations(s2(), None).expect("a look").last().map(|own| own.day),
+        watched
+            .inspect()
+            .lead_equations(s2(), None)
+            .expect("a look")
+            .last()
+            .map(|lead_equation| lead_equation.day),
         Some(10)
     );
     watched.inspect().lead_equations(s2(), Some(4)).expect("a look");
@@ -94,9 +99,9 @@ fn inspections_are_recorded_without_changing_the_state() {
     let place = watched.folder().expect("a folder").to_owned();
     drop(watched);
     let trajectory = Trajectory::read(&place.join("trajectory.jsonl")).expect("lines");
-    let told: Vec<String> =
+    let texts: Vec<String> =
         inspections(&trajectory).into_iter().map(|(what, which)| format!("{what} {which}")).collect();
-    assert_eq!(told, ["leads S2 2", "leads S2 10", "leads S2 4"]);
+    assert_eq!(texts, ["leads S2 2", "leads S2 10", "leads S2 4"]);
     assert_eq!(verify(&place).expect("it verifies").day, 14);
     let mut again = Session::open(&place, Access::Write, false).expect("it opens");
     assert_eq!(again.inspect().lead_equations(s2(), Some(10)).expect("a look").len(), 10);
@@ -123,24 +128,26 @@ fn lead_equation_yields_the_expectation_of_the_draw() {
     }
     let mut compared = 0;
     for group in Group::all() {
-        for own in [20, 42]
+        for lead_equation in [20, 42]
             .into_iter()
             .flat_map(|day| session.inspect().lead_equations(group, Some(day)).expect("a look"))
         {
-            let factors: f64 = LeadFactor::ALL.iter().map(|factor| own.factor(*factor)).product();
-            let channels: f64 = own.channels().map(|(_, leads)| leads).sum();
-            let mouths: f64 = own.word_of_mouth.iter().map(|(_, leads)| leads).sum();
+            let factors: f64 = LeadFactor::ALL.iter().map(|factor| lead_equation.factor(*factor)).product();
+            let channels: f64 = lead_equation.channels().map(|(_, leads)| leads).sum();
+            let mouths: f64 = lead_equation.word_of_mouth.iter().map(|(_, leads)| leads).sum();
             let shown = factors * (channels + mouths);
-            let (expected, came) = recorded[&(own.day, group.id())];
+            let (expected, came) = recorded[&(lead_equation.day, group.id())];
             assert!(
                 (shown - expected).abs() <= 1e-12 * expected.max(1.0),
                 "{group} {}: {shown} {expected}",
-                own.day
+                lead_equation.day
             );
-            assert_eq!((own.expected_leads(), own.actual_leads), (expected, came));
-            assert_eq!(own.is_known, group.is_initially_known());
-            let held =
-                own.expected_with(&[(LeadFactor::Reputation, 2.0 * own.factor(LeadFactor::Reputation))]);
+            assert_eq!((lead_equation.expected_leads(), lead_equation.actual_leads), (expected, came));
+            assert_eq!(lead_equation.is_known, group.is_initially_known());
+            let held = lead_equation.expected_with(&[(
+                LeadFactor::Reputation,
+                2.0 * lead_equation.factor(LeadFactor::Reputation),
+            )]);
             assert!((held - 2.0 * expected).abs() <= 1e-12 * expected.max(1.0));
             compared += 1;
         }
@@ -182,7 +189,10 @@ fn customer_view_matches_the_tables() {
             let lens = individual_view(&mut session, customer, None);
             assert_eq!(lens.signup.signed_up, status != "lost", "customer {customer}");
             assert_eq!(Some(lens.signup.day), whole(&row[2]), "customer {customer}");
-            let left = lens.days.iter().find(|own| matches!(own.outcome, SubscriberOutcome::Cancels(_)));
+            let left = lens
+                .days
+                .iter()
+                .find(|individual_day| matches!(individual_day.outcome, SubscriberOutcome::Cancels(_)));
             assert_eq!(left.map(|own| own.day), whole(&row[3]).filter(|_| status == "cancelled"));
             if status == "subscribed" {
                 assert_eq!(
@@ -286,32 +296,35 @@ fn enterprise_view_predicts_recorded_answers() {
     let (mut accepted, mut named) = (0, 0);
     for turn in turns.iter().step_by(turns.len() / 40) {
         let [customer, thread, day] = [0, 1, 2].map(|at| whole(&turn[at]));
-        let Cell::Text(said) = &turn[3] else { panic!("{turn:?}") };
-        let said: Value = serde_json::from_str(said).expect("JSON");
+        let Cell::Text(text) = &turn[3] else { panic!("{turn:?}") };
+        let value: Value = serde_json::from_str(text).expect("JSON");
         let CustomerView::Enterprise(lens) =
             session.inspect().customer_view(customer, Some(day)).expect("a look")
         else {
             panic!("a company")
         };
-        let own = lens.threads_of_day().find(|own| own.thread == thread).expect("its thread");
-        assert_eq!(own.reply_day, Some(day));
-        let price = match own.answer.expect("an answer") {
+        let thread_day = lens
+            .threads_of_day()
+            .find(|enterprise_thread_day| enterprise_thread_day.thread == thread)
+            .expect("its thread");
+        assert_eq!(thread_day.reply_day, Some(day));
+        let price = match thread_day.answer.expect("an answer") {
             OfferResponse::Accept(at) => {
                 accepted += 1;
-                let offering = own.offerings[at];
-                let judged = own.plans[offering.plan];
+                let offering = thread_day.offerings[at];
+                let judged = thread_day.plans[offering.plan];
                 assert!(judged.accepts_any_price || offering.price <= judged.accepts_below + 1e-9);
                 offering.price
             }
             OfferResponse::Counter(at, price) => {
                 named += 1;
-                assert_eq!(own.plans[own.offerings[at].plan].counter, price);
+                assert_eq!(thread_day.plans[thread_day.offerings[at].plan].counter, price);
                 price
             }
             OfferResponse::Silence => panic!("customer {customer} answered on day {day}"),
         };
-        assert_eq!(said["price"].as_f64(), Some(price), "customer {customer} on day {day}");
-        assert!(own.remaining_turns > 0);
+        assert_eq!(value["price"].as_f64(), Some(price), "customer {customer} on day {day}");
+        assert!(thread_day.remaining_turns > 0);
     }
     assert!(accepted > 3 && named > 3, "{accepted} {named}");
 }
@@ -340,15 +353,16 @@ fn lead_residuals_fit_a_poisson_distribution() {
         let (mut statistic, mut freedom, mut spread, mut extreme) = (0.0, 0.0, 0.0, 0);
         for last in (28..=1000).step_by(28).chain([1000]) {
             let days = session.inspect().lead_equations(group, Some(last)).expect("a look");
-            for own in days.iter().rev().take(if last == 1000 { 20 } else { 28 }) {
-                let (expected, came) = (own.expected_leads(), f64::from(own.actual_leads));
+            for lead_equation in days.iter().rev().take(if last == 1000 { 20 } else { 28 }) {
+                let (expected, came) =
+                    (lead_equation.expected_leads(), f64::from(lead_equation.actual_leads));
                 if expected > 0.0 {
                     statistic += (came - expected) * (came - expected) / expected;
                     // Variance of a term: 2 + 1 / λ.
                     spread += 2.0 + 1.0 / expected;
                     freedom += 1.0;
                 }
-                extreme += u32::from(own.p_value() < 0.01);
+                extreme += u32::from(lead_equation.p_value() < 0.01);
             }
         }
         assert_eq!(freedom, 1000.0, "{id}");
@@ -368,10 +382,10 @@ fn read_only_run_cannot_be_inspected() {
     apply_opening_decisions(&mut session);
     advance_weeks(&mut session, 2);
     session.save().expect("saved");
-    let own = session.folder().expect("a folder").to_owned();
+    let path = session.folder().expect("a folder").to_owned();
     drop(session);
-    let before = std::fs::read(own.join("trajectory.jsonl")).expect("bytes");
-    let mut read = Session::open(&own, Access::Read, true).expect("it opens");
+    let before = std::fs::read(path.join("trajectory.jsonl")).expect("bytes");
+    let mut read = Session::open(&path, Access::Read, true).expect("it opens");
     assert_eq!(read.inspect().lead_equations(s2(), None).expect_err("a refusal").code, "read_only");
     assert_eq!(
         read.inspect().query_hidden_tables("SELECT 1", None).expect_err("a refusal").code,
@@ -382,7 +396,7 @@ fn read_only_run_cannot_be_inspected() {
     let refused = read.query("SELECT * FROM hidden.customers").expect_err("no such table");
     assert!(refused.message.contains("query --xray"), "{refused}");
     drop(read);
-    assert_eq!(std::fs::read(own.join("trajectory.jsonl")).expect("bytes"), before);
+    assert_eq!(std::fs::read(path.join("trajectory.jsonl")).expect("bytes"), before);
     let mut sandbox = begin_run(folder.path(), Mode::Sandbox, 28);
     let refused = sandbox.query("SELECT * FROM hidden.customers").expect_err("no such table");
     assert!(

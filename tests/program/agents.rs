@@ -240,8 +240,13 @@ fn python_program_finds_the_run_and_the_package() {
 fn code_option_after_a_tool_belongs_to_the_tool() {
     let shell = Shell::new();
     assert_eq!(shell.agent(&["new", "--seed", "3"]).exit_code, 0);
-    let said = shell.agent(&["call", "python_exec", "--code", "SELECT 5 AS x"]);
-    assert!(said.exit_code == 0 && said.stdout.contains("5"), "{}{}", said.stdout, said.stderr);
+    let program_output = shell.agent(&["call", "python_exec", "--code", "SELECT 5 AS x"]);
+    assert!(
+        program_output.exit_code == 0 && program_output.stdout.contains("5"),
+        "{}{}",
+        program_output.stdout,
+        program_output.stderr
+    );
     let kept = shell.agent(&["call", "register_script", "--code", "SELECT 6 AS x", "--name", "six"]);
     assert_eq!(kept.exit_code, 0, "{}", kept.stderr);
     let rows = shell.agent(&["call", "query", "--sql", "SELECT 7 AS x"]);
@@ -266,17 +271,17 @@ fn a_batch_starts_a_command_that_stops_early_again_and_selects_a_run() {
         ["batch", "--command", &command, "--runs", "2", "--continue", "2", "--seed", "7", "--days", "14"];
     let done = shell.agent(&[&words[..], &["--mode", "sandbox", "--out", &folder, "--json"]].concat());
     assert_eq!(done.exit_code, 0, "{}", done.stderr);
-    let told: Value = serde_json::from_str(&done.stdout).expect("JSON");
+    let value: Value = serde_json::from_str(&done.stdout).expect("JSON");
     let kept: Value =
         serde_json::from_slice(&std::fs::read(out.join("results.json")).expect("a file")).expect("JSON");
-    assert_eq!(told, kept);
-    let rows = &told["tables"]["tries"]["rows"];
+    assert_eq!(value, kept);
+    let rows = &value["tables"]["tries"]["rows"];
     let row = |at: usize| {
         ["try", "end", "day", "attempts", "exit_code", "selected"].map(|name| rows[at][name].clone())
     };
     assert_eq!(row(0), [json!(1), json!("last day"), json!(14), json!(2), json!(0), json!("yes")]);
     assert_eq!(row(1), [json!(2), json!("not over"), json!(0), json!(3), json!(4), json!("")]);
-    assert!(rows[0]["cash"].as_f64().is_some_and(|cash| cash > 0.0), "{told}");
+    assert!(rows[0]["cash"].as_f64().is_some_and(|cash| cash > 0.0), "{value}");
     let log = std::fs::read_to_string(out.join("try-1/output.txt")).expect("a file");
     assert!(log.starts_with("1/1\n") && log.contains("1/2\n"), "{log}");
     for run in shell.runs() {
@@ -284,10 +289,11 @@ fn a_batch_starts_a_command_that_stops_early_again_and_selects_a_run() {
     }
     shell.agent(&[&words[..], &["--out", &folder]].concat()).assert_fails(2, &["not empty"]);
     let none = shell.home.0.path().join("none");
-    let said = shell.agent(&["batch", "--command", "true", "--days", "3", "--out", &none.to_string_lossy()]);
+    let program_output =
+        shell.agent(&["batch", "--command", "true", "--days", "3", "--out", &none.to_string_lossy()]);
     assert!(
-        said.exit_code != 0 && !none.exists(),
+        program_output.exit_code != 0 && !none.exists(),
         "a batch that cannot begin leaves nothing: {}",
-        said.stderr
+        program_output.stderr
     );
 }

@@ -55,9 +55,9 @@ impl Study {
     }
 
     fn play_session(&self, machine: &str, lines: &str) -> ProgramOutput {
-        let said = run_with_input(self.command(machine).args(["--study", &self.folder()]), lines);
-        assert_eq!(said.exit_code, 0, "{}{}", said.stdout, said.stderr);
-        said
+        let program_output = run_with_input(self.command(machine).args(["--study", &self.folder()]), lines);
+        assert_eq!(program_output.exit_code, 0, "{}{}", program_output.stdout, program_output.stderr);
+        program_output
     }
 
     fn run(&self, machine: &str, arguments: &[&str]) -> ProgramOutput {
@@ -79,11 +79,11 @@ impl Study {
         let folder = self.folder();
         let mut arguments = vec!["study", "audit", "--json", &folder];
         arguments.extend(machines.iter().map(String::as_str));
-        let said = self.home.run(&arguments);
-        let audit: Value =
-            serde_json::from_str(&said.stdout).unwrap_or_else(|_| panic!("{}{}", said.stdout, said.stderr));
+        let program_output = self.home.run(&arguments);
+        let audit: Value = serde_json::from_str(&program_output.stdout)
+            .unwrap_or_else(|_| panic!("{}{}", program_output.stdout, program_output.stderr));
         let findings = audit["findings"].as_array().expect("findings");
-        assert_eq!(said.exit_code, i32::from(!findings.is_empty()));
+        assert_eq!(program_output.exit_code, i32::from(!findings.is_empty()));
         let of = |finding: &Value| {
             let words = finding["words"].as_str().expect("words").to_owned();
             (finding["kind"].as_str().expect("a kind").to_owned(), finding["line"].as_u64(), words)
@@ -280,8 +280,12 @@ fn audit_reports_that_it_examined_nothing_and_runs_of_another_protocol() {
     for kind in ["nothing_examined", "other_protocol"] {
         assert!(kinds.contains(&kind.to_owned()), "{kinds:?}");
     }
-    let said = study.run("one", &["study", "audit", &study.folder()]);
-    assert!(said.exit_code == 1 && !said.stdout.contains("No findings"), "{}", said.stdout);
+    let program_output = study.run("one", &["study", "audit", &study.folder()]);
+    assert!(
+        program_output.exit_code == 1 && !program_output.stdout.contains("No findings"),
+        "{}",
+        program_output.stdout
+    );
     // The label has a run, which the collection reports.
     let (one, out) =
         (study.machine("one").display().to_string(), study.machine("data").display().to_string());
@@ -295,8 +299,8 @@ fn audit_reports_that_it_examined_nothing_and_runs_of_another_protocol() {
     assert!(collected.stdout.contains("label P02 has no session\n"), "{}", collected.stdout);
     // With another name it is another study: counted, but not a finding.
     fs::write(&path, text.replace("name = \"pilot\"", "name = \"other\"")).expect("written");
-    let said = study.run("one", &["study", "audit", &study.folder()]);
-    assert!(said.stdout.contains("Runs of other studies, not examined: 1."), "{}", said.stdout);
+    let output = study.run("one", &["study", "audit", &study.folder()]);
+    assert!(output.stdout.contains("Runs of other studies, not examined: 1."), "{}", output.stdout);
     assert_eq!(study.kinds(&["one"]), ["nothing_examined"]);
 }
 
@@ -378,10 +382,10 @@ fn audit_counts_match_the_tables() {
     let study = Study::new();
     study.play_session("one", &format!("P01\nyes\nset_prices A=-1\n{}quit\n", WEEKS.concat()));
     study.play_session("one", "P01\nnext \"six\" naive\n");
-    let own =
+    let text =
         "next \"own\" 990000 980000 999000 960000 940000 980000 900000 800000 990000 800000 700000 990000\n";
-    study.play_session("two", &format!("P02\nyes\n{own}{}quit\n", WEEKS[..2].concat()));
-    study.play_session("two", &format!("P03\nyes\n{own}{own}"));
+    study.play_session("two", &format!("P02\nyes\n{text}{}quit\n", WEEKS[..2].concat()));
+    study.play_session("two", &format!("P03\nyes\n{text}{text}"));
     // One week of the second participant has one forecast of their own, and half a minute passed before the last.
     let run = study.only_run("two", "P02");
     let mut told = lines(&run);
@@ -397,8 +401,8 @@ fn audit_counts_match_the_tables() {
         [study.machine("one"), study.machine("two"), out].map(|path| path.display().to_string());
     let collected = study.home.run(&["study", "collect", &one, &two, "--out", &out]);
     assert!(collected.stdout.contains("3 runs verified"), "{}{}", collected.stdout, collected.stderr);
-    let said = study.home.run(&["study", "audit", "--json", &study.folder(), &one, &two]);
-    let audit: Value = serde_json::from_str(&said.stdout).expect("JSON");
+    let program_output = study.home.run(&["study", "audit", "--json", &study.folder(), &one, &two]);
+    let audit: Value = serde_json::from_str(&program_output.stdout).expect("JSON");
     let table = rows_of(&Path::new(&out).join("runs.csv"));
     let same = [
         ("weeks", "weeks"),
@@ -449,9 +453,10 @@ fn copies_and_pipes_do_not_confuse_the_audit() {
     let id = run.file_name().expect("a name").to_string_lossy().into_owned();
     // A run of the study cannot be played outside of it, nor watched while it is unfinished.
     for options in [&["--run", &id][..], &["--run", &id, "--watch"]] {
-        let said = study.run("one", &[&["--as", "P01", "play", "--plain"], options, &["--strict"]].concat());
-        assert_eq!(said.exit_code, 2, "{}", said.stdout);
-        assert!(said.stderr.contains("belongs to the study"), "{}", said.stderr);
+        let program_output =
+            study.run("one", &[&["--as", "P01", "play", "--plain"], options, &["--strict"]].concat());
+        assert_eq!(program_output.exit_code, 2, "{}", program_output.stdout);
+        assert!(program_output.stderr.contains("belongs to the study"), "{}", program_output.stderr);
     }
     // A copy of a folder of runs is not a second session.
     copy(&study.machine("one"), &study.machine("copy"));

@@ -57,8 +57,8 @@ fn class_workflow_from_handouts_to_the_projector_page() {
         assert!(played.stdout.contains("Three weeks · step 1 of 2"), "{}", played.stdout);
     }
     let run = only_run(&machines[0], "S01");
-    let again = machines[0].play(&["--handout", &room.handout("S01")], "lesson\nquit\n");
-    assert!(again.stdout.contains("The lesson is complete"), "{}", again.stdout);
+    let program_output = machines[0].play(&["--handout", &room.handout("S01")], "lesson\nquit\n");
+    assert!(program_output.stdout.contains("The lesson is complete"), "{}", program_output.stdout);
     only_run(&machines[0], "S01");
     machines[0]
         .run(&["--as", "S02", "play", "--handout", &room.handout("S01")])
@@ -81,12 +81,12 @@ fn class_workflow_from_handouts_to_the_projector_page() {
     let columns = fs::read_to_string(Path::new(&room.folder()).join("class-columns.csv")).expect("a table");
     assert!(columns.contains("of_good,"), "{columns}");
 
-    let shown = room.teacher.run(&["class", "show", &room.folder(), "--student", "S02"]);
+    let output = room.teacher.run(&["class", "show", &room.folder(), "--student", "S02"]);
     assert!(
-        shown.stdout.contains("Cash by day: S02 #") && shown.stdout.contains("100%"),
+        output.stdout.contains("Cash by day: S02 #") && output.stdout.contains("100%"),
         "{}{}",
-        shown.stdout,
-        shown.stderr
+        output.stdout,
+        output.stderr
     );
     room.teacher
         .run(&["class", "show", &room.folder(), "--student", "S99"])

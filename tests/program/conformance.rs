@@ -58,11 +58,11 @@ fn every_tool_answers_and_refuses_as_the_catalogue_says() {
 }
 
 /// Checks that a rejection is in the catalog or common to all tools.
-fn is_documented(tool: &Value, said: &Value) {
-    let code = said["code"].as_str().unwrap_or_else(|| panic!("{}: {said}", tool["name"]));
-    let own = tool["refusals"].as_array().expect("refusals");
+fn is_documented(tool: &Value, value: &Value) {
+    let code = value["code"].as_str().unwrap_or_else(|| panic!("{}: {value}", tool["name"]));
+    let values = tool["refusals"].as_array().expect("refusals");
     let of_all = ["wrong_type", "unknown_argument", "argument_missing"];
-    assert!(own.iter().any(|one| one == code) || of_all.contains(&code), "{}: {code}", tool["name"]);
+    assert!(values.iter().any(|one| one == code) || of_all.contains(&code), "{}: {code}", tool["name"]);
 }
 
 /// Checks that every described route answers with the described methods.
@@ -74,9 +74,9 @@ fn check_described_routes(server: &Server) {
         // This request stops the server, as `agent stop` does.
         let may_be_tried = |method: &&String| path != "/shutdown" || *method != "post";
         for method in methods.as_object().expect("methods").keys().filter(may_be_tried) {
-            let (status, said) =
+            let (status, value) =
                 server.request_with_head(&method.to_uppercase(), path, "host: 127.0.0.1\r\n", "");
-            assert_ne!(status, 404, "{method} {path}: {said}");
+            assert_ne!(status, 404, "{method} {path}: {value}");
         }
         assert_eq!(server.request_with_head("PATCH", path, "host: 127.0.0.1\r\n", "").0, 404, "{path}");
     }

@@ -25,13 +25,13 @@ fn program(runs: &Path) -> Command {
 fn run(command: &mut Command) -> Vec<Value> {
     let output = command.arg("--json").output().expect("the program starts");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let said = String::from_utf8(output.stdout).expect("UTF-8");
+    let text = String::from_utf8(output.stdout).expect("UTF-8");
     let parse = |line: &str| {
         let mut object: Value = serde_json::from_str(line).expect("an object");
         object.as_object_mut().expect("an object").remove("seconds");
         object
     };
-    said.lines().map(parse).collect()
+    text.lines().map(parse).collect()
 }
 
 /// A market that fills so fast that all threads have work after a few weeks.
@@ -51,10 +51,10 @@ fn the_built_program_and_the_library_reach_the_same_state() {
             spec.cash = Some(1e9);
             spec.overrides = vec![("leads.saturation_base".to_owned(), "14.5".to_owned())];
         }
-        let own = play(&policy, &spec, &configuration, &mut Collector::disabled()).expect("it plays");
-        assert_eq!(built["state_hash"], own.state_hash, "{name}");
-        assert_eq!(built["cash"].as_f64().map(f64::to_bits), Some(own.cash.to_bits()), "{name}");
-        assert_eq!((built["day"].as_u64(), own.day), (Some(u64::from(until)), until));
+        let run_outcome = play(&policy, &spec, &configuration, &mut Collector::disabled()).expect("it plays");
+        assert_eq!(built["state_hash"], run_outcome.state_hash, "{name}");
+        assert_eq!(built["cash"].as_f64().map(f64::to_bits), Some(run_outcome.cash.to_bits()), "{name}");
+        assert_eq!((built["day"].as_u64(), run_outcome.day), (Some(u64::from(until)), until));
     }
 }
 
@@ -84,13 +84,13 @@ fn saved_run_has_the_reported_state() {
     // Spending in fractions of dollars: the trajectory must preserve every bit.
     let mut command = program(runs.path());
     command.args(["run", "--policy", "P1a", "--seed", "5", "--until", "84", "--save"]);
-    let said = run(&mut command).remove(0);
-    let id = said["run"].as_str().expect("a run").to_owned();
+    let value = run(&mut command).remove(0);
+    let id = value["run"].as_str().expect("a run").to_owned();
     let verified = program(runs.path()).args(["replay", &id, "--verify"]).output().expect("it runs");
     let text = String::from_utf8_lossy(&verified.stdout).into_owned();
     assert!(verified.status.success(), "{}", String::from_utf8_lossy(&verified.stderr));
     assert!(text.contains("12 states verified, day 84"), "{text}");
-    let hash = said["state_hash"].as_str().expect("a hash");
+    let hash = value["state_hash"].as_str().expect("a hash");
     assert!(text.contains(hash), "{text} instead of {hash}");
     let opened = Session::open(&runs.path().join(&id), Access::Write, true).expect("it opens");
     assert_eq!(opened.state_hash().0, hash);

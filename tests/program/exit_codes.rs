@@ -72,10 +72,10 @@ fn query_returns_5000_rows_without_a_database() {
     let home = Home::new();
     let run = home.two_weeks();
     let rows = |most: u32| {
-        let said = home.run(&["query", &run_id(&run), &sql_counting_to(most), "--format", "csv"]);
-        assert_eq!(said.exit_code, 0, "{}", said.stderr);
+        let program_output = home.run(&["query", &run_id(&run), &sql_counting_to(most), "--format", "csv"]);
+        assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
         let rows: Vec<u32> =
-            said.stdout.lines().skip(1).map(|line| line.parse().expect("a number")).collect();
+            program_output.stdout.lines().skip(1).map(|line| line.parse().expect("a number")).collect();
         assert!(rows.iter().copied().eq(1..=rows.len() as u32), "in their order");
         rows.len()
     };
@@ -93,15 +93,17 @@ fn query_returns_5000_rows_without_a_database() {
 fn named_query_is_printed_as_markdown() {
     let home = Home::new();
     let run = home.two_weeks();
-    let said = home.run(&["query", &run_id(&run), "economy", "--format", "md"]);
-    assert_eq!(said.exit_code, 0, "{}", said.stderr);
+    let program_output = home.run(&["query", &run_id(&run), "economy", "--format", "md"]);
+    assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
     assert!(
-        said.stdout.starts_with("| ") && said.stdout.lines().nth(1).is_some_and(|line| line.contains("---")),
+        program_output.stdout.starts_with("| ")
+            && program_output.stdout.lines().nth(1).is_some_and(|line| line.contains("---")),
         "{}",
-        said.stdout
+        program_output.stdout
     );
-    let told = home.run(&["query", &run_id(&run), "SELECT 'a|b' AS text, 7 AS n, 8 AS n", "--format", "md"]);
-    assert_eq!(told.stdout, "| text | n | n |\n| --- | --: | --: |\n| a\\|b | 7 | 8 |\n");
+    let output =
+        home.run(&["query", &run_id(&run), "SELECT 'a|b' AS text, 7 AS n, 8 AS n", "--format", "md"]);
+    assert_eq!(output.stdout, "| text | n | n |\n| --- | --: | --: |\n| a\\|b | 7 | 8 |\n");
     let near = home.run(&["query", &run_id(&run), "cash-by-weeks"]);
     assert_eq!(near.exit_code, 2);
     assert!(near.stderr.contains("cash-by-week"), "{}", near.stderr);

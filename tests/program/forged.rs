@@ -61,8 +61,8 @@ struct OpenedArchive {
 impl OpenedArchive {
     fn export(home: &Home, run: &Path) -> OpenedArchive {
         let archive = home.0.path().join("run.tar");
-        let said = home.run(&["runs", "export", &run_id(run), "--out", &archive.to_string_lossy()]);
-        assert_eq!(said.exit_code, 0, "{}", said.stderr);
+        let program_output = home.run(&["runs", "export", &run_id(run), "--out", &archive.to_string_lossy()]);
+        assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
         let mut files = BTreeMap::new();
         for entry in tar::Archive::new(fs::File::open(&archive).expect("a file")).entries().expect("entries")
         {
@@ -87,8 +87,8 @@ impl OpenedArchive {
         if file == "trajectory.jsonl" {
             self.seal.last_hash = digest(text.lines().last().expect("lines"));
         }
-        let own = self.seal.file.iter_mut().find(|own| own.name == file).expect("it is sealed");
-        (own.bytes, own.blake3) = (text.len() as u64, digest(&text));
+        let sealed_file = self.seal.file.iter_mut().find(|own| own.name == file).expect("it is sealed");
+        (sealed_file.bytes, sealed_file.blake3) = (text.len() as u64, digest(&text));
         self.files.insert(file.to_owned(), text.into_bytes());
         self.seal = self.seal.clone().with_checksum();
     }
@@ -138,17 +138,17 @@ fn rechained_trajectory_does_not_verify() {
     // The database would reveal the change; without it the states must.
     fs::remove_file(run.join("world.db")).expect("it is there");
     fs::remove_file(run.join("snapshot.bin")).unwrap_or_default();
-    let said = home.run(&["replay", &run_id(&run), "--verify"]);
-    said.assert_fails(3, &["different"]);
+    let program_output = home.run(&["replay", &run_id(&run), "--verify"]);
+    program_output.assert_fails(3, &["different"]);
 }
 
 #[test]
 fn resealed_archive_is_still_verified() {
     let (home, run) = two_weeks();
     let other = Home::new();
-    let whole = OpenedArchive::export(&home, &run);
-    let opened = || OpenedArchive { files: whole.files.clone(), seal: whole.seal.clone() };
-    assert_eq!(whole.import(&other).exit_code, 0, "a fitting seal is accepted");
+    let opened_archive = OpenedArchive::export(&home, &run);
+    let opened = || OpenedArchive { files: opened_archive.files.clone(), seal: opened_archive.seal.clone() };
+    assert_eq!(opened_archive.import(&other).exit_code, 0, "a fitting seal is accepted");
     fs::remove_dir_all(other.runs().join(run_id(&run))).expect("it was there");
 
     let mut forged = opened();
@@ -164,8 +164,12 @@ fn resealed_archive_is_still_verified() {
         forged.text("run.toml").lines().find(|line| line.starts_with("seed")).expect("a seed").to_owned();
     let manifest = forged.text("run.toml").replace(&seed, "seed = 8");
     forged.replace_file("run.toml", manifest);
-    let said = forged.import(&other);
-    assert_eq!(said.exit_code, 3, "another seed than the first line names: {}{}", said.stdout, said.stderr);
+    let program_output = forged.import(&other);
+    assert_eq!(
+        program_output.exit_code, 3,
+        "another seed than the first line names: {}{}",
+        program_output.stdout, program_output.stderr
+    );
 
     // Recomputing everything gives another run, which its states reveal.
     let mut forged = opened();

@@ -30,12 +30,12 @@ fn check_policies(policies: &[&str]) {
     command.args(["lab", "golden"]).arg(data_path("golden")).env("NOVAMIND_RUNS", runs.path());
     command.args(policies.iter().flat_map(|policy| ["--only", policy]));
     let output = command.output().expect("the program starts");
-    let said = String::from_utf8_lossy(&output.stdout);
-    assert!(output.status.success(), "{said}{}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success(), "{text}{}", String::from_utf8_lossy(&output.stderr));
     for policy in policies {
-        assert!(said.contains(&format!("{policy} ")), "{policy} was not compared:\n{said}");
+        assert!(text.contains(&format!("{policy} ")), "{policy} was not compared:\n{text}");
     }
-    check_deviation_changes(policies, &said);
+    check_deviation_changes(policies, &text);
 }
 
 /// Standard errors by which a figure may change against the released simulator between versions. The seeds are the same, so only a
@@ -87,7 +87,7 @@ fn figures(path: &Path) -> Figures {
 #[track_caller]
 fn check_figures(name: &str, policy: &str, seeds: &str, until: &str, days: &str) {
     let folder = tempfile::tempdir().expect("a folder");
-    let (own, kept) = (folder.path().join("own.csv"), data_path("paired").join(name));
+    let (path, kept) = (folder.path().join("own.csv"), data_path("paired").join(name));
     let options = [
         "run",
         "--policy",
@@ -102,10 +102,10 @@ fn check_figures(name: &str, policy: &str, seeds: &str, until: &str, days: &str)
         days,
     ];
     let mut command = Command::new(env!("CARGO_BIN_EXE_novamind"));
-    command.args(options).arg("--metrics").arg(&own).env("NOVAMIND_RUNS", folder.path());
+    command.args(options).arg("--metrics").arg(&path).env("NOVAMIND_RUNS", folder.path());
     let output = command.output().expect("the program starts");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let (own, kept) = (figures(&own), figures(&kept));
+    let (own, kept) = (figures(&path), figures(&kept));
     let keys: std::collections::BTreeSet<&String> = own.keys().chain(kept.keys()).collect();
     assert!(keys.len() > 200, "{name} holds {} figures", keys.len());
     let value = |figures: &Figures, key: &str| figures.get(key).map_or("nothing", String::as_str).to_owned();

@@ -156,10 +156,10 @@ fn check_concurrent_weeks(server: &Server, known: &str) {
     let before = day();
     let body = json!({ "rationale": "on", "predictions": predictions() }).to_string();
     let statuses: Vec<u16> = thread::scope(|scope| {
-        let asked: Vec<_> = (0..4)
+        let join_handles: Vec<_> = (0..4)
             .map(|_| scope.spawn(|| server.request_with_head("POST", "/next-week", known, &body).0))
             .collect();
-        asked.into_iter().map(|asked| asked.join().expect("an answer")).collect()
+        join_handles.into_iter().map(|join_handle| join_handle.join().expect("an answer")).collect()
     });
     assert!(statuses.contains(&200), "{statuses:?}");
     assert!(statuses.iter().all(|status| [200, 400, 409].contains(status)), "{statuses:?}");

@@ -112,8 +112,8 @@ pub fn plain_mode_hash() -> String {
         lines += &format!("next {}\n", json!({ "rationale": "on", "predictions": predictions() }));
     }
     lines = lines.replace(r#", "C": null"#, "");
-    let said = home.play(&["--seed", "7", "--days", "28", "--mode", "sandbox", "--strict"], &lines);
-    assert_eq!(said.exit_code, 0, "{}", said.stdout);
+    let program_output = home.play(&["--seed", "7", "--days", "28", "--mode", "sandbox", "--strict"], &lines);
+    assert_eq!(program_output.exit_code, 0, "{}", program_output.stdout);
     last_hash(&home)
 }
 
@@ -208,8 +208,9 @@ fn a_week_answers_with_the_figures_of_plain_mode() {
     let (_, week) = server.advance_week();
     let line = format!("next {}\n", json!({ "rationale": "on", "predictions": predictions() }));
     let options = ["--seed", "7", "--days", "28", "--mode", "sandbox", "--json"];
-    let said = plain.play(&options, &line);
-    let mut answers = said.stdout.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
+    let program_output = plain.play(&options, &line);
+    let mut answers =
+        program_output.stdout.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
     let next = answers.find(|answer| answer["command"] == "next").expect("an answer");
     let figures = &next["data"]["figures"];
     assert!(figures["new_individual_leads"].is_number(), "{next}");
@@ -299,7 +300,7 @@ fn non_finite_number_is_rejected_like_an_argument() {
 fn excess_connection_gets_status_503() {
     let home = Home::new();
     let server = Server::start(&home, &NEW_RUN_OPTIONS);
-    let held: Vec<TcpStream> = (0..64)
+    let tcp_streams: Vec<TcpStream> = (0..64)
         .map(|_| {
             let mut stream = TcpStream::connect(("127.0.0.1", server.port)).expect("a connection");
             // An answered request shows that the server has accepted the connection.
@@ -321,7 +322,7 @@ fn excess_connection_gets_status_503() {
         let full = home.run(&["agent", command, "--run", &run]);
         assert_eq!(full.exit_code, 7, "{command}: {}{}", full.stdout, full.stderr);
     }
-    drop(held);
+    drop(tcp_streams);
 }
 
 #[test]
@@ -472,9 +473,9 @@ fn run_of_a_program_with_other_terms_than_a_baseline_is_a_sandbox_and_says_so() 
     // A client that closes at once: the run has started.
     let mode_of = |options: &[&str]| {
         let home = Home::new();
-        let said = home.run(&[&["mcp", "--seed", "3"], options].concat());
+        let program_output = home.run(&[&["mcp", "--seed", "3"], options].concat());
         let list: Value = serde_json::from_str(&home.run(&["runs", "list", "--json"]).stdout).expect("JSON");
-        (list[0]["mode"].clone(), said.stderr)
+        (list[0]["mode"].clone(), program_output.stderr)
     };
     for (options, mode, words) in [
         (&[][..], "baseline", None),
@@ -507,12 +508,12 @@ fn run_of_a_program_with_other_terms_than_a_baseline_is_a_sandbox_and_says_so() 
 fn client_of_a_run_that_cannot_be_opened_is_answered() {
     let home = Home::new();
     let lines = "{\"jsonrpc\":\"2.0\",\"id\":1,\"method\":\"initialize\",\"params\":{}}\n";
-    let said = run_with_input(home.program().args(["mcp", "--run", "nothere"]), lines);
-    said.assert_fails(3, &["nothere"]);
-    let answer: Value = serde_json::from_str(&said.stdout).expect("JSON");
+    let program_output = run_with_input(home.program().args(["mcp", "--run", "nothere"]), lines);
+    program_output.assert_fails(3, &["nothere"]);
+    let answer: Value = serde_json::from_str(&program_output.stdout).expect("JSON");
     assert_eq!((&answer["id"], &answer["jsonrpc"]), (&json!(1), &json!("2.0")));
     let message = answer["error"]["message"].as_str().expect("a message");
-    assert!(said.stderr.contains(message) && message.contains("nothere"), "{answer}");
+    assert!(program_output.stderr.contains(message) && message.contains("nothere"), "{answer}");
     // A client that sends nothing sees the message on standard error.
     home.run(&["mcp", "--run", "nothere"]).assert_fails(3, &["nothere"]);
 }

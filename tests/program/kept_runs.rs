@@ -6,9 +6,9 @@ use crate::support::home::Home;
 fn keep_run(home: &Home, seed: &str) -> String {
     let file = home.0.path().join(format!("{seed}.csv"));
     let path = file.to_str().expect("a path");
-    let said =
+    let program_output =
         home.run(&["run", "--policy", "P0", "--seed", seed, "--days", "28", "--save", "--metrics", path]);
-    assert_eq!(said.exit_code, 0, "{}", said.stderr);
+    assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
     std::fs::read_to_string(file).expect("figures")
 }
 
@@ -16,9 +16,9 @@ fn keep_run(home: &Home, seed: &str) -> String {
 fn metrics_of_a_kept_run_match_those_written_while_playing() {
     let home = Home::new();
     let live = keep_run(&home, "3");
-    let said = home.run(&["lab", "metrics", "latest"]);
-    assert_eq!((said.exit_code, said.stderr.as_str()), (0, ""));
-    assert!(said.stdout == live, "{} and {} bytes", said.stdout.len(), live.len());
+    let program_output = home.run(&["lab", "metrics", "latest"]);
+    assert_eq!((program_output.exit_code, program_output.stderr.as_str()), (0, ""));
+    assert!(program_output.stdout == live, "{} and {} bytes", program_output.stdout.len(), live.len());
     // The inspection is recorded, and the run verifies.
     assert_eq!(home.run(&["replay", "latest", "--verify"]).exit_code, 0);
 }
@@ -34,12 +34,16 @@ fn two_kept_runs_are_compared() {
         .filter(|name| name.len() == 8)
         .collect();
     let [one, other] = &runs[..] else { panic!("{runs:?}") };
-    let said = home.run(&["lab", "diff", one, other]);
-    assert_eq!(said.exit_code, 0, "{}", said.stderr);
-    assert!(said.stdout.starts_with("the runs differ from day 1\nday 1\ndiffers: "), "{}", said.stdout);
-    let said = home.run(&["lab", "diff", one, other, "28", "--json"]);
-    let told: serde_json::Value = serde_json::from_str(&said.stdout).expect("JSON");
-    assert_eq!((&told["first_day"], &told["day"]), (&1.into(), &28.into()));
+    let program_output = home.run(&["lab", "diff", one, other]);
+    assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
+    assert!(
+        program_output.stdout.starts_with("the runs differ from day 1\nday 1\ndiffers: "),
+        "{}",
+        program_output.stdout
+    );
+    let output = home.run(&["lab", "diff", one, other, "28", "--json"]);
+    let value: serde_json::Value = serde_json::from_str(&output.stdout).expect("JSON");
+    assert_eq!((&value["first_day"], &value["day"]), (&1.into(), &28.into()));
     for arguments in
         [&["lab", "diff", one, one][..], &["lab", "diff", one, other, "29"], &["lab", "diff", one]]
     {
@@ -57,10 +61,14 @@ fn unfinished_sandbox_cannot_be_inspected() {
         &["replay", "latest", "--xray"],
         &["replay", "latest", "--xray", "--week", "1"],
     ] {
-        let said = home.run(arguments);
-        assert_ne!(said.exit_code, 0);
-        assert!(said.stderr.contains("debug runs and in runs that are over"), "{}", said.stderr);
-        assert_eq!(said.stdout, "");
+        let program_output = home.run(arguments);
+        assert_ne!(program_output.exit_code, 0);
+        assert!(
+            program_output.stderr.contains("debug runs and in runs that are over"),
+            "{}",
+            program_output.stderr
+        );
+        assert_eq!(program_output.stdout, "");
     }
 }
 
@@ -73,9 +81,9 @@ fn why_shows_causes_without_hidden_state() {
         let home = Home::new();
         let mut options = vec!["--mode", mode, "--seed", "7", "--echo"];
         options.extend(if mode == "baseline" { &["--participant", "P01"][..] } else { &["--days", "84"] });
-        let said = home.play(&options, lines);
-        let [played, answers @ ..] = &said.stdout.split("> why ").collect::<Vec<_>>()[..] else {
-            panic!("{}", said.stdout)
+        let program_output = home.play(&options, lines);
+        let [played, answers @ ..] = &program_output.stdout.split("> why ").collect::<Vec<_>>()[..] else {
+            panic!("{}", program_output.stdout)
         };
         // The report on the week lists settings and changes, without causes.
         let (_, report) = played.split_once("> report").expect("a report");
@@ -89,13 +97,21 @@ fn why_shows_causes_without_hidden_state() {
             let refused = answers
                 .iter()
                 .all(|answer| answer.contains("refused not_in_this_mode: why and what-if simulate"));
-            assert!(refused && looks.is_empty(), "{}", said.stdout);
+            assert!(refused && looks.is_empty(), "{}", program_output.stdout);
             continue;
         }
-        assert!(answers[0].contains("new subscribers of S1, week 3: "), "{}", said.stdout);
-        assert!(answers[0].contains("price"), "{}", said.stdout);
-        assert!(answers[2].contains("there is no figure chrun; did you mean churn"), "{}", said.stdout);
-        assert!(said.stdout.contains("why needs a figure: cash_change"), "{}", said.stdout);
+        assert!(answers[0].contains("new subscribers of S1, week 3: "), "{}", program_output.stdout);
+        assert!(answers[0].contains("price"), "{}", program_output.stdout);
+        assert!(
+            answers[2].contains("there is no figure chrun; did you mean churn"),
+            "{}",
+            program_output.stdout
+        );
+        assert!(
+            program_output.stdout.contains("why needs a figure: cash_change"),
+            "{}",
+            program_output.stdout
+        );
         let mood = answers[1];
         if mode == "debug" {
             assert!(mood.contains("reputation of S1, week 3: "), "{mood}");
@@ -116,8 +132,8 @@ fn why_shows_causes_without_hidden_state() {
 fn the_replay_of_a_kept_run_on_the_x_ray_screen_needs_a_terminal() {
     let home = Home::new();
     keep_run(&home, "3");
-    let said = home.run(&["replay", "latest", "--xray"]);
-    assert_eq!(said.exit_code, 2, "{}", said.stderr);
-    assert!(said.stderr.contains("a replay needs a terminal"), "{}", said.stderr);
+    let program_output = home.run(&["replay", "latest", "--xray"]);
+    assert_eq!(program_output.exit_code, 2, "{}", program_output.stderr);
+    assert!(program_output.stderr.contains("a replay needs a terminal"), "{}", program_output.stderr);
     assert_eq!(home.run(&["replay", "latest", "--xray", "--verify"]).exit_code, 2);
 }

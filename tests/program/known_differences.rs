@@ -57,9 +57,9 @@ impl Fixture {
     fn new() -> Fixture {
         let (home, served) = (Home::new(), Home::new());
         let options = ["--json", "--echo", "--seed", "7", "--days", "84", "--cash", "20000000"];
-        let said = home.play(&options, FIXTURE_COMMANDS);
-        assert_eq!(said.exit_code, 0, "{}{}", said.stdout, said.stderr);
-        let story = said.json_lines();
+        let program_output = home.play(&options, FIXTURE_COMMANDS);
+        assert_eq!(program_output.exit_code, 0, "{}{}", program_output.stdout, program_output.stderr);
+        let story = program_output.json_lines();
         let server = Server::start(&served, &NEW_RUN_OPTIONS);
         Fixture { home, story, server, _served: served }
     }

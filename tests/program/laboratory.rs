@@ -8,9 +8,9 @@ use crate::support::home::Home;
 
 /// Returns the JSON output of a command.
 fn json(home: &Home, arguments: &[&str]) -> Value {
-    let said = home.run(&[arguments, &["--json"]].concat());
-    assert_eq!(said.exit_code, 0, "{arguments:?}: {}", said.stderr);
-    serde_json::from_str(&said.stdout).expect("JSON")
+    let program_output = home.run(&[arguments, &["--json"]].concat());
+    assert_eq!(program_output.exit_code, 0, "{arguments:?}: {}", program_output.stderr);
+    serde_json::from_str(&program_output.stdout).expect("JSON")
 }
 
 #[test]
@@ -69,12 +69,12 @@ fn unknown_names_list_the_valid_ones() {
         (vec!["run", "--policy", "none"], 2, "P1a"),
         (vec!["run", "--scenario", "none", "--policy", "P0"], 2, "default"),
     ] {
-        let said = home.run(&arguments);
+        let program_output = home.run(&arguments);
         assert!(
-            said.exit_code == code && said.stderr.contains(part),
+            program_output.exit_code == code && program_output.stderr.contains(part),
             "{arguments:?}: {} {}",
-            said.exit_code,
-            said.stderr
+            program_output.exit_code,
+            program_output.stderr
         );
     }
 }
@@ -99,32 +99,34 @@ fn user_grid_is_cached_and_errors_name_line_and_key() {
     assert_eq!(json(&home, &arguments), first);
     assert_eq!(fs::read_to_string(&store).expect("results"), kept, "stored runs are not repeated");
     fs::write(&path, grid.replace("990_000", "990_000, cashfloor = 1")).expect("a file");
-    let said = home.run(&arguments);
+    let program_output = home.run(&arguments);
     assert!(
-        said.exit_code == 3 && said.stderr.contains("line 12") && said.stderr.contains("`cashfloor`"),
+        program_output.exit_code == 3
+            && program_output.stderr.contains("line 12")
+            && program_output.stderr.contains("`cashfloor`"),
         "{}",
-        said.stderr
+        program_output.stderr
     );
 }
 
 #[test]
 fn opponents_play_the_world_of_a_run_that_is_over() {
     let home = Home::new();
-    let said =
+    let program_output =
         home.run(&["run", "--policy", "P1a", "--seed", "9", "--days", "28", "--surges", "on", "--save"]);
-    assert_eq!(said.exit_code, 0, "{}", said.stderr);
-    let told = home.run(&["lab", "opponents", "latest", "--json"]);
-    assert_eq!(told.exit_code, 0, "{}", told.stderr);
-    let opponents: serde_json::Value = serde_json::from_str(&told.stdout).expect("JSON");
+    assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
+    let output = home.run(&["lab", "opponents", "latest", "--json"]);
+    assert_eq!(output.exit_code, 0, "{}", output.stderr);
+    let opponents: serde_json::Value = serde_json::from_str(&output.stdout).expect("JSON");
     let policies = opponents["policies"].as_array().expect("policies");
     assert_eq!((opponents["day"].as_u64(), policies.len()), (Some(28), 5));
-    for own in policies {
-        let name = own["policy"].as_str().expect("a name");
+    for value in policies {
+        let name = value["policy"].as_str().expect("a name");
         let alone =
             home.run(&["run", "--policy", name, "--seed", "9", "--days", "28", "--surges", "on", "--json"]);
         let alone: serde_json::Value =
             serde_json::from_str(alone.stdout.lines().next().expect("a line")).expect("JSON");
-        assert_eq!((&own["cash"], &own["day"]), (&alone["cash"], &alone["day"]), "{name}");
+        assert_eq!((&value["cash"], &value["day"]), (&alone["cash"], &alone["day"]), "{name}");
     }
     let text = home.run(&["lab", "opponents", "latest"]).stdout;
     assert!(text.contains("same seed") && text.contains("harvest-late"), "{text}");

@@ -123,20 +123,20 @@ impl Scheduler<'_> {
 fn merged_shards_equal_the_unsplit_study() {
     let (home, alone) = (Home::new(), Home::new());
     let file = write_study(&home, STUDY);
-    let whole = alone.run(&["lab", "study", &file]);
-    assert_eq!(whole.exit_code, 0, "{}", whole.stderr);
-    assert_eq!(whole.stdout.lines().count(), 101);
+    let program_output = alone.run(&["lab", "study", &file]);
+    assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
+    assert_eq!(program_output.stdout.lines().count(), 101);
 
     let out = home.0.path().join("shards");
     let scheduler = Scheduler::new(&home, &file, &out);
     let first = scheduler.start(false);
-    let own = format!(".{KILLED_SHARD}-of-{SHARDS}.jsonl");
-    wait_for("a run of the shard", || count_stored_runs(&home, &own) > 2);
+    let text = format!(".{KILLED_SHARD}-of-{SHARDS}.jsonl");
+    wait_for("a run of the shard", || count_stored_runs(&home, &text) > 2);
     let process =
         fs::read_to_string(home.0.path().join(format!("process-{KILLED_SHARD}"))).expect("a number");
     send_signal("-KILL", process.trim());
     assert!(!Scheduler::wait(first), "a killed shard is a failure");
-    let before = count_stored_runs(&home, &own);
+    let before = count_stored_runs(&home, &text);
     assert!((3..25).contains(&before), "killed in the middle: {before}");
     let folder = out.to_string_lossy().into_owned();
     home.run(&["lab", "merge", &folder])
@@ -144,17 +144,17 @@ fn merged_shards_equal_the_unsplit_study() {
 
     assert!(Scheduler::wait(scheduler.start(true)), "the shard is played to its end");
     assert_eq!(
-        count_stored_runs(&home, &own),
-        25 + usize::from(has_incomplete_line(&home, &own)),
+        count_stored_runs(&home, &text),
+        25 + usize::from(has_incomplete_line(&home, &text)),
         "every run is played once"
     );
     assert_eq!(count_stored_runs(&home, ".1-of-4.jsonl"), 25, "complete shards are not repeated");
     let merged = home.run(&["lab", "merge", &folder]);
     assert_eq!((merged.exit_code, merged.stderr.as_str()), (0, ""));
-    assert_eq!(merged.stdout.as_bytes(), whole.stdout.as_bytes());
+    assert_eq!(merged.stdout.as_bytes(), program_output.stdout.as_bytes());
     let into = home.0.path().join("small.csv").to_string_lossy().into_owned();
     assert_eq!(home.run(&["lab", "merge", &folder, "--out", &into]).exit_code, 0);
-    assert_eq!(fs::read(&into).expect("rows"), whole.stdout.as_bytes());
+    assert_eq!(fs::read(&into).expect("rows"), program_output.stdout.as_bytes());
 }
 
 /// Returns whether the kill truncated a line. Such a line stays, and its run is played again.
@@ -172,22 +172,22 @@ const SMALL_STUDY: &str = "name = \"few\"\npolicies = [\"P1b\"]\nseeds = \"1..20
 fn interrupted_study_resumes() {
     let (home, alone) = (Home::new(), Home::new());
     let file = write_study(&home, SMALL_STUDY);
-    let whole = alone.run(&["lab", "study", &file]);
+    let program_output = alone.run(&["lab", "study", &file]);
     let mut command = home.program();
     command.args(["lab", "study", &file, "--jobs", "1"]);
     let child = command.spawn().expect("the program starts");
     wait_for("a run", || count_stored_runs(&home, ".jsonl") > 1);
     send_signal("-INT", &child.id().to_string());
     let output = child.wait_with_output().expect("it ends");
-    let told = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!((output.status.code(), output.stdout.len()), (Some(130), 0), "{told}");
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!((output.status.code(), output.stdout.len()), (Some(130), 0), "{text}");
     let done = count_stored_runs(&home, ".jsonl");
     assert!(
-        told.contains(&format!("stopped: {done} of 20 runs are stored; the same command resumes")),
-        "{told}"
+        text.contains(&format!("stopped: {done} of 20 runs are stored; the same command resumes")),
+        "{text}"
     );
     let rest = home.run(&["lab", "study", &file]);
-    assert_eq!((rest.exit_code, rest.stdout), (0, whole.stdout));
+    assert_eq!((rest.exit_code, rest.stdout), (0, program_output.stdout));
     assert_eq!(count_stored_runs(&home, ".jsonl"), 20, "every run is played once");
 }
 
@@ -214,11 +214,19 @@ fn full_disk_keeps_stored_runs() {
     assert_eq!(count_stored_runs(&home, ".jsonl"), 20);
     limited(1, "").assert_fails(1, &["few.csv", "File too large", "runs are kept"]);
     assert!(!Path::new(&into).exists(), "no partial table is written");
-    let told = home.run(&["lab", "study", &file, "--out", &into]);
-    assert_eq!(told.exit_code, 0, "{}", told.stderr);
+    let program_output = home.run(&["lab", "study", &file, "--out", &into]);
+    assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
     assert_eq!(fs::read_to_string(&into).expect("rows"), whole);
-    assert!(told.stdout.contains("few: 1 arm by 20 seeds") && told.stdout.contains("P1b"), "{}", told.stdout);
-    assert!(told.stdout.lines().all(|line| line.chars().count() <= 100), "{}", told.stdout);
+    assert!(
+        program_output.stdout.contains("few: 1 arm by 20 seeds") && program_output.stdout.contains("P1b"),
+        "{}",
+        program_output.stdout
+    );
+    assert!(
+        program_output.stdout.lines().all(|line| line.chars().count() <= 100),
+        "{}",
+        program_output.stdout
+    );
 }
 
 #[test]
@@ -250,7 +258,7 @@ fn daily_study_has_a_row_per_run_and_day() {
     assert!(lines[0].starts_with("run,policy,scenario,seed,day,cash,mrr,subscribers"), "{}", lines[0]);
     let ends = home.run(&["lab", "study", &file]).stdout;
     let cell = |line: &str, name: &str, head: &str| {
-        let at = head.split(',').position(|own| own == name).expect("a column");
+        let at = head.split(',').position(|text| text == name).expect("a column");
         line.split(',').nth(at).expect("a cell").to_owned()
     };
     let head = ends.lines().next().expect("a head");
@@ -275,11 +283,11 @@ fn output_never_replaces_input() {
     assert_eq!(fs::read_to_string(&file).expect("the study"), text);
     let folder = place("shards");
     for shard in ["1/2", "2/2"] {
-        let said = home.run(&["lab", "study", &file, "--shard", shard, "--out", &folder]);
-        assert_eq!(said.exit_code, 0, "{}", said.stderr);
+        let program_output = home.run(&["lab", "study", &file, "--shard", shard, "--out", &folder]);
+        assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
     }
     let shard = place("shards/s.1-of-2.csv");
     home.run(&["lab", "merge", &folder, "--out", &shard]).assert_fails(2, &["is one of the shards"]);
-    let whole = home.run(&["lab", "merge", &folder]);
-    assert_eq!((whole.exit_code, whole.stdout.lines().count()), (0, 3), "{}", whole.stderr);
+    let output = home.run(&["lab", "merge", &folder]);
+    assert_eq!((output.exit_code, output.stdout.lines().count()), (0, 3), "{}", output.stderr);
 }

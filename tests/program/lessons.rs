@@ -9,12 +9,13 @@ use crate::support::home::{Home, run_with_input};
 #[test]
 fn a_lesson_is_copied_changed_and_checked() {
     let home = Home::new();
-    let said = home.run(&["lesson", "copy", "cheapest-dollar", "late-help"]);
-    assert_eq!(said.exit_code, 0, "{}", said.stderr);
+    let program_output = home.run(&["lesson", "copy", "cheapest-dollar", "late-help"]);
+    assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
     assert!(
-        said.stdout.contains("late-help.toml") && said.stdout.contains("novamind lesson check late-help"),
+        program_output.stdout.contains("late-help.toml")
+            && program_output.stdout.contains("novamind lesson check late-help"),
         "{}",
-        said.stdout
+        program_output.stdout
     );
     assert!(
         home.run(&["lesson", "list"])

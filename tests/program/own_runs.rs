@@ -6,9 +6,9 @@ use std::fs;
 use crate::support::home::{Home, ProgramOutput, run_id};
 
 /// Parses CSV rows by column name.
-fn csv_rows(said: &ProgramOutput) -> Vec<BTreeMap<String, String>> {
-    assert_eq!(said.exit_code, 0, "{}", said.stderr);
-    let mut reader = csv::Reader::from_reader(said.stdout.as_bytes());
+fn csv_rows(program_output: &ProgramOutput) -> Vec<BTreeMap<String, String>> {
+    assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
+    let mut reader = csv::Reader::from_reader(program_output.stdout.as_bytes());
     reader.deserialize().map(|row| row.expect("a row")).collect()
 }
 
@@ -23,8 +23,8 @@ fn the_results_table_holds_comparable_runs_and_says_why_others_are_not_there() {
     assert_eq!(saved.exit_code, 0, "{}", saved.stderr);
     // A changed parameter, and a different length.
     for options in [&["--surges", "off", "--days", "500"][..], &["--surges", "on", "--days", "28"]] {
-        let said = home.run(&[&["run", "--policy", "P0", "--save"], options].concat());
-        assert_eq!(said.exit_code, 0, "{}", said.stderr);
+        let program_output = home.run(&[&["run", "--policy", "P0", "--save"], options].concat());
+        assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
     }
     let table = csv_rows(&home.run(&["lab", "table", "--csv"]));
     let own = row_named(&table, "P0");
@@ -46,8 +46,8 @@ fn the_results_table_holds_comparable_runs_and_says_why_others_are_not_there() {
     );
     assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
     let drawing = home.0.path().join("table.svg");
-    let said = home.run(&["lab", "table", "--svg", &drawing.to_string_lossy()]);
-    assert_eq!(said.exit_code, 0, "{}", said.stderr);
+    let output = home.run(&["lab", "table", "--svg", &drawing.to_string_lossy()]);
+    assert_eq!(output.exit_code, 0, "{}", output.stderr);
     assert!(fs::read_to_string(drawing).expect("a drawing").starts_with("<svg"));
 }
 
@@ -75,9 +75,9 @@ fn behaviour_command_accepts_one_or_many_runs() {
     let shares: Vec<f64> = measures.iter().map(share).collect();
     assert_eq!(shares.len(), 2, "rows of runs alone: {measures:?}");
     assert!((shares[0] - 750.0 / 850.0).abs() < 1e-9 && shares[0] == shares[1], "{measures:?}");
-    let told = home.run(&["lab", "behaviour", runs[0], runs[1], "--json"]).stdout;
-    let told: serde_json::Value = serde_json::from_str(&told).expect("JSON");
-    let summary = &told["tables"]["measures"]["summary"];
+    let text = home.run(&["lab", "behaviour", runs[0], runs[1], "--json"]).stdout;
+    let value: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let summary = &value["tables"]["measures"]["summary"];
     assert_eq!(summary[0]["ad_spend_on_the_truly_best_channel"].as_f64(), Some(shares[0]));
     assert_eq!(summary[1]["ad_spend_on_the_truly_best_channel"].as_f64(), Some(0.0));
     assert_eq!(measures[0]["if_in_notes"], "1");
@@ -90,8 +90,9 @@ fn behaviour_command_accepts_one_or_many_runs() {
     home.run(&["lab", "behaviour", runs[0], "--csv", "--table", "nothing"])
         .assert_fails(2, &["measures", "notes"]);
     let drawing = home.0.path().join("behaviour.svg");
-    let said = home.run(&["lab", "behaviour", runs[0], runs[1], "--svg", &drawing.to_string_lossy()]);
-    assert!(said.stdout.contains("correlation"), "{}", said.stdout);
+    let program_output =
+        home.run(&["lab", "behaviour", runs[0], runs[1], "--svg", &drawing.to_string_lossy()]);
+    assert!(program_output.stdout.contains("correlation"), "{}", program_output.stdout);
     let drawn = fs::read_to_string(drawing).expect("a drawing");
     assert!(drawn.contains("Cash by day, P01") && drawn.contains(&format!("run {}", runs[1])), "{drawn}");
 }
@@ -99,9 +100,9 @@ fn behaviour_command_accepts_one_or_many_runs() {
 #[test]
 fn consistency_command_accepts_user_policies() {
     let home = Home::new();
-    let said =
+    let program_output =
         home.run(&["lab", "consistency", "--policy", "P0", "--policy", "P1b", "--until", "98", "--csv"]);
-    let claims = csv_rows(&said);
+    let claims = csv_rows(&program_output);
     let verdict = |part: &str| {
         let claim = claims.iter().find(|row| row["claim"].contains(part)).expect(part);
         (claim["verdict"].clone(), claim["different"].clone())
@@ -123,12 +124,16 @@ fn many_runs_are_compared_in_rows_that_fit() {
     let compare: Vec<&str> =
         [&["lab", "compare", "--width", "80"], &*runs.iter().map(String::as_str).collect::<Vec<_>>()]
             .concat();
-    let said = home.run(&compare);
-    assert_eq!(said.exit_code, 0, "{}", said.stderr);
-    assert!(said.stdout.lines().all(|line| line.chars().count() <= 80), "{}", said.stdout);
-    assert!(said.stdout.starts_with("3 runs, best result first"), "{}", said.stdout);
+    let program_output = home.run(&compare);
+    assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
+    assert!(
+        program_output.stdout.lines().all(|line| line.chars().count() <= 80),
+        "{}",
+        program_output.stdout
+    );
+    assert!(program_output.stdout.starts_with("3 runs, best result first"), "{}", program_output.stdout);
     for run in &runs {
-        assert!(said.stdout.contains(run), "{}", said.stdout);
+        assert!(program_output.stdout.contains(run), "{}", program_output.stdout);
     }
 }
 
@@ -151,10 +156,14 @@ fn documented_claims(section: &str) -> BTreeMap<&'static str, Vec<&'static str>>
 fn check_claims(section: &str) {
     let home = Home::new();
     for (command, claims) in documented_claims(section) {
-        let said = home.run(&command.split(' ').collect::<Vec<_>>());
-        assert_eq!(said.exit_code, 0, "{command}: {}", said.stderr);
+        let program_output = home.run(&command.split(' ').collect::<Vec<_>>());
+        assert_eq!(program_output.exit_code, 0, "{command}: {}", program_output.stderr);
         for says in claims {
-            assert!(said.stdout.contains(says), "{command} does not print {says}: {}", said.stdout);
+            assert!(
+                program_output.stdout.contains(says),
+                "{command} does not print {says}: {}",
+                program_output.stdout
+            );
         }
     }
 }

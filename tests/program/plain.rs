@@ -48,7 +48,7 @@ next "first prices" 990000 980000 995000  960000 930000 980000  900000 800000 10
 #[test]
 fn piped_session_matches_the_example() {
     let runs = tempfile::tempdir().expect("a folder");
-    let (said, code) = play(runs.path(), &["--seed", "7", "--days", "28", "--echo"], EXAMPLE);
+    let (text, code) = play(runs.path(), &["--seed", "7", "--days", "28", "--echo"], EXAMPLE);
     assert_eq!(code, 0);
     let expected = [
         "> pricing.set_prices(A=12, B=25, C=55)\nok set_prices\n  updated: {\"A\":12,\"B\":25,\"C\":55}\n  current: {\"A\":12,\"B\":25,\"C\":55}\n\n",
@@ -59,37 +59,40 @@ fn piped_session_matches_the_example() {
         "=== Week 1 (day 7) ===",
         "\nweek 1 done · day 7 · cash $99",
     ];
-    let mut rest = said.as_str();
+    let mut rest = text.as_str();
     for part in expected {
-        let at = rest.find(part).unwrap_or_else(|| panic!("{part} is missing or out of order in\n{said}"));
+        let at = rest.find(part).unwrap_or_else(|| panic!("{part} is missing or out of order in\n{text}"));
         rest = &rest[at + part.len()..];
     }
     assert!(
-        said.starts_with("run ")
-            && said.lines().next().is_some_and(|line| line.ends_with("seed 7 · day 0 of 28 · sandbox"))
+        text.starts_with("run ")
+            && text.lines().next().is_some_and(|line| line.ends_with("seed 7 · day 0 of 28 · sandbox"))
     );
     assert!(
-        said.ends_with(" · day 7\n")
-            && said.lines().last().is_some_and(|line| line.starts_with("saved run "))
+        text.ends_with(" · day 7\n")
+            && text.lines().last().is_some_and(|line| line.starts_with("saved run "))
     );
 }
 
 #[test]
 fn json_mode_prints_one_object_per_line() {
     let runs = tempfile::tempdir().expect("a folder");
-    let (said, _) = play(runs.path(), &["--seed", "7", "--days", "28", "--json"], EXAMPLE);
-    let said = json_lines(&said);
-    let lines: Vec<u64> = said.iter().filter_map(|object| object["line"].as_u64()).collect();
+    let (text, _) = play(runs.path(), &["--seed", "7", "--days", "28", "--json"], EXAMPLE);
+    let values = json_lines(&text);
+    let lines: Vec<u64> = values.iter().filter_map(|object| object["line"].as_u64()).collect();
     assert_eq!(lines, [2, 3, 4, 5, 6, 7]);
-    assert_eq!((said[0]["event"].as_str(), said[0]["days"].as_u64()), (Some("start"), Some(28)));
-    assert_eq!((said[1]["ok"].as_bool(), said[1]["data"]["updated"]["B"].as_u64()), (Some(true), Some(25)));
+    assert_eq!((values[0]["event"].as_str(), values[0]["days"].as_u64()), (Some("start"), Some(28)));
     assert_eq!(
-        (said[3]["code"].as_str(), said[3]["field"].as_str()),
+        (values[1]["ok"].as_bool(), values[1]["data"]["updated"]["B"].as_u64()),
+        (Some(true), Some(25))
+    );
+    assert_eq!(
+        (values[3]["code"].as_str(), values[3]["field"].as_str()),
         (Some("price_not_positive"), Some("A"))
     );
-    assert_eq!(said[5]["data"]["rows"][0]["total"], 1_000_000.0);
-    assert_eq!((said[6]["day"].as_u64(), said[6]["data"]["day"].as_u64()), (Some(0), Some(7)));
-    assert_eq!(said[7]["reason"], "end_of_input");
+    assert_eq!(values[5]["data"]["rows"][0]["total"], 1_000_000.0);
+    assert_eq!((values[6]["day"].as_u64(), values[6]["data"]["day"].as_u64()), (Some(0), Some(7)));
+    assert_eq!(values[7]["reason"], "end_of_input");
 }
 
 #[test]
@@ -98,8 +101,8 @@ fn syntax_errors_name_column_and_suggestions() {
     let lines = "set_pices A=3\nset_prices A=1 A=2\nset_prices A=\nnext \"x\" 1 2 3\nnext\nbranch\nstep 1\nset_prices X=3\ntables leger\nnext naive extra more\n";
     let (said, code) = play(runs.path(), &["--json", "--days", "28"], lines);
     assert_eq!(code, 0, "refusals are answers");
-    let said = json_lines(&said);
-    let codes: Vec<&str> = said.iter().filter_map(|object| object["code"].as_str()).collect();
+    let values = json_lines(&said);
+    let codes: Vec<&str> = values.iter().filter_map(|object| object["code"].as_str()).collect();
     assert_eq!(
         codes,
         [
@@ -115,9 +118,9 @@ fn syntax_errors_name_column_and_suggestions() {
             "usage"
         ]
     );
-    assert!(said[1]["error"].as_str().is_some_and(|text| text.contains("set_prices")));
-    assert_eq!((said[2]["column"].as_u64(), said[3]["column"].as_u64()), (Some(16), Some(14)));
-    assert!(said[9]["error"].as_str().is_some_and(|text| text.contains("ledger")));
+    assert!(values[1]["error"].as_str().is_some_and(|text| text.contains("set_prices")));
+    assert_eq!((values[2]["column"].as_u64(), values[3]["column"].as_u64()), (Some(16), Some(14)));
+    assert!(values[9]["error"].as_str().is_some_and(|text| text.contains("ledger")));
 }
 
 /// A list of deals may be given without its name; there is no enterprise yet.
@@ -131,27 +134,27 @@ reject_enterprise_deal 12
 reject_enterprise_deal
 inbox
 "#;
-    let (said, code) = play(runs.path(), &["--days", "28", "--json"], lines);
-    assert_eq!(code, 0, "{said}");
+    let (text, code) = play(runs.path(), &["--days", "28", "--json"], lines);
+    assert_eq!(code, 0, "{text}");
     let answers: Vec<Value> =
-        json_lines(&said).into_iter().filter(|object| object.get("command").is_some()).collect();
+        json_lines(&text).into_iter().filter(|object| object.get("command").is_some()).collect();
     let codes: Vec<&str> = answers.iter().filter_map(|answer| answer["code"].as_str()).collect();
     let expected =
         ["customer_not_found", "not_enterprise", "offering_no_price", "no_active_thread", "deals_missing"];
-    assert_eq!(codes, expected, "{said}");
+    assert_eq!(codes, expected, "{text}");
     assert_eq!(answers[0]["field"], "deals.0.customer_id");
 }
 
 #[test]
 fn strict_mode_ends_at_the_first_rejection() {
     let runs = tempfile::tempdir().expect("a folder");
-    let (said, code) = play(
+    let (text, code) = play(
         runs.path(),
         &["--strict", "--json", "--days", "28"],
         "set_prices A=12\nset_prices A=0\nset_prices B=9\n",
     );
-    let said = json_lines(&said);
-    assert_eq!((code, said.len(), said[3]["reason"].as_str()), (1, 4, Some("strict")));
+    let values = json_lines(&text);
+    assert_eq!((code, values.len(), values[3]["reason"].as_str()), (1, 4, Some("strict")));
 }
 
 #[test]
@@ -161,20 +164,21 @@ fn invalid_bytes_are_rejected() {
         b"\xef\xbb\xbfset_prices A=12\r\n\xff\xfe\n# comment\n\nset_prices \\\r\nB=25\r\n".to_vec();
     bytes.extend(std::iter::repeat_n(b'x', 1 << 21));
     bytes.extend(b"\nset_prices C=55");
-    let (said, code) = play(runs.path(), &["--json", "--days", "28"], bytes);
-    let said = json_lines(&said);
-    let ok: Vec<Option<bool>> = said[1..said.len() - 1].iter().map(|object| object["ok"].as_bool()).collect();
+    let (text, code) = play(runs.path(), &["--json", "--days", "28"], bytes);
+    let values = json_lines(&text);
+    let ok: Vec<Option<bool>> =
+        values[1..values.len() - 1].iter().map(|object| object["ok"].as_bool()).collect();
     assert_eq!((code, ok), (0, vec![Some(true), Some(false), Some(true), Some(false), Some(true)]));
-    assert_eq!(said[5]["data"]["current"], serde_json::json!({"A": 12.0, "B": 25.0, "C": 55}));
+    assert_eq!(values[5]["data"]["current"], serde_json::json!({"A": 12.0, "B": 25.0, "C": 55}));
 }
 
 #[test]
 fn a_run_is_left_continued_finished_and_replayed() {
     let runs = tempfile::tempdir().expect("a folder");
-    let (said, _) =
+    let (text, _) =
         play(runs.path(), &["--seed", "3", "--days", "17"], format!("{EXAMPLE}quit\nset_prices A=99\n"));
-    let id = said.split_whitespace().nth(1).expect("the run").to_owned();
-    assert!(said.ends_with(&format!("saved run {id} · day 7\n")));
+    let id = text.split_whitespace().nth(1).expect("the run").to_owned();
+    assert!(text.ends_with(&format!("saved run {id} · day 7\n")));
     let lines = "set_capacity_tier 2\nundo\nnext naive\nnext \"the last three days\" naive\nnext naive\nsql SELECT COUNT(*) AS n FROM predictions\n";
     let (said, code) = play(runs.path(), &["--run", "latest"], lines);
     assert_eq!(code, 0);
@@ -241,9 +245,10 @@ fn market_and_engine_tools_are_commands() {
                  next naive\ndashboard\n";
     let (text, code) = play(runs.path(), &["--json", "--days", "28", "--seed", "7"], lines);
     assert_eq!(code, 0);
-    let said = json_lines(&text);
+    let values = json_lines(&text);
     let by_line = |line: u64| {
-        said.iter()
+        values
+            .iter()
             .find(|object| object["line"].as_u64() == Some(line))
             .unwrap_or_else(|| panic!("{line}:\n{text}"))
     };
@@ -271,7 +276,7 @@ fn market_and_engine_tools_are_commands() {
 fn words_are_explained() {
     let runs = tempfile::tempdir().expect("a folder");
     let lines = "explain runway\nwhat delivered quality\nglossary churn\nhelp runway\nexplain set_prices.A\nexplain nonsens\nhelp explain\n";
-    let (said, code) = play(runs.path(), &["--seed", "7"], lines);
+    let (text, code) = play(runs.path(), &["--seed", "7"], lines);
     assert_eq!(code, 0);
     for part in [
         "Runway (money)\nThe number of weeks",
@@ -281,31 +286,31 @@ fn words_are_explained() {
         "error usage: unknown term nonsens",
         "explain TERM ",
     ] {
-        assert!(said.contains(part), "{part} is missing in\n{said}");
+        assert!(text.contains(part), "{part} is missing in\n{text}");
     }
-    assert_eq!(said.matches("Runway (money)").count(), 2, "help also explains terms");
+    assert_eq!(text.matches("Runway (money)").count(), 2, "help also explains terms");
 }
 
 #[test]
 fn named_queries_are_listed_and_answered() {
     let runs = tempfile::tempdir().expect("a folder");
-    let own = runs.path().join("configuration/queries");
-    std::fs::create_dir_all(&own).expect("a folder");
-    std::fs::write(own.join("mine.sql"), "SELECT 42 AS answer").expect("a file");
+    let path = runs.path().join("configuration/queries");
+    std::fs::create_dir_all(&path).expect("a folder");
+    std::fs::write(path.join("mine.sql"), "SELECT 42 AS answer").expect("a file");
     let lines = "queries\nqueries mine\nqueries cash-by-week\nqueries cash-by-wek\nhelp queries\n";
     let (text, code) = play(runs.path(), &["--json", "--days", "28", "--seed", "7"], lines);
     assert_eq!(code, 0);
-    let said = json_lines(&text);
-    let names = said[1]["data"]["queries"].as_array().expect("a list");
+    let values = json_lines(&text);
+    let names = values[1]["data"]["queries"].as_array().expect("a list");
     assert!(names.len() > 24);
     assert_eq!((&names[0]["name"], &names[0]["title"]), (&"mine".into(), &"mine".into()));
-    assert_eq!(said[2]["data"]["rows"][0]["answer"], 42);
-    assert_eq!(said[3]["data"]["rows"][0]["cash"], 1_000_000.0);
+    assert_eq!(values[2]["data"]["rows"][0]["answer"], 42);
+    assert_eq!(values[3]["data"]["rows"][0]["cash"], 1_000_000.0);
     assert!(
-        said[4]["error"].as_str().is_some_and(|error| error.contains("did you mean cash-by-week")),
+        values[4]["error"].as_str().is_some_and(|error| error.contains("did you mean cash-by-week")),
         "{text}"
     );
-    assert!(said[5]["data"]["command"].as_str().is_some_and(|line| line.starts_with("queries [NAME]")));
+    assert!(values[5]["data"]["command"].as_str().is_some_and(|line| line.starts_with("queries [NAME]")));
 }
 
 #[test]
@@ -328,20 +333,20 @@ fn report_describes_weeks_and_runs() {
         assert!(said.contains(part), "{part} is missing in\n{said}");
     }
     let (said, _) = play(runs.path(), &["--run", "latest", "--json"], "report week\nreport run\n");
-    let told = json_lines(&said);
-    assert_eq!(told[1]["data"]["day"], 7);
-    assert!(told[1]["data"]["moves"].as_array().is_some_and(|moves| !moves.is_empty()));
-    assert_eq!(told[2]["data"]["survival_days"], 7);
-    assert_eq!(told[2]["data"]["planning_words_per_rationale"], 1.0);
+    let values = json_lines(&said);
+    assert_eq!(values[1]["data"]["day"], 7);
+    assert!(values[1]["data"]["moves"].as_array().is_some_and(|moves| !moves.is_empty()));
+    assert_eq!(values[2]["data"]["survival_days"], 7);
+    assert_eq!(values[2]["data"]["planning_words_per_rationale"], 1.0);
 }
 
 #[test]
 fn the_xray_answers_in_debug_runs_and_refuses_in_others() {
     let runs = tempfile::tempdir().expect("a folder");
     let lines = format!("{EXAMPLE}\nxray leads S1 R=1\nxray leads S9\nxray leads S1 8\nxray\n");
-    let (said, _) = play(runs.path(), &["--seed", "7", "--days", "28", "--mode", "debug", "--json"], &lines);
-    let said = json_lines(&said);
-    let answer = |at: usize| &said[said.len() - 5 + at];
+    let (text, _) = play(runs.path(), &["--seed", "7", "--days", "28", "--mode", "debug", "--json"], &lines);
+    let values = json_lines(&text);
+    let answer = |at: usize| &values[values.len() - 5 + at];
     let data = &answer(0)["data"];
     assert_eq!((&data["group"], &data["day"], &data["known"]), (&"S1".into(), &7.into(), &true.into()));
     let number = |name: &str| data[name].as_f64().expect("a number");
@@ -468,8 +473,8 @@ run 3 until subscribers(S1) < 0   # never
         &["--seed", "7", "--days", "70", "--mode", "debug", "--json"],
         format!("{EXAMPLE}{asked}"),
     );
-    let said = json_lines(&said);
-    let answers = &said[said.len() - count - 1..];
+    let values = json_lines(&said);
+    let answers = &values[values.len() - count - 1..];
     let data = |at: usize| &answers[at]["data"];
     assert_eq!(data(0)["condition"], "subscribers(S1) >= 20");
     assert_eq!(
@@ -536,8 +541,8 @@ fn hidden_tables_answer_in_plain_mode_and_from_the_command_line() {
         &["--seed", "7", "--days", "28", "--mode", "debug", "--json"],
         format!("{EXAMPLE}\n{asked}"),
     );
-    let said = json_lines(&said);
-    let answer = |at: usize| &said[said.len() - 8 + at];
+    let values = json_lines(&said);
+    let answer = |at: usize| &values[values.len() - 8 + at];
     assert_eq!(answer(0)["data"]["row_count"], 7, "{}", answer(0));
     assert_eq!(answer(0)["data"]["rows"][6]["group_id"], "S1");
     assert_eq!(answer(1)["code"], "sql_error", "a statement ends where the line does: {}", answer(1));
@@ -601,10 +606,10 @@ fn parameters_are_set_in_debug_runs_and_refused_in_others() {
     ];
     let lines = format!("{EXAMPLE}\n{}\n", commands.join("\n"));
     let (said, _) = play(runs.path(), &["--seed", "7", "--days", "28", "--mode", "debug", "--json"], &lines);
-    let said = json_lines(&said);
+    let values = json_lines(&said);
     // The last line states where the run was saved.
-    let first = said.len() - 1 - commands.len();
-    let answer = |at: usize| &said[first + at];
+    let first = values.len() - 1 - commands.len();
+    let answer = |at: usize| &values[first + at];
     assert_eq!(answer(0)["data"]["in_force"], serde_json::json!([]));
     assert_eq!(answer(1)["data"]["value"], 50);
     assert_eq!(answer(2)["data"]["from_day"], 10);

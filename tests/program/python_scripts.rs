@@ -17,15 +17,21 @@ python_exec {"code": "SELECT 5 AS x"}
 register_daily_calculation {"name": "day", "code": "# python\nprint(get_vars())"}
 next naive
 "##;
-    let told = run_without_python(&home, &["play", "--plain", "--days", "28"], lines);
-    assert_eq!(told.exit_code, 0, "{}", told.stderr);
+    let program_output = run_without_python(&home, &["play", "--plain", "--days", "28"], lines);
+    assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
     assert!(
-        told.stdout.contains("refused script_failed (code): python3 is not on the path of this machine"),
+        program_output
+            .stdout
+            .contains("refused script_failed (code): python3 is not on the path of this machine"),
         "{}",
-        told.stdout
+        program_output.stdout
     );
-    assert!(told.stdout.contains("ok python_exec\nx\n5\n"), "{}", told.stdout);
-    assert!(told.stdout.contains("day:\n  failed: python3 is not on the path"), "{}", told.stdout);
+    assert!(program_output.stdout.contains("ok python_exec\nx\n5\n"), "{}", program_output.stdout);
+    assert!(
+        program_output.stdout.contains("day:\n  failed: python3 is not on the path"),
+        "{}",
+        program_output.stdout
+    );
 }
 
 #[cfg(unix)]
@@ -65,11 +71,11 @@ next naive
 set_prices A=12
 next naive
 "##;
-    let told = home.play(&["--seed", "7", "--days", "28"], lines);
+    let program_output = home.play(&["--seed", "7", "--days", "28"], lines);
     assert!(
-        told.stdout.contains("asked [{'x': 1}]") && told.stdout.contains("clock:\n  at "),
+        program_output.stdout.contains("asked [{'x': 1}]") && program_output.stdout.contains("clock:\n  at "),
         "{}",
-        told.stdout
+        program_output.stdout
     );
     let id = home.only_run().file_name().expect("a name").to_string_lossy().into_owned();
     let verified = home.run(&["replay", &id, "--verify"]);
@@ -86,7 +92,7 @@ next naive
     let opened = run_without_python(&home, &["play", "--plain", "--run", &id], "dashboard\n");
     assert_eq!(opened.exit_code, 0, "{}", opened.stderr);
     let line = |text: &str| text.lines().rev().find(|line| line.starts_with("  at ")).map(str::to_owned);
-    assert_eq!(line(&opened.stdout), line(&told.stdout), "{}", opened.stdout);
+    assert_eq!(line(&opened.stdout), line(&program_output.stdout), "{}", opened.stdout);
     assert!(
         opened.stdout.contains("Calculations in Python run before each week: clock."),
         "{}",

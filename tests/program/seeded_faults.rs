@@ -51,10 +51,10 @@ fn figures(text: &str) -> Vec<&str> {
 fn play(home: &Home, planted: Option<&str>) -> String {
     let mut options = vec!["--seed", "7", "--mode", "debug", "--days", "200"];
     options.extend(planted.into_iter().flat_map(|number| ["--planted", number]));
-    let said = home.play(&options, &walkthrough_decisions());
-    assert_eq!(said.exit_code, 0, "{}", said.stderr);
+    let program_output = home.play(&options, &walkthrough_decisions());
+    assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
     // `run 02fe6680 · seed 7 · …`
-    said.stdout.split_whitespace().nth(1).expect("the name of the run").to_owned()
+    program_output.stdout.split_whitespace().nth(1).expect("the name of the run").to_owned()
 }
 
 fn ask(home: &Home, run: &str, commands: &[String]) -> String {
@@ -90,9 +90,9 @@ fn debugging_answers_match_the_program() {
         // The figures of the correct run are listed, too; a row of a changed figure would change them.
         let moves_on = row.commands.iter().any(|line| line.starts_with("run "));
         let beside = if moves_on { String::new() } else { ask(&home, &sound, &row.commands) };
-        let told = figures(&row.shown);
-        assert!(!told.is_empty(), "{}: {}", row.number, row.shown);
-        for figure in told {
+        let texts = figures(&row.shown);
+        assert!(!texts.is_empty(), "{}: {}", row.number, row.shown);
+        for figure in texts {
             assert!(shown.contains(figure) || beside.contains(figure), "{}: {figure} in {shown}", row.number);
         }
     }

@@ -154,8 +154,8 @@ fn declined_and_withdrawn_participants_leave_no_run() {
     // Both are counted and in the table of visits.
     let counted = "2 came: 1 declined, 1 withdrew, 0 finished, 0 neither · refused: 0 labels, 0 codes";
     for command in ["watch", "audit"] {
-        let said = lab.0.run(&["study", command, &lab.folder()]);
-        assert!(said.stdout.contains(counted), "{}", said.stdout);
+        let program_output = lab.0.run(&["study", command, &lab.folder()]);
+        assert!(program_output.stdout.contains(counted), "{}", program_output.stdout);
     }
     let (runs, out) = (lab.0.runs().display().to_string(), lab.0.0.path().join("data"));
     let collected = lab.0.run(&[
@@ -170,10 +170,10 @@ fn declined_and_withdrawn_participants_leave_no_run() {
     ]);
     assert!(collected.stdout.contains(counted), "{}{}", collected.stdout, collected.stderr);
     let visits = fs::read_to_string(out.join("visits.csv")).expect("a table");
-    let told: Vec<String> =
+    let texts: Vec<String> =
         visits.lines().map(|line| line.splitn(3, ',').take(2).collect::<Vec<_>>().join(" ")).collect();
     assert_eq!(
-        told,
+        texts,
         ["participant event", "P02 came", "P02 consent_declined", "P03 came", "P03 withdrew", "P03 came"]
     );
 }
@@ -326,10 +326,10 @@ fn watch_lists_sessions_and_writes_remarks() {
     use std::io::Write;
     child.stdin.as_mut().expect("a pipe").write_all(b"P03\nyes\n3\nset_prices A=3\n").expect("written");
     let state = || {
-        let said = watch(&["--json"]).stdout;
-        let lines = said.lines().map(|line| serde_json::from_str::<serde_json::Value>(line).expect("JSON"));
-        let own = lines.into_iter().find(|line| line["participant"] == "P03");
-        own.map(|line| line["state"].as_str().expect("a state").to_owned())
+        let text = watch(&["--json"]).stdout;
+        let lines = text.lines().map(|line| serde_json::from_str::<serde_json::Value>(line).expect("JSON"));
+        let value = lines.into_iter().find(|line| line["participant"] == "P03");
+        value.map(|line| line["state"].as_str().expect("a state").to_owned())
     };
     while state().as_deref() != Some("plays") {
         std::thread::yield_now();
@@ -343,8 +343,8 @@ fn watch_lists_sessions_and_writes_remarks() {
 fn protocol_lists_every_measure_and_rule() {
     let lab = Lab::new();
     lab.assign();
-    let said = lab.0.run(&["study", "protocol", &lab.folder()]);
-    assert_eq!(said.exit_code, 0, "{}", said.stderr);
+    let program_output = lab.0.run(&["study", "protocol", &lab.folder()]);
+    assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
     let digest = lab.0.run(&["study", "check", &lab.folder()]).stdout;
     let digest = digest.lines().find_map(|line| line.trim().strip_prefix("digest ")).expect("a digest");
     let parts = [
@@ -357,15 +357,15 @@ fn protocol_lists_every_measure_and_rule() {
         "> # Taking part",
     ];
     for part in parts {
-        assert!(said.stdout.contains(part), "{part} is missing in\n{}", said.stdout);
+        assert!(program_output.stdout.contains(part), "{part} is missing in\n{}", program_output.stdout);
     }
     let columns = lab.0.run(&["runs", "--json", "columns"]).stdout;
     let columns: serde_json::Value = serde_json::from_str(&columns).expect("JSON");
     for (table, columns) in columns.as_object().expect("tables") {
-        assert!(said.stdout.contains(&format!("### {table}")), "{table}");
+        assert!(program_output.stdout.contains(&format!("### {table}")), "{table}");
         for column in columns.as_array().expect("columns") {
             let name = column["name"].as_str().expect("a name");
-            assert!(said.stdout.contains(&format!("| {name} |")), "{name}");
+            assert!(program_output.stdout.contains(&format!("| {name} |")), "{name}");
         }
     }
 }
@@ -404,8 +404,8 @@ fn final_page_shows_only_permitted_results() {
                 assert!(!end.stdout.contains("day 35 ·") || json, "{}", end.stdout);
             }
             // A participant who returns to the questions does not see it either.
-            let again = visit(&format!("{label}\n"));
-            assert_eq!(again.stdout.contains('$'), shows, "{results}:\n{}", again.stdout);
+            let program_output = visit(&format!("{label}\n"));
+            assert_eq!(program_output.stdout.contains('$'), shows, "{results}:\n{}", program_output.stdout);
         }
     }
 }
@@ -425,11 +425,11 @@ fn the_keys_of_a_study_seal_snapshots_and_sign_archives() {
         let mode = fs::metadata(folder.join(name)).expect("a file").permissions().mode();
         assert_eq!(mode & 0o777, 0o600, "{name}");
     }
-    let again = lab.0.run(&["study", "key", &lab.folder()]);
+    let program_output = lab.0.run(&["study", "key", &lab.folder()]);
     assert!(
-        again.stdout.contains("nothing was written") && again.stdout.contains(&fingerprint),
+        program_output.stdout.contains("nothing was written") && program_output.stdout.contains(&fingerprint),
         "{}",
-        again.stdout
+        program_output.stdout
     );
     assert_eq!(lab.play_session(&format!("P01\nyes\n5\n{WEEKS}4\n2\nquit\n")).exit_code, 0);
     let run = lab.only_run("P01");

@@ -122,8 +122,8 @@ fn assign_add_keeps_existing_rows() {
     lab.run("assign", &["--participants", "8", "--draw", "6"]).assert_fails(2, &["draw = 5"]);
     let made = lab.run("assign", &["--participants", "8"]);
     assert!(made.stdout.contains("the last block has 2 of 6 cells; with 12 participants"), "{}", made.stdout);
-    let told = lab.run("check", &[]).stdout;
-    assert!(told.contains("8 labels in blocks of 6: the last block has 2 of 6 cells"), "{told}");
+    let text = lab.run("check", &[]).stdout;
+    assert!(text.contains("8 labels in blocks of 6: the last block has 2 of 6 cells"), "{text}");
     let first = lab.assignment();
     lab.run("assign", &["--participants", "12"]).assert_fails(1, &["--add N"]);
     let added = lab.run("assign", &["--add", "4"]);
@@ -156,11 +156,12 @@ fn remark_is_stored_next_to_the_runs() {
     let machines = [lab.path("m1").display().to_string(), lab.path("m2").display().to_string()];
     let note =
         |label: &str, text: &str| lab.run("watch", &[&machines[0], &machines[1], "--note", label, text]);
-    let said = note("P02", "came late");
+    let program_output = note("P02", "came late");
     assert!(
-        said.stdout.contains("recorded a note for P02 in") && said.stdout.contains("m2/remarks.jsonl"),
+        program_output.stdout.contains("recorded a note for P02 in")
+            && program_output.stdout.contains("m2/remarks.jsonl"),
         "{}",
-        said.stdout
+        program_output.stdout
     );
     assert!(note("P01", "asked what a lead is").stdout.contains("m1/remarks.jsonl"));
     assert_eq!(note("P03", "has not come").exit_code, 0, "a label of the assignment");
@@ -189,7 +190,7 @@ fn protocol_lists_randomization_and_limits() {
     let made = lab.run("key", &[]).stdout;
     let fingerprint = made.lines().find_map(|line| line.strip_prefix("fingerprint ")).expect("one");
     let digest = blake3::hash(lab.assignment().as_bytes()).to_hex().to_string();
-    let said = lab.run("protocol", &[]).stdout;
+    let text = lab.run("protocol", &[]).stdout;
     for words in [
         format!("signed by the lab key {fingerprint}"),
         format!(
@@ -205,7 +206,7 @@ fn protocol_lists_randomization_and_limits() {
         "if no other follows within 60 s".to_owned(),
         "no; the week report and the Cash and Journal screens".to_owned(),
     ] {
-        assert!(said.contains(&words), "{words} is missing in\n{said}");
+        assert!(text.contains(&words), "{words} is missing in\n{text}");
     }
     fs::write(lab.path("pilot/assignment.csv"), lab.assignment().replacen(",A,", ",B,", 1)).expect("written");
     assert!(

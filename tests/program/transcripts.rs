@@ -29,8 +29,8 @@ fn played_run(home: &Home) -> (String, String) {
 }
 
 fn played_run_with(home: &Home, options: &[&str]) -> (String, String) {
-    let said = home.play(options, PLAY);
-    assert_eq!(said.exit_code, 0, "{}", said.stderr);
+    let program_output = home.play(options, PLAY);
+    assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
     let folder = home.only_run();
     (run_id(&folder), last_hash(&folder))
 }
@@ -44,8 +44,9 @@ fn last_hash(folder: &Path) -> String {
 
 fn export(home: &Home, run: &str, format: &str) -> Value {
     let out = home.0.path().join(format!("{format}.json"));
-    let said = home.run(&["runs", "export", run, "--format", format, "--out", &out.to_string_lossy()]);
-    assert_eq!(said.exit_code, 0, "{}", said.stderr);
+    let program_output =
+        home.run(&["runs", "export", run, "--format", format, "--out", &out.to_string_lossy()]);
+    assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
     serde_json::from_str(&fs::read_to_string(out).expect("a file")).expect("JSON")
 }
 
@@ -79,15 +80,16 @@ fn check_exported_script(options: &[&str]) {
     let home = Home::new();
     let (run, hash) = played_run_with(&home, options);
     let out = home.0.path().join("script");
-    let said = home.run(&["runs", "export", &run, "--format", "script", "--out", &out.to_string_lossy()]);
-    assert_eq!(said.exit_code, 0, "{}", said.stderr);
+    let program_output =
+        home.run(&["runs", "export", &run, "--format", "script", "--out", &out.to_string_lossy()]);
+    assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
     let script = fs::read_to_string(out.join("play.txt")).expect("a script");
     let command = script.lines().nth(1).expect("a command");
     let options = command.strip_prefix("# novamind play --plain --strict ").expect(command);
     let options: Vec<&str> = options.trim_end_matches(" < THIS FILE").split(' ').collect();
     let other = Home::new();
-    let said = other.play(&[&["--strict"], &*options].concat(), &script);
-    assert_eq!(said.exit_code, 0, "{}{}", said.stdout, said.stderr);
+    let output = other.play(&[&["--strict"], &*options].concat(), &script);
+    assert_eq!(output.exit_code, 0, "{}{}", output.stdout, output.stderr);
     assert_eq!(last_hash(&other.only_run()), hash);
     let again = home.run(&["runs", "export", &run, "--format", "script", "--out", &out.to_string_lossy()]);
     again.assert_fails(1, &["play.txt already exists"]);
@@ -97,13 +99,13 @@ fn check_exported_script(options: &[&str]) {
 fn atif_export_contains_calls_and_responses_only() {
     let home = Home::new();
     let (run, hash) = played_run(&home);
-    let told = export(&home, &run, "atif");
-    assert_eq!(told["schema_version"], "ATIF-v1.8");
+    let value = export(&home, &run, "atif");
+    assert_eq!(value["schema_version"], "ATIF-v1.8");
     assert_eq!(
-        (&told["agent"]["name"], &told["final_metrics"]["extra"]["state_hash"]),
+        (&value["agent"]["name"], &value["final_metrics"]["extra"]["state_hash"]),
         (&json!("P01"), &json!(hash))
     );
-    let steps = told["steps"].as_array().expect("steps");
+    let steps = value["steps"].as_array().expect("steps");
     assert!((1..).zip(steps).all(|(number, step)| step["step_id"] == number), "{steps:?}");
     let calls: Vec<(&str, Value)> = steps
         .iter()
@@ -127,7 +129,7 @@ fn atif_export_contains_calls_and_responses_only() {
         [Some(7), Some(14), Some(21)]
     );
     assert!(weeks.iter().all(|week| week["dashboard"].as_str().is_some_and(|text| text.contains("Cash"))));
-    let text = told.to_string();
+    let text = value.to_string();
     assert!(text.contains("If prices fall, wait.") && !text.contains("hidden."), "{text}");
 }
 
@@ -152,9 +154,13 @@ fn every_export_has_the_calls_of_unknown_tools() {
     }
     let out = |name: &str| home.0.path().join(name).to_string_lossy().into_owned();
     let done = |words: &[&str]| {
-        let said = home.run(words);
-        assert_eq!(said.exit_code, 0, "{words:?}: {}{}", said.stdout, said.stderr);
-        said.stdout
+        let program_output = home.run(words);
+        assert_eq!(
+            program_output.exit_code, 0,
+            "{words:?}: {}{}",
+            program_output.stdout, program_output.stderr
+        );
+        program_output.stdout
     };
     done(&["runs", "export", &run, "--format", "script", "--out", &out("script")]);
     for file in ["play.txt", "play.py"] {
@@ -207,20 +213,21 @@ fn shown_and_logged(home: &Home) -> Vec<(Value, Value)> {
     assert_eq!(home.play(&["--seed", "12", "--days", "28"], "next naive\n").exit_code, 0);
     assert_eq!(home.run(&["runs", "end", "latest"]).exit_code, 0);
     for options in [&["--days", "14"][..], &["--days", "14", "--cash", "500"]] {
-        let said = home.run(&[&["run", "--policy", "P0", "--seed", "3", "--save"], options].concat());
-        assert_eq!(said.exit_code, 0, "{}", said.stderr);
+        let program_output =
+            home.run(&[&["run", "--policy", "P0", "--seed", "3", "--save"], options].concat());
+        assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
     }
     let list: Value = serde_json::from_str(&home.run(&["runs", "list", "--json"]).stdout).expect("JSON");
     let logs = home.0.path().join("logs");
     let of_run = |run: &Value| {
         let id = run["id"].as_str().expect("a name");
-        let shown = home.run(&["runs", "show", id, "--json"]);
+        let output = home.run(&["runs", "show", id, "--json"]);
         let said = home.run(&["runs", "export", id, "--format", "inspect", "--out", &logs.to_string_lossy()]);
-        assert_eq!((shown.exit_code, said.exit_code), (0, 0), "{}{}", shown.stderr, said.stderr);
+        assert_eq!((output.exit_code, said.exit_code), (0, 0), "{}{}", output.stderr, said.stderr);
         let moment = run["created"].as_str().expect("a moment")[..19].replace(':', "-");
         let file = logs.join(format!("{moment}-00-00_novamind_{id}.json"));
         let log = fs::read_to_string(file).expect("a log");
-        let parsed = [shown.stdout, log].map(|text| serde_json::from_str(&text).expect("JSON"));
+        let parsed = [output.stdout, log].map(|text| serde_json::from_str(&text).expect("JSON"));
         parsed.into()
     };
     list.as_array().expect("runs").iter().map(of_run).collect()
@@ -266,9 +273,9 @@ fn evaluation_log_becomes_a_run_in_the_same_state() {
     export(&home, &run, "inspect");
     let file = home.0.path().join("inspect.json");
     let other = Home::new();
-    let said = other.run(&["runs", "import", "--transcript", &file.to_string_lossy()]);
-    assert_eq!(said.exit_code, 0, "{}{}", said.stdout, said.stderr);
-    assert!(said.stdout.contains(&hash), "{}", said.stdout);
+    let program_output = other.run(&["runs", "import", "--transcript", &file.to_string_lossy()]);
+    assert_eq!(program_output.exit_code, 0, "{}{}", program_output.stdout, program_output.stderr);
+    assert!(program_output.stdout.contains(&hash), "{}", program_output.stdout);
 }
 
 /// `tests/data/inspect.eval` was written by Inspect 0.3.285: four calls of tools of this program, one of which was rejected, and one of
@@ -277,9 +284,10 @@ fn evaluation_log_becomes_a_run_in_the_same_state() {
 fn archive_of_inspect_is_imported() {
     let home = Home::new();
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/inspect.eval");
-    let said = home.run(&["runs", "import", "--transcript", &file.to_string_lossy(), "--days", "28"]);
-    assert_eq!(said.exit_code, 0, "{}{}", said.stdout, said.stderr);
-    assert!(said.stdout.contains(": 4 calls, day 7,"), "{}", said.stdout);
+    let program_output =
+        home.run(&["runs", "import", "--transcript", &file.to_string_lossy(), "--days", "28"]);
+    assert_eq!(program_output.exit_code, 0, "{}{}", program_output.stdout, program_output.stderr);
+    assert!(program_output.stdout.contains(": 4 calls, day 7,"), "{}", program_output.stdout);
     let manifest = fs::read_to_string(home.only_run().join("run.toml")).expect("a manifest");
     assert!(
         manifest.contains("seed = 9") && manifest.contains("participant = \"mockllm/model\""),
@@ -300,9 +308,9 @@ fn a_trajectory_becomes_a_run_in_the_same_state() {
     export(&home, &run, "atif");
     let file = home.0.path().join("atif.json");
     let other = Home::new();
-    let said = other.run(&["runs", "import", "--transcript", &file.to_string_lossy()]);
-    assert_eq!(said.exit_code, 0, "{}{}", said.stdout, said.stderr);
-    assert!(said.stdout.contains(&hash), "{}", said.stdout);
+    let program_output = other.run(&["runs", "import", "--transcript", &file.to_string_lossy()]);
+    assert_eq!(program_output.exit_code, 0, "{}{}", program_output.stdout, program_output.stderr);
+    assert!(program_output.stdout.contains(&hash), "{}", program_output.stdout);
     let folder = other.only_run();
     assert_eq!(last_hash(&folder), hash);
     let manifest = fs::read_to_string(folder.join("run.toml")).expect("a manifest");
@@ -312,8 +320,8 @@ fn a_trajectory_becomes_a_run_in_the_same_state() {
     );
     assert_eq!(other.run(&["replay", "latest", "--verify"]).exit_code, 0);
     // Another world answers differently, and the import reports it.
-    let said = other.run(&["runs", "import", "--transcript", &file.to_string_lossy(), "--seed", "12"]);
-    said.assert_fails(1, &["the final state differs"]);
+    let output = other.run(&["runs", "import", "--transcript", &file.to_string_lossy(), "--seed", "12"]);
+    output.assert_fails(1, &["the final state differs"]);
     let lines = other.0.path().join("calls.jsonl");
     fs::write(&lines, "{\"tool\": \"set_prices\", \"args\": {\"A\": 12}, \"success\": false}\n")
         .expect("a file");
@@ -332,9 +340,9 @@ fn weeks_of_a_replay_are_recorded_for_terminal_players() {
     let (run, _) = played_run(&home);
     let file = home.0.path().join("talk.cast");
     let file = file.to_string_lossy().into_owned();
-    let said =
+    let program_output =
         home.run(&["replay", &run, "--cast", &file, "--week", "2..3", "--speed", "2", "--size", "80x24"]);
-    assert_eq!(said.exit_code, 0, "{}{}", said.stdout, said.stderr);
+    assert_eq!(program_output.exit_code, 0, "{}{}", program_output.stdout, program_output.stderr);
     let lines: Vec<Value> = fs::read_to_string(&file)
         .expect("a recording")
         .lines()

@@ -31,14 +31,14 @@ fn invalid_model_file_is_rejected() {
         ),
     ] {
         let file = write_model_file(&home, endpoint, more);
-        let said = home.play(&["--new", "--days", "28", "--voice", &file], "");
-        assert_ne!(said.exit_code, 0, "{}", said.stdout);
-        assert!(parts.iter().all(|part| said.stderr.contains(part)), "{}", said.stderr);
+        let program_output = home.play(&["--new", "--days", "28", "--voice", &file], "");
+        assert_ne!(program_output.exit_code, 0, "{}", program_output.stdout);
+        assert!(parts.iter().all(|part| program_output.stderr.contains(part)), "{}", program_output.stderr);
     }
     let file = write_model_file(&home, "http://127.0.0.1:1/v1", "");
     let baseline = ["--new", "--mode", "baseline", "--participant", "P01", "--voice", &file];
-    let said = home.play(&baseline, "");
-    assert!(said.exit_code != 0 && said.stderr.contains("study.toml"), "{}", said.stderr);
+    let output = home.play(&baseline, "");
+    assert!(output.exit_code != 0 && output.stderr.contains("study.toml"), "{}", output.stderr);
     assert_eq!(std::fs::read_dir(home.runs()).expect("a folder").filter(|entry| entry.is_ok()).count(), 0);
 }
 
@@ -60,6 +60,6 @@ fn run_continues_without_the_model() {
     assert!(report.stdout.contains("llama3 at 127.0.0.1"), "{}", report.stdout);
     let card = home.run(&["report", &run_id(&run), "--card"]);
     assert!(card.stdout.contains("A language model worded"), "{}", card.stdout);
-    let again = home.play(&["--run", &run_id(&run)], "next naive\n");
-    assert!(again.stdout.contains("name its file with --voice"), "{}", again.stdout);
+    let program_output = home.play(&["--run", &run_id(&run)], "next naive\n");
+    assert!(program_output.stdout.contains("name its file with --voice"), "{}", program_output.stdout);
 }

@@ -135,16 +135,16 @@ impl<'a> ConsoleParticipant<'a> {
     }
 
     /// Answers the only question of a page after some seconds.
-    pub fn answer(&mut self, asked: StudyQuestion, keys: &str, value: &str, seconds: u64) {
-        self.note("question", asked.questionnaire, asked.question, None);
+    pub fn answer(&mut self, study_question: StudyQuestion, keys: &str, value: &str, seconds: u64) {
+        self.note("question", study_question.questionnaire, study_question.question, None);
         let before = std::mem::replace(&mut self.spends, TimeCategory::Answering);
         self.wait(seconds);
         self.spends = before;
         self.press_unrecorded(keys);
         let for_ms = seconds * 1000;
         self.note("dialog", "questions", "confirmed", Some(for_ms));
-        self.note("answer", asked.questionnaire, asked.question, Some(for_ms));
-        self.diary.add_answer(asked, value, for_ms);
+        self.note("answer", study_question.questionnaire, study_question.question, Some(for_ms));
+        self.diary.add_answer(study_question, value, for_ms);
     }
 
     pub fn go(&mut self, key: &str, screen: &'static str) {

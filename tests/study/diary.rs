@@ -77,18 +77,18 @@ impl Diary {
     }
 
     pub fn total_ms(&self, what: TimeCategory) -> u64 {
-        self.time.iter().filter(|((_, own), _)| *own == what).map(|(_, ms)| ms).sum()
+        self.time.iter().filter(|((_, time_category), _)| *time_category == what).map(|(_, ms)| ms).sum()
     }
 
-    pub fn add_answer(&mut self, asked: StudyQuestion, value: &str, for_ms: u64) {
+    pub fn add_answer(&mut self, study_question: StudyQuestion, value: &str, for_ms: u64) {
         let breaks = self.answers.iter().filter(|answer| answer.question == BREAK.question).count();
-        let occasion = match asked.occasion {
+        let occasion = match study_question.occasion {
             "break" => format!("break {}", breaks + 1),
             other => other.to_owned(),
         };
         self.answers.push(ExpectedAnswer {
             occasion,
-            question: asked.question,
+            question: study_question.question,
             value: value.to_owned(),
             for_ms,
         });

@@ -168,8 +168,8 @@ impl Lab {
     /// Audits the honest sessions, which must not cause findings.
     pub fn assert_audit_finds_nothing(&self) {
         let study = self.study().display().to_string();
-        let said = self.about_machines(&["study", "audit", &study], &[]);
-        assert_eq!(said.exit_code, 0, "{}{}", said.stdout, said.stderr);
-        assert!(said.stdout.contains("No findings."), "{}", said.stdout);
+        let program_output = self.about_machines(&["study", "audit", &study], &[]);
+        assert_eq!(program_output.exit_code, 0, "{}{}", program_output.stdout, program_output.stderr);
+        assert!(program_output.stdout.contains("No findings."), "{}", program_output.stdout);
     }
 }

@@ -24,15 +24,15 @@ fn tables_match_twelve_scripted_participants() {
     let mut diaries = scripts::first_machine(&lab);
     diaries.extend(scripts::second_machine(&lab));
     diaries.extend(scripts::third_machine(&lab));
-    let said = lab.collect();
+    let program_output = lab.collect();
     // Two participants have no session, which `collect` reports.
     let notes = [
         "label P05 has no session; last visit: consent declined",
         "label P06 has no session; last visit: withdrew",
         "12 came: 1 declined, 1 withdrew, 10 finished, 0 neither · refused: 2 labels, 0 codes",
     ];
-    let told = said.stdout.lines().filter(|line| !line.contains("verified"));
-    assert_eq!(told.filter(|line| !line.is_empty()).collect::<Vec<_>>(), notes, "{}", said.stdout);
+    let told = program_output.stdout.lines().filter(|line| !line.contains("verified"));
+    assert_eq!(told.filter(|line| !line.is_empty()).collect::<Vec<_>>(), notes, "{}", program_output.stdout);
     tables::compare_tables(&lab, &diaries);
     if let Some((told, code)) = recompute(&lab.data()) {
         assert_eq!(code, Some(0), "{told}");

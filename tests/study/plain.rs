@@ -74,11 +74,11 @@ impl<'a> PlainParticipant<'a> {
         });
     }
 
-    pub fn answer(&mut self, asked: StudyQuestion, typed: &str, value: &str) {
+    pub fn answer(&mut self, study_question: StudyQuestion, typed: &str, value: &str) {
         self.send_line(typed);
-        self.note("question", asked.questionnaire, asked.question);
-        self.note("answer", asked.questionnaire, asked.question);
-        self.diary.add_answer(asked, value, 0);
+        self.note("question", study_question.questionnaire, study_question.question);
+        self.note("answer", study_question.questionnaire, study_question.question);
+        self.diary.add_answer(study_question, value, 0);
     }
 
     pub fn call(&mut self, tool: &str, arguments: &str) {

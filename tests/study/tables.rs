@@ -51,12 +51,12 @@ pub fn compare_tables(lab: &Lab, diaries: &[Diary]) {
 }
 
 fn compare_events(diary: &Diary, rows: &[&Row]) {
-    let told: Vec<String> = rows.iter().map(|row| event_text(row, diary.is_real_time)).collect();
+    let texts: Vec<String> = rows.iter().map(|row| event_text(row, diary.is_real_time)).collect();
     let done: Vec<String> =
         diary.lines.iter().map(|deed| expected_event_text(deed, diary.is_real_time)).collect();
-    let different = told.iter().zip(&done).find(|(told, done)| told != done);
+    let different = texts.iter().zip(&done).find(|(text, done)| text != done);
     assert_eq!(different, None, "{}: the table differs from the diary", diary.label);
-    assert_eq!(told.len(), done.len(), "{}", diary.label);
+    assert_eq!(texts.len(), done.len(), "{}", diary.label);
 }
 
 fn compare_run_row(diary: &Diary, row: &Row) {
@@ -153,23 +153,23 @@ fn compare_weeks(diary: &Diary, rows: &[&Row]) {
             continue;
         }
         let expected = [TimeCategory::Active, TimeCategory::Idle, TimeCategory::Paused].map(own);
-        let told = ["active_seconds", "idle_seconds", "paused_seconds"].map(told);
+        let numbers = ["active_seconds", "idle_seconds", "paused_seconds"].map(told);
         if week < WEEKS {
             assert_eq!(cell_ms(row, "answering_seconds"), own(TimeCategory::Answering), "{}", diary.label);
         }
-        assert_eq!(told, expected, "{} in week {week}", diary.label);
+        assert_eq!(numbers, expected, "{} in week {week}", diary.label);
         let fast = if own(TimeCategory::Active) < 10_000 { "1" } else { "0" };
         assert_eq!(row["implausibly_fast"], fast, "{} in week {week}", diary.label);
     }
 }
 
 fn compare_column(diary: &Diary, rows: &[&Row], column: &str, expected: &[String]) {
-    let told: Vec<&String> = rows.iter().map(|row| &row[column]).collect();
-    assert_eq!(told, expected.iter().collect::<Vec<_>>(), "{}: {column}", diary.label);
+    let texts: Vec<&String> = rows.iter().map(|row| &row[column]).collect();
+    assert_eq!(texts, expected.iter().collect::<Vec<_>>(), "{}: {column}", diary.label);
 }
 
 fn compare_answers(diary: &Diary, rows: &[&Row]) {
-    let told: Vec<ExpectedAnswer> = rows
+    let expected_answers: Vec<ExpectedAnswer> = rows
         .iter()
         .map(|row| ExpectedAnswer {
             occasion: row["occasion"].clone(),
@@ -178,7 +178,7 @@ fn compare_answers(diary: &Diary, rows: &[&Row]) {
             for_ms: if diary.is_real_time { 0 } else { row["for_ms"].parse().expect("milliseconds") },
         })
         .collect();
-    assert_eq!(told, diary.answers, "{}", diary.label);
+    assert_eq!(expected_answers, diary.answers, "{}", diary.label);
     for row in rows.iter().filter(|row| row["question"] == "check") {
         assert_eq!(row["as_expected"], if row["value"] == "second" { "1" } else { "0" }, "{}", diary.label);
     }

@@ -13,6 +13,6 @@ pub fn recompute(tables: &Path) -> Option<(String, Option<i32>)> {
     let mut script = Command::new("python3");
     script.arg(root.join("tests/python/recompute.py")).args([tables, &root.join("configs/world")]);
     let done = script.output().expect("it runs");
-    let told = [done.stdout, done.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).concat();
-    Some((told, done.status.code()))
+    let text = [done.stdout, done.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).concat();
+    Some((text, done.status.code()))
 }

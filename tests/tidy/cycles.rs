@@ -71,13 +71,13 @@ impl Unit {
             .collect();
         let mut imports: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
         for file in &files {
-            let Some(own) = file.module.first() else { continue };
-            let edges = imports.entry(own.clone()).or_default();
+            let Some(text) = file.module.first() else { continue };
+            let edges = imports.entry(text.clone()).or_default();
             for path in paths(&file.text) {
                 let name = self.imported_module(&file.module, &path.names);
                 let module = name.filter(|name| modules.contains(name.as_str()));
                 let module = module.or_else(|| exports.get(name?));
-                edges.extend(module.filter(|module| *module != own).cloned());
+                edges.extend(module.filter(|module| *module != text).cloned());
             }
         }
         imports

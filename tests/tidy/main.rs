@@ -146,8 +146,8 @@ fn dependencies() -> BTreeMap<String, Vec<String>> {
         let text = fs::read_to_string(folder.join("Cargo.toml")).expect("a manifest");
         let manifest: toml::Table = text.parse().expect("a manifest in TOML");
         let named = manifest["dependencies"].as_table().expect("dependencies").keys();
-        let own = named.filter_map(|name| Some(name.strip_prefix("novamind-")?.to_owned())).collect();
-        (folder.file_name().expect("a name").to_string_lossy().into_owned(), own)
+        let texts = named.filter_map(|name| Some(name.strip_prefix("novamind-")?.to_owned())).collect();
+        (folder.file_name().expect("a name").to_string_lossy().into_owned(), texts)
     });
     crates.collect()
 }

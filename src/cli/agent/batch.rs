@@ -52,20 +52,20 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let mut tries = Vec::new();
     for number in 1..=options.tries {
         let work = out.join(format!("try-{number}"));
-        let own = AgentRun::create(&options.made_of, context).inspect_err(|_| {
+        let agent_run = AgentRun::create(&options.made_of, context).inspect_err(|_| {
             // The output folder is removed if no try has started.
             if !was_there {
                 let _ = std::fs::remove_dir(&out);
             }
         })?;
-        write_run_documents(&own, Some(&work))?;
+        write_run_documents(&agent_run, Some(&work))?;
         write_client(&work.join("client"))?;
-        eprintln!("try {number} of {}: run {} in {}", options.tries, own.id, work.display());
-        let played = play_until_over(options, number, &own, &work, &stop);
+        eprintln!("try {number} of {}: run {} in {}", options.tries, agent_run.id, work.display());
+        let played = play_until_over(options, number, &agent_run, &work, &stop);
         // The server must stop in any case.
-        own.stop_server()?;
+        agent_run.stop_server()?;
         let (attempts, exit_code) = played?;
-        tries.push(read_outcome(number, &own, attempts, exit_code)?);
+        tries.push(read_outcome(number, &agent_run, attempts, exit_code)?);
         let exhibit = attempts_report(format!("{} runs of: {}", options.tries, options.command), &tries);
         write_atomically(&out.join("results.json"), format!("{:#}\n", exhibit.to_json()).as_bytes())?;
         if number == options.tries {
@@ -83,16 +83,16 @@ fn write_failure(path: &Path, error: &std::io::Error) -> Failure {
 fn play_until_over(
     options: &Options,
     number: u32,
-    own: &AgentRun,
+    agent_run: &AgentRun,
     work: &Path,
     stop: &AtomicBool,
 ) -> Result<(u32, Option<i32>), Failure> {
     let mut attempts = 0;
     loop {
-        let remote = own.connect_or_start(Authentication::Unauthenticated)?;
+        let remote = agent_run.connect_or_start(Authentication::Unauthenticated)?;
         attempts += 1;
         let mut command = shell_command(&options.command);
-        set_environment(&mut command, own, &remote, &work.join("client"))?;
+        set_environment(&mut command, agent_run, &remote, &work.join("client"))?;
         command.env("NOVAMIND_TRY", number.to_string()).env("NOVAMIND_ATTEMPT", attempts.to_string());
         command.current_dir(work).stdin(Stdio::null());
         let log = work.join("output.txt");
@@ -106,8 +106,11 @@ fn play_until_over(
             command.spawn().map_err(|error| Failure::failed(format!("cannot start a shell: {error}")))?;
         let status = wait_for_exit(child, stop)?;
         // If the command stopped the server, another one continues the run.
-        let reply =
-            send_request(&own.connect_or_start(Authentication::Unauthenticated)?, "/game-status", None)?;
+        let reply = send_request(
+            &agent_run.connect_or_start(Authentication::Unauthenticated)?,
+            "/game-status",
+            None,
+        )?;
         exit::check_response(&reply)?;
         if !reply.body["ended"].is_null() || attempts > options.continued {
             return Ok((attempts, status.code()));
@@ -139,12 +142,19 @@ fn shell_command(command: &str) -> Command {
 
 fn read_outcome(
     number: u32,
-    own: &AgentRun,
+    agent_run: &AgentRun,
     attempts: u32,
     exit_code: Option<i32>,
 ) -> Result<AttemptResult, Failure> {
-    let session = Session::open_to_read(&own.folder, false)?;
-    let trajectory = Trajectory::read(&own.folder.join("trajectory.jsonl"))?;
+    let session = Session::open_to_read(&agent_run.folder, false)?;
+    let trajectory = Trajectory::read(&agent_run.folder.join("trajectory.jsonl"))?;
     let result = session.ended().and_then(|_| FinishedRun::from_session(&session, &trajectory.lines));
-    Ok(AttemptResult { number, run: own.id.clone(), starts: attempts, exit_code, day: session.day(), result })
+    Ok(AttemptResult {
+        number,
+        run: agent_run.id.clone(),
+        starts: attempts,
+        exit_code,
+        day: session.day(),
+        result,
+    })
 }

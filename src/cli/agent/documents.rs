@@ -26,8 +26,8 @@ pub fn print_or_write(named: Option<&str>, out: Option<&Path>, context: &Context
 }
 
 /// Writes the documents of a run.
-pub fn write_run_documents(own: &AgentRun, out: Option<&Path>) -> Result<(), Failure> {
-    let session = Session::open(&own.folder, Access::Read, false)?;
+pub fn write_run_documents(agent_run: &AgentRun, out: Option<&Path>) -> Result<(), Failure> {
+    let session = Session::open(&agent_run.folder, Access::Read, false)?;
     let manifest = session.manifest();
     write_page(&PageContext { days: manifest.days, cash: manifest.cash, numbers: &session.numbers() }, out)
 }

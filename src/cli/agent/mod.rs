@@ -119,8 +119,8 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
             print_response(&connect(named, context)?.1, "/call", Some(&asked))
         }
         AgentCommand::Python { words } => {
-            let (own, remote) = connect(named, context)?;
-            python::run(words, &own, &remote)
+            let (agent_run, remote) = connect(named, context)?;
+            python::run(words, &agent_run, &remote)
         }
         AgentCommand::Docs { out } => documents::print_or_write(named, out.as_deref(), context),
         AgentCommand::Stop => {
@@ -133,23 +133,23 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
 }
 
 fn create_run(new: &NewRunOptions, context: &Context) -> Result<(), Failure> {
-    let own = AgentRun::create(new, context)?;
-    own.set_latest(context)?;
-    let remote = own.connect_or_start(Authentication::Token)?;
-    let mut told = json!(remote.announcement);
-    told["folder"] = json!(own.folder);
+    let agent_run = AgentRun::create(new, context)?;
+    agent_run.set_latest(context)?;
+    let remote = agent_run.connect_or_start(Authentication::Token)?;
+    let mut value = json!(remote.announcement);
+    value["folder"] = json!(agent_run.folder);
     let status = send_request(&remote, "/game-status", None)?.body;
     for field in ["day", "total_days", "cash"] {
-        told[field] = status[field].clone();
+        value[field] = status[field].clone();
     }
-    print(&format!("{told}\n"))
+    print(&format!("{value}\n"))
 }
 
 /// Returns the run and a connection to its server, which is started if necessary.
 fn connect(named: Option<&str>, context: &Context) -> Result<(AgentRun, RemoteServer), Failure> {
-    let own = AgentRun::find(named, context)?;
-    let remote = own.connect_or_start(Authentication::Token)?;
-    Ok((own, remote))
+    let agent_run = AgentRun::find(named, context)?;
+    let remote = agent_run.connect_or_start(Authentication::Token)?;
+    Ok((agent_run, remote))
 }
 
 /// Sends a request and prints the response.

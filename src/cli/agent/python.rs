@@ -9,11 +9,11 @@ use crate::cli::Failure;
 use crate::server::RemoteServer;
 
 /// Runs python3 and passes its exit code on.
-pub fn run(words: &[String], own: &AgentRun, remote: &RemoteServer) -> Result<(), Failure> {
-    let client = own.write_client()?;
+pub fn run(words: &[String], agent_run: &AgentRun, remote: &RemoteServer) -> Result<(), Failure> {
+    let client = agent_run.write_client()?;
     let mut command = Command::new("python3");
     command.args(words);
-    set_environment(&mut command, own, remote, &client)?;
+    set_environment(&mut command, agent_run, remote, &client)?;
     let status = command.status().map_err(|error| match error.kind() {
         std::io::ErrorKind::NotFound => Failure::failed(
             "python3 is not on the PATH: install Python 3.9 or newer, or use `novamind agent call`",
@@ -30,7 +30,7 @@ pub fn run(words: &[String], own: &AgentRun, remote: &RemoteServer) -> Result<()
 /// Sets the environment that a program needs to play the run: port, token, run id and Python package.
 pub fn set_environment(
     command: &mut Command,
-    own: &AgentRun,
+    agent_run: &AgentRun,
     remote: &RemoteServer,
     client: &Path,
 ) -> Result<(), Failure> {
@@ -42,10 +42,10 @@ pub fn set_environment(
         Failure::usage(format!("cannot add the folder of the run to PYTHONPATH: {error}"))
     })?;
     command.env("PYTHONPATH", path).env("NOVAMIND_API_PORT", remote.port.to_string());
-    command.env("NOVAMIND_RUN", &own.id);
+    command.env("NOVAMIND_RUN", &agent_run.id);
     // `novamind agent` finds the run from any working directory.
     command
-        .env("NOVAMIND_RUNS", own.folder.parent().unwrap_or(&own.folder))
+        .env("NOVAMIND_RUNS", agent_run.folder.parent().unwrap_or(&agent_run.folder))
         .env_remove("NOVAMIND_PARTICIPANT");
     match &remote.token {
         Some(token) => command.env("NOVAMIND_API_TOKEN", token),

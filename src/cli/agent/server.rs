@@ -64,10 +64,10 @@ impl AgentRun {
             Failure::usage("there is no run of an agent here: create one with `novamind agent new`, or give one with --run or NOVAMIND_RUN")
         })?;
         // Usually the file answers without reading every run.
-        let own = run_folder(&runs, &id);
+        let path = run_folder(&runs, &id);
         let is_name = !id.is_empty() && id.chars().all(|letter| letter.is_ascii_alphanumeric());
-        let folder = match is_name && own.join("run.toml").is_file() {
-            true => own,
+        let folder = match is_name && path.join("run.toml").is_file() {
+            true => path,
             false => find_run_to_read(&runs, &id)?,
         };
         context.check_play_allowed(&folder)?;
@@ -173,8 +173,8 @@ impl AgentRun {
         }
         if line.is_empty() {
             let status = child.wait().map_err(failed)?;
-            let said = std::fs::read_to_string(&log).unwrap_or_default();
-            let said = said.trim().strip_prefix("novamind: ").unwrap_or(said.trim()).to_owned();
+            let text = std::fs::read_to_string(&log).unwrap_or_default();
+            let said = text.trim().strip_prefix("novamind: ").unwrap_or(text.trim()).to_owned();
             let code = status.code().and_then(|code| u8::try_from(code).ok()).filter(|code| *code > 0);
             return Err(Failure::with_code(code.unwrap_or(1), said));
         }

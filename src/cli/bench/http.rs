@@ -35,12 +35,12 @@ fn measure_http(bench: &BenchContext) -> Result<Samples, BenchError> {
     let folder = run_folder(&bench.scratch_folder, &run);
     let session = Session::open(&folder, Access::Write, true)?;
     let (ready, waits) = channel();
-    let held = BoundPort::bind(None)?;
+    let bound_port = BoundPort::bind(None)?;
     let server = std::thread::spawn(move || {
         let announce = |_: &_| {
             let _ = ready.send(());
         };
-        serve_http(session, held, &HttpOptions::default(), announce, |words| eprintln!("{words}"))
+        serve_http(session, bound_port, &HttpOptions::default(), announce, |words| eprintln!("{words}"))
     });
     let there = waits.recv().ok().and_then(|()| RemoteServer::find(&folder, &run));
     let samples = there

@@ -60,8 +60,10 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         };
     let copy = play(&shared, &COPY_SETTINGS, LONG_DAYS)?;
     let drain = play(&targeted, &DRAIN_SETTINGS, LONG_DAYS)?;
-    let few: Vec<CompetitorSetting> =
-        COPY_SETTINGS.into_iter().filter(|own| ["off", "default", "hard"].contains(&own.name)).collect();
+    let few: Vec<CompetitorSetting> = COPY_SETTINGS
+        .into_iter()
+        .filter(|competitor_setting| ["off", "default", "hard"].contains(&competitor_setting.name))
+        .collect();
     let mut short = vec![(shared.name.clone(), play(&shared, &few, SHORT_DAYS)?)];
     for (name, policy) in short_run_policies()? {
         short.push((name.to_owned(), play(&policy, &few, SHORT_DAYS)?));

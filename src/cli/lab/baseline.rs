@@ -47,8 +47,8 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
 fn play_grid(grid: &PolicyGrid, options: &Options, context: &Context) -> Result<ExperimentResults, Failure> {
     let points = &grid.configurations;
     let seeds = options.seeds.first..=options.seeds.last;
-    let arm = |own: &GridPoint| {
-        let mut arm = Arm::new(own.label(), own.policy.clone());
+    let arm = |grid_point: &GridPoint| {
+        let mut arm = Arm::new(grid_point.label(), grid_point.policy.clone());
         arm.spec = RunSpec { scenario: options.scenario.clone(), days: options.days, ..arm.spec };
         arm
     };
@@ -58,8 +58,8 @@ fn play_grid(grid: &PolicyGrid, options: &Options, context: &Context) -> Result<
     let first = Experiment::new(leading.iter().map(|at| arm(&points[*at])).collect(), seeds);
     let known = run_experiment("baseline", &first, &options.play, context)?;
     let mut starts = Vec::new();
-    for own in points {
-        starts.push(start_cash(own, options, context)?);
+    for point in points {
+        starts.push(start_cash(point, options, context)?);
     }
     // Results that were just computed are used even with --fresh.
     let play = PlayOptions { fresh: false, ..options.play.clone() };
@@ -76,11 +76,11 @@ fn play_grid(grid: &PolicyGrid, options: &Options, context: &Context) -> Result<
     })
 }
 
-fn start_cash(own: &GridPoint, options: &Options, context: &Context) -> Result<f64, Failure> {
-    if let Some(cash) = own.policy.start.cash {
+fn start_cash(grid_point: &GridPoint, options: &Options, context: &Context) -> Result<f64, Failure> {
+    if let Some(cash) = grid_point.policy.start.cash {
         return Ok(cash);
     }
-    let named = options.scenario.as_deref().or(own.policy.start.scenario.as_deref());
+    let named = options.scenario.as_deref().or(grid_point.policy.start.scenario.as_deref());
     let scenario = context.configuration.load_scenario(named.unwrap_or(DEFAULT_SCENARIO))?;
     Ok(context.configuration.days_and_cash(&scenario, true)?.1)
 }

@@ -49,7 +49,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
             "runs": ids,
             "last_day": found.last_day,
             "first_day": found.first_day,
-            "day": found.difference.as_ref().map(|own| own.days.0),
+            "day": found.difference.as_ref().map(|day_difference| day_difference.days.0),
             "difference": found.difference.as_ref().map(difference_to_json),
         });
         return print(&(serde_json::to_string_pretty(&object).unwrap_or_default() + "\n"));

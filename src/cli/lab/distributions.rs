@@ -33,9 +33,9 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let Some(name) = &options.name else {
         return options.output.show(&all_distributions_report(&luck, options.draws));
     };
-    let own = find_distribution(name)?;
-    let member = find_member(own, options.of.as_deref(), &luck)?;
-    options.output.show(&distribution_report(own, (member.0, &member.1), &luck, options.draws))
+    let world_draw = find_distribution(name)?;
+    let member = find_member(world_draw, options.of.as_deref(), &luck)?;
+    options.output.show(&distribution_report(world_draw, (member.0, &member.1), &luck, options.draws))
 }
 
 fn find_distribution(name: &str) -> Result<&'static WorldDraw, Failure> {
@@ -49,11 +49,11 @@ fn find_distribution(name: &str) -> Result<&'static WorldDraw, Failure> {
 }
 
 fn find_member(
-    own: &WorldDraw,
+    world_draw: &WorldDraw,
     wanted: Option<&str>,
     luck: &DrawContext,
 ) -> Result<(usize, String), Failure> {
-    let members = own.family.members(&luck.params);
+    let members = world_draw.family.members(&luck.params);
     let Some(wanted) = wanted else {
         return members
             .into_iter()
@@ -67,7 +67,7 @@ fn find_member(
         let names: Vec<&str> =
             members.iter().map(|(_, name)| name.as_str()).filter(|name| !name.is_empty()).collect();
         Failure::usage(match names.is_empty() {
-            true => format!("{} is the same for all: leave out --of", own.name),
+            true => format!("{} is the same for all: leave out --of", world_draw.name),
             false => format!("--of takes one of {}", names.join(", ")),
         })
     })

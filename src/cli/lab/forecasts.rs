@@ -80,10 +80,10 @@ fn play_runs(options: &Options, context: &Context) -> Result<Vec<PlayedWeeks>, F
 fn coverage_table(runs: &[PlayedWeeks], horizons: &[u32], bands: &ErrorBands) -> String {
     let row = |name: &str, policy: Option<&str>| {
         let cells = horizons.iter().map(|horizon| {
-            let own = band_coverage(runs, policy, *horizon, bands);
-            match own.forecasts {
+            let coverage = band_coverage(runs, policy, *horizon, bands);
+            match coverage.forecasts {
                 0 => format!("{:>18}", "–"),
-                count => format!("{:>7.1} % of {:>5}", own.held * 100.0, count),
+                count => format!("{:>7.1} % of {:>5}", coverage.held * 100.0, count),
             }
         });
         format!("{name:<12}{}\n", cells.collect::<String>())

@@ -44,7 +44,9 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
 
 /// Formats the policies and the run itself, the best first.
 fn to_text(opponents: &OpponentResults, run: &Session) -> String {
-    let policy = |own: &OpponentResult| (own.score(), own.policy.clone(), describe_opponent_end(own));
+    let policy = |opponent_result: &OpponentResult| {
+        (opponent_result.score(), opponent_result.policy.clone(), describe_opponent_end(opponent_result))
+    };
     let mut places: Vec<(f64, String, String)> = opponents.policies.iter().map(policy).collect();
     let (name, day) = (format!("this run, {}", run.manifest().id), run.day());
     // Cash on another day is not a score.
@@ -65,10 +67,10 @@ fn to_text(opponents: &OpponentResults, run: &Session) -> String {
     format!("{}\n\n{}{not_over}", opponents.describe(), align_columns(&headers, &rows))
 }
 
-fn describe_opponent_end(own: &OpponentResult) -> String {
-    match &own.stopped {
-        Some(why) => format!("stopped on day {}: {why}", own.day),
-        None => describe_end(own.is_bankrupt, own.day),
+fn describe_opponent_end(opponent_result: &OpponentResult) -> String {
+    match &opponent_result.stopped {
+        Some(why) => format!("stopped on day {}: {why}", opponent_result.day),
+        None => describe_end(opponent_result.is_bankrupt, opponent_result.day),
     }
 }
 

@@ -59,8 +59,8 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
                 Ok(None) => {}
                 Ok(Some(result)) => {
                     // The list knows only the last weeks; someone may have played before the policy did.
-                    let whole = RunSummary { policy: result.policy.clone(), ..summary.clone() };
-                    let obstacles = RankingCriteria::from_summary(&whole).obstacles();
+                    let run_summary = RunSummary { policy: result.policy.clone(), ..summary.clone() };
+                    let obstacles = RankingCriteria::from_summary(&run_summary).obstacles();
                     if obstacles.is_empty() { results.push(result) } else { left_out.push(obstacles) }
                 }
                 Err(problem) => unreadable.push(problem.to_string()),

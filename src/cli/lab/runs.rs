@@ -24,15 +24,15 @@ pub fn map_runs<T>(
     let mut read = Vec::new();
     let mut known = BTreeMap::new();
     for name in names {
-        let own = find_run_to_read(&folder, name)?;
+        let path = find_run_to_read(&folder, name)?;
         // Copies of a folder contain runs with the same id.
-        if let Some(before) = known.insert(Manifest::read(&own)?.id, name) {
+        if let Some(before) = known.insert(Manifest::read(&path)?.id, name) {
             let message = format!("{before} and {name} are the same run; name each run once");
             return Err(Failure::usage(message));
         }
-        context.authorize_view(&own, command, &names.join(" "))?;
-        let session = Session::open_to_read(&own, true)?;
-        read.push(of(&session, &Trajectory::read(&own.join("trajectory.jsonl"))?));
+        context.authorize_view(&path, command, &names.join(" "))?;
+        let session = Session::open_to_read(&path, true)?;
+        read.push(of(&session, &Trajectory::read(&path.join("trajectory.jsonl"))?));
         progress.inc(1);
     }
     progress.finish_and_clear();

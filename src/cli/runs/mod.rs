@@ -236,7 +236,7 @@ fn run_line(run: &RunSummary, origin: Option<&BranchOrigin>) -> String {
     let served = if run.is_served { "  played by a program" } else { "" };
     let copy = run.copy_of.as_ref();
     let copy =
-        copy.map(|own| format!("  a copy of run {}", escape_control_characters(own))).unwrap_or_default();
+        copy.map(|text| format!("  a copy of run {}", escape_control_characters(text))).unwrap_or_default();
     format!(
         "{}  {}  {:<8}  {:<10}  day {:>3}/{}  {:>14}  seed {:<6} {}{who}{served}{origin}{copy}\n",
         run.id,

@@ -24,16 +24,16 @@ pub fn import_transcript(file: &Path, made_of: &NewRunOptions, context: &Context
     }
     let bytes = std::fs::read(file).map_err(|error| named(error.to_string()))?;
     let read = ForeignTranscript::read(&bytes).map_err(named)?;
-    let asked = made_of.with_participant(read.player.as_deref().unwrap_or("transcript"));
-    let asked = asked.new_run(Mode::Sandbox, context)?;
+    let run_options = made_of.with_participant(read.player.as_deref().unwrap_or("transcript"));
+    let new_run = run_options.new_run(Mode::Sandbox, context)?;
     let scenario = read.scenario.clone().filter(|_| !made_of.has_scenario());
     let new = NewRun {
-        seed: asked.seed.or(read.seed),
-        days: asked.days.or(read.days),
-        cash: asked.cash.or(read.cash),
-        scenario: scenario.unwrap_or(asked.scenario.clone()),
+        seed: new_run.seed.or(read.seed),
+        days: new_run.days.or(read.days),
+        cash: new_run.cash.or(read.cash),
+        scenario: scenario.unwrap_or(new_run.scenario.clone()),
         sync_calls: false,
-        ..asked
+        ..new_run
     };
     if new.seed.is_none() {
         return Err(Failure::usage("the transcript has no seed: give it with --seed"));
@@ -45,8 +45,8 @@ pub fn import_transcript(file: &Path, made_of: &NewRunOptions, context: &Context
     session.save()?;
     let (run, day, hash) = (session.manifest().id.clone(), session.day(), session.state_hash().0);
     print(&format!("run {run}: {} calls, day {day}, state {hash}\n", played.call_count))?;
-    for (place, tool, said) in played.mismatches.iter().take(MAX_LISTED_MISMATCHES) {
-        print(&format!("step {place}: the answer to {tool} differs from the transcript: {said}\n"))?;
+    for (place, tool, text) in played.mismatches.iter().take(MAX_LISTED_MISMATCHES) {
+        print(&format!("step {place}: the answer to {tool} differs from the transcript: {text}\n"))?;
     }
     if played.not_run > 0 {
         let scripts = pluralize(played.not_run as u32, "script");

@@ -90,7 +90,7 @@ fn randomization_seed(options: &Options, protocol: &Protocol) -> Result<u64, Fai
 /// Returns the existing labels and `more` new ones with consecutive numbers.
 fn new_labels(there: Option<&Assignment>, more: u32, prefix: &str) -> Vec<String> {
     let known: Vec<String> =
-        there.iter().flat_map(|own| own.rows.iter().map(|place| place.label.clone())).collect();
+        there.iter().flat_map(|assignment| assignment.rows.iter().map(|place| place.label.clone())).collect();
     let numbers: Vec<&str> = known.iter().filter_map(|label| label.strip_prefix(prefix)).collect();
     let last = numbers.iter().filter_map(|number| number.parse::<u32>().ok()).max().unwrap_or(0);
     let digits = match numbers.first() {

@@ -87,24 +87,24 @@ fn facts_table(runs: &[RunFacts]) -> QueryResult {
         "failed checks",
         "longest time between two lines, s",
     ];
-    let row = |own: &RunFacts| {
+    let row = |run_facts: &RunFacts| {
         let text = |text: &Option<String>| text.clone().map_or(Cell::Text(String::new()), Cell::Text);
         let number = |number: u32| Cell::Integer(i64::from(number));
         vec![
-            text(&own.participant),
-            Cell::Text(own.run.clone()),
-            Cell::Text(if own.practice { "practice" } else { "session" }.to_owned()),
-            text(&own.condition),
-            number(own.weeks),
-            text(&own.ended),
-            number(own.sittings),
-            number(own.unclosed_sittings),
-            number(own.refusals),
-            number(own.naive_weeks),
-            number(own.fast_weeks),
-            own.pasted.map_or(Cell::Null, |pasted| Cell::Integer(pasted as i64)),
-            number(own.failed_checks),
-            Cell::Integer(own.longest_gap.round() as i64),
+            text(&run_facts.participant),
+            Cell::Text(run_facts.run.clone()),
+            Cell::Text(if run_facts.practice { "practice" } else { "session" }.to_owned()),
+            text(&run_facts.condition),
+            number(run_facts.weeks),
+            text(&run_facts.ended),
+            number(run_facts.sittings),
+            number(run_facts.unclosed_sittings),
+            number(run_facts.refusals),
+            number(run_facts.naive_weeks),
+            number(run_facts.fast_weeks),
+            run_facts.pasted.map_or(Cell::Null, |pasted| Cell::Integer(pasted as i64)),
+            number(run_facts.failed_checks),
+            Cell::Integer(run_facts.longest_gap.round() as i64),
         ]
     };
     QueryResult {

@@ -89,10 +89,13 @@ fn describe_keys(folder: &Path) -> &'static str {
 }
 
 fn describe_study(study: &Study) -> String {
-    let questions: usize = study.questionnaires.iter().map(|own| own.questions.len()).sum();
+    let questions: usize =
+        study.questionnaires.iter().map(|questionnaire| questionnaire.questions.len()).sum();
     let asked = |moment: Occasion| study.questionnaires.iter().filter(|own| own.when == moment).count();
-    let places =
-        study.assignment.as_ref().map_or("any label".to_owned(), |own| format!("{} labels", own.rows.len()));
+    let places = study
+        .assignment
+        .as_ref()
+        .map_or("any label".to_owned(), |assignment| format!("{} labels", assignment.rows.len()));
     let consent = if study.consent.is_some() { "required" } else { "not required: there is no consent.md" };
     format!(
         "{} · {}\n  digest {}\n  {places} · consent {consent}\n  {questions} questions: {} before, {} after weeks, {} at breaks, {} at \

@@ -40,11 +40,14 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let study = options.protocol.as_deref().map(read_study).transpose()?;
     let labels = options.labels.as_deref().map(read_labels).transpose()?.unwrap_or_default();
     let lab = options.protocol.as_ref().or(context.study_folder.as_ref());
-    let own = lab.map(|folder| load_lab_key(folder)).transpose()?.flatten();
+    let lab_key = lab.map(|folder| load_lab_key(folder)).transpose()?.flatten();
     let public = lab.map(|folder| load_lab_public_key(folder)).transpose()?.flatten();
     let seal = lab.map(|folder| load_seal_key(folder)).transpose()?;
-    let keys =
-        LabKeys { signing_key: own.as_ref(), verification_key: public.as_ref(), sealing_key: seal.as_ref() };
+    let keys = LabKeys {
+        signing_key: lab_key.as_ref(),
+        verification_key: public.as_ref(),
+        sealing_key: seal.as_ref(),
+    };
     let mut bar = None;
     let (sources, out) = (&options.sources, &options.out);
     let what = CollectOptions { sources, output_folder: out, study: study.as_ref(), labels: &labels, keys };
@@ -67,7 +70,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         let object = json!({ "runs": told.collect::<Vec<_>>(), "notes": notes, "visits": visits });
         print(&format!("{object}\n"))?;
     } else {
-        let signed = own
+        let signed = lab_key
             .as_ref()
             .map(LabKey::public_key)
             .map_or(String::new(), |key| format!(" and signed by the lab key {}", key.fingerprint()));

@@ -72,8 +72,10 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
 fn write_note(study: &Study, machines: &[PathBuf], label: &str, text: &str) -> Result<(), Failure> {
     participant_folder(Path::new(""), label).map_err(Failure::usage)?;
     let last_played = machines.iter().filter_map(|runs| {
-        let own = session_statuses(study, runs).into_iter().filter(|own| own.participant == label);
-        own.map(|own| own.quiet_seconds).min_by(f64::total_cmp).map(|quiet| (quiet, runs))
+        let own = session_statuses(study, runs)
+            .into_iter()
+            .filter(|session_status| session_status.participant == label);
+        own.map(|status| status.quiet_seconds).min_by(f64::total_cmp).map(|quiet| (quiet, runs))
     });
     let with_runs = last_played.min_by(|one, other| one.0.total_cmp(&other.0)).map(|(_, runs)| runs);
     let visited = |runs: &&PathBuf| has_visited(study, runs, label);
@@ -90,11 +92,15 @@ fn write_note(study: &Study, machines: &[PathBuf], label: &str, text: &str) -> R
 }
 
 fn status_text(study: &Study, all: &[SessionStatus], machines: &[PathBuf]) -> String {
-    let running =
-        all.iter().filter(|own| !matches!(own.state, SessionState::Left | SessionState::Over)).count();
-    let places =
-        study.assignment.as_ref().map_or(String::new(), |own| format!(" of {} assigned", own.rows.len()));
-    let mut people: Vec<&str> = all.iter().map(|own| own.participant.as_str()).collect();
+    let running = all
+        .iter()
+        .filter(|session_status| !matches!(session_status.state, SessionState::Left | SessionState::Over))
+        .count();
+    let places = study
+        .assignment
+        .as_ref()
+        .map_or(String::new(), |assignment| format!(" of {} assigned", assignment.rows.len()));
+    let mut people: Vec<&str> = all.iter().map(|status| status.participant.as_str()).collect();
     people.dedup();
     let mut text =
         format!("{} · {running} running · {}{places} have begun\n\n", study.protocol.name, people.len());
@@ -110,23 +116,23 @@ fn status_text(study: &Study, all: &[SessionStatus], machines: &[PathBuf]) -> St
 
 /// Returns the visits, including those in which no run started.
 fn visit_summary(study: &Study, all: &[SessionStatus], machines: &[PathBuf]) -> VisitSummary {
-    let with_runs = all.iter().map(|own| own.participant.as_str()).collect();
+    let with_runs = all.iter().map(|session_status| session_status.participant.as_str()).collect();
     VisitSummary::from_lines(&read_study_visits(study, machines), &with_runs)
 }
 
 fn status_table(all: &[SessionStatus]) -> QueryResult {
     let columns = ["participant", "run", "kind", "state", "week", "day", "of", "quiet", "problems"];
-    let row = |own: &SessionStatus| {
+    let row = |session_status: &SessionStatus| {
         vec![
-            Cell::Text(own.participant.clone()),
-            Cell::Text(own.run.clone()),
-            Cell::Text(if own.practice { "practice" } else { "session" }.to_owned()),
-            Cell::Text(describe_state(own.state).to_owned()),
-            Cell::Integer(i64::from(week_of(own.day))),
-            Cell::Integer(i64::from(own.day)),
-            Cell::Integer(i64::from(own.days)),
-            Cell::Text(format_quiet_time(own.quiet_seconds)),
-            Cell::Text(own.problems.join("; ")),
+            Cell::Text(session_status.participant.clone()),
+            Cell::Text(session_status.run.clone()),
+            Cell::Text(if session_status.practice { "practice" } else { "session" }.to_owned()),
+            Cell::Text(describe_state(session_status.state).to_owned()),
+            Cell::Integer(i64::from(week_of(session_status.day))),
+            Cell::Integer(i64::from(session_status.day)),
+            Cell::Integer(i64::from(session_status.days)),
+            Cell::Text(format_quiet_time(session_status.quiet_seconds)),
+            Cell::Text(session_status.problems.join("; ")),
         ]
     };
     QueryResult {

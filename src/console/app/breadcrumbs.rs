@@ -60,7 +60,7 @@ impl App {
         prepare(run);
         if stop.screen != screen {
             // A place that is already among the breadcrumbs is returned to.
-            if let Some(at) = run.breadcrumbs.iter().position(|own| own.screen == screen) {
+            if let Some(at) = run.breadcrumbs.iter().position(|breadcrumb| breadcrumb.screen == screen) {
                 run.breadcrumbs.truncate(at);
             } else {
                 stop.escape_depth = run.screens.get(screen).escape_depth();

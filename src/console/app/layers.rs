@@ -103,7 +103,8 @@ mod tests {
             layers.enter_step(step, at(now));
         }
         let used = layers.pop(DialogOutcome::Cancelled, at(1000)).expect("it was open");
-        let steps: Vec<(&str, u64)> = used.steps.iter().map(|own| (own.step.as_str(), own.for_ms)).collect();
+        let steps: Vec<(&str, u64)> =
+            used.steps.iter().map(|dialog_step| (dialog_step.step.as_str(), dialog_step.for_ms)).collect();
         assert_eq!((used.what.as_str(), used.for_ms), ("next week", 900));
         assert_eq!(steps, [("review", 50), ("rationale", 250), ("review", 600)]);
         assert!(layers.is_empty() && layers.pop(DialogOutcome::Cancelled, at(1)).is_none());

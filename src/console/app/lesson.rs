@@ -129,8 +129,8 @@ impl App {
             let text = format!(
                 "{who} for an answer. Go to Inbox, where {key} offers to answer with the rules that you sent last?"
             );
-            let asked = ConfirmDialog::new("Next week", text, vec![Effect::Show(ScreenId::Inbox)]);
-            return self.open_dialog(asked.with_alternative(Action::SkipAnswers, vec![week]));
+            let confirm_dialog = ConfirmDialog::new("Next week", text, vec![Effect::Show(ScreenId::Inbox)]);
+            return self.open_dialog(confirm_dialog.with_alternative(Action::SkipAnswers, vec![week]));
         }
         let answers = match run.screen {
             ScreenId::Inbox => run.screens.inbox.last_rule_answers(&run.company),
@@ -140,8 +140,8 @@ impl App {
         let both = calls.into_iter().map(|(tool, arguments)| Effect::call(tool, arguments));
         let both = both.chain([week.clone()]).collect();
         let text = format!("Answer with the rules that you sent last, and run the week:\n{text}");
-        let asked = ConfirmDialog::new("Answer and next week", text, both);
-        self.open_dialog(asked.with_alternative(Action::SkipAnswers, vec![week]));
+        let dialog = ConfirmDialog::new("Answer and next week", text, both);
+        self.open_dialog(dialog.with_alternative(Action::SkipAnswers, vec![week]));
     }
 
     /// Shows what changed in a lesson week that runs at once. Returns whether that replaces the weekly report.

@@ -67,7 +67,8 @@ impl App {
         let day = run.company.observation.day;
         let is_here = matches!(run.screen, ScreenId::Customers | ScreenId::Market) && run.company.can_inspect;
         let is_known = run.overlay.values.as_ref().is_some_and(|seen| seen.day == day);
-        let is_asked = run.overlay.requested_day.question().is_some_and(|asked| asked.day == day);
+        let is_asked =
+            run.overlay.requested_day.question().is_some_and(|values_question| values_question.day == day);
         if !run.overlay.is_on || !is_here || is_busy || is_asked || day == 0 {
             return;
         }

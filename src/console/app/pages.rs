@@ -177,10 +177,11 @@ mod tests {
         app.handle_message(Message::Response(Response::RunChanged(new_company().into())));
         let after = asks::<Reading>(&mut app);
         let question = |ask: &OutgoingQuestion| ask.question::<Reading>().copied();
-        let again = after.iter().find(|ask| question(ask) == question(&before[0])).expect("asked again");
+        let outgoing_question =
+            after.iter().find(|ask| question(ask) == question(&before[0])).expect("asked again");
         answer::<Reading>(&mut app, &before[0], refused("of before"));
         assert!(!screen(&app).contains("of before"));
-        answer::<Reading>(&mut app, again, refused("of now"));
+        answer::<Reading>(&mut app, outgoing_question, refused("of now"));
         assert!(screen(&app).contains("of now"));
     }
 

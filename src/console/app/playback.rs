@@ -46,7 +46,7 @@ impl Run {
     }
 
     pub(super) fn hints(&self) -> Vec<Action> {
-        let own = self.screens.get(self.screen).hints();
+        let actions = self.screens.get(self.screen).hints();
         let typing = self.scopes().first().is_some_and(|scope| scope.is_text());
         let replay = [
             Action::WeekBack,
@@ -58,9 +58,9 @@ impl Run {
         match &self.playback {
             Some(_) if !typing => replay
                 .into_iter()
-                .chain(own.into_iter().filter(|action| !PLAYER_ACTIONS.contains(action)))
+                .chain(actions.into_iter().filter(|action| !PLAYER_ACTIONS.contains(action)))
                 .collect(),
-            _ => own,
+            _ => actions,
         }
     }
 }

@@ -60,9 +60,9 @@ impl App {
                     self.show_error(problem);
                 }
             }
-            Response::DaySimulated(day, told) => {
+            Response::DaySimulated(day, simulated_day) => {
                 if let Some(days) = self.busy.as_mut().and_then(|busy| busy.progress.as_mut()) {
-                    (days.current, days.figures) = (day, told);
+                    (days.current, days.figures) = (day, simulated_day);
                 }
             }
             Response::WeekAdvanced(week, company) => self.advanced(week, company),
@@ -394,7 +394,7 @@ impl App {
         self.busy = None;
         let Stage::Menu(menu) = &mut self.stage else { return };
         match read {
-            Ok((class, shown)) => menu.show_class(class, shown),
+            Ok((class, display_options)) => menu.show_class(class, display_options),
             Err(problem) => {
                 menu.show_open_error(problem.clone(), None);
                 self.show_error(problem);

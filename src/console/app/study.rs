@@ -149,11 +149,11 @@ impl App {
         }
         let over = !run.company.is_running();
         match QuestionPage::for_due_questions(&visit.due_questions) {
-            Some((page, shown)) => {
+            Some((page, effect)) => {
                 // The status message refers to keys that do not work here.
                 self.status = None;
                 self.push_layer(Layer::Dialog(Box::new(page)));
-                self.follow(vec![shown]);
+                self.follow(vec![effect]);
             }
             None if over => self.exit_run(ExitTarget::Menu),
             None => {}

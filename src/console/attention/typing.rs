@@ -65,13 +65,19 @@ impl TypingLog {
             first: now,
             last: now,
         };
-        let own = self.texts.entry(place.to_owned()).or_insert_with(fresh);
-        own.pauses += u32::from(now.saturating_sub(own.last) > MIN_PAUSE);
-        own.last = now;
-        own.text = after;
+        let edit_episode = self.texts.entry(place.to_owned()).or_insert_with(fresh);
+        edit_episode.pauses += u32::from(now.saturating_sub(edit_episode.last) > MIN_PAUSE);
+        edit_episode.last = now;
+        edit_episode.text = after;
         match edit {
-            EditSource::Typed => (own.typed, own.deleted) = (own.typed + added, own.deleted + removed),
-            EditSource::Pasted => (own.pasted, own.deleted) = (own.pasted + added, own.deleted + removed),
+            EditSource::Typed => {
+                (edit_episode.typed, edit_episode.deleted) =
+                    (edit_episode.typed + added, edit_episode.deleted + removed)
+            }
+            EditSource::Pasted => {
+                (edit_episode.pasted, edit_episode.deleted) =
+                    (edit_episode.pasted + added, edit_episode.deleted + removed)
+            }
             EditSource::Filled => {}
         }
     }
@@ -111,7 +117,7 @@ fn chars_without_separators(text: &str) -> Vec<char> {
 /// Counts the characters added and removed between two texts that differ in one place.
 fn count_added_and_removed(before: &str, after: &str) -> (u64, u64) {
     let (old, new) = (chars_without_separators(before), chars_without_separators(after));
-    let same = old.iter().zip(&new).take_while(|(own, other)| own == other).count();
+    let same = old.iter().zip(&new).take_while(|(character, other)| character == other).count();
     let (old, new) = (&old[same..], &new[same..]);
     let tail = old.iter().rev().zip(new.iter().rev()).take_while(|(own, other)| own == other).count();
     ((new.len() - tail) as u64, (old.len() - tail) as u64)

@@ -35,8 +35,8 @@ pub struct CausesDialog {
 impl CausesDialog {
     /// Requests the causes of the change of a figure in a week.
     pub fn new(figure: Figure, quantity: WeekQuantity, week: u32) -> (CausesDialog, OutgoingQuestion) {
-        let (asked, ask) = Pending::with_question(CausesQuestion { quantity, week });
-        (CausesDialog { figure, quantity, week, asked, answer: None, selected: 0 }, ask)
+        let (pending, ask) = Pending::with_question(CausesQuestion { quantity, week });
+        (CausesDialog { figure, quantity, week, asked: pending, answer: None, selected: 0 }, ask)
     }
 
     fn causes(&self) -> Option<&ChangeExplanation> {
@@ -179,7 +179,8 @@ impl Dialog for CausesDialog {
         let list = Rect { y: inside.y + used, height: inside.height - used, ..inside };
         let longest = |of: fn(&CauseLine) -> usize| causes.iter().map(of).max().unwrap_or(0);
         let bars = if inner >= 90 { 16 } else { 8 };
-        let widths = [longest(|own| own.name.len()), longest(|own| own.amount_text.len()), bars];
+        let widths =
+            [longest(|cause_line| cause_line.name.len()), longest(|own| own.amount_text.len()), bars];
         let most = causes.iter().map(|own| own.amount.abs()).fold(0.0, f64::max);
         let first = self.selected.saturating_sub((list.height as usize).saturating_sub(1));
         for (row, (at, cause)) in row_rects(list).zip(causes.iter().enumerate().skip(first)) {
@@ -277,8 +278,8 @@ mod tests {
         for (action, week) in [(Action::Left, 2), (Action::Right, 4)] {
             let outcome = dialog_action(&mut dialog, action, &company);
             assert!(outcome.closes, "a closed dialog takes no answer");
-            let asked = outcome.effects.first();
-            let Some(Effect::AskWhy(figure)) = asked else { panic!("nothing is asked") };
+            let effect = outcome.effects.first();
+            let Some(Effect::AskWhy(figure)) = effect else { panic!("nothing is asked") };
             assert_eq!(figure.week_quantity, Some((cancellations(), week)));
             assert!(figure.title.ends_with(&format!("in week {week}")), "{}", figure.title);
         }

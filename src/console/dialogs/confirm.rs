@@ -59,8 +59,8 @@ impl Dialog for ConfirmDialog {
             // Tells a user who mistook the key that nothing happened.
             (Action::Cancel, _) => {
                 let yes = look.keys.label(Action::Confirm).unwrap_or_default();
-                let said = format!("{}: cancelled; {yes} confirms", self.title);
-                DialogResponse::cancel_with(vec![Effect::Say(said)])
+                let text = format!("{}: cancelled; {yes} confirms", self.title);
+                DialogResponse::cancel_with(vec![Effect::Say(text)])
             }
             (action, Some((other, effects))) if action == *other => {
                 DialogResponse::confirm_with(std::mem::take(effects))

@@ -204,7 +204,12 @@ fn draw_cash_curves(canvas: &mut Canvas<'_>, area: Rect, debrief: &Debrief) {
         Curve::from_points(points, role).with_name(name)
     };
     let mut lines = Vec::new();
-    lines.extend(debrief.bad_play.as_ref().map(|own| curve(&own.cash_by_day, Role::Series(1), "bad play")));
+    lines.extend(
+        debrief
+            .bad_play
+            .as_ref()
+            .map(|reference_curve| curve(&reference_curve.cash_by_day, Role::Series(1), "bad play")),
+    );
     lines.extend(debrief.reference.as_ref().map(|own| curve(&own.cash_by_day, Role::Series(2), "good play")));
     lines.push(curve(&debrief.cash_by_day, Role::Series(0), "you"));
     draw_daily_curves(canvas, area, &lines, AxisUnit::Dollars);

@@ -47,14 +47,24 @@ struct ExplanationPage {
 
 impl ExplanationPage {
     fn from_subject(subject: Subject, numbers: &ParameterNumbers) -> ExplanationPage {
-        let told = Explanation::new(subject, numbers);
-        let places = told.places.iter().filter_map(|name| Action::by_name(Scope::Global, name));
+        let explanation = Explanation::new(subject, numbers);
+        let places = explanation.places.iter().filter_map(|name| Action::by_name(Scope::Global, name));
         ExplanationPage {
             term: subject.name(),
-            title: told.title,
-            note: told.note,
-            parts: told.sections.into_iter().map(|own| (own.name.to_owned(), own.text)).collect(),
-            links: told.related.iter().copied().map(Link::Subject).chain(places.map(Link::Screen)).collect(),
+            title: explanation.title,
+            note: explanation.note,
+            parts: explanation
+                .sections
+                .into_iter()
+                .map(|section| (section.name.to_owned(), section.text))
+                .collect(),
+            links: explanation
+                .related
+                .iter()
+                .copied()
+                .map(Link::Subject)
+                .chain(places.map(Link::Screen))
+                .collect(),
             selected: 0,
         }
     }

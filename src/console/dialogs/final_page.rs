@@ -152,13 +152,13 @@ impl FinalPage {
         canvas.clear(area, Role::Text);
         let own = centered_rect(area, 60, 6);
         let practice = look.company.study.as_ref().is_some_and(|study| study.practice);
-        let (title, said) = match practice {
+        let (title, text) = match practice {
             true => ("The practice has ended", "It does not count. The session comes next."),
             false => ("The run has ended", "This study does not show the result."),
         };
         let inside = canvas.draw_pane_frame(own, title, "", true);
         let row = Rect { x: inside.x + 1, y: inside.y + 1, width: inside.width.saturating_sub(2), height: 1 };
-        canvas.draw_text(row.intersection(inside), said, Role::Text);
+        canvas.draw_text(row.intersection(inside), text, Role::Text);
         canvas.draw_pane_keys(own, &look.hints(self.actions()));
     }
 
@@ -225,9 +225,9 @@ impl FinalPage {
         roomy: bool,
     ) -> Option<Vec<TextLine<'a>>> {
         let ruin = self.story.as_ref()?.bankruptcy.as_ref()?;
-        let told = wrap(&ruin.turning_points.join(" "), width as usize);
+        let texts = wrap(&ruin.turning_points.join(" "), width as usize);
         let mut lines: Vec<TextLine<'a>> =
-            told.into_iter().map(|line| TextLine::from(canvas.span(line, Role::Text))).collect();
+            texts.into_iter().map(|line| TextLine::from(canvas.span(line, Role::Text))).collect();
         if ruin.costs.is_empty() {
             return Some(lines);
         }
@@ -322,8 +322,8 @@ fn ranking_lines<'a>(
             false if best > 0 => {
                 // The publication comes first; differences of this run are in the header.
                 let first = caveat.split("; ").next().unwrap_or_default().to_owned();
-                let told = first_fitting([caveat.clone(), first], width as usize);
-                lines.push(TextLine::from(canvas.span(told, Role::Dim)));
+                let text = first_fitting([caveat.clone(), first], width as usize);
+                lines.push(TextLine::from(canvas.span(text, Role::Dim)));
             }
             // A bankruptcy uses the space.
             false => {}
@@ -368,8 +368,8 @@ fn facts<'a>(
     ];
     let mut lines = Vec::new();
     for (name, value) in named {
-        let told = if roomy { wrap(&value, room) } else { vec![truncate_to_width(&value, room)] };
-        for (at, text) in told.into_iter().enumerate() {
+        let texts = if roomy { wrap(&value, room) } else { vec![truncate_to_width(&value, room)] };
+        for (at, text) in texts.into_iter().enumerate() {
             let name = if at == 0 { name } else { "" };
             lines.push(TextLine::from(vec![
                 canvas.span(format!("{name:<NAME_WIDTH$}"), Role::Dim),

@@ -46,7 +46,8 @@ impl HelpDialog {
         let hints = dialog.hints().into_iter();
         let part = |name, actions| HelpSection { name, scopes: scopes.clone(), actions };
         let others = scopes.iter().filter(|scope| **scope != Scope::List);
-        let own = part("step", hints.chain(others.flat_map(|scope| scope_actions(*scope))).collect());
+        let help_section =
+            part("step", hints.chain(others.flat_map(|scope| scope_actions(*scope))).collect());
         let lists = part(
             "lists",
             scope_actions(Scope::List)
@@ -56,7 +57,7 @@ impl HelpDialog {
         let step = dialog.step().map_or(String::new(), |step| format!(" › {step}"));
         HelpDialog {
             title: format!("Keys: {}{step}", dialog.record_name()),
-            table: table_of([own, lists], keys),
+            table: table_of([help_section, lists], keys),
         }
     }
 

@@ -175,8 +175,8 @@ impl LessonDialog {
 }
 
 pub(super) fn start_part(part: u32) -> DialogResponse {
-    let asked = LessonRequest::StartPart(part.saturating_sub(1) as usize);
-    DialogResponse::confirm_with(vec![Effect::Request(Request::Lesson(asked))])
+    let lesson_request = LessonRequest::StartPart(part.saturating_sub(1) as usize);
+    DialogResponse::confirm_with(vec![Effect::Request(Request::Lesson(lesson_request))])
 }
 
 impl Dialog for LessonDialog {

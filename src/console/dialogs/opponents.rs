@@ -31,8 +31,8 @@ pub struct OpponentsPage {
 impl OpponentsPage {
     /// Requests the opponents, which `play` simulates.
     pub fn new(play: PlayOpponentsFn) -> (OpponentsPage, OutgoingQuestion) {
-        let (asked, ask) = Pending::with_question(OpponentsQuestion(play));
-        (OpponentsPage { result: None, asked }, ask)
+        let (pending, ask) = Pending::with_question(OpponentsQuestion(play));
+        (OpponentsPage { result: None, asked: pending }, ask)
     }
 }
 
@@ -66,13 +66,13 @@ impl Dialog for OpponentsPage {
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         canvas.draw_pane_keys(own, &look.hints(&self.hints()));
         let width = inside.width as usize;
-        let (role, told) = match &self.result {
+        let (role, text) = match &self.result {
             None => (Role::Warning, "simulating the strong policies from day 0 …".to_owned()),
             Some(Err(refusal)) => (Role::Bad, refusal.message.clone()),
             Some(Ok(opponents)) => (Role::Dim, opponents.describe()),
         };
         let mut lines: Vec<TextLine<'_>> =
-            wrap(&told, width).into_iter().map(|line| TextLine::from(canvas.span(line, role))).collect();
+            wrap(&text, width).into_iter().map(|line| TextLine::from(canvas.span(line, role))).collect();
         if let Some(Ok(opponents)) = &self.result {
             lines.push(TextLine::default());
             lines.extend(ranked(canvas, look.company, opponents, width));
@@ -132,10 +132,10 @@ mod tests {
     #[test]
     fn run_is_ranked_among_its_opponents() {
         let company = DisplayedCompany::from_session(&test_kit::finished_run());
-        let own = company.observation.cash;
+        let value = company.observation.cash;
         let policies = vec![
-            opponent("ads-first", own * 2.0, false),
-            opponent("baseline", own / 2.0, false),
+            opponent("ads-first", value * 2.0, false),
+            opponent("baseline", value / 2.0, false),
             opponent("harvest-late", -12.0, true),
         ];
         let page = page(Ok(OpponentResults { day: 35, policies }));
@@ -143,7 +143,7 @@ mod tests {
             let text = dialog_text(&page, &company, width, height);
             let at = |part: &str| text.find(part).unwrap_or_else(|| panic!("{part} is missing:\n{text}"));
             assert!(at("ads-first") < at("▌ You") && at("▌ You") < at("baseline"), "{text}");
-            assert!(at(&dollars(own)) > 0 && at("bankrupt on day 35") > at("harvest-late"), "{text}");
+            assert!(at(&dollars(value)) > 0 && at("bankrupt on day 35") > at("harvest-late"), "{text}");
         }
     }
 

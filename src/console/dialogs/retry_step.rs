@@ -54,8 +54,8 @@ impl Dialog for RetryStepDialog {
     fn handle_action(&mut self, action: Action, _: &ScreenContext<'_>) -> DialogResponse {
         match action {
             Action::Confirm => {
-                let again = Effect::Request(Request::Lesson(LessonRequest::RetryStep(self.selected_step)));
-                return DialogResponse::confirm_with(vec![Effect::CloseDialogs, again]);
+                let effect = Effect::Request(Request::Lesson(LessonRequest::RetryStep(self.selected_step)));
+                return DialogResponse::confirm_with(vec![Effect::CloseDialogs, effect]);
             }
             Action::Cancel => return DialogResponse::close(),
             Action::ScrollUp => self.selected_step = self.selected_step.saturating_sub(1),

@@ -113,7 +113,7 @@ mod tests {
                 Some(week) => {
                     assert!(outcome.closes);
                     assert!(
-                        matches!(outcome.effects[..], [Effect::Go(SeekTarget::Week(own))] if own == week),
+                        matches!(outcome.effects[..], [Effect::Go(SeekTarget::Week(number))] if number == week),
                         "{typed}"
                     );
                 }

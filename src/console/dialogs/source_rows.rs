@@ -34,8 +34,8 @@ impl SourceRowsDialog {
     /// Requests the source rows of a figure.
     pub fn new(title: String, sql: String) -> (SourceRowsDialog, OutgoingQuestion) {
         let of = QueriedTables::Visible(QuerySource::DrillDown);
-        let (asked, ask) = Pending::with_question(Query { sql: sql.clone(), tables: of });
-        (SourceRowsDialog { title, sql, asked, answer: None, table: Table::default() }, ask)
+        let (pending, ask) = Pending::with_question(Query { sql: sql.clone(), tables: of });
+        (SourceRowsDialog { title, sql, asked: pending, answer: None, table: Table::default() }, ask)
     }
 
     fn note(&self) -> String {

@@ -45,19 +45,19 @@ pub fn draw(canvas: &mut Canvas<'_>, area: Rect, term: &str, company: &Displayed
     let taken = (words.len().min(MAX_CAPTION_ROWS) as u16).min(area.height);
     let rest = Rect { y: area.y + taken, height: area.height - taken, ..area };
     match drawing {
-        Some(TermDrawing::Lines(own)) => draw_lines(canvas, rest, &own),
+        Some(TermDrawing::Lines(term_lines)) => draw_lines(canvas, rest, &term_lines),
         Some(TermDrawing::Bars(bars)) => draw_bars(canvas, rest, &bars),
         None => {}
     }
 }
 
-fn draw_lines(canvas: &mut Canvas<'_>, area: Rect, own: &TermLines) {
-    let named = own.lines.iter().enumerate();
+fn draw_lines(canvas: &mut Canvas<'_>, area: Rect, term_lines: &TermLines) {
+    let named = term_lines.lines.iter().enumerate();
     let lines: Vec<Curve> = named
         .map(|(at, (name, points))| Curve::from_points(points.clone(), Role::Series(at)).with_name(name))
         .collect();
-    let band = Band { bounds: own.band.clone(), name: "" };
-    let write = |value: f64| match own.x_axis {
+    let band = Band { bounds: term_lines.band.clone(), name: "" };
+    let write = |value: f64| match term_lines.x_axis {
         TermXAxis::Dollars => dollars(value),
         TermXAxis::Weeks => format!("wk {value:.0}"),
         TermXAxis::Share => compact_number(value),
@@ -70,8 +70,8 @@ fn draw_lines(canvas: &mut Canvas<'_>, area: Rect, own: &TermLines) {
         text: plan.id(),
         role: Role::Strong,
     };
-    let signs: Vec<PointLabel> = own.plans.iter().map(sign).collect();
-    let band = (!own.band.is_empty()).then_some(&band);
+    let signs: Vec<PointLabel> = term_lines.plans.iter().map(sign).collect();
+    let band = (!term_lines.band.is_empty()).then_some(&band);
     Plot { curves: &lines, band, marked_x: None, x: &x, y: &y }.draw_with_labels(canvas, area, &signs);
 }
 

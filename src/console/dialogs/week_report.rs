@@ -97,14 +97,14 @@ impl Dialog for WeekReportDialog {
     }
 
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
-        let Some(told) = &look.company.last_week else { return };
+        let Some(week_report) = &look.company.last_week else { return };
         let width = MAX_PAGE_WIDTH.min(area.width);
         let (lines, places) =
-            self.lines(canvas, told, look, width.saturating_sub(4), area.height.saturating_sub(2));
+            self.lines(canvas, week_report, look, width.saturating_sub(4), area.height.saturating_sub(2));
         canvas.page_rows = places.len().max(1) as u16;
         let own = centered_rect(area, width, lines.len() as u16 + 2);
         canvas.clear(own, Role::Text);
-        let title = format!("Week {} · day {}", told.week.day.div_ceil(7), told.week.day);
+        let title = format!("Week {} · day {}", week_report.week.day.div_ceil(7), week_report.week.day);
         let inside = canvas.draw_pane_frame(own, &title, "", true);
         canvas.draw_lines(Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside }, &lines);
         canvas.register_click(own, Click::Command(Action::Cancel.into()));
@@ -131,17 +131,17 @@ impl WeekReportDialog {
     fn lines<'a>(
         &self,
         canvas: &Canvas<'_>,
-        told: &WeekReport,
+        week_report: &WeekReport,
         look: &ScreenContext<'_>,
         width: u16,
         height: u16,
     ) -> (Vec<Line<'a>>, Vec<usize>) {
         let height = height as usize;
-        let head = self.header_section(canvas, told, width, if height >= 26 { 4 } else { 1 });
+        let head = self.header_section(canvas, week_report, width, if height >= 26 { 4 } else { 1 });
         let needs = &look.company.action_items;
         let notices = &look.company.notices;
-        let news = news_section(canvas, told, width, look);
-        let decided = decisions_section(canvas, told, width, if height >= 26 { 6 } else { 2 });
+        let news = news_section(canvas, week_report, width, look);
+        let decided = decisions_section(canvas, week_report, width, if height >= 26 { 6 } else { 2 });
         // Headings and blank lines between five sections.
         let airy = height >= 24;
         let fixed = head.len() + decided.len() + news.len() + 2 + if airy { 4 } else { 0 };
@@ -150,12 +150,12 @@ impl WeekReportDialog {
         let coming =
             next_steps_section(canvas, &needs[..shown_needs.min(needs.len())], width, height >= 26, look);
         let taken = coming.len() + usize::from(!notices.is_empty());
-        let (moves, starts) = self.moves_section(canvas, told, width, room.saturating_sub(taken));
+        let (moves, starts) = self.moves_section(canvas, week_report, width, room.saturating_sub(taken));
         let left = room.saturating_sub(coming.len() + moves.len());
         let parts: [Section<'a>; 5] = [
             head,
             decided,
-            with_heading(canvas, &moves_heading(told), moves),
+            with_heading(canvas, &moves_heading(week_report), moves),
             news.into_iter().chain(notices_section(canvas, look.company, width, left.min(8))).collect(),
             with_heading(canvas, "Action needed", coming),
         ];
@@ -178,18 +178,18 @@ impl WeekReportDialog {
     fn header_section<'a>(
         &self,
         canvas: &Canvas<'_>,
-        told: &WeekReport,
+        week_report: &WeekReport,
         width: u16,
         forecasts: usize,
     ) -> Section<'a> {
-        let change = told.week.cash_change;
+        let change = week_report.week.cash_change;
         let role = if change < 0.0 { Role::Bad } else { Role::Good };
         let mut lines = vec![Line::from(vec![
-            canvas.span(format!("Cash {}  ", dollars(told.week.cash)), self.role_of(0, Role::Strong)),
+            canvas.span(format!("Cash {}  ", dollars(week_report.week.cash)), self.role_of(0, Role::Strong)),
             canvas.span(format_change(change, &dollars(change.abs())), role),
             canvas.span(" this week", Role::Dim),
         ])];
-        let parts: Vec<String> = told
+        let parts: Vec<String> = week_report
             .cash_components
             .iter()
             .map(|(name, amount)| format!("{name} {}", signed_dollars(*amount)))
@@ -198,15 +198,17 @@ impl WeekReportDialog {
         lines.extend(parts.map(|line| Line::from(canvas.span(line, Role::Text))));
         let remark = self.remark.iter().flat_map(|remark| wrap(remark, width as usize));
         lines.extend(remark.map(|line| Line::from(canvas.span(line, Role::Warning))));
-        if told.was_filed_at_limit() {
+        if week_report.was_filed_at_limit() {
             let text = "The time for this week ran out: it was submitted with the projection.";
             let said = wrap(text, width as usize).into_iter();
             lines.extend(said.map(|line| Line::from(canvas.span(line, Role::Warning))));
         }
-        let due = told.due_forecasts.iter().take(forecasts);
-        lines.extend(due.map(|due| forecast_line(canvas, due, told.was_forecast_filed_at_limit(due), width)));
+        let due = week_report.due_forecasts.iter().take(forecasts);
+        lines.extend(
+            due.map(|due| forecast_line(canvas, due, week_report.was_forecast_filed_at_limit(due), width)),
+        );
         // Forecasts that do not fit are counted; the journal lists them.
-        let left_out = told.due_forecasts.len().saturating_sub(forecasts);
+        let left_out = week_report.due_forecasts.len().saturating_sub(forecasts);
         if let (Some(last), true) = (lines.last_mut(), left_out > 0) {
             last.spans.push(canvas.span(format!(" · {left_out} more"), Role::Dim));
         }
@@ -216,24 +218,24 @@ impl WeekReportDialog {
 
 impl WeekReportDialog {
     /// Returns the style of a line's name. Lines without an explanation cannot be selected.
-    fn role_of(&self, line: usize, own: Role) -> Role {
-        if self.selected == line { Role::Selection } else { own }
+    fn role_of(&self, line: usize, role: Role) -> Role {
+        if self.selected == line { Role::Selection } else { role }
     }
 
     /// Returns the most unusual changes that fit, and the line at which each starts.
     fn moves_section<'a>(
         &self,
         canvas: &Canvas<'_>,
-        told: &WeekReport,
+        week_report: &WeekReport,
         width: u16,
         room: usize,
     ) -> (Section<'a>, Vec<usize>) {
-        if told.moved_figures.is_empty() {
+        if week_report.moved_figures.is_empty() {
             return (vec![Line::from(canvas.span("  none", Role::Dim))], Vec::new());
         }
         let (mut lines, mut starts) = (Vec::new(), Vec::new());
-        for (at, own) in told.moved_figures.iter().enumerate() {
-            let of_one = move_lines(canvas, own, width, self.role_of(at + 1, Role::Text));
+        for (at, moved_figure) in week_report.moved_figures.iter().enumerate() {
+            let of_one = move_lines(canvas, moved_figure, width, self.role_of(at + 1, Role::Text));
             if lines.len() + of_one.len() > room {
                 break;
             }
@@ -245,8 +247,8 @@ impl WeekReportDialog {
 }
 
 /// Names the reference of the changes if the two weeks differ in length.
-fn moves_heading(told: &WeekReport) -> String {
-    match &told.short_week_note {
+fn moves_heading(week_report: &WeekReport) -> String {
+    match &week_report.short_week_note {
         Some(short) => format!("Most unusual changes · a week {short}"),
         None => "Most unusual changes".to_owned(),
     }
@@ -280,19 +282,24 @@ fn forecast_line<'a>(canvas: &Canvas<'_>, due: &ScoredForecast, of_limit: bool, 
     // Rounded bounds could seem to contain the actual value: exact dollars are used if they fit.
     let exact = said(dollars);
     let fits = exact.width() + verdict.width() + miss.width() <= usize::from(width);
-    let said = if fits { exact } else { said(short_dollars) };
-    Line::from(vec![canvas.span(said, Role::Dim), canvas.span(verdict, role), canvas.span(miss, Role::Dim)])
+    let text = if fits { exact } else { said(short_dollars) };
+    Line::from(vec![canvas.span(text, Role::Dim), canvas.span(verdict, role), canvas.span(miss, Role::Dim)])
 }
 
 /// Lists the decisions before the week in at most `most` lines.
-fn decisions_section<'a>(canvas: &Canvas<'_>, told: &WeekReport, width: u16, most: usize) -> Section<'a> {
+fn decisions_section<'a>(
+    canvas: &Canvas<'_>,
+    week_report: &WeekReport,
+    width: u16,
+    most: usize,
+) -> Section<'a> {
     let lines = |pieces: &[String]| join_into_lines(pieces, (width as usize).saturating_sub(9));
-    let mut shown = told.decisions.len();
-    let mut found = lines(&told.decisions);
+    let mut shown = week_report.decisions.len();
+    let mut found = lines(&week_report.decisions);
     while found.len() > most && shown > 0 {
         shown -= 1;
-        let more = format!("and {} more", told.decisions.len() - shown);
-        found = lines(&[&told.decisions[..shown], &[more]].concat());
+        let more = format!("and {} more", week_report.decisions.len() - shown);
+        found = lines(&[&week_report.decisions[..shown], &[more]].concat());
     }
     if found.is_empty() {
         found.push("nothing".to_owned());
@@ -305,25 +312,30 @@ fn decisions_section<'a>(canvas: &Canvas<'_>, told: &WeekReport, width: u16, mos
 }
 
 /// Formats a change in one or two lines; the selected one is marked.
-fn move_lines<'a>(canvas: &Canvas<'_>, own: &MovedFigure, width: u16, name: Role) -> Section<'a> {
-    let role = match own.is_favorable {
+fn move_lines<'a>(canvas: &Canvas<'_>, moved_figure: &MovedFigure, width: u16, name: Role) -> Section<'a> {
+    let role = match moved_figure.is_favorable {
         Some(true) => Role::Good,
         Some(false) => Role::Bad,
         None => Role::Text,
     };
-    let glyph = if own.is_increase { "▲" } else { "▼" };
-    let share = own.format_size().unwrap_or_default();
+    let glyph = if moved_figure.is_increase { "▲" } else { "▼" };
+    let share = moved_figure.format_size().unwrap_or_default();
     let mark = if name == Role::Selection { "›" } else { " " };
     let mut line = vec![
-        canvas.span(format!("{mark} {:<17}", own.name), name),
-        canvas.span(format!("{:>12} → ", own.old), Role::Dim),
-        canvas.span(format!("{:>12}", own.new), Role::Strong),
+        canvas.span(format!("{mark} {:<17}", moved_figure.name), name),
+        canvas.span(format!("{:>12} → ", moved_figure.old), Role::Dim),
+        canvas.span(format!("{:>12}", moved_figure.new), Role::Strong),
         canvas.span(format!("  {glyph} {share:<7}"), role),
     ];
-    let split =
-        own.category_changes.iter().map(|(name, dollars)| format!("{name} {}", signed_dollars(*dollars)));
-    let said: Vec<String> =
-        [own.change.describe_rarity()].into_iter().filter(|text| !text.is_empty()).chain(split).collect();
+    let split = moved_figure
+        .category_changes
+        .iter()
+        .map(|(name, dollars)| format!("{name} {}", signed_dollars(*dollars)));
+    let said: Vec<String> = [moved_figure.change.describe_rarity()]
+        .into_iter()
+        .filter(|text| !text.is_empty())
+        .chain(split)
+        .collect();
     let said = said.join(" · ");
     if said.is_empty() {
         return vec![Line::from(line)];
@@ -340,18 +352,18 @@ fn move_lines<'a>(canvas: &Canvas<'_>, own: &MovedFigure, width: u16, name: Role
 /// Lists what is new, with the keys of the screens.
 fn news_section<'a>(
     canvas: &Canvas<'_>,
-    told: &WeekReport,
+    week_report: &WeekReport,
     width: u16,
     look: &ScreenContext<'_>,
 ) -> Section<'a> {
     let kinds: [(u32, &str, &str, Option<ScreenId>); 6] = [
-        (told.week.threads_opened, "thread", "threads", Some(ScreenId::Inbox)),
-        (told.week.replies, "reply", "replies", Some(ScreenId::Inbox)),
-        (told.customer_posts, "post", "posts", Some(ScreenId::Social)),
-        (told.comments, "comment on our posts", "comments on our posts", Some(ScreenId::Social)),
-        (told.news_items, "news item", "news items", Some(ScreenId::Social)),
+        (week_report.week.threads_opened, "thread", "threads", Some(ScreenId::Inbox)),
+        (week_report.week.replies, "reply", "replies", Some(ScreenId::Inbox)),
+        (week_report.customer_posts, "post", "posts", Some(ScreenId::Social)),
+        (week_report.comments, "comment on our posts", "comments on our posts", Some(ScreenId::Social)),
+        (week_report.news_items, "news item", "news items", Some(ScreenId::Social)),
         (
-            told.week.research_finished,
+            week_report.week.research_finished,
             "completed project or study",
             "completed projects and studies",
             // The notices below name them; projects and studies are on different screens.

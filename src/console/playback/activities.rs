@@ -61,7 +61,7 @@ pub(super) fn activity_summary(activity: &Activity) -> (String, Role) {
             };
             return (format!("{what} the limit of {} minutes per {scope}", limit.minutes), Role::Warning);
         }
-        Activity::Question(asked) => format!("asked: {}", asked.text),
+        Activity::Question(question_shown) => format!("asked: {}", question_shown.text),
         Activity::Answer(answer) if answer.value.is_null() => format!("{}: no answer", answer.id),
         Activity::Answer(answer) => format!("{}: {}", answer.id, answer.value),
         Activity::Lesson(note) => novamind_report::lesson::describe_note(note),

@@ -46,7 +46,7 @@ impl PlaybackViewer {
         canvas: &mut Canvas<'_>,
         area: Rect,
         look: &ScreenContext<'_>,
-        shown: EntryFilter,
+        entry_filter: EntryFilter,
     ) {
         let chapter = &self.position.chapter;
         let note = format!("{}/{} done", chapter.applied_entries, chapter.entries.len());
@@ -55,7 +55,9 @@ impl PlaybackViewer {
         let mut rows: Vec<(String, Role)> = Vec::new();
         // The row of the next action.
         let mut next = None;
-        for (at, entry) in chapter.entries.iter().enumerate().filter(|(_, entry)| shown.includes(entry)) {
+        for (at, entry) in
+            chapter.entries.iter().enumerate().filter(|(_, entry)| entry_filter.includes(entry))
+        {
             let done = at < chapter.applied_entries;
             if at == chapter.applied_entries {
                 next = Some(rows.len());

@@ -50,7 +50,7 @@ pub fn entry_summary(entry: &RecordView, names: &EnterpriseNames) -> Vec<(String
             let Closing { days_run, cash, .. } = closing;
             one(format!("{days_run} days passed, cash {}", dollars(*cash)), Role::Header)
         }
-        Record::Voice(said) => one(voice_summary(said), Role::Dim),
+        Record::Voice(voice_answer) => one(voice_summary(voice_answer), Role::Dim),
         Record::End(end) => one(format!("the run ended: {}", end.reason.id()), Role::Warning),
         Record::Branch(Branch { from: Some(parent) }) => {
             one(format!("branched off run {} here", parent.run), Role::Warning)
@@ -59,11 +59,14 @@ pub fn entry_summary(entry: &RecordView, names: &EnterpriseNames) -> Vec<(String
     }
 }
 
-fn voice_summary(said: &VoiceAnswer) -> String {
-    match said {
+fn voice_summary(voice_answer: &VoiceAnswer) -> String {
+    match voice_answer {
         VoiceAnswer::Scores(judged) => {
-            let scores: Vec<String> =
-                judged.scores.iter().map(|own| format!("{} {:+.2}", own.group, own.score)).collect();
+            let scores: Vec<String> = judged
+                .scores
+                .iter()
+                .map(|model_score| format!("{} {:+.2}", model_score.group, model_score.score))
+                .collect();
             format!("a language model judged post {}: {}", judged.post, scores.join(", "))
         }
         VoiceAnswer::Words(worded) => format!("a language model worded {} posts", worded.posts.len()),
@@ -102,16 +105,16 @@ fn naive_note(filed: &Advance) -> Option<String> {
 
 fn forecast_summary(scored: &ScoredForecast, later: bool) -> (String, Role) {
     let forecast = &scored.forecast;
-    let said = format!("{:>2} wk {}", forecast.horizon_days / 7, short_dollars(forecast.point));
+    let text = format!("{:>2} wk {}", forecast.horizon_days / 7, short_dollars(forecast.point));
     let Some(cash) = scored.outcome else {
-        return (format!("{said}, day {} not recorded", scored.due_day()), Role::Dim);
+        return (format!("{text}, day {} not recorded", scored.due_day()), Role::Dim);
     };
     let role = match (later, scored.is_covered()) {
         (true, _) => Role::Dim,
         (false, true) => Role::Good,
         (false, false) => Role::Bad,
     };
-    (format!("{said}, {} {} {}", outcome_verb(later), short_dollars(cash), forecast_verdict(scored)), role)
+    (format!("{text}, {} {} {}", outcome_verb(later), short_dollars(cash), forecast_verdict(scored)), role)
 }
 
 fn outcome_verb(later: bool) -> &'static str {

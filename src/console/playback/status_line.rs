@@ -45,16 +45,17 @@ impl PlaybackViewer {
             if width > left.width {
                 break;
             }
-            let own = Rect { width, ..left };
+            let area = Rect { width, ..left };
             // The background of the line with the foreground of the role.
             let style = canvas.style(role);
-            canvas.draw_text(own, &text, Role::InactiveSelection);
+            canvas.draw_text(area, &text, Role::InactiveSelection);
             if let Some(colour) = style.fg {
-                canvas
-                    .buffer
-                    .set_style(own, ratatui::style::Style::new().fg(colour).add_modifier(style.add_modifier));
+                canvas.buffer.set_style(
+                    area,
+                    ratatui::style::Style::new().fg(colour).add_modifier(style.add_modifier),
+                );
             }
-            action.iter().for_each(|action| canvas.register_click(own, Click::Command((*action).into())));
+            action.iter().for_each(|action| canvas.register_click(area, Click::Command((*action).into())));
             left = Rect { x: left.x + width, width: left.width - width, ..left };
         }
         if left.width > MIN_BAR_WIDTH + 2 {

@@ -31,8 +31,8 @@ impl StudyPage {
             if !lines.is_empty() {
                 lines.push((String::new(), Role::Text));
             }
-            let told = wrap(&text, width.saturating_sub(4) as usize);
-            lines.extend(told.into_iter().map(|line| (line, role)));
+            let texts = wrap(&text, width.saturating_sub(4) as usize);
+            lines.extend(texts.into_iter().map(|line| (line, role)));
         }
         // In small windows, blank lines are dropped first.
         if lines.len() + 2 > body.height as usize {

@@ -181,7 +181,7 @@ impl StudyPage {
         let withdraws = action == Action::Withdraw && self.hints().contains(&action);
         match (&mut self.kind, action) {
             (StudyPageKind::Consent(text), Action::Agree) => match text.consent() {
-                Some(given) => self.send_request(StudyRequest::Agree(given)),
+                Some(consent_given) => self.send_request(StudyRequest::Agree(consent_given)),
                 None => vec![Effect::Complain(UNREAD_ERROR.to_owned())],
             },
             (StudyPageKind::Consent(_), Action::Decline) => self.send_request(StudyRequest::Decline),

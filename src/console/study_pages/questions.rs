@@ -48,8 +48,8 @@ impl QuestionPage {
             visible_lines: Cell::new((1, 0)),
             problem: None,
         };
-        let shown = page.show_question(0)?;
-        Some((page, shown))
+        let effect = page.show_question(0)?;
+        Some((page, effect))
     }
 
     fn current_draft(&self) -> &AnswerDraft {
@@ -331,8 +331,8 @@ fn draw_scale(canvas: &mut Canvas<'_>, area: Rect, points: usize, chosen: Option
         .map(|(point, words)| meant(point, words))
         .collect();
     let beside = words.join("   ");
-    let told = if beside.width() <= row.width as usize { vec![beside] } else { words };
-    for (row, line) in rows.zip(told) {
+    let texts = if beside.width() <= row.width as usize { vec![beside] } else { words };
+    for (row, line) in rows.zip(texts) {
         canvas.draw_text(row, &line, Role::Dim);
     }
 }

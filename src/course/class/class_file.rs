@@ -164,15 +164,15 @@ impl Class {
     /// # Errors
     /// Returns an error if its files are missing or invalid, or if they differ from the lesson that was handed out.
     pub fn stored_lesson(&self, folder: &Path) -> Result<Option<Arc<Lesson>>, RunError> {
-        let Some(own) = &self.lesson else { return Ok(None) };
-        let lesson = Lesson::from_run(folder, &own.name)?;
-        if lesson.digest == own.digest {
+        let Some(class_lesson) = &self.lesson else { return Ok(None) };
+        let lesson = Lesson::from_run(folder, &class_lesson.name)?;
+        if lesson.digest == class_lesson.digest {
             return Ok(Some(Arc::new(lesson)));
         }
         Err(RunError::Damaged {
             path: folder.join("lesson.toml"),
             line: 1,
-            problem: format!("the lesson differs from the one that was handed out, {}", own.name),
+            problem: format!("the lesson differs from the one that was handed out, {}", class_lesson.name),
             remedy: "Nothing was changed; restore lesson.toml and lesson.md from a copy".to_owned(),
         })
     }

@@ -163,7 +163,8 @@ impl CollectionBuilder<'_> {
         let class = self.sources.class;
         let own = manifest.handout.as_ref().is_some_and(|stamp| stamp.class == class.class);
         let of_lesson = class.lesson.as_ref().zip(manifest.lesson.as_ref());
-        own || (manifest.handout.is_none() && of_lesson.is_some_and(|(own, other)| own.name == other.name))
+        own || (manifest.handout.is_none()
+            && of_lesson.is_some_and(|(class_lesson, other)| class_lesson.name == other.name))
     }
 
     fn add_run(&mut self, found: &FoundRun) {
@@ -177,14 +178,14 @@ impl CollectionBuilder<'_> {
 
     /// Adds records of one run that contradict each other. If several of them are valid, none counts, and each is reported.
     fn add_conflicting_records(&mut self, records: &[FoundRun]) {
-        let own: Vec<&FoundRun> =
+        let found_runs: Vec<&FoundRun> =
             records.iter().filter(|found| self.belongs_to_class(&found.manifest)).collect();
-        let Some(first) = own.first() else {
+        let Some(first) = found_runs.first() else {
             self.others += records.len() as u32;
             return;
         };
         let (label, run) = (self.run_label(first).unwrap_or_default(), first.manifest.id.clone());
-        let judged: Vec<ClassRun> = own.iter().map(|found| self.examine_run(found)).collect();
+        let judged: Vec<ClassRun> = found_runs.iter().map(|found| self.examine_run(found)).collect();
         let (good, wrong): (Vec<ClassRun>, Vec<ClassRun>) =
             judged.into_iter().partition(|run| run.is_valid());
         if good.len() > 1 {
@@ -233,8 +234,8 @@ impl CollectionBuilder<'_> {
     fn find_mismatch(&self, found: &FoundRun, label: &str) -> Option<(RunVerdict, ClassFinding)> {
         let (class, manifest) = (self.sources.class, &found.manifest);
         let (label, run) = (label.to_owned(), manifest.id.clone());
-        let other_lesson =
-            class.lesson.as_ref().map(|own| &own.digest) != manifest.lesson.as_ref().map(|own| &own.digest);
+        let other_lesson = class.lesson.as_ref().map(|class_lesson| &class_lesson.digest)
+            != manifest.lesson.as_ref().map(|lesson_stamp| &lesson_stamp.digest);
         let stamp = manifest.handout.as_ref().filter(|stamp| stamp.class == class.class);
         let owner = stamp.and_then(|stamp| class.students.iter().find(|student| student.run == stamp.run));
         let Some(owner) = owner else {
@@ -263,15 +264,18 @@ impl CollectionBuilder<'_> {
         let Ok(Handout { content: HandoutContent::Run(past), .. }) = Handout::read(&path) else {
             return true;
         };
-        let own = std::fs::read(found.folder.join("trajectory.jsonl")).unwrap_or_default();
-        found.manifest.id == student.run && own.starts_with(past.trajectory.as_bytes())
+        let bytes = std::fs::read(found.folder.join("trajectory.jsonl")).unwrap_or_default();
+        found.manifest.id == student.run && bytes.starts_with(past.trajectory.as_bytes())
     }
 
     fn add_missing_findings(&mut self) {
         let class = self.sources.class;
         let parts: u32 = self.lesson.map_or(1, |lesson| lesson.plan.parts.len() as u32);
-        let told: BTreeSet<String> =
-            self.findings.iter().filter_map(|own| own.label().map(str::to_owned)).collect();
+        let texts: BTreeSet<String> = self
+            .findings
+            .iter()
+            .filter_map(|class_finding| class_finding.label().map(str::to_owned))
+            .collect();
         for student in &class.students {
             let label = student.label.clone();
             let own = || self.runs.iter().filter(|run| run.label == label);
@@ -281,7 +285,7 @@ impl CollectionBuilder<'_> {
             let open: Vec<u32> = (1..=parts).filter(|part| !is_finished(part)).collect();
             let is_whole =
                 own().any(|run| matches!(run.verdict, RunVerdict::Finished | RunVerdict::NotFinished));
-            if own().next().is_none() && !told.contains(&label) {
+            if own().next().is_none() && !texts.contains(&label) {
                 self.findings.push(ClassFinding::Missing { label });
             } else if is_whole && !open.is_empty() {
                 self.findings.push(ClassFinding::NotFinished { label, parts: open });

@@ -99,7 +99,9 @@ struct EvidenceReplay {
 impl EvidenceReplay {
     fn observe_line(&mut self, session: &mut Session, path: &Path, line: &Line) -> Result<(), RunError> {
         let days = session.params().run.days_per_week;
-        let start = self.standing.as_ref().map_or(0, |own| own.current_part().start_weeks) * days;
+        let start =
+            self.standing.as_ref().map_or(0, |lesson_progress| lesson_progress.current_part().start_weeks)
+                * days;
         if line.closes_days() && session.day() > start {
             self.weeks += 1;
             for (setting, value) in setting_values(session.settings()) {
@@ -122,10 +124,11 @@ impl EvidenceReplay {
     fn note_mismatch(&self, session: &mut Session, note: &LessonNote) -> Option<String> {
         let standing = self.standing.clone()?;
         let step = (note.step as usize).checked_sub(1)?;
-        let own = standing.step(step)?;
+        let lesson_step = standing.step(step)?;
         let number = || (note.number.unwrap_or(1) as usize).checked_sub(1);
-        let measurement: Measurement = match (note.event, own.guess.as_ref().map(|guess| &guess.form)) {
-            (LessonEvent::Goal, _) => own.goals.get(number()?)?.measurement.clone(),
+        let measurement: Measurement = match (note.event, lesson_step.guess.as_ref().map(|guess| &guess.form))
+        {
+            (LessonEvent::Goal, _) => lesson_step.goals.get(number()?)?.measurement.clone(),
             (LessonEvent::Outcome, Some(GuessForm::Number { outcome, .. })) => outcome.clone(),
             _ => return None,
         };
@@ -157,9 +160,9 @@ impl EvidenceReplay {
 
 /// Returns the results of a session that was played or re-simulated.
 pub(super) fn session_evidence(session: &Session, standing: Option<&LessonProgress>, seed: u64) -> Evidence {
-    let steps = standing.map_or(0, |own| own.current_part().steps.len());
+    let steps = standing.map_or(0, |lesson_progress| lesson_progress.current_part().steps.len());
     let numbers: BTreeSet<usize> = (0..steps).collect();
-    let of_step = |step: &usize| standing.map(|own| step_evidence(own, *step)).unwrap_or_default();
+    let of_step = |step: &usize| standing.map(|progress| step_evidence(progress, *step)).unwrap_or_default();
     let tries = numbers.iter().filter_map(|step| standing.map(|own| own.attempt(*step))).max();
     let hints = numbers.iter().filter_map(|step| standing.map(|own| own.hint_count(*step) as u32)).sum();
     let pitfalls = standing.map(|own| own.met_pitfalls().into_iter().map(str::to_owned).collect());

@@ -121,9 +121,13 @@ impl Handout {
         }
         let stamp = HandoutStamp { class: file.class, run: file.run };
         let content = match (file.lesson, file.past) {
-            (Some(own), None) => {
-                let source = ParameterSource { name: path.display().to_string(), text: own.plan };
-                HandoutContent::Lesson(Arc::new(Lesson::from_texts(&own.name, source, own.texts)?))
+            (Some(handout_lesson), None) => {
+                let source = ParameterSource { name: path.display().to_string(), text: handout_lesson.plan };
+                HandoutContent::Lesson(Arc::new(Lesson::from_texts(
+                    &handout_lesson.name,
+                    source,
+                    handout_lesson.texts,
+                )?))
             }
             (None, Some(past)) => HandoutContent::Run(past),
             _ => return Err(refused("it must contain either a lesson or a run")),
@@ -197,11 +201,11 @@ impl Handout {
     fn latest_run(&self, runs: &Path) -> Result<Option<String>, RunError> {
         let is_own = |id: &str| {
             ManifestCheck::read(&runs.join(id))
-                .is_ok_and(|own| own.manifest.handout.as_ref() == Some(&self.stamp))
+                .is_ok_and(|manifest_check| manifest_check.manifest.handout.as_ref() == Some(&self.stamp))
         };
-        let own: Vec<_> = list_runs(runs)?.into_iter().filter(|run| is_own(&run.id)).collect();
-        let open = own.iter().find(|run| run.ended.is_none() && run.problem.is_none());
-        Ok(open.or(own.first()).map(|run| run.id.clone()))
+        let run_summaries: Vec<_> = list_runs(runs)?.into_iter().filter(|run| is_own(&run.id)).collect();
+        let open = run_summaries.iter().find(|run| run.ended.is_none() && run.problem.is_none());
+        Ok(open.or(run_summaries.first()).map(|run| run.id.clone()))
     }
 
     fn start_lesson(&self, lesson: &Arc<Lesson>, runs: PathBuf) -> Result<(), RunError> {

@@ -189,7 +189,7 @@ fn serialize_hint_usage<S: Serializer>(
 fn student_calls(session: &Session, standing: &LessonProgress) -> Vec<ScheduledCalls> {
     let part = standing.current_part();
     let of_lesson = |tool: ToolId| part.has_automatic_capacity() && tool == ToolId::SetCapacityTier;
-    let starts = part.start.iter().flat_map(|own| &own.calls);
+    let starts = part.start.iter().flat_map(|scheduled_calls| &scheduled_calls.calls);
     let starts = starts.filter(|call| !matches!(call, LessonCall::Tool(tool, _) if of_lesson(*tool))).count();
     let days = session.params().run.days_per_week;
     let calls = session.journal().iter().filter_map(|entry| match entry {
@@ -250,16 +250,16 @@ impl PlayedPart {
     /// Computes the debrief. Simulates the part up to four times in memory; `answers` answers enterprises in plays that use rules.
     pub fn debrief(&self, answers: RuleEvaluator) -> Debrief {
         let plan = &self.standing.lesson.plan;
-        let [good, bad, own] = thread::scope(|scope| {
+        let [good, bad, play_result] = thread::scope(|scope| {
             let plays = [&plan.good.plays, &plan.bad.plays, &self.calls];
             let begun = plays.map(|calls| scope.spawn(move || self.simulate_calls(calls, answers)));
             begun.map(|play| play.join().ok().flatten())
         });
         let (part, decides) = (self.standing.part, plan.good.has_calls_in(self.standing.part));
-        let both = good.as_ref().zip(own.as_ref());
+        let both = good.as_ref().zip(play_result.as_ref());
         let comparison = match both {
             _ if !decides => DecisionComparison::NoDecisions,
-            Some((good, own)) => self.compare_decisions(good, own, answers),
+            Some((good, result)) => self.compare_decisions(good, result, answers),
             None => DecisionComparison::NotComparable,
         };
         let judged_by = self.judged_by().map(|figure| {
@@ -331,14 +331,15 @@ impl PlayedPart {
     fn compare_decisions(
         &self,
         good: &PlayResult,
-        own: &PlayResult,
+        play_result: &PlayResult,
         answers: RuleEvaluator,
     ) -> DecisionComparison {
-        if own.cash_by_day != self.cash_by_day {
+        if play_result.cash_by_day != self.cash_by_day {
             return DecisionComparison::NotComparable;
         }
-        let both = own.weeks.iter().zip(&good.weeks);
-        let mut parts = both.map(|(own, good)| different_decisions(own, good)).enumerate();
+        let both = play_result.weeks.iter().zip(&good.weeks);
+        let mut parts =
+            both.map(|(week_decisions, good)| different_decisions(week_decisions, good)).enumerate();
         let Some((at, decisions)) = parts.find(|(_, parted)| !parted.is_empty()) else {
             return DecisionComparison::Same;
         };
@@ -357,7 +358,11 @@ impl PlayedPart {
 
     /// Whether calls of later weeks name customers, whose numbers depend on earlier decisions.
     fn names_customers_after(&self, week: u32) -> bool {
-        let later = self.calls.iter().filter(|own| own.week > week).flat_map(|own| &own.calls);
+        let later = self
+            .calls
+            .iter()
+            .filter(|scheduled_calls| scheduled_calls.week > week)
+            .flat_map(|calls| &calls.calls);
         later.into_iter().any(|call| match call {
             LessonCall::Tool(tool, args) => highest_customer(*tool, args).is_some(),
             _ => false,
@@ -365,12 +370,12 @@ impl PlayedPart {
     }
 
     fn measure_effect(&self, played: &PlayResult) -> Option<ReferenceEffect> {
-        let (own, with) = (*self.cash_by_day.last()?, *played.cash_by_day.last()?);
+        let (value, with) = (*self.cash_by_day.last()?, *played.cash_by_day.last()?);
         let judged = self.judged_by().and_then(|figure| {
             let last = |weeks: &[WeekFigures]| figure.company_value(weeks.last()?);
             last(&self.weeks).zip(last(&played.figures))
         });
-        Some(ReferenceEffect { day: played.cash_by_day.len() as u32 - 1, own, with, judged })
+        Some(ReferenceEffect { day: played.cash_by_day.len() as u32 - 1, own: value, with, judged })
     }
 
     /// Returns the student's calls, with the differing calls of one week replaced by those of the reference play.
@@ -381,9 +386,9 @@ impl PlayedPart {
         good: &WeekDecisions,
     ) -> Vec<ScheduledCalls> {
         let differs = |tool: &ToolId| decisions.iter().any(|decision| decision.tool == *tool);
-        let is_other = |own: &&ScheduledCalls| {
-            let call = own.calls.first();
-            own.week == week && matches!(call, Some(LessonCall::Tool(tool, _)) if differs(tool))
+        let is_other = |scheduled_calls: &&ScheduledCalls| {
+            let call = scheduled_calls.calls.first();
+            scheduled_calls.week == week && matches!(call, Some(LessonCall::Tool(tool, _)) if differs(tool))
         };
         let mut calls: Vec<ScheduledCalls> =
             self.calls.iter().filter(|own| !is_other(own)).cloned().collect();
@@ -407,14 +412,14 @@ impl PlayedPart {
 
 /// Returns the question, the goals and the results of a step, or `None` if the step does not exist.
 pub(super) fn step_result(standing: &LessonProgress, step: usize) -> Option<DebriefStep> {
-    let own = standing.step(step)?;
+    let lesson_step = standing.step(step)?;
     let judged = standing.goal_results(step);
     let page = |(at, goal): (usize, &LessonGoal)| GoalStatus::new(standing, goal, judged.get(at).copied());
     Some(DebriefStep {
-        title: own.title.clone(),
+        title: lesson_step.title.clone(),
         tries: standing.attempt(step),
-        hints: (standing.hint_count(step), own.hints.len()),
+        hints: (standing.hint_count(step), lesson_step.hints.len()),
         question: step_question(standing, step),
-        goals: own.goals.iter().enumerate().map(page).collect(),
+        goals: lesson_step.goals.iter().enumerate().map(page).collect(),
     })
 }

@@ -78,7 +78,7 @@ impl WeekDecisions {
     }
 
     fn actions_of(&self, tool: ToolId) -> Vec<Value> {
-        self.actions.iter().filter(|(own, _)| *own == tool).map(|(_, args)| args.clone()).collect()
+        self.actions.iter().filter(|(tool_id, _)| *tool_id == tool).map(|(_, args)| args.clone()).collect()
     }
 
     /// Returns calls that reproduce the decisions of the selected tools.
@@ -89,8 +89,11 @@ impl WeekDecisions {
 }
 
 /// Returns the tools whose decisions differ from the reference play.
-pub(super) fn different_decisions(own: &WeekDecisions, good: &WeekDecisions) -> Vec<DifferentDecision> {
-    let settings = own.settings.iter().filter_map(|(tool, settings)| {
+pub(super) fn different_decisions(
+    week_decisions: &WeekDecisions,
+    good: &WeekDecisions,
+) -> Vec<DifferentDecision> {
+    let settings = week_decisions.settings.iter().filter_map(|(tool, settings)| {
         let other = good.settings.get(tool)?;
         let (own, good) = (flatten_arguments(settings), flatten_arguments(other));
         let names: BTreeSet<&String> = own.keys().chain(good.keys()).collect();
@@ -110,11 +113,14 @@ pub(super) fn different_decisions(own: &WeekDecisions, good: &WeekDecisions) -> 
             difference: DecisionDifference::Settings { settings },
         })
     });
-    let done: BTreeSet<ToolId> = own.actions.iter().chain(&good.actions).map(|(tool, _)| *tool).collect();
+    let done: BTreeSet<ToolId> =
+        week_decisions.actions.iter().chain(&good.actions).map(|(tool, _)| *tool).collect();
     let deeds = done.into_iter().filter_map(|tool| {
-        let (own, good) = (own.actions_of(tool), good.actions_of(tool));
-        (own != good)
-            .then_some(DifferentDecision { tool, difference: DecisionDifference::Calls { own, good } })
+        let (values, good) = (week_decisions.actions_of(tool), good.actions_of(tool));
+        (values != good).then_some(DifferentDecision {
+            tool,
+            difference: DecisionDifference::Calls { own: values, good },
+        })
     });
     settings.chain(deeds).collect()
 }
@@ -161,13 +167,15 @@ mod tests {
 
     #[test]
     fn different_settings_and_calls_are_found() {
-        let own = week_decisions(&json!({"A": 12, "B": 20}), &[]);
-        assert!(different_decisions(&own, &week_decisions(&json!({"A": 12.0, "B": 20}), &[])).is_empty());
+        let decisions = week_decisions(&json!({"A": 12, "B": 20}), &[]);
+        assert!(
+            different_decisions(&decisions, &week_decisions(&json!({"A": 12.0, "B": 20}), &[])).is_empty()
+        );
         let other = week_decisions(
             &json!({"A": 12, "B": 30}),
             &[(ToolId::RejectEnterpriseDeal, json!({"deal_id": 4}))],
         );
-        let found = different_decisions(&own, &other);
+        let found = different_decisions(&decisions, &other);
         let b = SettingDifference { name: "B".to_owned(), own: json!(20), good: json!(30) };
         assert_eq!(found[0].difference, DecisionDifference::Settings { settings: vec![b] });
         let calls = DecisionDifference::Calls { own: Vec::new(), good: vec![json!({"deal_id": 4})] };

@@ -146,7 +146,7 @@ fn goal_statuses(
     (begin, passed): (u32, u32),
 ) -> Vec<GoalStatus> {
     let from = begin * session.params().run.days_per_week;
-    let goals = standing.step(step).map(|own| own.goals.clone()).unwrap_or_default();
+    let goals = standing.step(step).map(|lesson_step| lesson_step.goals.clone()).unwrap_or_default();
     let judged = standing.goal_results(step);
     let page = |(at, goal): (usize, LessonGoal)| {
         let note = judged.get(at).copied();

@@ -137,11 +137,11 @@ pub(super) fn insert_discovery(transaction: &Transaction<'_>, facts: &Facts) -> 
          ON CONFLICT (group_id) DO UPDATE SET info_level = excluded.info_level, \
          discovered_day = excluded.discovered_day, last_research_day = excluded.last_research_day",
     )?;
-    for (group, own) in &facts.knowledge {
+    for (group, knowledge) in &facts.knowledge {
         let hidden = !group.is_initially_known();
         // Groups that are known from the start were not studied on day 0.
-        let studied = own.last_research_day.filter(|day| hidden || *day > 0);
-        write.execute(params![group.id(), own.level, hidden, own.discovered_day, studied])?;
+        let studied = knowledge.last_research_day.filter(|day| hidden || *day > 0);
+        write.execute(params![group.id(), knowledge.level, hidden, knowledge.discovered_day, studied])?;
     }
     Ok(())
 }

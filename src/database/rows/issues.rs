@@ -105,6 +105,6 @@ impl IssueWriter {
 }
 
 fn unpack_day(days: &[Arc<PackedDay>], day: u32) -> Vec<IssueRun> {
-    let Ok(at) = days.binary_search_by_key(&day, |own| own.day) else { return Vec::new() };
+    let Ok(at) = days.binary_search_by_key(&day, |packed_day| packed_day.day) else { return Vec::new() };
     (0..days[at].run_count()).filter_map(|run| days[at].unpack_run(run)).collect()
 }

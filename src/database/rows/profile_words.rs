@@ -22,7 +22,8 @@ impl ProfileWordWriter {
         facts: &Facts,
         params: &Params,
     ) -> rusqlite::Result<()> {
-        let found = facts.knowledge.iter().filter(|(_, own)| own.level >= 1).map(|(group, _)| *group);
+        let found =
+            facts.knowledge.iter().filter(|(_, knowledge)| knowledge.level >= 1).map(|(group, _)| *group);
         for group in found.chain(facts.arrivals.iter().map(|arrival| arrival.group)) {
             if !self.written[group.index()] {
                 write_group(transaction, group, params)?;
@@ -49,28 +50,28 @@ fn write_group(transaction: &Transaction<'_>, group: Group, params: &Params) -> 
 }
 
 fn word_axes(group: Group, params: &Params) -> Vec<(&'static str, Vec<String>)> {
-    let (own, personas) = (&params.personas.group[group.index()], &params.personas);
+    let (group_persona, personas) = (&params.personas.group[group.index()], &params.personas);
     let floor = params.group(group).q_min_mean;
     let quality = |edges: &[f64], labels: &[String]| {
         vec![labels[edges.iter().position(|edge| floor < *edge).unwrap_or(edges.len())].clone()]
     };
-    let mut axes = vec![("industry", own.industry.clone()), ("role", own.role.clone())];
+    let mut axes = vec![("industry", group_persona.industry.clone()), ("role", group_persona.role.clone())];
     if group.is_enterprise() {
         let common = &personas.enterprise;
         axes.extend([
             ("experience", vec![common.experience.clone()]),
-            ("work_style", own.culture.clone()),
+            ("work_style", group_persona.culture.clone()),
             ("tech_savvy", common.tech_savvy.clone()),
-            ("size", own.company_size.clone()),
-            ("decision", own.decision_style.clone()),
-            ("concern", own.primary_concern.clone()),
+            ("size", group_persona.company_size.clone()),
+            ("decision", group_persona.decision_style.clone()),
+            ("concern", group_persona.primary_concern.clone()),
             ("quality", quality(&common.quality_thresholds, &common.quality_labels)),
         ]);
     } else {
         let common = &personas.individual;
         axes.extend([
             ("experience", common.experience_levels.clone()),
-            ("work_style", own.work_style.clone()),
+            ("work_style", group_persona.work_style.clone()),
             ("tech_savvy", common.tech_savvy.clone()),
             ("usage", common.usage_labels.to_vec()),
             ("budget", common.budget_labels.to_vec()),

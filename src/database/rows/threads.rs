@@ -99,9 +99,9 @@ mod tests {
             (TurnContent::Opening, "{}"),
             (TurnContent::Threat, "{}"),
         ] {
-            let own = offer_json(&content);
-            assert_eq!(own, json);
-            assert!(serde_json::from_str::<serde_json::Value>(&own).is_ok());
+            let text = offer_json(&content);
+            assert_eq!(text, json);
+            assert!(serde_json::from_str::<serde_json::Value>(&text).is_ok());
         }
     }
 }

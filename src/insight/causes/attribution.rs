@@ -193,10 +193,10 @@ fn value_or_zero(quantity: WeekQuantity, week: &SimulatedWeek) -> f64 {
 }
 
 fn singleton_groups(candidates: &[Candidate]) -> Vec<CauseGroup> {
-    let group = |(at, own): (usize, &Candidate)| CauseGroup {
-        cause: own.cause,
+    let group = |(at, candidate): (usize, &Candidate)| CauseGroup {
+        cause: candidate.cause,
         members: 1 << at,
-        details: own.details.clone(),
+        details: candidate.details.clone(),
     };
     candidates.iter().enumerate().map(group).collect()
 }

@@ -77,20 +77,20 @@ impl WeekPair<'_> {
         causes: impl Iterator<Item = Cause>,
         undone: &[DayFigures],
     ) -> FixedInputs {
-        let mut held = FixedInputs { from: self.start.world.day + 1, ..FixedInputs::default() };
+        let mut fixed_inputs = FixedInputs { from: self.start.world.day + 1, ..FixedInputs::default() };
         for cause in causes {
             match cause {
-                Cause::Competitors => held.competitors = true,
-                Cause::Drift => held.drift = true,
-                Cause::Yields => held.yields = true,
-                Cause::Economy => held.economy = true,
-                Cause::Surges => held.surges = self.surge_factors().1,
-                Cause::Calendar => held.month_days = self.month_day_factors().1,
-                Cause::Service => held.service = self.held_service(undone),
+                Cause::Competitors => fixed_inputs.competitors = true,
+                Cause::Drift => fixed_inputs.drift = true,
+                Cause::Yields => fixed_inputs.yields = true,
+                Cause::Economy => fixed_inputs.economy = true,
+                Cause::Surges => fixed_inputs.surges = self.surge_factors().1,
+                Cause::Calendar => fixed_inputs.month_days = self.month_day_factors().1,
+                Cause::Service => fixed_inputs.service = self.held_service(undone),
                 _ => {}
             }
         }
-        held
+        fixed_inputs
     }
 
     /// Returns the utilization for the usage of the week before, with the random draws of that day.

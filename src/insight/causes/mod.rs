@@ -77,10 +77,10 @@ impl CauseAnalysis {
     /// has no value in one of the two weeks.
     pub fn explain(
         &mut self,
-        asked: WeekQuestion,
+        week_question: WeekQuestion,
         progress: CauseProgressFn<'_>,
     ) -> Result<Option<ChangeExplanation>, Rejection> {
-        let WeekQuestion { quantity, week } = asked;
+        let WeekQuestion { quantity, week } = week_question;
         visibility::check_figure_visible(quantity, self.visibility)?;
         let week = self.resolve_week(week)?;
         if self.last_week.as_ref().is_none_or(|latest| latest.week() != week) {
@@ -123,9 +123,9 @@ impl CauseAnalysis {
 ///
 /// # Errors
 /// `not_in_this_mode`, `not_possible`, `day_unknown`, `not_saved`.
-pub fn begin_cause_analysis(run: &mut Session, asked: &WeekQuestion) -> Result<PathBuf, Rejection> {
+pub fn begin_cause_analysis(run: &mut Session, week_question: &WeekQuestion) -> Result<PathBuf, Rejection> {
     let folder = cause_analysis_folder(run)?;
-    record_figure_inspection(run, asked)?;
+    record_figure_inspection(run, week_question)?;
     Ok(folder)
 }
 
@@ -133,8 +133,8 @@ pub fn begin_cause_analysis(run: &mut Session, asked: &WeekQuestion) -> Result<P
 ///
 /// # Errors
 /// `not_in_this_mode`, `day_unknown`, `not_saved`.
-pub fn record_figure_inspection(run: &mut Session, asked: &WeekQuestion) -> Result<(), Rejection> {
-    let WeekQuestion { quantity, week } = asked;
+pub fn record_figure_inspection(run: &mut Session, week_question: &WeekQuestion) -> Result<(), Rejection> {
+    let WeekQuestion { quantity, week } = week_question;
     if !quantity.is_hidden() {
         return Ok(());
     }

@@ -149,7 +149,7 @@ mod tests {
 
     fn parse(text: &str) -> Result<(String, Option<u32>), (String, usize)> {
         let read = text.parse::<WeekQuestion>();
-        read.map(|asked| (asked.quantity.to_string(), asked.week))
+        read.map(|week_question| (week_question.quantity.to_string(), week_question.week))
             .map_err(|problem| (problem.message, problem.column))
     }
 

@@ -7,11 +7,11 @@ pub(super) fn shapley_values(causes: usize, value: impl Fn(u32) -> f64) -> Vec<f
     let values: Vec<f64> = (0..sets).map(value).collect();
     let weights = coalition_weights(causes);
     let share = |cause: usize| {
-        let own = 1u32 << cause;
-        let without = (0..sets).filter(|set| set & own == 0);
+        let number = 1u32 << cause;
+        let without = (0..sets).filter(|set| set & number == 0);
         without
             .map(|set| {
-                let added = values[(set | own) as usize] - values[set as usize];
+                let added = values[(set | number) as usize] - values[set as usize];
                 weights[set.count_ones() as usize] * added
             })
             .sum()
@@ -51,8 +51,8 @@ mod tests {
         // The glove game: one left glove, two right ones.
         let pairs = |set: u32| if set & 1 != 0 && set & 0b110 != 0 { 1.0 } else { 0.0 };
         let shares = shapley_values(3, pairs);
-        for (share, own) in shares.iter().zip([4.0 / 6.0, 1.0 / 6.0, 1.0 / 6.0]) {
-            assert!((share - own).abs() < 1e-12);
+        for (share, value) in shares.iter().zip([4.0 / 6.0, 1.0 / 6.0, 1.0 / 6.0]) {
+            assert!((share - value).abs() < 1e-12);
         }
         let odd = |set: u32| f64::from(set * set % 37);
         for causes in 0..=6 {

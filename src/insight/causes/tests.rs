@@ -30,8 +30,11 @@ fn open_causes(session: &Session) -> CauseAnalysis {
 }
 
 fn explain(session: &Session, quantity: WeekQuantity) -> ChangeExplanation {
-    let asked = WeekQuestion { quantity, week: None };
-    open_causes(session).explain(asked, &continue_progress).expect("an answer").expect("it is not stopped")
+    let week_question = WeekQuestion { quantity, week: None };
+    open_causes(session)
+        .explain(week_question, &continue_progress)
+        .expect("an answer")
+        .expect("it is not stopped")
 }
 
 /// Returns a week of a session, counted from 0, for comparison with re-simulations.
@@ -126,9 +129,11 @@ fn group_contribution_equals_branch_difference() {
     ] {
         for id in ["S1", "S2"] {
             let quantity = group_quantity(figure, id);
-            let asked = WeekQuestion { quantity, week: None };
-            let why =
-                causes.explain(asked, &continue_progress).expect("an answer").expect("it is not stopped");
+            let week_question = WeekQuestion { quantity, week: None };
+            let why = causes
+                .explain(week_question, &continue_progress)
+                .expect("an answer")
+                .expect("it is not stopped");
             assert_contributions_add_up(&why);
             assert_eq!(why.after, last_value(&session, quantity), "{quantity}");
             let paired = last_value(&session, quantity) - last_value(&control, quantity);
@@ -148,19 +153,19 @@ fn group_cancellations_add_up_per_cause() {
     let session = play_weeks(runs.path(), Mode::Sandbox, 3, Some(("set_prices", json!({"A": 24, "B": 50}))));
     let mut causes = open_causes(&session);
     let mut why = |quantity| {
-        let asked = WeekQuestion { quantity, week: None };
-        causes.explain(asked, &continue_progress).expect("an answer").expect("it is not stopped")
+        let week_question = WeekQuestion { quantity, week: None };
+        causes.explain(week_question, &continue_progress).expect("an answer").expect("it is not stopped")
     };
     for figure in [WeekFigure::Cancellations, WeekFigure::NewSubscribers, WeekFigure::Subscribers] {
         let whole = why(company_quantity(figure));
         let mut sums = vec![0.0; whole.contributions.len() + 1];
         for id in ["S1", "S2", "S3"] {
-            let own = why(group_quantity(figure, id));
-            for part in &own.contributions {
+            let explanation = why(group_quantity(figure, id));
+            for part in &explanation.contributions {
                 let at = whole.contributions.iter().position(|whole| whole.cause == part.cause);
                 sums[at.expect("a cause of the company")] += part.amount;
             }
-            sums[whole.contributions.len()] += own.residual;
+            sums[whole.contributions.len()] += explanation.residual;
         }
         let amounts = whole.contributions.iter().map(|part| part.amount).chain([whole.residual]);
         for (sum, amount) in sums.iter().zip(amounts) {
@@ -181,11 +186,15 @@ fn all_figures_of_a_week_share_its_simulations() {
         group_quantity(WeekFigure::Leads, "S1"),
         company_quantity(WeekFigure::Costs),
     ] {
-        let asked = WeekQuestion { quantity, week: None };
-        let why = causes.explain(asked, &continue_progress).expect("an answer").expect("it is not stopped");
+        let week_question = WeekQuestion { quantity, week: None };
+        let why =
+            causes.explain(week_question, &continue_progress).expect("an answer").expect("it is not stopped");
         simulations.push(why.simulation_count);
     }
-    assert!(simulations[0] > 0 && simulations.iter().all(|own| *own == simulations[0]), "{simulations:?}");
+    assert!(
+        simulations[0] > 0 && simulations.iter().all(|number| *number == simulations[0]),
+        "{simulations:?}"
+    );
 }
 
 #[test]
@@ -224,8 +233,9 @@ fn unchanged_settings_are_no_cause_and_figures_add_up() {
                     "{quantity}, week {week}"
                 );
             }
-            if let Some((_, before)) =
-                last_values.iter().find(|(own, value): &&(_, f64)| *own == quantity && !value.is_nan())
+            if let Some((_, before)) = last_values
+                .iter()
+                .find(|(week_quantity, value): &&(_, f64)| *week_quantity == quantity && !value.is_nan())
             {
                 assert_eq!(why.before, *before, "{quantity}, week {week}");
             }
@@ -272,10 +282,14 @@ fn hidden_figures_need_a_recorded_inspection() {
     for mode in [Mode::Sandbox, Mode::Lesson] {
         let mut session = play_weeks(runs.path(), mode, 3, None);
         for quantity in hidden {
-            let asked = WeekQuestion { quantity, week: None };
-            let refused = open_causes(&session).explain(asked, &continue_progress).expect_err("hidden");
+            let week_question = WeekQuestion { quantity, week: None };
+            let refused =
+                open_causes(&session).explain(week_question, &continue_progress).expect_err("hidden");
             assert_eq!(
-                (refused.code, begin_cause_analysis(&mut session, &asked).map_err(|own| own.code)),
+                (
+                    refused.code,
+                    begin_cause_analysis(&mut session, &week_question).map_err(|rejection| rejection.code)
+                ),
                 ("not_in_this_mode", Err("not_in_this_mode"))
             );
         }
@@ -363,8 +377,8 @@ fn incomparable_weeks_are_rejected_and_analysis_can_be_stopped() {
     let mut causes = open_causes(&session);
     let usage = WeekQuestion { quantity: company_quantity(WeekFigure::Usage), week: None };
     for week in [0, 1, WEEKS + 2, u32::MAX] {
-        let asked = WeekQuestion { week: Some(week), ..usage };
-        let refusal = causes.explain(asked, &continue_progress).expect_err("no such week");
+        let week_question = WeekQuestion { week: Some(week), ..usage };
+        let refusal = causes.explain(week_question, &continue_progress).expect_err("no such week");
         assert_eq!(refusal.code, "week_unknown");
     }
     for stop in [CauseProgress::Replaying(20, 56), CauseProgress::Simulated(2, 0)] {

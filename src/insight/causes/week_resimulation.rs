@@ -177,9 +177,9 @@ impl WeekResimulation {
         go_on: &mut dyn FnMut(u32) -> ControlFlow<()>,
     ) -> Option<BranchOutcome> {
         let dropped = selected_candidates(&self.calls, without.calls)
-            .flat_map(|own| own.lines.iter().copied())
+            .flat_map(|candidate| candidate.lines.iter().copied())
             .collect();
-        let held = match without.inputs {
+        let fixed_inputs = match without.inputs {
             0 => FixedInputs::default(),
             inputs => {
                 let two = WeekPair { start: &self.start, before: &self.before, after: &self.after };
@@ -189,7 +189,7 @@ impl WeekResimulation {
                 )
             }
         };
-        let edits = Edits { dropped_lines: dropped, held_inputs: held, ..Edits::default() };
+        let edits = Edits { dropped_lines: dropped, held_inputs: fixed_inputs, ..Edits::default() };
         let outcome =
             simulate_branch(&self.start, &self.steps, &edits, self.after.final_state.world.day, go_on)?;
         // The figures of a week that ends early cannot be compared with those of a complete week.
@@ -198,7 +198,7 @@ impl WeekResimulation {
 }
 
 fn selected_candidates(candidates: &[Candidate], set: u32) -> impl Iterator<Item = &Candidate> {
-    candidates.iter().enumerate().filter(move |(at, _)| set & (1 << at) != 0).map(|(_, own)| own)
+    candidates.iter().enumerate().filter(move |(at, _)| set & (1 << at) != 0).map(|(_, candidate)| candidate)
 }
 
 /// Returns the player's calls in the week by tool. A setting that returned to its first value counts only if days passed in between.
@@ -208,7 +208,7 @@ fn call_candidates(eve: &MemorySnapshot, moves: &[RecordedStep], after: &BranchO
     let mut by_tool: Vec<Candidate> = Vec::new();
     for call in moves.iter().filter_map(as_accepted_call) {
         let cause = Cause::Calls(call.tool);
-        match by_tool.iter_mut().find(|own| own.cause == cause) {
+        match by_tool.iter_mut().find(|candidate| candidate.cause == cause) {
             Some(own) => drop(own.lines.insert(call.seq)),
             None => {
                 let lines = BTreeSet::from([call.seq]);

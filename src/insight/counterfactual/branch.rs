@@ -250,11 +250,11 @@ impl<'a> BranchSimulation<'a> {
         let Simulation { world, params, feed, .. } = &self.simulation;
         let numbers = || self.numbers.get_or_init(|| ParameterNumbers::for_params(params).into()).clone();
         let tool = tool.tool();
-        let given = Arguments::parse(tool.spec(), args, numbers)?;
+        let arguments = Arguments::parse(tool.spec(), args, numbers)?;
         if is_new {
-            limits::check_arguments(tool.spec(), &given)?;
+            limits::check_arguments(tool.spec(), &arguments)?;
         }
-        let planned = tool.plan(&ToolContext::new(world, params).with_posts(&feed.posts), &given)?;
+        let planned = tool.plan(&ToolContext::new(world, params).with_posts(&feed.posts), &arguments)?;
         Ok(planned.command)
     }
 

@@ -134,10 +134,10 @@ impl RecordedRun {
             RecordedStep::Days(days) if days.until == day => Some(&days.parts),
             _ => None,
         });
-        let own = reached.world.part_hashes();
-        let differs = own.iter().find(|own| {
-            let known = recorded.and_then(|parts| parts.get(own.part));
-            known.is_none_or(|known| own.hash.to_hex()[..16] != **known)
+        let part_hashes = reached.world.part_hashes();
+        let differs = part_hashes.iter().find(|part_hash| {
+            let known = recorded.and_then(|parts| parts.get(part_hash.part));
+            known.is_none_or(|known| part_hash.hash.to_hex()[..16] != **known)
         });
         let Some(differs) = differs.filter(|_| day > 0) else { return Ok(()) };
         Err(RunError::InvalidRequest(format!(

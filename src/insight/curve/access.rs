@@ -72,9 +72,12 @@ impl CurveExplorer {
         }
         let all = run.company().estimates();
         let delivered = run.company().delivered_quality();
-        let quality = delivered.iter().find(|own| own.group == group).map(|own| own.by_plan);
-        let own = all.iter().find(|own| own.group == group);
-        let Some((own, quality)) = own.zip(quality) else {
+        let quality = delivered
+            .iter()
+            .find(|delivered_quality| delivered_quality.group == group)
+            .map(|own| own.by_plan);
+        let estimates = all.iter().find(|own| own.group == group);
+        let Some((own, quality)) = estimates.zip(quality) else {
             let known: Vec<&str> = all.iter().map(|own| own.group.id()).collect();
             let message =
                 format!("group {group} is not known yet; the known groups are {}", known.join(", "));

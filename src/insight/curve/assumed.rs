@@ -30,9 +30,9 @@ pub(super) enum EstimateReading {
 
 /// Returns parameters of a market in which the group matches its estimates. Everything else has bundled values, except the curve forms
 /// of the run's scenario, which players can see.
-pub(super) fn assumed_params(own: &Estimates, reading: EstimateReading, run: &Params) -> Params {
+pub(super) fn assumed_params(estimates: &Estimates, reading: EstimateReading, run: &Params) -> Params {
     let end = |value: f64, is_most: bool| {
-        let (least, most) = own.true_range(value);
+        let (least, most) = estimates.true_range(value);
         match is_most {
             true if most.is_finite() => most,
             true => UNBOUNDED_FACTOR * value,
@@ -40,18 +40,18 @@ pub(super) fn assumed_params(own: &Estimates, reading: EstimateReading, run: &Pa
         }
     };
     let (budget, floor, usage) = match reading {
-        EstimateReading::Likely => (own.budget, own.required_quality, own.usage),
+        EstimateReading::Likely => (estimates.budget, estimates.required_quality, estimates.usage),
         EstimateReading::Strict => {
-            (end(own.budget, false), end(own.required_quality, true), end(own.usage, true))
+            (end(estimates.budget, false), end(estimates.required_quality, true), end(estimates.usage, true))
         }
         EstimateReading::Generous => {
-            (end(own.budget, true), end(own.required_quality, false), end(own.usage, false))
+            (end(estimates.budget, true), end(estimates.required_quality, false), end(estimates.usage, false))
         }
     };
     let mut params = Params::bundled();
     params.fidelity = run.fidelity;
     let widened = params.customer_generation.c_max_std_multiplier;
-    let group = &mut params.group[own.group.index()];
+    let group = &mut params.group[estimates.group.index()];
     group.c_max_mean = budget;
     group.c_max_std = BUDGET_STD_SHARE * budget / widened;
     group.q_min_mean = floor;
@@ -62,8 +62,8 @@ pub(super) fn assumed_params(own: &Estimates, reading: EstimateReading, run: &Pa
     group.usage_demand_std = USAGE_STD_SHARE * usage;
     if group.seat_count_min.is_some() {
         let seats = |count: f64| count.max(1.0) as u32;
-        group.seat_count_min = Some(seats(own.seats.0));
-        group.seat_count_max = Some(seats(own.seats.1).max(seats(own.seats.0)));
+        group.seat_count_min = Some(seats(estimates.seats.0));
+        group.seat_count_max = Some(seats(estimates.seats.1).max(seats(estimates.seats.0)));
     }
     params
 }

@@ -162,7 +162,7 @@ impl CurveExplorer {
     /// Returns the highest price of the curve, dollars a month. Nearly all budgets and all plan prices are below it.
     fn max_price(&self) -> f64 {
         let budget = self.markets[0].sample.budget_quantile(0.9);
-        let plans = self.plans.iter().map(|own| 1.2 * own.list_price);
+        let plans = self.plans.iter().map(|plan_point| 1.2 * plan_point.list_price);
         let most = plans.fold(budget, f64::max);
         (most / 10.0).ceil().max(1.0) * 10.0
     }
@@ -171,13 +171,13 @@ impl CurveExplorer {
         let required = |market: &Market, share: &[f64]| {
             market.sample.required_quality_quantiles(price, share, &market.params)
         };
-        let own = required(&self.markets[0], &CURVE_QUANTILES);
+        let values = required(&self.markets[0], &CURVE_QUANTILES);
         let medians: Vec<f64> = self.markets.iter().map(|market| required(market, &[0.5])[0]).collect();
         CurvePoint {
             price,
-            p10: own[0],
-            median: own[1],
-            p90: own[2],
+            p10: values[0],
+            median: values[1],
+            p90: values[2],
             median_range: (min_of(&medians), max_of(&medians)),
         }
     }

@@ -38,20 +38,25 @@ fn explorer(session: &mut Session, group: &str) -> CurveExplorer {
 }
 
 /// Formats everything that an explorer shows.
-fn format_explorer(own: &CurveExplorer) -> String {
-    let asked: Vec<_> = [(12.0, 0.2), (30.0, 0.4), (90.0, 0.9)]
+fn format_explorer(curve_explorer: &CurveExplorer) -> String {
+    let curve_outcomes: Vec<_> = [(12.0, 0.2), (30.0, 0.4), (90.0, 0.9)]
         .iter()
-        .map(|(price, quality)| own.outcome_at(*price, *quality))
+        .map(|(price, quality)| curve_explorer.outcome_at(*price, *quality))
         .collect();
-    format!("{:?} {:?} {:?} {asked:?}", own.basis, own.points, own.outcome(&own.plans))
+    format!(
+        "{:?} {:?} {:?} {curve_outcomes:?}",
+        curve_explorer.basis,
+        curve_explorer.points,
+        curve_explorer.outcome(&curve_explorer.plans)
+    )
 }
 
 /// Conversions of the first week in the simulator, with one price on all plans (configs/lessons/price-follows-quality.toml).
 #[test]
 fn true_curve_matches_simulated_conversion_within_two_points() {
     let mut session = create_run(Mode::Debug, &[]);
-    let own = explorer(&mut session, "S1");
-    assert_eq!(own.basis, CurveBasis::Truth { day: 0 });
+    let curve_explorer = explorer(&mut session, "S1");
+    assert_eq!(curve_explorer.basis, CurveBasis::Truth { day: 0 });
     for (price, simulated) in [
         (12.0, [0.37, 0.83, 0.96]),
         (20.0, [0.18, 0.69, 0.80]),
@@ -59,12 +64,12 @@ fn true_curve_matches_simulated_conversion_within_two_points() {
         (40.0, [0.02, 0.35, 0.56]),
     ] {
         for (quality, conversion) in [0.2, 0.4, 0.6].into_iter().zip(simulated) {
-            let told = own.outcome_at(price, quality);
-            let off = told.conversion.likely - conversion;
+            let curve_outcome = curve_explorer.outcome_at(price, quality);
+            let off = curve_outcome.conversion.likely - conversion;
             assert!(off.abs() <= 0.02, "${price} at {quality}: {off}");
-            assert_eq!(told.conversion.least, told.conversion.most);
-            let revenue = told.revenue_per_lead.expect("individuals").likely;
-            assert!((revenue - price * told.conversion.likely).abs() < 1e-9);
+            assert_eq!(curve_outcome.conversion.least, curve_outcome.conversion.most);
+            let revenue = curve_outcome.revenue_per_lead.expect("individuals").likely;
+            assert!((revenue - price * curve_outcome.conversion.likely).abs() < 1e-9);
         }
     }
 }
@@ -83,9 +88,9 @@ fn unfinished_run_depends_only_on_studied_estimates() {
         ("quality.initial_decision_noise_min", "0.2"),
     ];
     for (key, value) in hidden {
-        let own = explorer(&mut create_run(Mode::Lesson, &[(key, value)]), "S1");
+        let curve_explorer = explorer(&mut create_run(Mode::Lesson, &[(key, value)]), "S1");
         assert_eq!(
-            format_explorer(&own),
+            format_explorer(&curve_explorer),
             format_explorer(&explorer(&mut create_run(Mode::Lesson, &[]), "S1")),
             "{key}"
         );
@@ -101,14 +106,15 @@ fn unfinished_run_depends_only_on_studied_estimates() {
 fn unfinished_runs_show_ranges_and_finished_runs_true_values() {
     for mode in [Mode::Baseline, Mode::Sandbox, Mode::Lesson] {
         let mut session = create_run(mode, &[]);
-        let own = explorer(&mut session, "S1");
-        assert_eq!(own.basis, CurveBasis::Estimates { level: 1, noise: 0.65, as_of: 0 });
-        let told = own.outcome(&own.plans);
+        let curve_explorer = explorer(&mut session, "S1");
+        assert_eq!(curve_explorer.basis, CurveBasis::Estimates { level: 1, noise: 0.65, as_of: 0 });
+        let curve_outcome = curve_explorer.outcome(&curve_explorer.plans);
         assert!(
-            told.conversion.least <= told.conversion.likely && told.conversion.likely <= told.conversion.most
+            curve_outcome.conversion.least <= curve_outcome.conversion.likely
+                && curve_outcome.conversion.likely <= curve_outcome.conversion.most
         );
-        assert!(told.conversion.least < told.conversion.most);
-        let wide = own.points.iter().all(|point| {
+        assert!(curve_outcome.conversion.least < curve_outcome.conversion.most);
+        let wide = curve_explorer.points.iter().all(|point| {
             let (least, most) = point.median_range;
             least <= point.median && point.median <= most && point.p10 <= point.median
         });
@@ -126,28 +132,32 @@ fn unfinished_runs_show_ranges_and_finished_runs_true_values() {
 #[test]
 fn outcome_is_computed_for_current_and_changed_plans() {
     let mut session = create_run(Mode::Debug, &[]);
-    let own = explorer(&mut session, "S1");
-    let now = own.outcome(&own.plans);
+    let curve_explorer = explorer(&mut session, "S1");
+    let now = curve_explorer.outcome(&curve_explorer.plans);
     let takers: f64 = now.plan_shares.expect("individuals").iter().sum();
     assert!((takers - now.conversion.likely).abs() < 1e-12);
     let dearer = ByPlan(
-        own.plans.0.map(|plan| super::explorer::PlanPoint { list_price: 3.0 * plan.list_price, ..plan }),
+        curve_explorer
+            .plans
+            .0
+            .map(|plan| super::explorer::PlanPoint { list_price: 3.0 * plan.list_price, ..plan }),
     );
-    assert!(own.outcome(&dearer).conversion.likely < now.conversion.likely);
-    let better =
-        ByPlan(own.plans.0.map(|plan| super::explorer::PlanPoint { quality: plan.quality + 0.3, ..plan }));
-    assert!(own.outcome(&better).conversion.likely > now.conversion.likely);
+    assert!(curve_explorer.outcome(&dearer).conversion.likely < now.conversion.likely);
+    let better = ByPlan(
+        curve_explorer.plans.0.map(|plan| super::explorer::PlanPoint { quality: plan.quality + 0.3, ..plan }),
+    );
+    assert!(curve_explorer.outcome(&better).conversion.likely > now.conversion.likely);
     let companies = explorer(&mut session, "E1");
-    let told = companies.outcome(&companies.plans);
-    assert_eq!((told.revenue_per_lead, told.plan_shares), (None, None));
+    let curve_outcome = companies.outcome(&companies.plans);
+    assert_eq!((curve_outcome.revenue_per_lead, curve_outcome.plan_shares), (None, None));
 }
 
 #[test]
 fn price_axis_covers_plans_and_curve_rises() {
-    let own = explorer(&mut create_run(Mode::Debug, &[]), "S1");
-    let last = own.points.last().expect("points");
+    let curve_explorer = explorer(&mut create_run(Mode::Debug, &[]), "S1");
+    let last = curve_explorer.points.last().expect("points");
     assert!(last.price >= 1.2 * 55.0 && last.price % 10.0 == 0.0, "{}", last.price);
-    assert!(own.points.windows(2).all(|pair| pair[0].median <= pair[1].median));
+    assert!(curve_explorer.points.windows(2).all(|pair| pair[0].median <= pair[1].median));
     assert!(last.p90.is_infinite(), "a tenth of the budgets is below the last price");
     assert_eq!(super::example::example_curve().len(), 51);
 }

@@ -63,20 +63,20 @@ impl Inspector<'_> {
         let look = InspectionPermit::start(self.run, "rivals", "", day)?;
         let day = look.day();
         let seen = self.hidden_day(&look, day)?;
-        let QualityBanks { shared_bonus, shared, group_bonus, group_banks: own } = seen.banks;
+        let QualityBanks { shared_bonus, shared, group_bonus, group_banks: values } = seen.banks;
         let inside = look.hidden_state(self.run);
         let law = &inside.params().competitor;
         let events = inside.world().market.competitors.iter().copied();
         let moves = events.take_while(|event| event.day <= day);
-        let improved = Group::all().filter(|group| group_bonus[*group] != 0.0 || own[*group] != 0.0);
+        let improved = Group::all().filter(|group| group_bonus[*group] != 0.0 || values[*group] != 0.0);
         Ok(CompetitorState {
             day,
             shared_bonus,
             shared_bank: shared,
-            group_banks: improved.map(|group| (group, group_bonus[group], own[group])).collect(),
+            group_banks: improved.map(|group| (group, group_bonus[group], values[group])).collect(),
             common_expectation: seen.market.drift.global_quality,
             moves: moves.map(|event| (event, severity(event.boost, law))).collect(),
-            next_move: next_competitor_move(inside, day, &own),
+            next_move: next_competitor_move(inside, day, &values),
         })
     }
 }

@@ -64,19 +64,29 @@ impl DayDifference {
         let pairs = || one.parts.iter().zip(&other.parts);
         let names = |alike: bool| {
             pairs()
-                .filter(|(own, other)| (own.hash == other.hash) == alike)
-                .map(|(own, _)| own.part)
+                .filter(|(part_hash, other)| (part_hash.hash == other.hash) == alike)
+                .map(|(hash, _)| hash.part)
                 .collect()
         };
         let figures = one.figures.iter().zip(&other.figures);
         let figures = figures.filter(|((_, own), (_, other))| own.to_bits() != other.to_bits());
         let all = differing_customers(one, other);
-        let count = |subscribes| all.iter().filter(|own| own.subscribes == subscribes).count();
+        let count = |subscribes| {
+            all.iter().filter(|customer_difference| customer_difference.subscribes == subscribes).count()
+        };
         let value = |value: Option<toml::Value>| value.as_ref().map_or(Json::Null, value_to_json);
         let parameters = one.params.differences(&other.params).into_iter();
         DayDifference {
             days,
-            parameters: parameters.map(|own| (own.key, value(own.old), value(own.new))).collect(),
+            parameters: parameters
+                .map(|parameter_difference| {
+                    (
+                        parameter_difference.key,
+                        value(parameter_difference.old),
+                        value(parameter_difference.new),
+                    )
+                })
+                .collect(),
             differing_parts: names(false),
             equal_parts: names(true),
             figures: figures.map(|((name, own), (_, other))| (name.clone(), *own, *other)).collect(),
@@ -110,7 +120,7 @@ fn differing_customers(one: &DayEnd, other: &DayEnd) -> Vec<CustomerDifference> 
             found.push(CustomerDifference { customer: *number, group: *group, subscribes, columns });
         }
     }
-    found.sort_by_key(|own| own.customer);
+    found.sort_by_key(|customer_difference| customer_difference.customer);
     found
 }
 
@@ -162,10 +172,13 @@ impl Inspector<'_> {
             let seen = Arc::new(StateHashRecorder::with_ends(day.as_slice()));
             look.replay_until(run, last_day, seen.clone()).map(|()| seen)
         };
-        let (own, others) = (fingerprints(run, &own_look)?, fingerprints(other, &other_look)?);
-        let (days, other_days) = (own.part_hashes_by_day(), others.part_hashes_by_day());
-        let differs =
-            days.iter().zip(&other_days).take(last_day as usize).position(|(own, other)| own != other);
+        let (hash_recorder, others) = (fingerprints(run, &own_look)?, fingerprints(other, &other_look)?);
+        let (days, other_days) = (hash_recorder.part_hashes_by_day(), others.part_hashes_by_day());
+        let differs = days
+            .iter()
+            .zip(&other_days)
+            .take(last_day as usize)
+            .position(|(part_hashes, other)| part_hashes != other);
         let first_day = differs.map(|at| at as u32 + 1);
         let Some(day) = day.or(first_day) else {
             return Ok(RunDifference { last_day, first_day, difference: None });
@@ -181,7 +194,7 @@ impl Inspector<'_> {
         };
         let difference = DayDifference::between(
             (day, day),
-            &moment(run, &own_look, &own)?,
+            &moment(run, &own_look, &hash_recorder)?,
             &moment(other, &other_look, &others)?,
         );
         Ok(RunDifference { last_day, first_day, difference: Some(difference) })

@@ -26,7 +26,7 @@ pub struct EnterpriseView {
 impl EnterpriseView {
     /// Returns the threads that were open on the shown day.
     pub fn threads_of_day(&self) -> impl Iterator<Item = &EnterpriseThreadDay> {
-        self.days.iter().filter(|own| own.day == self.day)
+        self.days.iter().filter(|thread_day| thread_day.day == self.day)
     }
 }
 
@@ -42,7 +42,7 @@ impl EnterpriseView {
         let diary = Arc::new(EnterpriseRecorder { customer, days: Mutex::default() });
         look.replay_until(run, day, diary.clone())?;
         let days = std::mem::take(&mut *diary.days.lock().unwrap_or_else(PoisonError::into_inner));
-        let days = days.into_iter().filter(|own| own.day <= day).collect();
+        let days = days.into_iter().filter(|thread_day| thread_day.day <= day).collect();
         Ok(EnterpriseView { customer, group, day, days })
     }
 }

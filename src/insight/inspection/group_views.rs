@@ -39,8 +39,8 @@ impl Inspector<'_> {
             1 => None,
             day => Some(self.hidden_day(&look, day - 1)?.satisfaction[group]),
         };
-        let evenings = self.values_of_recent_days(&look, group, day, |own| {
-            own.satisfaction_moments.map(|(satisfaction, _)| satisfaction)
+        let evenings = self.values_of_recent_days(&look, group, day, |day_end| {
+            day_end.satisfaction_moments.map(|(satisfaction, _)| satisfaction)
         })?;
         Ok(SatisfactionEquation::new(group, day, seen.satisfaction[group], evening, yesterday, evenings))
     }
@@ -56,7 +56,7 @@ impl Inspector<'_> {
     ) -> Result<ReputationEquation, Rejection> {
         let look = InspectionPermit::start(self.run, "reputation", group.id(), day)?;
         let day = look.day();
-        let evenings = self.values_of_recent_days(&look, group, day, |own| own.reputation)?;
+        let evenings = self.values_of_recent_days(&look, group, day, |day_end| day_end.reputation)?;
         self.hidden_day(&look, day)
             .map(|seen| ReputationEquation::new(group, day, &seen.reputation, evenings))
     }

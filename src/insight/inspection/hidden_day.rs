@@ -239,7 +239,7 @@ fn is_reply_pending(thread: &Thread, reappearing: bool) -> bool {
 fn group_day_end(group: Group, world: &World, params: &Params) -> GroupDayEnd {
     let (market, product) = (&world.market, &world.product);
     let blocks = || world.customers.groups[group].blocks.iter();
-    let taken = Snapshot::take_snapshot(group, world.day, &market.drift, params);
+    let snapshot = Snapshot::take_snapshot(group, world.day, &market.drift, params);
     let multiplier = |dimension| market.economy.multiplier(group, dimension, params);
     GroupDayEnd {
         info_level: market.knowledge[group].level.into(),
@@ -248,9 +248,9 @@ fn group_day_end(group: Group, world: &World, params: &Params) -> GroupDayEnd {
         satisfaction_moments: mean_satisfaction(world, group),
         open_issues: blocks().map(Block::open_issues).sum(),
         product_quality: product.quality(group, params),
-        budget: taken.c_max,
-        quality_floor: taken.q_min,
-        market_cap: taken.market_cap,
+        budget: snapshot.c_max,
+        quality_floor: snapshot.q_min,
+        market_cap: snapshot.market_cap,
         willingness_to_pay: multiplier(Dimension::WillingnessToPay),
         deal_velocity: multiplier(Dimension::DealVelocity),
         seat_count: multiplier(Dimension::SeatCount),

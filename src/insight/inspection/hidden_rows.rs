@@ -13,24 +13,24 @@ use HiddenValue::{Integer, Null};
 
 pub(crate) fn group_rows(day: u32, seen: &HiddenDay) -> Vec<[HiddenValue; 15]> {
     let rows = Group::all().map(|group| {
-        let own: GroupDayEnd = seen.groups[group];
+        let day_end: GroupDayEnd = seen.groups[group];
         let expectation = seen.market.drift.expectation(group);
         [
             day.into(),
             group.id().into(),
-            own.info_level.into(),
-            own.active.into(),
-            own.reputation.into(),
-            own.satisfaction_moments.map(|mood| mood.0).into(),
-            own.satisfaction_moments.map(|mood| mood.1).into(),
-            own.open_issues.into(),
+            day_end.info_level.into(),
+            day_end.active.into(),
+            day_end.reputation.into(),
+            day_end.satisfaction_moments.map(|mood| mood.0).into(),
+            day_end.satisfaction_moments.map(|mood| mood.1).into(),
+            day_end.open_issues.into(),
             expectation.quality.into(),
             expectation.c_max.into(),
-            own.product_quality.into(),
+            day_end.product_quality.into(),
             seen.banks.group_banks[group].into(),
-            own.willingness_to_pay.into(),
-            own.deal_velocity.into(),
-            own.seat_count.into(),
+            day_end.willingness_to_pay.into(),
+            day_end.deal_velocity.into(),
+            day_end.seat_count.into(),
         ]
     });
     rows.collect()
@@ -53,24 +53,24 @@ pub(crate) fn drift_rows(day: u32, seen: &HiddenDay) -> Vec<[HiddenValue; 5]> {
 /// Returns the rows of `hidden.factors` for a day: the discovered groups.
 pub(crate) fn factor_rows(day: u32, seen: &HiddenDay) -> Vec<[HiddenValue; 16]> {
     let rows = Group::all().filter(|group| seen.known_groups[*group]).map(|group| {
-        let own = &seen.lead_factors[group];
-        let paid = |channel: Channel| own.paid[channel].into();
+        let lead_factors = &seen.lead_factors[group];
+        let paid = |channel: Channel| lead_factors.paid[channel].into();
         [
             day.into(),
             group.id().into(),
-            own.reputation.into(),
-            own.saturation.into(),
-            own.calendar.into(),
-            own.economy.into(),
-            own.social.into(),
-            own.surge.into(),
+            lead_factors.reputation.into(),
+            lead_factors.saturation.into(),
+            lead_factors.calendar.into(),
+            lead_factors.economy.into(),
+            lead_factors.social.into(),
+            lead_factors.surge.into(),
             paid(Channel::SocialMedia),
             paid(Channel::SearchAds),
             paid(Channel::Linkedin),
             paid(Channel::ContentMarketing),
             paid(Channel::ReferralProgram),
-            own.network.into(),
-            own.expected().into(),
+            lead_factors.network.into(),
+            lead_factors.expected().into(),
             seen.arrived_leads[group].into(),
         ]
     });
@@ -105,40 +105,40 @@ pub(crate) fn pmi_row(day: u32, seen: &HiddenDay) -> [HiddenValue; 8] {
     ]
 }
 
-pub(crate) fn thread_row(own: &EnterpriseThreadDay) -> [HiddenValue; 22] {
+pub(crate) fn thread_row(thread_day: &EnterpriseThreadDay) -> [HiddenValue; 22] {
     let accepts = |plan: Plan| {
-        let judged = own.plans[plan];
+        let judged = thread_day.plans[plan];
         (!judged.accepts_any_price).then_some(judged.accepts_below).into()
     };
-    let (answer, at, price) = match own.answer {
+    let (answer, at, price) = match thread_day.answer {
         None => (Null, None, None),
         Some(OfferResponse::Accept(at)) => {
-            ("accept".into(), Some(at), own.offerings.get(at).map(|own| own.price))
+            ("accept".into(), Some(at), thread_day.offerings.get(at).map(|own| own.price))
         }
         Some(OfferResponse::Counter(at, price)) => ("counter".into(), Some(at), Some(price)),
         Some(OfferResponse::Silence) => ("silence".into(), None, None),
     };
-    let plan = at.and_then(|at| own.offerings.get(at)).map(|offering| offering.plan.id());
+    let plan = at.and_then(|at| thread_day.offerings.get(at)).map(|offering| offering.plan.id());
     [
-        own.day.into(),
-        own.thread.into(),
-        own.customer.into(),
-        own.group.id().into(),
-        own.kind.id().into(),
-        own.budget.into(),
-        own.remaining_turns.into(),
-        own.relationship.into(),
-        own.late_penalty.into(),
-        own.reply_day.into(),
-        own.plans[Plan::A].quality.into(),
-        own.plans[Plan::B].quality.into(),
-        own.plans[Plan::C].quality.into(),
+        thread_day.day.into(),
+        thread_day.thread.into(),
+        thread_day.customer.into(),
+        thread_day.group.id().into(),
+        thread_day.kind.id().into(),
+        thread_day.budget.into(),
+        thread_day.remaining_turns.into(),
+        thread_day.relationship.into(),
+        thread_day.late_penalty.into(),
+        thread_day.reply_day.into(),
+        thread_day.plans[Plan::A].quality.into(),
+        thread_day.plans[Plan::B].quality.into(),
+        thread_day.plans[Plan::C].quality.into(),
         accepts(Plan::A),
         accepts(Plan::B),
         accepts(Plan::C),
-        own.plans[Plan::A].counter.into(),
-        own.plans[Plan::B].counter.into(),
-        own.plans[Plan::C].counter.into(),
+        thread_day.plans[Plan::A].counter.into(),
+        thread_day.plans[Plan::B].counter.into(),
+        thread_day.plans[Plan::C].counter.into(),
         answer,
         plan.into(),
         price.into(),

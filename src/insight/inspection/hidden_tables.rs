@@ -85,31 +85,36 @@ impl HiddenTables {
         diary: &HiddenDayRecorder,
     ) -> Result<(), QueryError> {
         let lacking = self.last_filled_day(table) + 1..=day;
-        let own = &self.connection;
+        let query_connection = &self.connection;
         match table.name.as_str() {
             "hidden.groups" => {
                 let rows = lacking.filter_map(|day| diary.with_day(day, |seen| group_rows(day, seen)));
-                own.fill_hidden_table(ticket, table, false, rows.flatten())
+                query_connection.fill_hidden_table(ticket, table, false, rows.flatten())
             }
             "hidden.drift" => {
                 let rows = lacking.filter_map(|day| diary.with_day(day, |seen| drift_rows(day, seen)));
-                own.fill_hidden_table(ticket, table, false, rows.flatten())
+                query_connection.fill_hidden_table(ticket, table, false, rows.flatten())
             }
             "hidden.factors" => {
                 let rows = lacking.filter_map(|day| diary.with_day(day, |seen| factor_rows(day, seen)));
-                own.fill_hidden_table(ticket, table, false, rows.flatten())
+                query_connection.fill_hidden_table(ticket, table, false, rows.flatten())
             }
             "hidden.competitors" => {
                 let rows = lacking.filter_map(|day| diary.with_day(day, |seen| competitor_row(day, seen)));
-                own.fill_hidden_table(ticket, table, false, rows)
+                query_connection.fill_hidden_table(ticket, table, false, rows)
             }
             "hidden.pmi" => {
                 let rows = lacking.filter_map(|day| diary.with_day(day, |seen| pmi_row(day, seen)));
-                own.fill_hidden_table(ticket, table, false, rows)
+                query_connection.fill_hidden_table(ticket, table, false, rows)
             }
             _ => {
                 let threads = lacking.flat_map(|day| diary.take_threads(day));
-                own.fill_hidden_table(ticket, table, false, threads.map(|own| thread_row(&own)))
+                query_connection.fill_hidden_table(
+                    ticket,
+                    table,
+                    false,
+                    threads.map(|thread_day| thread_row(&thread_day)),
+                )
             }
         }?;
         self.filled_days.insert(&table.name, day);

@@ -30,7 +30,7 @@ impl IndividualView {
 
     /// Returns the day on which the currently open issue was opened.
     pub fn issue_opened_on(&self) -> Option<u32> {
-        let shown = self.day_shown().filter(|own| own.open_issue_days > 0)?;
+        let individual_day = self.day_shown().filter(|day| day.open_issue_days > 0)?;
         let days = self.days.iter().rev();
         let mut later = u32::MAX;
         // The count increases while an issue is open; otherwise a new issue was opened.
@@ -39,13 +39,13 @@ impl IndividualView {
             later = own.open_issue_days;
             is_same
         });
-        same.last().map_or(Some(shown.day), |own| Some(own.day))
+        same.last().map_or(Some(individual_day.day), |own| Some(own.day))
     }
 
     /// Returns the last bill before that day.
     pub fn last_bill(&self) -> Option<&IndividualDay> {
         let shown = self.day_shown()?.day;
-        self.days.iter().rev().find(|own| own.is_due && own.day < shown)
+        self.days.iter().rev().find(|individual_day| individual_day.is_due && individual_day.day < shown)
     }
 }
 
@@ -68,7 +68,7 @@ impl IndividualView {
                 format!("the first day of customer {customer} could not be re-simulated"),
             ));
         };
-        let days = pages.days.into_iter().filter(|own| own.day <= day).collect();
+        let days = pages.days.into_iter().filter(|individual_day| individual_day.day <= day).collect();
         Ok(IndividualView { customer, group: found.0, day, signup: first, days })
     }
 }

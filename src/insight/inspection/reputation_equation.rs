@@ -186,8 +186,19 @@ pub struct Spillover {
 impl Spillover {
     pub(crate) fn new(day: u32, known: &ByGroup<bool>, seen: ReputationDay) -> Spillover {
         let known = Group::all().filter(|group| known[*group]).collect();
-        let ReputationDay { contributions: own, spillovers: spills, thresholds: least, .. } = seen;
-        Spillover { day, known_groups: known, contributions: own, spillovers: spills, thresholds: least }
+        let ReputationDay {
+            contributions: subscriber_contributions,
+            spillovers: spills,
+            thresholds: least,
+            ..
+        } = seen;
+        Spillover {
+            day,
+            known_groups: known,
+            contributions: subscriber_contributions,
+            spillovers: spills,
+            thresholds: least,
+        }
     }
 
     /// Returns the spillover from one group to another; `None` without a weight or a change.
@@ -225,10 +236,19 @@ mod tests {
         world.market.reputation.set(s1, 0.0011);
         day(&mut world);
         let seen = diary.day(world.day).expect("a day").reputation;
-        let own = ReputationEquation::new(s1, world.day, &seen, Vec::new());
-        assert_eq!((own.before, own.after), (0.0011, params.reputation.reputation_floor));
-        assert_eq!(own.after.to_bits(), world.market.reputation.get(s1).to_bits());
-        assert!(own.contribution.requested_change < 0.0 && own.bounds > 1e-6, "{own:?}");
-        assert!((own.total() - own.after).abs() < 1e-12, "{own:?}");
+        let reputation_equation = ReputationEquation::new(s1, world.day, &seen, Vec::new());
+        assert_eq!(
+            (reputation_equation.before, reputation_equation.after),
+            (0.0011, params.reputation.reputation_floor)
+        );
+        assert_eq!(reputation_equation.after.to_bits(), world.market.reputation.get(s1).to_bits());
+        assert!(
+            reputation_equation.contribution.requested_change < 0.0 && reputation_equation.bounds > 1e-6,
+            "{reputation_equation:?}"
+        );
+        assert!(
+            (reputation_equation.total() - reputation_equation.after).abs() < 1e-12,
+            "{reputation_equation:?}"
+        );
     }
 }

@@ -62,18 +62,21 @@ impl SatisfactionTerm {
 
     /// Returns the value of the term for each subscriber. The sum of the terms is instant satisfaction.
     fn contribution(self, felt: &SatisfactionTerms) -> f64 {
-        let own = &felt.experience;
+        let experience = &felt.experience;
         match self {
-            SatisfactionTerm::Delivered => own.delivered + felt.service_penalty,
+            SatisfactionTerm::Delivered => experience.delivered + felt.service_penalty,
             SatisfactionTerm::Service => 0.0 - felt.service_penalty,
-            SatisfactionTerm::Relationship => own.relationship,
-            SatisfactionTerm::Tenure => own.tenure,
+            SatisfactionTerm::Relationship => experience.relationship,
+            SatisfactionTerm::Tenure => experience.tenure,
             // The remainder to the sum of all other terms, because the quota is a factor of several terms.
             SatisfactionTerm::Quota => {
-                felt.perceived - (own.delivered + own.relationship + own.tenure - own.issues - own.ads)
+                felt.perceived
+                    - (experience.delivered + experience.relationship + experience.tenure
+                        - experience.issues
+                        - experience.ads)
             }
-            SatisfactionTerm::Issues => 0.0 - own.issues,
-            SatisfactionTerm::Ads => 0.0 - own.ads,
+            SatisfactionTerm::Issues => 0.0 - experience.issues,
+            SatisfactionTerm::Ads => 0.0 - experience.ads,
             SatisfactionTerm::Required => 0.0 - felt.required,
             SatisfactionTerm::Expectations => 0.0 - felt.expectation,
         }
@@ -95,12 +98,12 @@ impl SatisfactionSums {
     pub(crate) fn from_block(group: Group, block: &Block, day: &DayContext<'_>) -> SatisfactionSums {
         let mut sums = SatisfactionSums { count: block.len() as u32, ..SatisfactionSums::default() };
         for at in 0..block.len() {
-            let own = satisfaction_terms(group, block, at, day);
-            sums.before += own.before;
-            sums.instant += own.instant;
-            sums.after += own.after;
+            let terms = satisfaction_terms(group, block, at, day);
+            sums.before += terms.before;
+            sums.instant += terms.instant;
+            sums.after += terms.after;
             for (sum, term) in sums.terms.iter_mut().zip(SatisfactionTerm::ALL) {
-                *sum += term.contribution(&own);
+                *sum += term.contribution(&terms);
             }
         }
         sums
@@ -175,7 +178,7 @@ impl SatisfactionEquation {
     pub(crate) fn new(
         group: Group,
         day: u32,
-        own: SatisfactionDay,
+        satisfaction_day: SatisfactionDay,
         (subscribers, evening): (u32, Option<f64>),
         yesterday: Option<SatisfactionDay>,
         evenings: Vec<Option<f64>>,
@@ -183,13 +186,13 @@ impl SatisfactionEquation {
         SatisfactionEquation {
             group,
             day,
-            weight: own.weight,
-            departed: own.departed,
-            joined: (subscribers + own.departed).saturating_sub(own.sums.count),
+            weight: satisfaction_day.weight,
+            departed: satisfaction_day.departed,
+            joined: (subscribers + satisfaction_day.departed).saturating_sub(satisfaction_day.sums.count),
             subscribers,
             end_of_day: evening,
             recent_days: evenings,
-            today: own,
+            today: satisfaction_day,
             yesterday,
         }
     }

@@ -112,8 +112,8 @@ fn run_and_days(place: &Path) -> (Session, Vec<ObservedDay>) {
     (session, days)
 }
 
-fn assert_close(own: f64, other: f64) {
-    assert!((own - other).abs() <= 1e-12, "{own} {other}");
+fn assert_close(value: f64, other: f64) {
+    assert!((value - other).abs() <= 1e-12, "{value} {other}");
 }
 
 #[test]
@@ -124,17 +124,21 @@ fn quality_equation_equals_delivered_quality_bit_for_bit() {
     for day in COMPARED_DAYS {
         let used = &days[day as usize - 1];
         for group in Group::all() {
-            let own: QualityEquation = session.inspect().quality_equation(group, Some(day)).expect("a look");
+            let quality_equation: QualityEquation =
+                session.inspect().quality_equation(group, Some(day)).expect("a look");
             for plan in Plan::ALL {
-                let shown = own.plans[plan];
-                let product = own.product_quality(shown.multiplier);
+                let plan_quality = quality_equation.plans[plan];
+                let product = quality_equation.product_quality(plan_quality.multiplier);
                 assert_eq!(product.to_bits(), used.delivered[group][plan].to_bits(), "{group} {plan} {day}");
-                assert_eq!(shown.delivered.to_bits(), product.to_bits());
+                assert_eq!(plan_quality.delivered.to_bits(), product.to_bits());
             }
-            assert_eq!(own.expectation, used.expectations[group]);
-            assert_eq!(own.service_penalty.to_bits(), used.service_penalty.to_bits());
-            let gains = own.gains;
-            assert_close(gains.opening + gains.research + gains.development + gains.noise, own.shared);
+            assert_eq!(quality_equation.expectation, used.expectations[group]);
+            assert_eq!(quality_equation.service_penalty.to_bits(), used.service_penalty.to_bits());
+            let gains = quality_equation.gains;
+            assert_close(
+                gains.opening + gains.research + gains.development + gains.noise,
+                quality_equation.shared,
+            );
             // The noise of a day has a standard deviation of 0.001.
             assert!(gains.noise.abs() < 0.005 * f64::from(day).sqrt(), "{gains:?}");
             researched += u32::from(gains.research > 0.0);
@@ -151,25 +155,41 @@ fn satisfaction_terms_add_up_to_the_mean() {
     for day in COMPARED_DAYS {
         let used = &days[day as usize - 1];
         for group in Group::all() {
-            let own = session.inspect().satisfaction_equation(group, Some(day)).expect("a look");
+            let satisfaction_equation =
+                session.inspect().satisfaction_equation(group, Some(day)).expect("a look");
             let evening = &used.evening[group];
-            assert_eq!(own.subscribers as usize, evening.len());
+            assert_eq!(satisfaction_equation.subscribers as usize, evening.len());
             let mean = evening.iter().sum::<f64>() / evening.len() as f64;
-            assert_eq!(own.end_of_day.map(f64::to_bits), (!evening.is_empty()).then_some(mean.to_bits()));
+            assert_eq!(
+                satisfaction_equation.end_of_day.map(f64::to_bits),
+                (!evening.is_empty()).then_some(mean.to_bits())
+            );
             let moved: Vec<f64> = (used.satisfaction_updates.iter())
                 .filter(|((of, _), _)| *of == group)
                 .flat_map(|(_, block)| block.iter().copied())
                 .collect();
-            assert_eq!(own.included_subscribers() as usize, moved.len());
-            assert_eq!(own.included_subscribers() + own.joined, own.subscribers + own.departed);
-            let (Some(before), Some(after), Some(instant)) = (own.before(), own.after(), own.instant())
-            else {
+            assert_eq!(satisfaction_equation.included_subscribers() as usize, moved.len());
+            assert_eq!(
+                satisfaction_equation.included_subscribers() + satisfaction_equation.joined,
+                satisfaction_equation.subscribers + satisfaction_equation.departed
+            );
+            let (Some(before), Some(after), Some(instant)) = (
+                satisfaction_equation.before(),
+                satisfaction_equation.after(),
+                satisfaction_equation.instant(),
+            ) else {
                 assert!(moved.is_empty());
                 continue;
             };
             assert_close(after, moved.iter().sum::<f64>() / moved.len() as f64);
-            assert_close(after, (1.0 - own.weight) * before + own.weight * instant);
-            assert_close(instant, SatisfactionTerm::ALL.iter().filter_map(|term| own.term(*term)).sum());
+            assert_close(
+                after,
+                (1.0 - satisfaction_equation.weight) * before + satisfaction_equation.weight * instant,
+            );
+            assert_close(
+                instant,
+                SatisfactionTerm::ALL.iter().filter_map(|term| satisfaction_equation.term(*term)).sum(),
+            );
             let earlier = &days[day as usize - 2].evening[group];
             assert_close(before, earlier.iter().sum::<f64>() / earlier.len() as f64);
             compared += 1;
@@ -182,30 +202,41 @@ fn satisfaction_terms_add_up_to_the_mean() {
 fn reputation_terms_add_up_to_the_reputation() {
     let place = tempfile::tempdir().expect("a folder");
     let (mut session, days) = run_and_days(place.path());
-    let (mut gave_up, mut lost, mut heard, mut dropped) = (0, 0, 0, 0);
+    let (mut gave_up, mut lost, mut number, mut dropped) = (0, 0, 0, 0);
     for day in COMPARED_DAYS.into_iter().chain(100..118) {
         let used = &days[day as usize - 1];
         let all = session.inspect().spillover(Some(day)).expect("a look");
         for group in Group::all() {
-            let own = session.inspect().reputation_equation(group, Some(day)).expect("a look");
-            assert_eq!(own.after.to_bits(), used.reputation[group].to_bits(), "{group} on day {day}");
+            let reputation_equation =
+                session.inspect().reputation_equation(group, Some(day)).expect("a look");
+            assert_eq!(
+                reputation_equation.after.to_bits(),
+                used.reputation[group].to_bits(),
+                "{group} on day {day}"
+            );
             if day > 1 {
-                assert_eq!(own.before.to_bits(), days[day as usize - 2].reputation[group].to_bits());
+                assert_eq!(
+                    reputation_equation.before.to_bits(),
+                    days[day as usize - 2].reputation[group].to_bits()
+                );
             }
-            assert_close(own.total(), own.after);
-            assert_eq!(own.individual_departures.count, used.gave_up[group], "{group} on day {day}");
-            assert_eq!(own.contribution, all.contributions[group]);
-            for spill in &own.spillovers {
+            assert_close(reputation_equation.total(), reputation_equation.after);
+            assert_eq!(
+                reputation_equation.individual_departures.count, used.gave_up[group],
+                "{group} on day {day}"
+            );
+            assert_eq!(reputation_equation.contribution, all.contributions[group]);
+            for spill in &reputation_equation.spillovers {
                 assert_eq!(all.between(spill.from, group), Some(*spill));
-                assert_eq!(spill.counts, spill.change.abs() > own.thresholds.spillover);
-                heard += u32::from(spill.counts);
+                assert_eq!(spill.counts, spill.change.abs() > reputation_equation.thresholds.spillover);
+                number += u32::from(spill.counts);
                 dropped += u32::from(!spill.counts);
             }
-            gave_up += own.individual_departures.count;
-            lost += own.enterprise_departures.count;
+            gave_up += reputation_equation.individual_departures.count;
+            lost += reputation_equation.enterprise_departures.count;
         }
     }
-    assert!(gave_up > 50 && lost > 0 && heard > 50 && dropped > 50, "{gave_up} {lost} {heard} {dropped}");
+    assert!(gave_up > 50 && lost > 0 && number > 50 && dropped > 50, "{gave_up} {lost} {number} {dropped}");
 }
 
 #[test]
@@ -288,12 +319,13 @@ fn next_day_makes_the_predicted_draws() {
     let mut session = run_in_memory((5..).find(surges).expect("a seed"));
     let mut seen = BTreeMap::new();
     for _ in 0..DRAWN_DAYS {
-        let told = RandomPart::ALL.map(|part| session.inspect().next_draws(part, None).expect("a look"));
+        let next_draws =
+            RandomPart::ALL.map(|part| session.inspect().next_draws(part, None).expect("a look"));
         let bonus = hidden_state(&session).world().product.shared_bonus;
         session.step(1, &mut |_| {}).expect("a day");
-        for told in told {
-            assert_draws_match_streams(&told, hidden_state(&session).streams());
-            assert_effects_match_day(&told, &session, bonus, &mut seen);
+        for draws in next_draws {
+            assert_draws_match_streams(&draws, hidden_state(&session).streams());
+            assert_effects_match_day(&draws, &session, bonus, &mut seen);
         }
     }
     for what in ["leads", "failed payment", "outage", "no outage", "surge", "index", "move", "noise"] {
@@ -301,8 +333,8 @@ fn next_day_makes_the_predicted_draws() {
     }
 }
 
-fn assert_draws_match_streams(told: &NextDraws, streams: &Streams) {
-    for own in &told.streams {
+fn assert_draws_match_streams(next_draws: &NextDraws, streams: &Streams) {
+    for keyed_draws in &next_draws.streams {
         let part = [
             Part::LeadCount,
             Part::InvoluntaryMu,
@@ -313,19 +345,19 @@ fn assert_draws_match_streams(told: &NextDraws, streams: &Streams) {
             Part::Surge,
             Part::Macro,
             Part::CompetitorEvent,
-        ][told.part as usize];
-        assert_eq!(own.stream, part.name());
-        let mut stream = match own.key[..] {
+        ][next_draws.part as usize];
+        assert_eq!(keyed_draws.stream, part.name());
+        let mut stream = match keyed_draws.key[..] {
             [(_, one)] => streams.open(part, [one]),
             [(_, one), (_, other)] => streams.open(part, [one, other]),
-            _ => panic!("{own:?}"),
+            _ => panic!("{keyed_draws:?}"),
         };
-        assert!(own.draws.iter().all(|draw| draw.uniform.to_bits() == stream.uniform().to_bits()));
+        assert!(keyed_draws.draws.iter().all(|draw| draw.uniform.to_bits() == stream.uniform().to_bits()));
     }
 }
 
 fn assert_effects_match_day(
-    told: &NextDraws,
+    next_draws: &NextDraws,
     session: &Session,
     bonus: f64,
     seen: &mut BTreeMap<&'static str, u32>,
@@ -334,12 +366,12 @@ fn assert_effects_match_day(
     let inside = hidden_state(session);
     let (world, params) = (inside.world(), inside.params());
     let (streams, facts) = (inside.streams(), inside.facts());
-    assert_eq!(told.day, world.day);
-    for own in &told.streams {
-        match &own.effect {
+    assert_eq!(next_draws.day, world.day);
+    for keyed_draws in &next_draws.streams {
+        match &keyed_draws.effect {
             DrawEffect::Leads { expected, number } => {
-                let group = own.group.expect("a group");
-                let key = [own.key[0].1, own.key[1].1];
+                let group = keyed_draws.group.expect("a group");
+                let key = [keyed_draws.key[0].1, keyed_draws.key[1].1];
                 let came = facts.arrivals.iter().filter(|arrival| arrival.group == group).count() as u64;
                 let now = inside.lead_factors(group).expected();
                 assert_eq!(streams.open(Part::LeadCount, key).poisson(now), came);
@@ -347,12 +379,12 @@ fn assert_effects_match_day(
                 saw("leads");
             }
             DrawEffect::FailedPayments { customers, .. } => {
-                let told: BTreeSet<u32> = customers.iter().copied().collect();
+                let numbers: BTreeSet<u32> = customers.iter().copied().collect();
                 let failed = facts.endings.iter().filter(|ending| {
-                    Some(ending.group) == own.group && ending.cause == EndCause::Involuntary
+                    Some(ending.group) == keyed_draws.group && ending.cause == EndCause::Involuntary
                 });
-                assert_eq!(failed.map(|ending| ending.customer).collect::<BTreeSet<u32>>(), told);
-                if !told.is_empty() {
+                assert_eq!(failed.map(|ending| ending.customer).collect::<BTreeSet<u32>>(), numbers);
+                if !numbers.is_empty() {
                     saw("failed payment");
                 }
             }
@@ -362,8 +394,11 @@ fn assert_effects_match_day(
                 assert_eq!(service.outage, *above < outage_probability(spend, service.overload, law));
                 // An outage draws its length before latency and errors.
                 let at = 1 + usize::from(service.outage);
-                assert_eq!(service.p95_ms, p95_latency(service.overload, own.draws[at].normal, law));
-                assert_eq!(service.error_rate, error_rate(service.overload, own.draws[at + 1].normal, law));
+                assert_eq!(service.p95_ms, p95_latency(service.overload, keyed_draws.draws[at].normal, law));
+                assert_eq!(
+                    service.error_rate,
+                    error_rate(service.overload, keyed_draws.draws[at + 1].normal, law)
+                );
                 saw(if service.outage { "outage" } else { "no outage" });
             }
             DrawEffect::Noise(noise) => {
@@ -372,7 +407,7 @@ fn assert_effects_match_day(
                 saw("noise");
             }
             DrawEffect::Surge(surge) => {
-                let drawn = world.market.surges.iter().find(|surge| surge.day == told.day);
+                let drawn = world.market.surges.iter().find(|surge| surge.day == next_draws.day);
                 assert_eq!(drawn, surge.as_ref());
                 if surge.is_some() {
                     saw("surge");
@@ -383,7 +418,7 @@ fn assert_effects_match_day(
                 saw("index");
             }
             DrawEffect::CompetitorMove(made) => {
-                let event = world.market.competitors.iter().find(|event| event.day == told.day);
+                let event = world.market.competitors.iter().find(|event| event.day == next_draws.day);
                 assert_eq!(event.map(|event| (event.sampled, event.u)), *made);
                 if made.is_some() {
                     saw("move");
@@ -400,12 +435,12 @@ fn purchases_make_the_predicted_draws() {
     let mut found = 0;
     for _ in 0..4 {
         for tier in [1, 2] {
-            let told = session.inspect().next_draws(RandomPart::Research, None).expect("a look");
+            let next_draws = session.inspect().next_draws(RandomPart::Research, None).expect("a look");
             session.call("start_research_project", &json!({"tier": tier}), Via::Script).expect("a project");
             let started = hidden_state(&session).world().product.research.last().expect("a project");
             let days = started.due_day - started.started_day;
             let project = DrawEffect::Project { tier: started.tier, days, gain: started.boost };
-            assert_eq!(told.streams[tier - 1].effect, project);
+            assert_eq!(next_draws.streams[tier - 1].effect, project);
         }
         for _ in 0..3 {
             let told = session.inspect().next_draws(RandomPart::Discovery, None).expect("a look");

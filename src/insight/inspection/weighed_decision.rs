@@ -75,7 +75,7 @@ impl DecisionTerm {
         let mut other = *weighing;
         let mut each = |change: &dyn Fn(&mut Experience)| other.experiences.0.iter_mut().for_each(change);
         match self {
-            DecisionTerm::Issue => each(&|own| own.issues = 0.0),
+            DecisionTerm::Issue => each(&|experience| experience.issues = 0.0),
             DecisionTerm::Ads => each(&|own| own.ads = 0.0),
             DecisionTerm::Quota => each(&|own| own.quota = 1.0),
             DecisionTerm::Relationship => each(&|own| own.relationship = 0.0),
@@ -251,11 +251,11 @@ mod tests {
 
     /// Asserts that the shown terms of a plan add up to the compared value, bit for bit.
     fn assert_terms_add_up(weighed: &WeighedDecision) {
-        for own in weighed.plans.iter() {
-            let Experience { delivered, relationship, tenure, quota, issues, ads } = own.experience;
+        for plan_terms in weighed.plans.iter() {
+            let Experience { delivered, relationship, tenure, quota, issues, ads } = plan_terms.experience;
             let quality = (delivered + relationship + tenure) * quota - issues - ads;
-            assert_eq!(quality.to_bits(), own.quality.to_bits());
-            assert_eq!((own.quality - own.required).to_bits(), own.surplus.to_bits());
+            assert_eq!(quality.to_bits(), plan_terms.quality.to_bits());
+            assert_eq!((plan_terms.quality - plan_terms.required).to_bits(), plan_terms.surplus.to_bits());
         }
         let acceptable = |plan: Plan| weighed.plans[plan].within_budget && weighed.plans[plan].surplus >= 0.0;
         assert_eq!(Plan::ALL.into_iter().any(acceptable), weighed.choice.is_some());

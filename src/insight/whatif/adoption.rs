@@ -63,7 +63,8 @@ pub fn create_branch_with_decisions(
     let (settings, params) = (session.settings(), session.params());
     let opening = BranchStart { day: from, settings, params, mode };
     let mut edits = build_edits(decided, &opening, &known, until.max(from + 1))?;
-    let is_moved = run.lesson().is_some_and(|own| own.current_part().has_automatic_capacity());
+    let is_moved =
+        run.lesson().is_some_and(|lesson_progress| lesson_progress.current_part().has_automatic_capacity());
     if is_moved && !decided.is_empty() && edits.capacity_rule.is_none() {
         // The branch is not a lesson, so the automatic capacity changes of the lesson are applied here.
         let followed = UsageBasedCapacity { rule: UsageCapacityRule::StepByStep, from_day: from };

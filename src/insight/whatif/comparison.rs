@@ -116,7 +116,7 @@ impl BranchFigures {
 
     /// Returns a figure at the end of the week that ends on `day`, or `None` if the branch ended earlier.
     pub fn value(&self, figure: BranchFigure, day: u32) -> Option<f64> {
-        self.values_by_week(figure).find(|(own, _)| *own == day).map(|(_, value)| value)
+        self.values_by_week(figure).find(|(number, _)| *number == day).map(|(_, value)| value)
     }
 
     /// Returns the last simulated day.
@@ -189,7 +189,7 @@ fn parameter_differences(edits: &Edits, moves: &[RecordedStep]) -> Vec<Parameter
         edited: Some(setting.value.clone()),
     });
     let mut all: Vec<ParameterDifference> = dropped.chain(added).collect();
-    all.sort_by_key(|own| own.day);
+    all.sort_by_key(|parameter_difference| parameter_difference.day);
     all
 }
 

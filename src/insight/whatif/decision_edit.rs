@@ -252,7 +252,7 @@ pub fn is_scalable(tool: ToolId) -> bool {
     let is_amount = |kind: &ArgumentKind| {
         matches!(kind, ArgumentKind::Number(_) | ArgumentKind::Map(..) | ArgumentKind::Matrix(..))
     };
-    spec.kind == ToolKind::Setting && spec.arguments.iter().all(|own| is_amount(&own.kind))
+    spec.kind == ToolKind::Setting && spec.arguments.iter().all(|argument| is_amount(&argument.kind))
 }
 
 impl Display for DecisionEdit {
@@ -326,7 +326,8 @@ fn parse_scale_or_call(text: &str) -> Result<DecisionEdit, String> {
     };
     let tool = parse_acting_tool(name)?;
     if !is_scalable(tool) {
-        let amounts: Vec<&str> = ToolId::all().filter(|own| is_scalable(*own)).map(ToolId::name).collect();
+        let amounts: Vec<&str> =
+            ToolId::all().filter(|tool_id| is_scalable(*tool_id)).map(ToolId::name).collect();
         return Err(format!("{name} has no amounts; a factor works with {}", amounts.join(", ")));
     }
     let factor = factor.trim();

@@ -69,7 +69,7 @@ impl Futures {
 
     /// Returns a figure in each future, NaN if it has no value.
     fn values(&self, branch: usize, figure: BranchFigure, day: u32) -> Vec<f64> {
-        let week = self.days.iter().position(|own| *own == day);
+        let week = self.days.iter().position(|number| *number == day);
         let value = |weeks: &Vec<FigureValues>| match (week, weeks.last()) {
             (Some(at), _) if at < weeks.len() => weeks[at][figure as usize],
             (Some(_), Some(last)) => value_after_end(figure, last),

@@ -85,9 +85,9 @@ fn advance_weeks(session: &mut Session, count: u32) {
 fn compare(session: &Session, until: u32, alternatives: &[&str]) -> Result<BranchComparison, Rejection> {
     let alternatives: Vec<Vec<DecisionEdit>> =
         alternatives.iter().map(|edit| vec![edit.parse().expect(edit)]).collect();
-    let mut own = WhatIf::open(session.folder().expect("a folder")).expect("a what-if");
+    let mut what_if = WhatIf::open(session.folder().expect("a folder")).expect("a what-if");
     let go_on = |_: usize, _: usize| ControlFlow::Continue(());
-    Ok(own.compare(1, Some(until), &alternatives, &go_on)?.expect("it is not stopped"))
+    Ok(what_if.compare(1, Some(until), &alternatives, &go_on)?.expect("it is not stopped"))
 }
 
 fn weekly_cash(session: &Session) -> Vec<f64> {

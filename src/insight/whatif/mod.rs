@@ -127,7 +127,9 @@ impl WhatIf {
         progress: WhatIfProgressFn<'_>,
     ) -> Result<Option<BranchEdits>, Rejection> {
         if let Some(lesson) = &self.lesson {
-            alternatives.iter().try_for_each(|own| check_tools_unlocked(lesson, own, &parting.steps))?;
+            alternatives.iter().try_for_each(|decision_edits| {
+                check_tools_unlocked(lesson, decision_edits, &parting.steps)
+            })?;
         }
         let (all, mut edits) = build_branch_edits(alternatives, parting, self.run.manifest.mode)?;
         let week_before = parting.week_before(self.run.days_per_week());
@@ -140,8 +142,8 @@ impl WhatIf {
         let Some(day) = parting.last_day_naming_new_customers(&edits) else { return Ok(Some((all, edits))) };
         let day = self.run.last_boundary(day);
         let met = self.run.snapshot_at(day, &mut |simulated| progress(simulated as usize, day as usize));
-        let Some(met) = met.map_err(|error| unreadable_record(&error))? else { return Ok(None) };
-        let meant = Arc::new(met.world.customers.numbers.clone());
+        let Some(memory_snapshot) = met.map_err(|error| unreadable_record(&error))? else { return Ok(None) };
+        let meant = Arc::new(memory_snapshot.world.customers.numbers.clone());
         edits.iter_mut().for_each(|own| own.recorded_numbers = Some(meant.clone()));
         Ok(Some((all, edits)))
     }
@@ -173,7 +175,11 @@ impl WhatIf {
         // Automatic settings of a lesson are not decisions of the student.
         let sets_parameters = self.run.manifest.mode == Mode::Debug;
         let decided = moves.iter().filter_map(RecordedDecision::from_step);
-        Ok(decided.filter(|own| sets_parameters || matches!(own, RecordedDecision::Call(_))).collect())
+        Ok(decided
+            .filter(|recorded_decision| {
+                sets_parameters || matches!(recorded_decision, RecordedDecision::Call(_))
+            })
+            .collect())
     }
 
     /// Returns the branches of [`WhatIf::compare`], and those of [`WhatIf::sample_futures`] if a number of futures is given. Returns `None`
@@ -438,7 +444,7 @@ impl BranchPoint {
 /// Returns the latest possible first day on which two branches differ: the end of the first week with different figures, or
 /// `None` if all figures are equal.
 fn latest_difference_day(one: &BranchOutcome, other: &BranchOutcome) -> Option<u32> {
-    let other_figures = one.days.iter().zip(&other.days).find(|(own, their)| own != their);
+    let other_figures = one.days.iter().zip(&other.days).find(|(day_figures, their)| day_figures != their);
     if let Some((day, _)) = other_figures {
         return Some(day.day);
     }

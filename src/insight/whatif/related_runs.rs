@@ -65,11 +65,11 @@ fn branch_week_and_change(folder: &Path, parent: &Parent) -> Option<(u32, Option
 }
 
 /// Returns the first decision that only one of branch and parent made on its day, up to the last day that both have reached.
-fn first_changed_decision(own: &[Line], parents: &[Line], left_at: u64) -> Option<FirstChange> {
+fn first_changed_decision(lines: &[Line], parents: &[Line], left_at: u64) -> Option<FirstChange> {
     let one = |line: &Line| decision_of_line(line).map(|(what, how)| (line.day, what.to_owned(), how));
-    let mine: Vec<_> = own.iter().filter_map(one).collect();
+    let mine: Vec<_> = lines.iter().filter_map(one).collect();
     let theirs: Vec<_> = parents.iter().filter(|line| line.seq > left_at).filter_map(one).collect();
-    let until = own.last()?.day;
+    let until = lines.last()?.day;
     let of = |(day, what, _): &(u32, String, Value), is_left_out| FirstChange {
         day: *day,
         what: what.clone(),
@@ -99,8 +99,8 @@ pub fn related_runs(runs: &Path, id: &str) -> Vec<RelatedRun> {
     let once = list_runs(runs).into_iter().flatten().filter(|run| run.copy_of.is_none());
     let all: Vec<RunNode> = once.filter_map(|run| read_node(runs, run)).collect();
     let parent_of = |id: &str| {
-        let own = all.iter().find(|node| node.run.id == id)?;
-        let parent = own.parent.as_ref()?;
+        let run_node = all.iter().find(|node| node.run.id == id)?;
+        let parent = run_node.parent.as_ref()?;
         all.iter().any(|node| node.run.id == parent.run).then(|| parent.run.clone())
     };
     let mut root = id.to_owned();
@@ -127,14 +127,16 @@ fn read_node(runs: &Path, run: RunSummary) -> Option<RunNode> {
 }
 
 fn append_subtree(runs: &Path, all: &[RunNode], id: &str, depth: usize, tree: &mut Vec<RelatedRun>) {
-    let Some(own) = all.iter().find(|node| node.run.id == id) else { return };
+    let Some(run_node) = all.iter().find(|node| node.run.id == id) else { return };
     if tree.iter().any(|known| known.run.id == id) {
         return;
     }
-    let lines =
-        own.parent.as_ref().and_then(|parent| branch_week_and_change(&run_folder(runs, &own.run.id), parent));
+    let lines = run_node
+        .parent
+        .as_ref()
+        .and_then(|parent| branch_week_and_change(&run_folder(runs, &run_node.run.id), parent));
     let (left_in_week, first_change) = lines.map_or((None, None), |(week, change)| (Some(week), change));
-    tree.push(RelatedRun { run: own.run.clone(), depth, branched_in_week: left_in_week, first_change });
+    tree.push(RelatedRun { run: run_node.run.clone(), depth, branched_in_week: left_in_week, first_change });
     let mut branches: Vec<&RunNode> =
         all.iter().filter(|node| node.parent.as_ref().is_some_and(|parent| parent.run == id)).collect();
     branches.sort_by(|one, other| one.run.created.cmp(&other.run.created));

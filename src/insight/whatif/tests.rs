@@ -29,7 +29,7 @@ fn open_what_if(session: &Session) -> WhatIf {
 }
 
 fn compare(session: &Session, week: u32, alternatives: &[&[&str]]) -> BranchComparison {
-    let alternatives: Vec<_> = alternatives.iter().map(|own| parse_edits(own)).collect();
+    let alternatives: Vec<_> = alternatives.iter().map(|texts| parse_edits(texts)).collect();
     let until = session.day() / 7;
     let compared = open_what_if(session).compare(week, Some(until), &alternatives, &continue_progress);
     compared.expect("an answer").expect("it is not stopped")
@@ -76,8 +76,8 @@ fn alternative_equals_a_played_branch() {
         &["set_prices A=5 B=6 C=7"],
     ] {
         let compared = compare(&session, 5, &[alternative]);
-        let own = &compared.branches[1];
-        assert_eq!(own.rejected, []);
+        let branch_figures = &compared.branches[1];
+        assert_eq!(branch_figures.rejected, []);
         let adopted =
             create_branch_with_decisions(&session, 5, &parse_edits(alternative), Mode::Debug, &mut |_| {
                 ControlFlow::Continue(())
@@ -86,14 +86,15 @@ fn alternative_equals_a_played_branch() {
         assert_eq!((adopted.rejected.len(), adopted.session.day()), (0, session.day()), "{alternative:?}");
         let weeks = adopted.session.weeks().iter().skip(4);
         let cash: Vec<f64> = weeks.map(|week| week.cash).collect();
-        let curve: Vec<f64> = own.values_by_week(BranchFigure::Cash).map(|(_, cash)| cash).collect();
+        let curve: Vec<f64> =
+            branch_figures.values_by_week(BranchFigure::Cash).map(|(_, cash)| cash).collect();
         assert_eq!(curve, cash, "{alternative:?}");
         assert_ne!(curve.last(), session.weeks().last().map(|week| &week.cash), "{alternative:?}");
         let first = if alternative[0].starts_with("keep") { 50 } else { 29 };
         assert!(
-            own.first_different_day.is_some_and(|day| day <= first),
+            branch_figures.first_different_day.is_some_and(|day| day <= first),
             "{alternative:?}: {:?}",
-            own.first_different_day
+            branch_figures.first_different_day
         );
     }
 }
@@ -121,8 +122,8 @@ fn factor_scales_current_and_later_settings() {
 fn newly_rejected_and_newly_accepted_calls_are_reported() {
     let runs = tempfile::tempdir().expect("a folder");
     let session = play_run(runs.path(), Mode::Debug);
-    let own = open_what_if(&session);
-    let decided = own.decisions(8).expect("decisions");
+    let what_if = open_what_if(&session);
+    let decided = what_if.decisions(8).expect("decisions");
     let calls = decided.iter().filter_map(RecordedDecision::call);
     let projects: Vec<_> = calls.filter(|call| call.tool == ToolId::StartResearchProject).collect();
     let [first, second] = projects[..] else { panic!("{decided:?}") };
@@ -142,16 +143,16 @@ fn newly_rejected_and_newly_accepted_calls_are_reported() {
 fn futures_share_draws_across_branches_and_calls() {
     let runs = tempfile::tempdir().expect("a folder");
     let session = play_run(runs.path(), Mode::Debug);
-    let mut own = open_what_if(&session);
+    let mut what_if = open_what_if(&session);
     let asked = |own: &mut WhatIf| {
         let alternatives = [parse_edits(&["set_prices * 0.8"]), parse_edits(&["keep set_prices"])];
         own.futures(10, Some(13), &alternatives, 5, &continue_progress)
             .expect("an answer")
             .expect("it is not stopped")
     };
-    let futures = asked(&mut own);
+    let futures = asked(&mut what_if);
     assert_eq!((futures.count, futures.redrawn_after), (5, session.day()));
-    assert_eq!(asked(&mut own), futures);
+    assert_eq!(asked(&mut what_if), futures);
     // There are no decisions after the record, so keeping the settings changes nothing.
     let difference = |branch, figure| futures.difference(branch, figure, 91).expect("pairs");
     let same = difference(2, BranchFigure::Cash);
@@ -185,9 +186,9 @@ fn futures_redraw_only_after_the_last_recorded_day() {
 fn unknown_weeks_lines_and_customers_are_rejected() {
     let runs = tempfile::tempdir().expect("a folder");
     let session = play_run(runs.path(), Mode::Debug);
-    let mut own = open_what_if(&session);
+    let mut what_if = open_what_if(&session);
     let mut code = |week, until, alternatives: &[Vec<DecisionEdit>]| {
-        own.compare(week, until, alternatives, &continue_progress).expect_err("a refusal").code
+        what_if.compare(week, until, alternatives, &continue_progress).expect_err("a refusal").code
     };
     assert_eq!(code(0, None, &[]), "week_unknown");
     assert_eq!(code(12, None, &[]), "week_unknown");
@@ -202,7 +203,7 @@ fn unknown_weeks_lines_and_customers_are_rejected() {
         });
     assert_eq!(refused.err().map(|refusal| refusal.code), Some("line_unknown"));
     assert_eq!(std::fs::read_dir(runs.path()).expect("runs").count(), 1);
-    assert!(own.compare(5, None, &[], &|_, _| ControlFlow::Break(())).expect("no refusal").is_none());
+    assert!(what_if.compare(5, None, &[], &|_, _| ControlFlow::Break(())).expect("no refusal").is_none());
 }
 
 #[test]
@@ -217,10 +218,10 @@ fn unfinished_baseline_rejects_what_if_and_sandbox_hides_satisfaction() {
     for (mode, shown) in [(Mode::Sandbox, false), (Mode::Debug, true)] {
         let mut session = play_weeks(runs.path(), mode, 3, None);
         let folder = session.folder().expect("a folder").to_owned();
-        let mut own = WhatIf::open(&folder).expect("it is read");
+        let mut what_if = WhatIf::open(&folder).expect("it is read");
         let mut tells = |is_recorded| {
-            own.set_shows_hidden(is_recorded);
-            let all = own.compare(4, None, &[], &|_, _| ControlFlow::Continue(())).expect("no refusal");
+            what_if.set_shows_hidden(is_recorded);
+            let all = what_if.compare(4, None, &[], &|_, _| ControlFlow::Continue(())).expect("no refusal");
             all.expect("it was not stopped").figures.contains(&BranchFigure::Satisfaction)
         };
         assert!(!tells(false), "{mode}: not without a line");
@@ -346,12 +347,15 @@ fn edited_parameter_equals_a_parameter_set_in_a_run() {
     }
     let compared = compare(&session, 5, &[alternative]);
     let cash = |session: &Session| session.weeks().iter().skip(4).map(|week| week.cash).collect::<Vec<_>>();
-    let own = &compared.branches[1];
-    let curve: Vec<f64> = own.values_by_week(BranchFigure::Cash).map(|(_, cash)| cash).collect();
+    let branch_figures = &compared.branches[1];
+    let curve: Vec<f64> = branch_figures.values_by_week(BranchFigure::Cash).map(|(_, cash)| cash).collect();
     assert_eq!(curve, cash(&by_hand));
     assert_ne!(curve, cash(&session));
-    let told: Vec<_> =
-        own.parameter_differences.iter().map(|set| (set.day, set.key.as_str(), set.edited.clone())).collect();
+    let told: Vec<_> = branch_figures
+        .parameter_differences
+        .iter()
+        .map(|set| (set.day, set.key.as_str(), set.edited.clone()))
+        .collect();
     assert_eq!(
         told,
         [
@@ -462,7 +466,7 @@ fn offers_reach_the_same_enterprises_when_lead_counts_change() {
         [("set_targeted_ad_spend * 1.5", true), ("set_targeted_ad_spend * 0.2", false)]
     {
         let compared = compare(&session, 9, &[&[alternative]]);
-        let own = &compared.branches[1];
+        let branch_figures = &compared.branches[1];
         let mut on = |_| ControlFlow::Continue(());
         let adopted =
             create_branch_with_decisions(&session, 9, &parse_edits(&[alternative]), Mode::Debug, &mut on);
@@ -473,7 +477,11 @@ fn offers_reach_the_same_enterprises_when_lead_counts_change() {
             refusal.message.contains("does not exist in this branch")
         };
         let absent = refused.iter().filter(|refused| is_absent(refused)).count();
-        assert_eq!(own.rejected.iter().filter(|refused| is_absent(refused)).count(), absent, "{alternative}");
+        assert_eq!(
+            branch_figures.rejected.iter().filter(|refused| is_absent(refused)).count(),
+            absent,
+            "{alternative}"
+        );
         assert_eq!(absent == 0, all_come, "{alternative}: {absent}");
         assert!(reached.iter().all(|own| made.contains(own)), "{alternative}");
         let rejected = refused.len() - absent;
@@ -483,7 +491,8 @@ fn offers_reach_the_same_enterprises_when_lead_counts_change() {
         );
         let seats: Vec<f64> =
             branch.weeks().iter().skip(8).map(|week| week.enterprise_seats.into()).collect();
-        let curve: Vec<f64> = own.values_by_week(BranchFigure::Seats).map(|(_, seats)| seats).collect();
+        let curve: Vec<f64> =
+            branch_figures.values_by_week(BranchFigure::Seats).map(|(_, seats)| seats).collect();
         assert_eq!(curve, seats, "{alternative}");
     }
 }

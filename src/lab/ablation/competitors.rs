@@ -45,16 +45,16 @@ pub const DRAIN_SETTINGS: [CompetitorSetting; 6] = [
 
 /// Name of the arm that the others are compared with.
 pub fn reference_arm(settings: &[CompetitorSetting]) -> usize {
-    settings.iter().position(|own| own.name == "default").unwrap_or(0)
+    settings.iter().position(|competitor_setting| competitor_setting.name == "default").unwrap_or(0)
 }
 
 /// Returns the arms in which a policy plays each competitor setting.
 pub fn competitor_arms(policy: &Policy, settings: &[CompetitorSetting], days: u32) -> Vec<Arm> {
-    let arm = |own: &CompetitorSetting| {
-        let mut arm = Arm::new(own.name, policy.clone());
-        arm.spec.scenario = Some(own.scenario.to_owned());
+    let arm = |competitor_setting: &CompetitorSetting| {
+        let mut arm = Arm::new(competitor_setting.name, policy.clone());
+        arm.spec.scenario = Some(competitor_setting.scenario.to_owned());
         arm.spec.days = Some(days);
-        if let Some((least, most)) = own.drain_range {
+        if let Some((least, most)) = competitor_setting.drain_range {
             let key = |end: &str| format!("competitor.competitor_segment_drain_u_{end}");
             arm.spec.overrides = vec![(key("min"), least.to_owned()), (key("max"), most.to_owned())];
         }

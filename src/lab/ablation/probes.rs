@@ -32,7 +32,7 @@ fn parse_bundled(name: &str, text: &str) -> Result<Policy, PolicyError> {
 pub fn short_run_policies() -> Result<Vec<(&'static str, Policy)>, PolicyError> {
     let of = |grid: &str, wanted: &dyn Fn(&Policy) -> bool| -> Result<Option<Policy>, PolicyError> {
         let all = PolicyGrid::find(grid)?.configurations;
-        Ok(all.into_iter().rev().map(|own| own.policy).find(|own| wanted(own)))
+        Ok(all.into_iter().rev().map(|grid_point| grid_point.policy).find(|own| wanted(own)))
     };
     let routine = of(PAPER_GRID, &|own| own.rule_based == Some(RuleBased::default()))?;
     let from_the_first_day = of("content-ads", &|_| true)?;

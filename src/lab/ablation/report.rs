@@ -89,14 +89,14 @@ fn arm_table(axis: &AblationAxis<'_>, day: u32) -> LabTable {
     let mut table = LabTable::new(axis.name, axis.caption.clone(), columns);
     let default = reference_arm(axis.settings);
     for (arm, setting) in axis.settings.iter().enumerate() {
-        let own = axis.results.figures_of_arm(arm, |run| subscribers_on(run, day));
+        let values = axis.results.figures_of_arm(arm, |run| subscribers_on(run, day));
         let pairs = axis.results.paired_figures(arm, default, |run| subscribers_on(run, day));
         let difference = PairedDifference::from_pairs(pairs).filter(|_| arm != default);
         table.rows.push(vec![
             CellValue::text(setting.name),
-            CellValue::number(mean(&own)),
-            CellValue::interval(Interval::for_mean(&own)),
-            CellValue::number(difference.map(|own| own.mean)),
+            CellValue::number(mean(&values)),
+            CellValue::interval(Interval::for_mean(&values)),
+            CellValue::number(difference.map(|paired_difference| paired_difference.mean)),
             CellValue::interval(difference.and_then(|own| own.interval)),
             CellValue::number(median(&axis.results.figures_of_arm(arm, |run| run.cash))),
             CellValue::number(mean(
@@ -118,20 +118,20 @@ fn step_table(axis: &AblationAxis<'_>, day: u32) -> LabTable {
     let mut table = LabTable::new(&format!("{}_steps", axis.name), "Steps, paired differences", columns);
     for (at, pair) in axis.settings.windows(2).enumerate() {
         let pairs = axis.results.paired_figures(at, at + 1, |run| subscribers_on(run, day));
-        let Some(own) = PairedDifference::from_pairs(pairs) else { continue };
+        let Some(paired_difference) = PairedDifference::from_pairs(pairs) else { continue };
         table.rows.push(vec![
             CellValue::text(format!("{} to {}", pair[0].name, pair[1].name)),
-            CellValue::number(own.mean),
-            CellValue::interval(own.interval),
-            CellValue::number(f64::from(own.first_greater)),
-            CellValue::text(describe_difference(&own)),
+            CellValue::number(paired_difference.mean),
+            CellValue::interval(paired_difference.interval),
+            CellValue::number(f64::from(paired_difference.first_greater)),
+            CellValue::text(describe_difference(&paired_difference)),
         ]);
     }
     table
 }
 
-fn describe_difference(own: &PairedDifference) -> &'static str {
-    match own.interval {
+fn describe_difference(paired_difference: &PairedDifference) -> &'static str {
+    match paired_difference.interval {
         None => "too few seeds",
         Some(Interval { low, .. }) if low > 0.0 => "loses",
         Some(Interval { high, .. }) if high < 0.0 => "gains",
@@ -142,11 +142,16 @@ fn describe_difference(own: &PairedDifference) -> &'static str {
 
 /// Returns a note on how many runs are identical under default and hard competitors.
 fn describe_equal_runs(axis: &AblationAxis<'_>) -> String {
-    let place = |name: &str| axis.settings.iter().position(|own| own.name == name);
+    let place =
+        |name: &str| axis.settings.iter().position(|competitor_setting| competitor_setting.name == name);
     let (Some(default), Some(hard)) = (place("default"), place("hard")) else { return String::new() };
     let ends = |run: &RunResult| (run.day, run.cash.to_bits(), run.subscribers, run.peak_subscribers);
     let runs = |arm: usize| axis.results.by_arm.get(arm).map_or(&[][..], Vec::as_slice);
-    let same = runs(default).iter().zip(runs(hard)).filter(|(own, other)| ends(own) == ends(other)).count();
+    let same = runs(default)
+        .iter()
+        .zip(runs(hard))
+        .filter(|(run_result, other)| ends(run_result) == ends(other))
+        .count();
     format!(
         "{}: default and hard competitors are identical in {same} of {}.",
         axis.caption,
@@ -188,21 +193,21 @@ fn short_run_table(short: &[ShortRun<'_>]) -> LabTable {
     ];
     let caption = format!("{SHORT_DAYS} days: neither competitors nor drift");
     let mut table = LabTable::new("short", caption, columns);
-    for own in short {
-        let cash = own.results.figures_of_arm(0, |run| run.cash);
-        let by_seed = |at: usize| own.results.by_arm.iter().filter_map(move |runs| runs.get(at));
+    for short_run in short {
+        let cash = short_run.results.figures_of_arm(0, |run| run.cash);
+        let by_seed = |at: usize| short_run.results.by_arm.iter().filter_map(move |runs| runs.get(at));
         let is_alike = |at: &usize| {
             let mut all = by_seed(*at).map(|run| run.cash.to_bits());
             let first = all.next();
             all.all(|other| Some(other) == first)
         };
         table.rows.push(vec![
-            CellValue::text(own.name),
+            CellValue::text(short_run.name),
             CellValue::number(mean(&cash)),
             CellValue::interval(Interval::for_mean(&cash)),
             CellValue::number(cash.iter().filter(|cash| **cash > SHORT_RUN_START_CASH).count() as f64),
-            CellValue::number((0..own.results.seeds.len()).filter(is_alike).count() as f64),
-            CellValue::number(own.results.seeds.len() as f64),
+            CellValue::number((0..short_run.results.seeds.len()).filter(is_alike).count() as f64),
+            CellValue::number(short_run.results.seeds.len() as f64),
         ]);
     }
     table
@@ -224,8 +229,11 @@ fn run_table(axes: &[AblationAxis<'_>], short: &[ShortRun<'_>], day: u32) -> Lab
         Column::number("peak_day", "on day", Measure::Days),
         Column::text("state_hash", "state hash"),
     ];
-    let of_axes = axes.iter().map(|own| (own.name, own.policy, own.settings, own.results));
-    let of_short = short.iter().map(|own| ("short", own.name, own.settings, own.results));
+    let of_axes = axes.iter().map(|ablation_axis| {
+        (ablation_axis.name, ablation_axis.policy, ablation_axis.settings, ablation_axis.results)
+    });
+    let of_short =
+        short.iter().map(|short_run| ("short", short_run.name, short_run.settings, short_run.results));
     let mut table =
         LabTable { is_machine_readable_only: true, ..LabTable::new("runs", "Every run", columns) };
     for (axis, policy, settings, results) in of_axes.chain(of_short) {

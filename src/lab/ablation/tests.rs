@@ -21,7 +21,12 @@ fn copying_hurts_shared_and_draining_hurts_targeted_development() {
         results.figures_of_arm(arm, |run| f64::from(run.subscribers))
     };
     let pick = |all: &[CompetitorSetting], names: &[&str]| -> Vec<CompetitorSetting> {
-        names.iter().map(|name| *all.iter().find(|own| own.name == *name).expect("a setting")).collect()
+        names
+            .iter()
+            .map(|name| {
+                *all.iter().find(|competitor_setting| competitor_setting.name == *name).expect("a setting")
+            })
+            .collect()
     };
     let copy = play_arms(&shared, &pick(&COPY_SETTINGS, &["off", "default", "hard"]), (500, 105));
     for seed in 0..2 {
@@ -42,8 +47,10 @@ fn copying_hurts_shared_and_draining_hurts_targeted_development() {
 
 #[test]
 fn first_50_days_have_no_competitors_or_drift() {
-    let rivals: Vec<CompetitorSetting> =
-        COPY_SETTINGS.into_iter().filter(|own| ["off", "default", "hard"].contains(&own.name)).collect();
+    let rivals: Vec<CompetitorSetting> = COPY_SETTINGS
+        .into_iter()
+        .filter(|competitor_setting| ["off", "default", "hard"].contains(&competitor_setting.name))
+        .collect();
     let probe = shared_development_probe().expect("a probe");
     let results = play_arms(&probe, &rivals, (SHORT_DAYS, SHORT_DAYS));
     let cash = |arm: usize| results.figures_of_arm(arm, |run| run.cash);

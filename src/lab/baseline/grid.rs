@@ -203,7 +203,7 @@ impl GridReader<'_> {
         for entry in entries {
             let span = entry.span();
             let LevelEntry { name, set, call } = entry.into_inner();
-            if levels.iter().any(|own| own.name == name) {
+            if levels.iter().any(|grid_level| grid_level.name == name) {
                 let problem = format!("axis {axis} has two levels named {name}");
                 return Err(self.error_at(Some(span), &problem));
             }
@@ -312,8 +312,9 @@ mod tests {
             ("cheap / S1 / light / $100K", "mid / S1+S3 / heavy / $300K")
         );
         let of = |label: &str| {
-            let own = grid.configurations.iter().find(|own| own.label() == label).expect("a configuration");
-            own.policy.rule_based.clone()
+            let grid_point =
+                grid.configurations.iter().find(|point| point.label() == label).expect("a configuration");
+            grid_point.policy.rule_based.clone()
         };
         // The published best configuration equals the routine's defaults.
         assert_eq!(of("mid / S1 / heavy / $100K"), Some(crate::policy::RuleBased::default()));

@@ -68,7 +68,7 @@ impl<'a> RankedResults<'a> {
         let firsts = self
             .ranks_by_seed
             .iter()
-            .filter(|places| places.get(arm).is_some_and(|own| *own == least(places)));
+            .filter(|places| places.get(arm).is_some_and(|value| *value == least(places)));
         firsts.count() as f64 / self.ranks_by_seed.len().max(1) as f64
     }
 
@@ -169,7 +169,7 @@ fn best_by_seed_table(grid: &PolicyGrid, board: &RankedResults<'_>) -> LabTable 
     let mut table = LabTable::new("seeds", "Best configuration of each seed", columns);
     for (at, seed) in board.results.seeds.iter().enumerate() {
         let run = |arm: usize| board.runs_of_arm(arm).get(at);
-        let cash = |arm: &usize| run(*arm).map_or(f64::NEG_INFINITY, |own| own.cash);
+        let cash = |arm: &usize| run(*arm).map_or(f64::NEG_INFINITY, |run_result| run_result.cash);
         let best = board.order.iter().map(cash).fold(f64::NEG_INFINITY, f64::max);
         let first: Vec<usize> = board.order.iter().copied().filter(|arm| cash(arm) == best).collect();
         let bankrupt =
@@ -273,9 +273,9 @@ fn notes(grid: &PolicyGrid, is_published: bool, board: &RankedResults<'_>) -> Ve
             _ => format!("Best configuration by median final cash: {label}."),
         });
     }
-    if let Some(own) = concordance(&board.ranks_by_seed) {
+    if let Some(value) = concordance(&board.ranks_by_seed) {
         notes.push(format!(
-            "Rank stability: Kendall's W of the rankings by final cash is {own:.2}: 1 if every seed gives the same ranking, about {:.2} if the rankings are unrelated.",
+            "Rank stability: Kendall's W of the rankings by final cash is {value:.2}: 1 if every seed gives the same ranking, about {:.2} if the rankings are unrelated.",
             1.0 / board.ranks_by_seed.len() as f64
         ));
     }

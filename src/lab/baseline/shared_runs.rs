@@ -22,16 +22,17 @@ fn cash_floor(policy: &Policy) -> f64 {
 }
 
 fn differ_only_in_floor(one: &Policy, other: &Policy) -> bool {
-    let rules =
-        |own: &Policy| own.rule_based.as_ref().map(|rules| RuleBased { cash_floor: 0.0, ..rules.clone() });
+    let rules = |policy: &Policy| {
+        policy.rule_based.as_ref().map(|rules| RuleBased { cash_floor: 0.0, ..rules.clone() })
+    };
     rules(one) == rules(other)
         && (&one.start, &one.calls, &one.enterprise) == (&other.start, &other.calls, &other.enterprise)
 }
 
 /// Returns whether a run of the leader is also valid for a configuration with another floor: on no decision day was cash above
 /// one floor and not above the other.
-pub fn is_shared_run(leader: &Policy, own: &Policy, start_cash: f64, run: &RunResult) -> bool {
-    let (low, high) = (cash_floor(leader), cash_floor(own));
+pub fn is_shared_run(leader: &Policy, policy: &Policy, start_cash: f64, run: &RunResult) -> bool {
+    let (low, high) = (cash_floor(leader), cash_floor(policy));
     let decided = run.weeks.iter().take(run.weeks.len().saturating_sub(1)).map(|week| week.cash);
     std::iter::once(start_cash).chain(decided).all(|cash| (cash > low) == (cash > high))
 }

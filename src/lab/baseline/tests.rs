@@ -3,8 +3,8 @@ use crate::experiment::{Arm, ExperimentResults, test_kit};
 
 /// The results of some configurations over a few days, all played.
 fn play_configurations(points: &[GridPoint], seeds: &[u64], days: u32) -> ExperimentResults {
-    let arms = points.iter().map(|own| {
-        let mut arm = Arm::new(own.label(), own.policy.clone());
+    let arms = points.iter().map(|grid_point| {
+        let mut arm = Arm::new(grid_point.label(), grid_point.policy.clone());
         arm.spec.stop_after_day = Some(days);
         arm
     });

@@ -13,7 +13,7 @@ pub(super) fn behavior_graphs(runs: &[BehaviorRun]) -> Vec<Graph> {
     let mut players: BTreeMap<Option<String>, Vec<&BehaviorRun>> = BTreeMap::new();
     runs.iter().for_each(|run| players.entry(participant_label(run)).or_default().push(run));
     let mut graphs: Vec<Graph> =
-        players.into_iter().map(|(who, own)| cash_graph(who.as_deref(), &own)).collect();
+        players.into_iter().map(|(who, behavior_runs)| cash_graph(who.as_deref(), &behavior_runs)).collect();
     let few = if runs.len() > MAX_CUSTOMER_GRAPHS { &[] } else { runs };
     graphs.extend(few.iter().filter(|run| !run.groups.is_empty()).map(customer_graph));
     graphs

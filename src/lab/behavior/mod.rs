@@ -144,10 +144,12 @@ fn figure_table(runs: &[BehaviorRun]) -> LabTable {
             })
             .collect();
         let told = |name: &str, least: usize, of: fn(&SampleStatistics) -> f64| {
-            let cells = samples.iter().map(|own| CellValue::number((own.count >= least).then(|| of(own))));
+            let cells = samples.iter().map(|sample_statistics| {
+                CellValue::number((sample_statistics.count >= least).then(|| of(sample_statistics)))
+            });
             [CellValue::text(name), CellValue::text("")].into_iter().chain(cells).collect()
         };
-        summary.push(told("mean", 1, |own| own.mean));
+        summary.push(told("mean", 1, |statistics| statistics.mean));
         summary.push(told("± sd (n − 1)", 2, |own| own.std));
     }
     LabTable { rows, summary, ..LabTable::new("measures", "", columns) }
@@ -324,10 +326,10 @@ fn forecast_error_survival_pairs(runs: &[BehaviorRun]) -> Vec<(f64, f64)> {
 
 fn describe_correlation(runs: &[BehaviorRun]) -> String {
     let pairs = forecast_error_survival_pairs(runs);
-    let told = "Error of 4-week forecasts filed before the first four weeks, against survival";
+    let text = "Error of 4-week forecasts filed before the first four weeks, against survival";
     match rank_correlation(&pairs) {
-        Some(value) => format!("{told}: rank correlation {value:.2} over {} runs.", pairs.len()),
-        None => format!("{told}: no correlation. It needs at least three runs that differ in both."),
+        Some(value) => format!("{text}: rank correlation {value:.2} over {} runs.", pairs.len()),
+        None => format!("{text}: no correlation. It needs at least three runs that differ in both."),
     }
 }
 
@@ -364,7 +366,10 @@ mod tests {
         };
         let survival = |table: &LabTable| [0, 1, 2, 3].map(|row| of(table, row, "survival"));
         let open = survival(&measures(&runs));
-        assert!(open.iter().all(|own| *own == CellValue::Missing), "survival of an open run is unknown");
+        assert!(
+            open.iter().all(|cell_value| *cell_value == CellValue::Missing),
+            "survival of an open run is unknown"
+        );
         runs.iter_mut().for_each(|run| run.logbook.ended = Some(RunEndReason::Horizon));
         let table = measures(&runs);
         let spread = SampleStatistics::from_values(&[14.0, 7.0]).std;

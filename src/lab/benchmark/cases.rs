@@ -265,8 +265,8 @@ fn costs_by_size(bench: &BenchContext) -> Result<Samples, BenchError> {
     companies.push(company_with_a_million(RunStorage::Memory, bench)?);
     let mut costs = vec![Vec::new(); companies.len()];
     for _ in 0..bench.repetitions.min(MAX_WEEKS_PER_SIZE) {
-        for (company, own) in companies.iter_mut().zip(&mut costs) {
-            own.push(company.measure_week()?.per_subscriber_day() * 1e9);
+        for (company, values) in companies.iter_mut().zip(&mut costs) {
+            values.push(company.measure_week()?.per_subscriber_day() * 1e9);
         }
     }
     let medians: Vec<f64> = costs.iter().filter_map(|samples| median(samples)).collect();

@@ -73,10 +73,10 @@ fn measure_cause_analysis(session: &Session, repetitions: usize) -> Result<Vec<f
     let folder = cause_analysis_folder(session)?;
     let once = |_| {
         let started = Instant::now();
-        let asked = "cancellations"
+        let week_question = "cancellations"
             .parse()
             .map_err(|problem: ConditionParseError| BenchError::new(problem.message))?;
-        CauseAnalysis::open(&folder)?.explain(asked, &|_| ControlFlow::Continue(()))?;
+        CauseAnalysis::open(&folder)?.explain(week_question, &|_| ControlFlow::Continue(()))?;
         Ok(started.elapsed().as_secs_f64())
     };
     (0..repetitions).map(once).collect()

@@ -114,12 +114,12 @@ impl BoundAccount {
 
     fn entries(&self, params: &Params) -> Vec<AccountEntry> {
         let line = |line: AccountLine| {
-            let own = self.line_dollars(line, params);
+            let value = self.line_dollars(line, params);
             AccountEntry {
                 line,
-                computed: own,
+                computed: value,
                 published: 1e6 * line.published_millions(),
-                explanation: self.explain_difference(line, own, params),
+                explanation: self.explain_difference(line, value, params),
             }
         };
         AccountLine::ALL.into_iter().map(line).collect()
@@ -158,29 +158,29 @@ impl BoundAccount {
 
     /// Returns the revenue from enterprises or individuals, dollars.
     pub(super) fn revenue_of(&self, of_companies: bool) -> f64 {
-        let own = self
-            .groups
-            .iter()
-            .filter(|own| Group::parse(own.group).is_some_and(|group| group.is_enterprise() == of_companies));
+        let own = self.groups.iter().filter(|bound_group| {
+            Group::parse(bound_group.group).is_some_and(|group| group.is_enterprise() == of_companies)
+        });
         own.map(|own| own.revenue).sum()
     }
 
     fn targeted_development(&self) -> f64 {
-        f64::from(self.assumptions.days) * self.groups.iter().map(|own| own.spending).sum::<f64>()
+        f64::from(self.assumptions.days)
+            * self.groups.iter().map(|bound_group| bound_group.spending).sum::<f64>()
     }
 
     /// Returns the number of paying customers and seats.
     pub fn customers(&self) -> f64 {
-        self.groups.iter().map(|own| own.customers).sum()
+        self.groups.iter().map(|bound_group| bound_group.customers).sum()
     }
 
     /// Computes the figure of a line, dollars.
     pub fn computed(&self, line: AccountLine) -> f64 {
-        self.lines.iter().find(|own| own.line == line).map_or(0.0, |own| own.computed)
+        self.lines.iter().find(|account_entry| account_entry.line == line).map_or(0.0, |entry| entry.computed)
     }
 
     fn sensitivity_row(&self) -> SensitivityRow {
-        let shares = || self.groups.iter().flat_map(|own| own.renewal_shares.iter().copied());
+        let shares = || self.groups.iter().flat_map(|bound_group| bound_group.renewal_shares.iter().copied());
         let renewals = shares().count();
         SensitivityRow {
             slack: self.assumptions.slack,
@@ -238,27 +238,27 @@ mod tests {
 
     #[test]
     fn product_lines_equal_published_figures() {
-        let own = account(3.0);
+        let bound_account = account(3.0);
         for line in [
             AccountLine::Capacity,
             AccountLine::GlobalDevelopment,
             AccountLine::Research,
             AccountLine::Operations,
         ] {
-            let off = own.computed(line) / 1e6 - line.published_millions();
+            let off = bound_account.computed(line) / 1e6 - line.published_millions();
             assert!(off.abs() <= line.rounding_error(), "{}: {off}", line.name());
         }
     }
 
     #[test]
     fn sums_are_within_3_percent_of_published_figures() {
-        let own = account(3.0);
+        let bound_account = account(3.0);
         for line in [AccountLine::Revenue, AccountLine::Costs, AccountLine::Subtotal, AccountLine::Estimate] {
-            let ratio = own.computed(line) / 1e6 / line.published_millions();
+            let ratio = bound_account.computed(line) / 1e6 / line.published_millions();
             assert!((ratio - 1.0).abs() < 0.03, "{}: {ratio}", line.name());
         }
         let targeted = AccountLine::TargetedDevelopment;
-        let ratio = own.computed(targeted) / 1e6 / targeted.published_millions();
+        let ratio = bound_account.computed(targeted) / 1e6 / targeted.published_millions();
         assert!((0.85..1.0).contains(&ratio), "{ratio}");
     }
 
@@ -277,11 +277,11 @@ mod tests {
 
     #[test]
     fn account_lines_add_up() {
-        let own = account(2.0);
-        let costs: f64 = AccountLine::COSTS.iter().map(|line| own.computed(*line)).sum();
-        assert!((costs - own.computed(AccountLine::Costs)).abs() < 1e-3);
-        let left = 1e6 + own.computed(AccountLine::Revenue) - costs;
-        assert!((left - own.computed(AccountLine::Subtotal)).abs() < 1e-3);
-        assert!((0.49 * left - own.computed(AccountLine::Estimate)).abs() < 1e-3);
+        let bound_account = account(2.0);
+        let costs: f64 = AccountLine::COSTS.iter().map(|line| bound_account.computed(*line)).sum();
+        assert!((costs - bound_account.computed(AccountLine::Costs)).abs() < 1e-3);
+        let left = 1e6 + bound_account.computed(AccountLine::Revenue) - costs;
+        assert!((left - bound_account.computed(AccountLine::Subtotal)).abs() < 1e-3);
+        assert!((0.49 * left - bound_account.computed(AccountLine::Estimate)).abs() < 1e-3);
     }
 }

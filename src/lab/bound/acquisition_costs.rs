@@ -11,13 +11,14 @@ const INTEGRATION_STEPS: u32 = 20_000;
 
 /// Returns the ad cost of filling a group's market by the first renewal through its best channel, dollars.
 pub fn advertising_cost(group: Group, premises: &BoundAssumptions, params: &Params) -> f64 {
-    let own = params.group(group);
+    let group_params = params.group(group);
     let first = premises.renewals.first().copied().unwrap_or(premises.days);
-    let market = market_cap(own.base_market_cap, own.annual_cap_growth_rate, first, &params.leads);
+    let market =
+        market_cap(group_params.base_market_cap, group_params.annual_cap_growth_rate, first, &params.leads);
     let channel = best_starting_channel(group, params);
     let each = params.starting_yields()[channel][group] / params.leads.ad_spend_unit;
     let leads = each * params.initial.initial_reputation * mean_calendar_factor(first, params);
-    own.base_market_cap * saturation_factor(own.base_market_cap / market, params) / leads
+    group_params.base_market_cap * saturation_factor(group_params.base_market_cap / market, params) / leads
 }
 
 /// Returns the mean cost per customer up to a market share relative to the first customer: yields fall as the market fills.
@@ -58,8 +59,8 @@ mod tests {
         // The sum of 1 / (1 - x^2) up to a share is its inverse hyperbolic tangent.
         let expected =
             272_000.0 / 0.3203613 / 0.5 / mean_calendar_factor(30, &params) * libm::atanh(taken) / taken;
-        let own = advertising_cost(s1, &premises, &params);
-        assert!((own / expected - 1.0).abs() < 1e-6, "{own} {expected}");
+        let value = advertising_cost(s1, &premises, &params);
+        assert!((value / expected - 1.0).abs() < 1e-6, "{value} {expected}");
         assert_eq!(account_count(&params), 1_208_492.0);
         assert_eq!(lead_costs(&params), 604_246.0);
     }

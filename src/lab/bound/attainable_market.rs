@@ -5,8 +5,8 @@ use novamind_world::params::Params;
 
 /// Returns the paying customers of a group: individuals, or seats of enterprises.
 pub fn attainable_customers(group: Group, params: &Params) -> f64 {
-    let own = params.group(group);
-    own.base_market_cap * f64::from(own.seat_count_max.unwrap_or(1))
+    let group_params = params.group(group);
+    group_params.base_market_cap * f64::from(group_params.seat_count_max.unwrap_or(1))
 }
 
 /// Returns the highest price that a group supports, dollars a month and customer or seat.

@@ -10,8 +10,8 @@ use novamind_world::params::Params;
 
 impl BoundAccount {
     /// Returns the reason why a line differs from the published one.
-    pub(super) fn explain_difference(&self, line: AccountLine, own: f64, params: &Params) -> String {
-        let millions = own / 1e6;
+    pub(super) fn explain_difference(&self, line: AccountLine, value: f64, params: &Params) -> String {
+        let millions = value / 1e6;
         if (millions - line.published_millions()).abs() <= line.rounding_error() {
             return format!("within ±{}, the rounding of the published figure", line.rounding_error());
         }

@@ -9,7 +9,7 @@ use novamind_world::params::Params;
 
 /// Returns the rows of a table in Markdown; numbers have one decimal.
 fn rows_to_markdown(table: &LabTable, columns: &[usize]) -> String {
-    let cell = |own: &CellValue| match own {
+    let cell = |cell_value: &CellValue| match cell_value {
         CellValue::Text(text) => text.clone(),
         CellValue::Number(value) if value.fract() == 0.0 && value.abs() < 1000.0 => format!("{value}"),
         CellValue::Number(value) if value.abs() < 1.0 => format!("{value:.3}"),

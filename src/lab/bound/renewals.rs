@@ -40,12 +40,12 @@ mod tests {
     fn renewal_share_follows_the_paper() {
         let (premises, params) = (BoundAssumptions::from_paper(3.0), Params::bundled());
         let (s1, calm) = (Group::parse("S1").expect("a group"), shared_quality_path(&premises, &params));
-        let own = renewal_shares(s1, 5000.0, 0.05, &calm, &premises, &params);
+        let values = renewal_shares(s1, 5000.0, 0.05, &calm, &premises, &params);
         // Day 30: no competitor has acted, and 29 days of development have accumulated.
         let gain = 0.0225 * std::f64::consts::LN_2;
         let quality = 0.9 * (0.2 + calm.shared[30] + 29.0 * gain);
         let expected = normal_cdf((quality - 0.05 - 0.55) / 0.0125f64.sqrt());
-        assert!((own[0] - expected).abs() < 1e-12, "{} {expected}", own[0]);
-        assert_eq!(own.len(), 16);
+        assert!((values[0] - expected).abs() < 1e-12, "{} {expected}", values[0]);
+        assert_eq!(values.len(), 16);
     }
 }

@@ -20,7 +20,7 @@ pub fn bound_report(account: &BoundAccount, slacks: &[SensitivityRow]) -> LabRep
     exhibit.tables.push(group_table(account));
     exhibit.tables.push(assumption_table(account));
     exhibit.graphs.push(renewal_graph(account));
-    for differing in account.lines.iter().filter(|own| own.line != AccountLine::Costs) {
+    for differing in account.lines.iter().filter(|account_entry| account_entry.line != AccountLine::Costs) {
         exhibit.notes.push(format!("{}: {}.", differing.line.name(), differing.explanation));
     }
     if account.assumptions.slack != PUBLISHED_SLACK {
@@ -44,12 +44,12 @@ fn account_table(account: &BoundAccount) -> LabTable {
     ];
     let mut table = LabTable::new("account", "Millions of dollars", columns);
     table.rows = (account.lines.iter())
-        .map(|own| {
+        .map(|account_entry| {
             vec![
-                CellValue::text(own.line.name()),
-                CellValue::number(own.computed / 1e6),
-                CellValue::number(own.published / 1e6),
-                CellValue::number(own.computed / own.published),
+                CellValue::text(account_entry.line.name()),
+                CellValue::number(account_entry.computed / 1e6),
+                CellValue::number(account_entry.published / 1e6),
+                CellValue::number(account_entry.computed / account_entry.published),
             ]
         })
         .collect();
@@ -68,14 +68,14 @@ fn sensitivity_table(slacks: &[SensitivityRow]) -> LabTable {
     let caption = format!("Sensitivity to slack; nearly all: more than {}", percent(SATISFIED_SHARE, 0));
     let mut table = LabTable::new("slack", caption, columns);
     table.rows = (slacks.iter())
-        .map(|own| {
+        .map(|sensitivity_row| {
             vec![
-                CellValue::number(own.slack),
-                CellValue::number(own.targeted / 1e6),
-                CellValue::number(own.renewals as f64),
-                CellValue::number(own.satisfied as f64),
-                CellValue::number(own.mean_share),
-                CellValue::number(own.estimate / 1e6),
+                CellValue::number(sensitivity_row.slack),
+                CellValue::number(sensitivity_row.targeted / 1e6),
+                CellValue::number(sensitivity_row.renewals as f64),
+                CellValue::number(sensitivity_row.satisfied as f64),
+                CellValue::number(sensitivity_row.mean_share),
+                CellValue::number(sensitivity_row.estimate / 1e6),
             ]
         })
         .collect();
@@ -96,16 +96,16 @@ fn group_table(account: &BoundAccount) -> LabTable {
     let caption = "Groups: N customers or seats at price p; the gap of quality that T a day closes; r: share that renews";
     let mut table = LabTable::new("groups", caption, columns);
     table.rows = (account.groups.iter())
-        .map(|own| {
+        .map(|bound_group| {
             vec![
-                CellValue::text(own.group),
-                CellValue::number(own.customers),
-                CellValue::number(own.price),
-                CellValue::number(own.quality_gap),
-                CellValue::number(own.min_spending),
-                CellValue::number(own.spending),
-                CellValue::number(own.renewal_shares.iter().copied().fold(1.0, f64::min)),
-                CellValue::number(own.revenue / 1e6),
+                CellValue::text(bound_group.group),
+                CellValue::number(bound_group.customers),
+                CellValue::number(bound_group.price),
+                CellValue::number(bound_group.quality_gap),
+                CellValue::number(bound_group.min_spending),
+                CellValue::number(bound_group.spending),
+                CellValue::number(bound_group.renewal_shares.iter().copied().fold(1.0, f64::min)),
+                CellValue::number(bound_group.revenue / 1e6),
             ]
         })
         .collect();
@@ -124,7 +124,9 @@ fn assumption_table(account: &BoundAccount) -> LabTable {
 /// Returns a graph of renewal shares by day: mean, lowest and highest group.
 fn renewal_graph(account: &BoundAccount) -> Graph {
     let days = || account.assumptions.renewals.iter().map(|day| f64::from(*day));
-    let of_day = |at: usize| account.groups.iter().filter_map(move |own| own.renewal_shares.get(at).copied());
+    let of_day = |at: usize| {
+        account.groups.iter().filter_map(move |bound_group| bound_group.renewal_shares.get(at).copied())
+    };
     let series = |name: &str, of: &dyn Fn(usize) -> f64| Series {
         name: name.to_owned(),
         points: days().enumerate().map(|(at, day)| (day, of(at))).collect(),

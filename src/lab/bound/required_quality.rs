@@ -7,8 +7,11 @@ use novamind_world::params::Params;
 
 /// Returns the mean and spread of the quality required at the budget.
 pub fn required_quality(group: Group, params: &Params) -> (f64, f64) {
-    let own = params.group(group);
-    (own.q_min_mean + own.q_range_mean, libm::hypot(own.q_min_std, own.q_range_std))
+    let group_params = params.group(group);
+    (
+        group_params.q_min_mean + group_params.q_range_mean,
+        libm::hypot(group_params.q_min_std, group_params.q_range_std),
+    )
 }
 
 /// Returns the quality that competitors and drift added to a group's expectations by a day, without what competitors copy of the

@@ -79,28 +79,28 @@ mod tests {
     #[test]
     fn competitors_copy_most_shared_quality_after_a_delay() {
         let (premises, params) = (BoundAssumptions::from_paper(3.0), Params::bundled());
-        let own = shared_quality_path(&premises, &params);
+        let quality_path = shared_quality_path(&premises, &params);
         let s1 = Group::parse("S1").expect("a group");
-        assert_eq!((own.raised_expectations[60], own.copied_quality[60][s1]), (0.0, 0.0));
+        assert_eq!((quality_path.raised_expectations[60], quality_path.copied_quality[60][s1]), (0.0, 0.0));
         // Two tiers finish on day 31; development acts a day later.
         let gain = development_gain(40_000.0, &params.development);
-        assert!((own.shared[31] - 30.0 * gain).abs() < 1e-9);
+        assert!((quality_path.shared[31] - 30.0 * gain).abs() < 1e-9);
         let two: f64 = 0.04 + 0.07 + 0.11;
-        assert!((own.shared[32] - 31.0 * gain - two).abs() < 1e-9, "{}", own.shared[32]);
-        assert!((own.shared[480] - 479.0 * gain - 3.34).abs() < 1e-9);
+        assert!((quality_path.shared[32] - 31.0 * gain - two).abs() < 1e-9, "{}", quality_path.shared[32]);
+        assert!((quality_path.shared[480] - 479.0 * gain - 3.34).abs() < 1e-9);
         assert!(
-            own.raised_expectations[480] > own.shared[480]
-                && own.raised_expectations[480] < own.shared[480] + 3.0
+            quality_path.raised_expectations[480] > quality_path.shared[480]
+                && quality_path.raised_expectations[480] < quality_path.shared[480] + 3.0
         );
         // At the end, competitors have copied between 50 % and 90 % of a targeted gain of 1 a day.
-        assert!((0.5..0.9).contains(&(own.copied_quality[480][s1] / 479.0)));
+        assert!((0.5..0.9).contains(&(quality_path.copied_quality[480][s1] / 479.0)));
     }
 
     #[test]
     fn without_competitors_expectations_stay() {
         let mut params = Params::bundled();
         params.competitor.competitor_events_disabled = true;
-        let own = shared_quality_path(&BoundAssumptions::from_paper(3.0), &params);
-        assert!(own.raised_expectations.iter().all(|raised| *raised == 0.0));
+        let quality_path = shared_quality_path(&BoundAssumptions::from_paper(3.0), &params);
+        assert!(quality_path.raised_expectations.iter().all(|raised| *raised == 0.0));
     }
 }

@@ -262,7 +262,7 @@ fn random_channel_range() -> Option<PublishedRange> {
 pub(super) fn group_rows(runs: &[Logbook]) -> Vec<ComparisonRow> {
     let ads = |run: &Logbook| run.measures.channels.clone().map(|skill| skill.groups).unwrap_or_default();
     let by_run: Vec<_> = runs.iter().map(ads).collect();
-    let groups: BTreeSet<&str> = by_run.iter().flatten().map(|own| own.group.as_str()).collect();
+    let groups: BTreeSet<&str> = by_run.iter().flatten().map(|group_ads| group_ads.group.as_str()).collect();
     let row = |group: &str| ComparisonRow {
         figure: "ad spend on the best channel, as measured".to_owned(),
         of: group.to_owned(),

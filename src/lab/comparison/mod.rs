@@ -49,7 +49,7 @@ fn decisions_by_day(runs: &[Logbook]) -> Vec<ComparedDecisions> {
     let decided = days
         .iter()
         .map(|day| ComparedDecisions { day: *day, by_run: runs.iter().map(|run| of(run, *day)).collect() });
-    decided.filter(|decided| decided.by_run.iter().any(|own| !own.is_empty())).collect()
+    decided.filter(|decided| decided.by_run.iter().any(|texts| !texts.is_empty())).collect()
 }
 
 /// Returns the reasons why figures of the runs are not comparable.
@@ -62,7 +62,7 @@ fn caveats(runs: &[Logbook]) -> Vec<String> {
         }
     };
     let any = |differs: &dyn Fn(&Logbook, &Logbook) -> bool| runs.iter().any(|run| differs(run, first));
-    note(any(&|own, first| own.seed != first.seed), "seed");
+    note(any(&|logbook, first| logbook.seed != first.seed), "seed");
     note(any(&|own, first| own.days != first.days), "days");
     note(any(&|own, first| own.start_cash != first.start_cash), "cash at the start");
     note(any(&|own, first| own.parameters_digest != first.parameters_digest), "parameters");

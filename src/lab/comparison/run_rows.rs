@@ -20,15 +20,15 @@ const COLUMNS: [(&str, &str, &str); 10] = [
 ];
 
 /// Returns a table with a row per run.
-pub(super) fn row_per_run_report(beside: &Comparison) -> LabReport {
+pub(super) fn row_per_run_report(comparison: &Comparison) -> LabReport {
     let figures: Vec<(&ComparisonRow, &str)> = COLUMNS
         .iter()
         .filter_map(|(figure, of, heading)| {
-            let row = beside.figures.iter().find(|row| row.figure == *figure && row.of == *of)?;
+            let row = comparison.figures.iter().find(|row| row.figure == *figure && row.of == *of)?;
             Some((row, *heading))
         })
         .collect();
-    let has_labels = beside.participants.iter().any(Option::is_some);
+    let has_labels = comparison.participants.iter().any(Option::is_some);
     let mut columns = vec![Column::text("run", "run"), Column::number("place", "#", Measure::Count)];
     columns.extend(has_labels.then(|| Column::text("participant", "who")));
     columns.push(Column::text("end", "end"));
@@ -38,15 +38,17 @@ pub(super) fn row_per_run_report(beside: &Comparison) -> LabReport {
             .map(|(row, heading)| Column::number(&column_name(&row.figure), heading, row.measure())),
     );
     let row = |(place, run): (usize, &usize)| {
-        let mut cells = vec![CellValue::text(&*beside.runs[*run]), CellValue::Number((place + 1) as f64)];
-        cells.extend(has_labels.then(|| CellValue::text(short_label(beside.participants[*run].as_deref()))));
-        cells.push(CellValue::text(describe_end(beside.ends[*run])));
+        let mut cells = vec![CellValue::text(&*comparison.runs[*run]), CellValue::Number((place + 1) as f64)];
+        cells.extend(
+            has_labels.then(|| CellValue::text(short_label(comparison.participants[*run].as_deref()))),
+        );
+        cells.push(CellValue::text(describe_end(comparison.ends[*run])));
         cells.extend(figures.iter().map(|(row, _)| CellValue::number(row.values[*run])));
         cells
     };
-    let rows = beside.order.iter().enumerate().map(row).collect();
+    let rows = comparison.order.iter().enumerate().map(row).collect();
     let table = LabTable { rows, ..LabTable::new("runs", "", columns) };
-    let exhibit = LabReport::with_table(format!("{} runs, best result first", beside.runs.len()), table);
+    let exhibit = LabReport::with_table(format!("{} runs, best result first", comparison.runs.len()), table);
     exhibit.with_note("Use --csv for cash by week and all figures, --json for decisions as well.")
 }
 
@@ -81,11 +83,11 @@ mod tests {
     fn thirty_runs() -> Vec<Logbook> {
         let book = sample_logbook();
         let named = |at: u32| {
-            let mut own = book.clone();
-            own.run = format!("{:08x}", 0x1a2b_3c00 + at);
-            own.participant = Some(format!("participant-{at:02}"));
-            own.cash = f64::from(at * 7919 % 30) * 1e5;
-            own
+            let mut logbook = book.clone();
+            logbook.run = format!("{:08x}", 0x1a2b_3c00 + at);
+            logbook.participant = Some(format!("participant-{at:02}"));
+            logbook.cash = f64::from(at * 7919 % 30) * 1e5;
+            logbook
         };
         (0..30).map(named).collect()
     }

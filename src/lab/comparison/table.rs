@@ -11,38 +11,38 @@ const MAX_CASH_ROWS: usize = 20;
 const MAX_LINE_WIDTH: usize = 124;
 
 /// Returns the comparison as text: runs in columns if `width` allows, otherwise one row per run.
-pub fn comparison_to_text(beside: &Comparison, width: usize) -> String {
-    let table = side_by_side(beside);
+pub fn comparison_to_text(comparison: &Comparison, width: usize) -> String {
+    let table = side_by_side(comparison);
     if table.lines().any(|line| line.chars().count() > width) {
-        let mut exhibit = row_per_run_report(beside);
-        exhibit.notes.extend(beside.caveats.iter().cloned());
+        let mut exhibit = row_per_run_report(comparison);
+        exhibit.notes.extend(comparison.caveats.iter().cloned());
         return exhibit.to_text(width);
     }
-    let foot: String = footnotes(beside).into_iter().map(|line| line + "\n").collect();
-    table + &decision_lines(beside, width.min(MAX_LINE_WIDTH)) + &published_agents_text() + &foot
+    let foot: String = footnotes(comparison).into_iter().map(|line| line + "\n").collect();
+    table + &decision_lines(comparison, width.min(MAX_LINE_WIDTH)) + &published_agents_text() + &foot
 }
 
-fn side_by_side(beside: &Comparison) -> String {
+fn side_by_side(comparison: &Comparison) -> String {
     let mut head = vec![String::new()];
-    head.extend(beside.runs.iter().cloned());
+    head.extend(comparison.runs.iter().cloned());
     head.push("published".to_owned());
     let mut rows = vec![head];
     let mut players = vec!["who".to_owned()];
-    players.extend(beside.participants.iter().map(|who| who.clone().unwrap_or_else(|| "-".to_owned())));
+    players.extend(comparison.participants.iter().map(|who| who.clone().unwrap_or_else(|| "-".to_owned())));
     players.push(String::new());
     rows.push(players);
-    rows.extend(beside.figures.iter().map(text_row));
-    rows.push(vec![String::new(); beside.runs.len() + 2]);
-    let last = beside.cash.len().saturating_sub(1);
-    let every = beside.cash.len().div_ceil(MAX_CASH_ROWS).max(1);
-    let told = beside.cash.iter().enumerate().filter(|(at, _)| at % every == 0 || *at == last);
+    rows.extend(comparison.figures.iter().map(text_row));
+    rows.push(vec![String::new(); comparison.runs.len() + 2]);
+    let last = comparison.cash.len().saturating_sub(1);
+    let every = comparison.cash.len().div_ceil(MAX_CASH_ROWS).max(1);
+    let told = comparison.cash.iter().enumerate().filter(|(at, _)| at % every == 0 || *at == last);
     rows.extend(told.map(|(_, row)| text_row(row)));
     align_cells(&rows)
 }
 
 /// Returns the limits of comparability and the source of published figures.
-fn footnotes(beside: &Comparison) -> Vec<String> {
-    let mut lines = beside.caveats.clone();
+fn footnotes(comparison: &Comparison) -> Vec<String> {
+    let mut lines = comparison.caveats.clone();
     lines.push(format!("{}.", describe_published_conditions()));
     lines.push(format!("Published: {}.", published_results().source));
     lines
@@ -99,13 +99,13 @@ fn align_cells(rows: &[Vec<String>]) -> String {
     text
 }
 
-fn decision_lines(beside: &Comparison, line: usize) -> String {
+fn decision_lines(comparison: &Comparison, line: usize) -> String {
     let mut text = "\nDecisions\n".to_owned();
-    let width = beside.runs.iter().map(|run| run.chars().count()).max().unwrap_or(0);
-    for decided in &beside.decisions {
+    let width = comparison.runs.iter().map(|run| run.chars().count()).max().unwrap_or(0);
+    for decided in &comparison.decisions {
         text += &format!("  day {}\n", decided.day);
-        for (run, own) in beside.runs.iter().zip(&decided.by_run).filter(|(_, own)| !own.is_empty()) {
-            let lines = wrap_decisions(&count_equal(own), line.saturating_sub(width + 6));
+        for (run, texts) in comparison.runs.iter().zip(&decided.by_run).filter(|(_, own)| !own.is_empty()) {
+            let lines = wrap_decisions(&count_equal(texts), line.saturating_sub(width + 6));
             for (at, line) in lines.iter().enumerate() {
                 let name = if at == 0 { run.as_str() } else { "" };
                 text += &format!("    {name:<width$}  {line}\n");
@@ -135,10 +135,10 @@ fn count_equal(decisions: &[String]) -> Vec<String> {
 fn wrap_decisions(decisions: &[String], width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for (at, decision) in decisions.iter().enumerate() {
-        let own = if at + 1 < decisions.len() { format!("{decision};") } else { decision.clone() };
-        match lines.last_mut().filter(|line| line.chars().count() + 1 + own.chars().count() <= width) {
-            Some(line) => *line += &format!(" {own}"),
-            None => lines.push(own),
+        let text = if at + 1 < decisions.len() { format!("{decision};") } else { decision.clone() };
+        match lines.last_mut().filter(|line| line.chars().count() + 1 + text.chars().count() <= width) {
+            Some(line) => *line += &format!(" {text}"),
+            None => lines.push(text),
         }
     }
     lines
@@ -160,12 +160,12 @@ fn published_agents_text() -> String {
 }
 
 /// Returns the comparison as table rows, one per figure and day; the first row has the column names.
-pub fn comparison_to_rows(beside: &Comparison) -> Vec<Vec<String>> {
+pub fn comparison_to_rows(comparison: &Comparison) -> Vec<Vec<String>> {
     let mut head = ["figure", "of", "unit"].map(str::to_owned).to_vec();
-    head.extend(beside.runs.iter().cloned());
+    head.extend(comparison.runs.iter().cloned());
     head.extend(["published_least", "published_most", "published_what"].map(str::to_owned));
     let mut rows = vec![head];
-    for row in beside.figures.iter().chain(&beside.cash) {
+    for row in comparison.figures.iter().chain(&comparison.cash) {
         let mut cells = vec![row.figure.clone(), row.of.clone(), row.unit.to_owned()];
         cells.extend(row.values.iter().map(|value| value.map(|value| value.to_string()).unwrap_or_default()));
         cells.extend(match row.published {
@@ -183,8 +183,8 @@ mod tests {
 
     #[test]
     fn equal_decisions_are_counted_and_lines_wrapped() {
-        let own = ["found nothing", "price A: 1 → 2", "found nothing"].map(str::to_owned);
-        let told = count_equal(&own);
+        let texts = ["found nothing", "price A: 1 → 2", "found nothing"].map(str::to_owned);
+        let told = count_equal(&texts);
         assert_eq!(told, ["found nothing (2 times)", "price A: 1 → 2"]);
         assert_eq!(wrap_decisions(&told, 100), ["found nothing (2 times); price A: 1 → 2"]);
         assert_eq!(wrap_decisions(&told, 30), ["found nothing (2 times);", "price A: 1 → 2"]);

@@ -329,12 +329,12 @@ impl SeedPlays {
         let played: Result<Vec<PlayDraws>, RunError> =
             games.par_iter().with_max_len(1).map(|(policy, seed)| play(policy, *seed)).collect();
         // If a single-threaded pool cannot be built, the repetition uses all threads.
-        let again = match rayon::ThreadPoolBuilder::new().num_threads(1).build() {
+        let play_draws = match rayon::ThreadPoolBuilder::new().num_threads(1).build() {
             Ok(pool) => pool.install(|| play(first, seed)),
             Err(_) => play(first, seed),
         }?;
         let [one, other, control] = <[PlayDraws; 3]>::try_from(played?).unwrap_or_default();
-        Ok(SeedPlays { seed, one, other, again, control })
+        Ok(SeedPlays { seed, one, other, again: play_draws, control })
     }
 }
 
@@ -380,15 +380,15 @@ impl Claim {
     fn evaluate(&self, plays: &[SeedPlays]) -> ClaimResult {
         let (mut compared, mut different, mut first_difference) = (0, 0, None);
         let (mut controls, mut different_controls) = (0, 0);
-        for own in plays {
-            let other = if self.same_decisions { &own.again } else { &own.other };
-            let found = Differences::compare(&own.one, other, self);
+        for seed_plays in plays {
+            let other = if self.same_decisions { &seed_plays.again } else { &seed_plays.other };
+            let found = Differences::compare(&seed_plays.one, other, self);
             compared += found.compared;
             different += found.different;
             if let (None, Some(key)) = (&first_difference, found.first) {
-                first_difference = Some(format!("{}, seed {}", (self.format_key)(key), own.seed));
+                first_difference = Some(format!("{}, seed {}", (self.format_key)(key), seed_plays.seed));
             }
-            let control = Differences::compare(&own.one, &own.control, self);
+            let control = Differences::compare(&seed_plays.one, &seed_plays.control, self);
             controls += control.compared;
             different_controls += control.different;
         }

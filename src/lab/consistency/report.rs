@@ -12,9 +12,9 @@ impl ConsistencyCheck {
             self.claim_table(),
         );
         exhibit.tables.push(self.play_table());
-        exhibit.notes.extend(self.claims.iter().filter_map(|own| {
-            let first = own.first_difference.as_ref()?;
-            Some(format!("Fails: {}. First difference: {first}.", own.claim))
+        exhibit.notes.extend(self.claims.iter().filter_map(|claim_result| {
+            let first = claim_result.first_difference.as_ref()?;
+            Some(format!("Fails: {}. First difference: {first}.", claim_result.claim))
         }));
         if self.equalises_surges {
             exhibit.notes.push(
@@ -38,15 +38,15 @@ impl ConsistencyCheck {
             Column::number("compared_with_other_seed", "other seed, compared", Measure::Count),
             Column::number("different_under_other_seed", "other seed, different", Measure::Count),
         ];
-        let row = |own: &ClaimResult| {
+        let row = |claim_result: &ClaimResult| {
             vec![
-                CellValue::text(own.claim),
-                CellValue::text(own.outcome.label()),
-                CellValue::Number(own.compared as f64),
-                CellValue::text(own.of),
-                CellValue::Number(own.different as f64),
-                CellValue::Number(own.compared_with_other_seed as f64),
-                CellValue::Number(own.different_under_other_seed as f64),
+                CellValue::text(claim_result.claim),
+                CellValue::text(claim_result.outcome.label()),
+                CellValue::Number(claim_result.compared as f64),
+                CellValue::text(claim_result.of),
+                CellValue::Number(claim_result.different as f64),
+                CellValue::Number(claim_result.compared_with_other_seed as f64),
+                CellValue::Number(claim_result.different_under_other_seed as f64),
             ]
         };
         let rows = self.claims.iter().map(row).collect();

@@ -61,7 +61,7 @@ fn every_simulator_draw_is_in_the_table() {
     let mut found = BTreeMap::new();
     collect_drawing_files(&below, &below, &mut found);
     let mut listed: BTreeMap<String, usize> = BTreeMap::new();
-    for (file, draws) in world_draws().flat_map(|own| own.source_files) {
+    for (file, draws) in world_draws().flat_map(|world_draw| world_draw.source_files) {
         *listed.entry((*file).to_owned()).or_default() += draws;
     }
     assert_eq!(listed, found, "left: the table, right: draws in src/world");
@@ -73,7 +73,7 @@ fn every_random_part_is_in_the_table() {
     // The wording of a post and the name of an author affect no numbers.
     let words = [Part::Voice, Part::PersonaTemplate];
     for part in Part::ALL.iter().filter(|part| !words.contains(part)) {
-        assert!(world_draws().any(|own| own.part == *part), "{} is missing", part.name());
+        assert!(world_draws().any(|world_draw| world_draw.part == *part), "{} is missing", part.name());
     }
 }
 
@@ -83,16 +83,16 @@ fn names_are_unique_and_parameters_exist() {
         .iter()
         .flat_map(|source| source.text.parse::<toml::Table>().expect("parameters"))
         .collect();
-    let mut names: Vec<&str> = world_draws().map(|own| own.name).collect();
-    for own in world_draws() {
-        for key in own.parameters {
+    let mut names: Vec<&str> = world_draws().map(|world_draw| world_draw.name).collect();
+    for draw in world_draws() {
+        for key in draw.parameters {
             let (table, name) = key.split_once('.').expect("table.key");
             let there = match tables.get(table) {
                 Some(toml::Value::Table(table)) => table.contains_key(name),
                 Some(toml::Value::Array(rows)) => rows.iter().any(|row| row.get(name).is_some()),
                 _ => false,
             };
-            assert!(there, "{} names {key}", own.name);
+            assert!(there, "{} names {key}", draw.name);
         }
     }
     let count = names.len();
@@ -106,19 +106,19 @@ fn names_are_unique_and_parameters_exist() {
 fn simulator_draws_match_their_distributions() {
     const DRAWS: u64 = 20_000;
     let luck = DrawContext { params: Params::bundled(), streams: Streams::new(84) };
-    for own in world_draws() {
-        let members = own.family.members(&luck.params);
+    for world_draw in world_draws() {
+        let members = world_draw.family.members(&luck.params);
         let (first, last) = (&members[0], &members[members.len() - 1]);
         for (member, name) in [first, last] {
-            let draws = own.draws(&luck, *member, DRAWS);
-            let exact = (own.distribution)(&luck.params, *member).moments();
+            let draws = world_draw.draws(&luck, *member, DRAWS);
+            let exact = (world_draw.distribution)(&luck.params, *member).moments();
             let count = DRAWS as f64;
             let mean = draws.iter().sum::<f64>() / count;
             let power = |power: f64| {
                 draws.iter().map(|draw| libm::pow((draw - exact.mean).abs(), power)).sum::<f64>() / count
             };
             let (spread, fourth) = (power(2.0), power(4.0));
-            let what = format!("{} {name}: {exact:?}, drawn {mean} {}", own.name, spread.sqrt());
+            let what = format!("{} {name}: {exact:?}, drawn {mean} {}", world_draw.name, spread.sqrt());
             assert!((mean - exact.mean).abs() <= 4.5 * exact.std / count.sqrt() + 1e-12, "{what}");
             let error = ((fourth - spread * spread).max(0.0) / count).sqrt();
             assert!((spread - exact.std * exact.std).abs() <= 4.5 * error + 1e-12, "{what}");

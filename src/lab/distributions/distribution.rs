@@ -245,8 +245,8 @@ fn clamped_exponential_moments(mean: f64, offset: f64, least: f64, most: f64) ->
         if span.is_finite() { (libm::exp(-span), span * libm::exp(-span)) } else { (0.0, 0.0) };
     let first = beyond * mean * (1.0 - rest);
     let second = beyond * 2.0 * mean * mean * (1.0 - rest - tail);
-    let own = Moments::from_raw_moments(first, second);
-    Moments { mean: start + own.mean, std: own.std }
+    let moments = Moments::from_raw_moments(first, second);
+    Moments { mean: start + moments.mean, std: moments.std }
 }
 
 /// Returns a moment about zero of a log-normal variable clamped to two ends.

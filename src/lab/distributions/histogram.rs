@@ -53,18 +53,21 @@ mod tests {
 
     #[test]
     fn few_integers_get_one_bin_each() {
-        let own = Histogram::from_draws(&[10.0, 12.0, 12.0, 11.0], 20);
-        assert_eq!((own.from, own.width, own.counts.clone()), (9.5, 1.0, vec![1, 1, 2]));
-        assert_eq!(own.bin_center(2), 12.0);
+        let histogram = Histogram::from_draws(&[10.0, 12.0, 12.0, 11.0], 20);
+        assert_eq!((histogram.from, histogram.width, histogram.counts.clone()), (9.5, 1.0, vec![1, 1, 2]));
+        assert_eq!(histogram.bin_center(2), 12.0);
     }
 
     #[test]
     fn outliers_count_in_the_outer_bins() {
         let mut draws: Vec<f64> = (0..2000).map(|n| f64::from(n) / 2000.0).collect();
         draws.push(1e9);
-        let own = Histogram::from_draws(&draws, 10);
-        assert_eq!(own.counts.iter().sum::<u64>(), 2001);
-        assert!(own.width < 0.2 && own.counts.iter().all(|count| (190..215).contains(count)), "{own:?}");
+        let histogram = Histogram::from_draws(&draws, 10);
+        assert_eq!(histogram.counts.iter().sum::<u64>(), 2001);
+        assert!(
+            histogram.width < 0.2 && histogram.counts.iter().all(|count| (190..215).contains(count)),
+            "{histogram:?}"
+        );
         assert_eq!(Histogram::from_draws(&[], 5).counts, [0]);
         assert_eq!(Histogram::from_draws(&[0.25; 4], 3).counts, [4, 0, 0]);
     }

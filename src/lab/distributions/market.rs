@@ -39,7 +39,8 @@ fn unknown_groups() -> Vec<Group> {
 fn example_surge(luck: &DrawContext, n: u64, figure: fn(u32, f64) -> f64) -> f64 {
     let law = novamind_world::params::DemandSurge { probability: 1.0, ..luck.params.demand_surge.clone() };
     let day = n as u32;
-    draw_surge(day, &law, &luck.streams).map_or(f64::NAN, |own| figure(own.end_day - day, own.multiplier))
+    draw_surge(day, &law, &luck.streams)
+        .map_or(f64::NAN, |surge| figure(surge.end_day - day, surge.multiplier))
 }
 
 fn best_yield(params: &Params, member: usize) -> f64 {

@@ -29,11 +29,15 @@ pub fn all_distributions_report(luck: &DrawContext, draws: u64) -> LabReport {
     let mut laws = LabTable::new("laws", "Moments of the draws and exact moments", columns);
     let columns = ["name", "parameters", "source"].map(|name| Column::text(name, name));
     let mut sources = LabTable::new("parameters", "Parameters and their sources", columns.into());
-    for own in world_draws() {
-        let Some((member, name)) = own.family.members(&luck.params).into_iter().next() else { continue };
-        let (law, drawn) = ((own.distribution)(&luck.params, member), own.draws(luck, member, draws));
+    for world_draw in world_draws() {
+        let Some((member, name)) = world_draw.family.members(&luck.params).into_iter().next() else {
+            continue;
+        };
+        let (law, drawn) =
+            ((world_draw.distribution)(&luck.params, member), world_draw.draws(luck, member, draws));
         let (sample, exact) = (SampleStatistics::from_values(&drawn), law.moments());
-        let shown = if name.is_empty() { own.name.to_owned() } else { format!("{} {name}", own.name) };
+        let shown =
+            if name.is_empty() { world_draw.name.to_owned() } else { format!("{} {name}", world_draw.name) };
         let number =
             |value: f64| CellValue::NumberWithMeasure(value, Measure::Number(decimals_for_spread(exact.std)));
         laws.rows.push(vec![
@@ -48,7 +52,7 @@ pub fn all_distributions_report(luck: &DrawContext, draws: u64) -> LabReport {
         sources.rows.push(vec![
             CellValue::text(shown),
             CellValue::text(law.describe_parameters()),
-            CellValue::text(describe_source(own)),
+            CellValue::text(describe_source(world_draw)),
         ]);
     }
     let mut exhibit = LabReport::with_table(
@@ -67,10 +71,10 @@ fn decimals_for_spread(spread: f64) -> usize {
 }
 
 /// Returns the parameters and the files that draw.
-fn describe_source(own: &WorldDraw) -> String {
-    let mut files: Vec<&str> = own.source_files.iter().map(|(file, _)| *file).collect();
+fn describe_source(world_draw: &WorldDraw) -> String {
+    let mut files: Vec<&str> = world_draw.source_files.iter().map(|(file, _)| *file).collect();
     files.dedup();
-    let keys = own.parameters.join(", ");
+    let keys = world_draw.parameters.join(", ");
     if keys.is_empty() { files.join(", ") } else { format!("{keys} ({})", files.join(", ")) }
 }
 
@@ -82,13 +86,13 @@ fn small_histogram(histogram: &Histogram) -> String {
 
 /// Returns a distribution for one member of its family: histogram, sample moments, exact moments and moments of reference draws.
 pub fn distribution_report(
-    own: &WorldDraw,
+    world_draw: &WorldDraw,
     (member, name): (usize, &str),
     luck: &DrawContext,
     draws: u64,
 ) -> LabReport {
-    let law = (own.distribution)(&luck.params, member);
-    let drawn = own.draws(luck, member, draws);
+    let law = (world_draw.distribution)(&luck.params, member);
+    let drawn = world_draw.draws(luck, member, draws);
     let columns = vec![
         Column::text("who", "source"),
         Column::number("draws", "draws", Measure::Count),
@@ -108,11 +112,12 @@ pub fn distribution_report(
         exact.into_iter().chain([CellValue::Missing, CellValue::Missing, CellValue::Missing]).collect(),
     );
     let of = if name.is_empty() { String::new() } else { format!(" of {name}") };
-    let mut exhibit = LabReport::with_table(format!("{}{of}: {}", own.name, own.description), table);
-    exhibit.graphs.push(histogram_graph(own, &Histogram::from_draws(&drawn, HISTOGRAM_BINS)));
+    let mut exhibit =
+        LabReport::with_table(format!("{}{of}: {}", world_draw.name, world_draw.description), table);
+    exhibit.graphs.push(histogram_graph(world_draw, &Histogram::from_draws(&drawn, HISTOGRAM_BINS)));
     exhibit.notes.push(format!("Distribution: {}, {}.", law.name(), law.describe_parameters()));
-    exhibit.notes.push(format!("Parameters: {}.", describe_source(own)));
-    let members: Vec<String> = own
+    exhibit.notes.push(format!("Parameters: {}.", describe_source(world_draw)));
+    let members: Vec<String> = world_draw
         .family
         .members(&luck.params)
         .into_iter()
@@ -140,13 +145,16 @@ fn moment_row(who: &str, drawn: &[f64], law: &DrawDistribution) -> Vec<CellValue
     ]
 }
 
-fn histogram_graph(own: &WorldDraw, histogram: &Histogram) -> Graph {
+fn histogram_graph(world_draw: &WorldDraw, histogram: &Histogram) -> Graph {
     let points = (0..histogram.counts.len())
         .map(|bin| (histogram.bin_center(bin), histogram.counts[bin] as f64))
         .collect();
     Graph {
-        title: format!("Draws of {}", own.name),
-        summary: format!("Histogram of {}; the outer bars include the extreme thousandths", own.description),
+        title: format!("Draws of {}", world_draw.name),
+        summary: format!(
+            "Histogram of {}; the outer bars include the extreme thousandths",
+            world_draw.description
+        ),
         x_axis: GraphAxis { label: "value", scale: AxisScale::Linear },
         y_axis: GraphAxis { label: "draws", scale: AxisScale::Linear },
         series: vec![Series { name: "draws".to_owned(), points }],

@@ -84,8 +84,8 @@ impl WorldDraw {
     /// # Errors
     /// Returns the most similar names if there is none.
     pub fn find(name: &str) -> Result<&'static WorldDraw, Vec<&'static str>> {
-        let found = super::world_draws().find(|own| own.name == name);
-        found.ok_or_else(|| similar_names(name, super::world_draws().map(|own| own.name)))
+        let found = super::world_draws().find(|world_draw| world_draw.name == name);
+        found.ok_or_else(|| similar_names(name, super::world_draws().map(|draw| draw.name)))
     }
 
     /// Returns the first draws for a member.

@@ -96,7 +96,7 @@ impl Experiment {
 pub fn groups_of_equal<T: Ord>(items: Vec<T>) -> Vec<Vec<usize>> {
     let mut places: BTreeMap<T, Vec<usize>> = BTreeMap::new();
     items.into_iter().enumerate().for_each(|(at, item)| places.entry(item).or_default().push(at));
-    let mut groups: Vec<Vec<usize>> = places.into_values().filter(|own| own.len() > 1).collect();
+    let mut groups: Vec<Vec<usize>> = places.into_values().filter(|numbers| numbers.len() > 1).collect();
     groups.sort_unstable();
     groups
 }

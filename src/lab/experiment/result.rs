@@ -141,44 +141,44 @@ impl RunRecorder {
 
     pub(super) fn add_day(&mut self, report: &DayReport<'_>) {
         self.collector.add_day(report);
-        let own = report.figures;
-        if own.individual_subscribers > self.peak.0 {
-            self.peak = (own.individual_subscribers, own.day);
+        let day_figures = report.figures;
+        if day_figures.individual_subscribers > self.peak.0 {
+            self.peak = (day_figures.individual_subscribers, day_figures.day);
         }
         self.daily.iter_mut().for_each(|days| {
             days.push(DayPoint {
-                day: own.day,
-                cash: own.cash,
-                mrr: own.mrr,
-                subscribers: own.individual_subscribers,
-                seats: own.enterprise_seats,
-                individual_leads: own.new_individual_leads,
-                enterprise_leads: own.new_enterprise_leads,
-                new_subscribers: own.new_individual_subscribers,
-                cancellations: own.cancellations,
-                payments: own.payments_received,
-                running_costs: own.total_costs,
-                other: own.cash - self.cash - own.payments_received + own.total_costs,
-                usage: own.total_usage,
+                day: day_figures.day,
+                cash: day_figures.cash,
+                mrr: day_figures.mrr,
+                subscribers: day_figures.individual_subscribers,
+                seats: day_figures.enterprise_seats,
+                individual_leads: day_figures.new_individual_leads,
+                enterprise_leads: day_figures.new_enterprise_leads,
+                new_subscribers: day_figures.new_individual_subscribers,
+                cancellations: day_figures.cancellations,
+                payments: day_figures.payments_received,
+                running_costs: day_figures.total_costs,
+                other: day_figures.cash - self.cash - day_figures.payments_received + day_figures.total_costs,
+                usage: day_figures.total_usage,
             });
         });
-        (self.cash, self.mrr) = (own.cash, own.mrr);
+        (self.cash, self.mrr) = (day_figures.cash, day_figures.mrr);
     }
 
     /// Returns the result after the end of the run.
     pub(super) fn into_result(self, outcome: PolicyRunOutcome, weeks: &[WeekFigures]) -> RunResult {
-        let week = |own: &WeekFigures| WeekPoint {
-            day: own.day,
-            cash: own.cash,
-            subscribers: own.individual_subscribers,
-            seats: own.enterprise_seats,
-            mrr: own.recurring_revenue,
+        let week = |week_figures: &WeekFigures| WeekPoint {
+            day: week_figures.day,
+            cash: week_figures.cash,
+            subscribers: week_figures.individual_subscribers,
+            seats: week_figures.enterprise_seats,
+            mrr: week_figures.recurring_revenue,
         };
-        let figures = self.collector.finish(outcome.days).into_iter().map(|own| FigurePoint {
-            day: own.day,
-            figure: own.figure.to_owned(),
-            group: own.group.to_owned(),
-            value: own.value,
+        let figures = self.collector.finish(outcome.days).into_iter().map(|metric_value| FigurePoint {
+            day: metric_value.day,
+            figure: metric_value.figure.to_owned(),
+            group: metric_value.group.to_owned(),
+            value: metric_value.value,
         });
         RunResult {
             seed: outcome.seed,

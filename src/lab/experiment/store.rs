@@ -78,7 +78,8 @@ impl ResultStore {
         let (mut known, mut line) = (BTreeMap::new(), Vec::new());
         while reader.read_until(b'\n', &mut line)? > 0 {
             let stored: Option<StoredLine<RunResult>> = serde_json::from_slice(&line).ok();
-            let wanted = stored.filter(|own| keys.contains(own.key.as_str()) && own.is_intact());
+            let wanted = stored
+                .filter(|stored_line| keys.contains(stored_line.key.as_str()) && stored_line.is_intact());
             if let Some(own) = wanted {
                 known.insert(own.key, own.result);
             }

@@ -76,7 +76,7 @@ fn stored_results_are_reused() {
 #[test]
 fn stopped_experiment_resumes_with_equal_results() {
     let folder = tempfile::tempdir().expect("a folder");
-    let whole =
+    let experiment_results =
         run_experiment(&experiment(), &folder.path().join("whole.jsonl"), false, 99).0.expect("results");
     let path = folder.path().join("parts.jsonl");
     let (stopped, played) = run_experiment(&experiment(), &path, false, 2);
@@ -85,14 +85,14 @@ fn stopped_experiment_resumes_with_equal_results() {
         other => panic!("{other:?}"),
     }
     let (rest, again) = run_experiment(&experiment(), &path, false, 99);
-    assert_eq!((rest.expect("results"), played + again), (whole, 6));
+    assert_eq!((rest.expect("results"), played + again), (experiment_results, 6));
 }
 
 #[test]
 fn truncated_file_loses_at_most_one_run() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("results.jsonl");
-    let whole = run_experiment(&experiment(), &path, false, 99).0.expect("results");
+    let experiment_results = run_experiment(&experiment(), &path, false, 99).0.expect("results");
     let bytes = std::fs::read(&path).expect("results");
     let lines = bytes.iter().filter(|byte| **byte == b'\n').count();
     assert_eq!(lines, 6);
@@ -100,11 +100,11 @@ fn truncated_file_loses_at_most_one_run() {
         std::fs::write(&path, &bytes[..cut]).expect("a cut file");
         let left = bytes[..cut].iter().filter(|byte| **byte == b'\n').count();
         let (results, played) = run_experiment(&experiment(), &path, false, 99);
-        assert_eq!(results.expect("results"), whole, "cut at {cut}");
+        assert_eq!(results.expect("results"), experiment_results, "cut at {cut}");
         // A line that lacks only its line end is complete.
         assert!(played == 6 - left || (cut + 1 == bytes.len() && played == 0), "cut at {cut}: {played}");
         let (again, played) = run_experiment(&experiment(), &path, false, 99);
-        assert_eq!((again.expect("results"), played), (whole.clone(), 0), "cut at {cut}");
+        assert_eq!((again.expect("results"), played), (experiment_results.clone(), 0), "cut at {cut}");
     }
 }
 
@@ -112,7 +112,7 @@ fn truncated_file_loses_at_most_one_run() {
 fn altered_result_is_replayed() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("results.jsonl");
-    let whole = run_experiment(&experiment(), &path, false, 99).0.expect("results");
+    let experiment_results = run_experiment(&experiment(), &path, false, 99).0.expect("results");
     let text = std::fs::read_to_string(&path).expect("results");
     for (from, to) in [
         ("\"cash\":", "\"cash\":1"),
@@ -123,7 +123,7 @@ fn altered_result_is_replayed() {
         assert_ne!(changed, text);
         std::fs::write(&path, changed).expect("written");
         let (again, played) = run_experiment(&experiment(), &path, false, 99);
-        assert_eq!((again.expect("results"), played), (whole.clone(), 1), "{from}");
+        assert_eq!((again.expect("results"), played), (experiment_results.clone(), 1), "{from}");
     }
 }
 

@@ -105,15 +105,15 @@ fn csv_cells(column: &Column, cell: &CellValue) -> Vec<String> {
     }
 }
 
-fn graph_json(own: &Graph) -> Value {
+fn graph_json(graph: &Graph) -> Value {
     let point = |(x, y): &(f64, f64)| json!([json_number(*x), json_number(*y)]);
-    let series = own.series.iter().map(|series| {
+    let series = graph.series.iter().map(|series| {
         json!({ "name": series.name, "points": series.points.iter().map(point).collect::<Vec<_>>() })
     });
     json!({
-        "title": own.title,
-        "across": { "label": own.x_axis.label, "scale": own.x_axis.scale.name() },
-        "up": { "label": own.y_axis.label, "scale": own.y_axis.scale.name() },
+        "title": graph.title,
+        "across": { "label": graph.x_axis.label, "scale": graph.x_axis.scale.name() },
+        "up": { "label": graph.y_axis.label, "scale": graph.y_axis.scale.name() },
         "series": series.collect::<Vec<_>>(),
     })
 }

@@ -71,8 +71,8 @@ impl Graph {
     pub fn to_text(&self, width: usize, rows: usize) -> String {
         let mut text = wrap_text(&self.title, width).join("\n") + "\n";
         match (self.form, self.series.first()) {
-            (GraphForm::Bars, Some(own)) => {
-                text += &bars(&merge_bars(&own.points), width);
+            (GraphForm::Bars, Some(series)) => {
+                text += &bars(&merge_bars(&series.points), width);
                 text += &format!("{} by {}\n", self.y_axis.label, self.x_axis.label);
             }
             _ => {

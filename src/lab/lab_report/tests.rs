@@ -118,13 +118,13 @@ fn graphs_fit_as_text_and_are_self_contained_as_svg() {
     };
     let bars = Graph { form: GraphForm::Bars, ..graph.clone() };
     assert_eq!(sample_report().to_svg(), None);
-    let own = LabReport { graphs: vec![graph, bars], ..sample_report() };
-    let text = own.to_text(60);
+    let lab_report = LabReport { graphs: vec![graph, bars], ..sample_report() };
+    let text = lab_report.to_text(60);
     assert!(text.lines().all(|line| line.width() <= 60), "{text}");
     let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
     let legend = "x: day (logarithmic), y: subscribers (logarithmic): * off; + hard <1>";
     assert!(words.contains(legend) && text.contains('█'), "{text}");
-    let svg = own.to_svg().expect("graphs");
+    let svg = lab_report.to_svg().expect("graphs");
     assert!(svg.contains("hard &lt;1&gt;") && svg.contains("<rect class=\"part f1\""), "{svg}");
-    assert_eq!(own.to_json()["graphs"][0]["series"][1]["points"][0], serde_json::json!([1, 1]));
+    assert_eq!(lab_report.to_json()["graphs"][0]["series"][1]["points"][0], serde_json::json!([1, 1]));
 }

@@ -16,7 +16,10 @@ impl LabReport {
         let width = width.max(40);
         let mut parts = vec![wrap_text(&self.title, width).join("\n")];
         parts.extend(
-            self.tables.iter().filter(|own| !own.is_machine_readable_only).map(|own| own.to_text(width)),
+            self.tables
+                .iter()
+                .filter(|lab_table| !lab_table.is_machine_readable_only)
+                .map(|own| own.to_text(width)),
         );
         parts.extend(self.graphs.iter().map(|graph| graph.to_text(width, GRAPH_ROWS)));
         let apart = self.tables.iter().filter(|table| table.is_machine_readable_only);
@@ -68,8 +71,9 @@ impl<'a> TextLayout<'a> {
         };
         let cells: Vec<Vec<String>> = table.rows.iter().chain(&table.summary).map(write).collect();
         let width = |(at, column): (usize, &Column)| {
-            let own = cells.iter().filter_map(|row| row.get(at)).map(|cell| cell.width()).max().unwrap_or(0);
-            own.max(longest_word(&column.heading))
+            let number =
+                cells.iter().filter_map(|row| row.get(at)).map(|cell| cell.width()).max().unwrap_or(0);
+            number.max(longest_word(&column.heading))
         };
         let widths = table.columns.iter().enumerate().map(width).collect();
         TextLayout { columns: &table.columns, cells, rows: table.rows.len(), widths }
@@ -107,7 +111,7 @@ impl<'a> TextLayout<'a> {
             };
             self.widths[widest] -= 1;
         }
-        self.widths.iter_mut().for_each(|own| *own = (*own).min(width));
+        self.widths.iter_mut().for_each(|number| *number = (*number).min(width));
         self
     }
 
@@ -125,7 +129,8 @@ impl<'a> TextLayout<'a> {
 
     /// Returns how many leading text columns identify all rows; 1 if they do not.
     fn identifying_columns(&self) -> usize {
-        let is_words = |at: &usize| self.columns.get(*at).is_some_and(|own| own.kind == ColumnKind::Text);
+        let is_words =
+            |at: &usize| self.columns.get(*at).is_some_and(|column| column.kind == ColumnKind::Text);
         let words = (0..self.columns.len()).take_while(is_words).count();
         let tells_apart = |count: &usize| {
             let mut names: Vec<&[String]> = self.cells.iter().filter_map(|row| row.get(..*count)).collect();
@@ -148,7 +153,7 @@ impl<'a> TextLayout<'a> {
 
     /// Returns the width of the first columns including gaps.
     fn width_of_first(&self, count: usize) -> usize {
-        self.widths.iter().take(count).map(|own| own + COLUMN_GAP).sum()
+        self.widths.iter().take(count).map(|number| number + COLUMN_GAP).sum()
     }
 
     /// Splits the columns into panels. Each panel repeats the row names.
@@ -179,8 +184,10 @@ impl<'a> TextLayout<'a> {
             panel.iter().map(|at| wrap_text(&self.columns[*at].heading, self.widths[*at])).collect();
         let height = heads.iter().map(Vec::len).max().unwrap_or(0);
         // Headings are aligned to the rule at the bottom.
-        let heads: Vec<Vec<String>> =
-            heads.into_iter().map(|own| [vec![String::new(); height - own.len()], own].concat()).collect();
+        let heads: Vec<Vec<String>> = heads
+            .into_iter()
+            .map(|texts| [vec![String::new(); height - texts.len()], texts].concat())
+            .collect();
         let mut text = self.format_rows(panel, &heads);
         let across =
             panel.iter().map(|at| self.widths[*at] + COLUMN_GAP).sum::<usize>().saturating_sub(COLUMN_GAP);
@@ -251,8 +258,8 @@ fn split_word(word: &str, width: usize) -> Vec<String> {
 /// Appends characters to the last piece, starting a new one when it is full.
 fn push_chars(part: &str, width: usize, pieces: &mut Vec<String>) {
     for letter in part.chars() {
-        let mut own = [0; 4];
-        let letter: &str = letter.encode_utf8(&mut own);
+        let mut bytes = [0; 4];
+        let letter: &str = letter.encode_utf8(&mut bytes);
         match pieces.last_mut().filter(|piece| piece.width() + letter.width() <= width || piece.is_empty()) {
             Some(piece) => *piece += letter,
             None => pieces.push(letter.to_owned()),

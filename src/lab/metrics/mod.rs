@@ -96,8 +96,8 @@ impl Collector {
         self.weights.resize(daily.len(), 0.0);
         self.windows.resize(daily.len(), VecDeque::new());
         let keep = self.recorded_days.as_ref().is_none_or(|days| days.contains(&self.last_day));
-        for (at, own) in daily.into_iter().enumerate() {
-            let value = match (own.kind, own.value) {
+        for (at, daily_value) in daily.into_iter().enumerate() {
+            let value = match (daily_value.kind, daily_value.value) {
                 (Aggregation::Latest, value) => value,
                 (Aggregation::Sum, value) => {
                     self.sums[at] += value.unwrap_or(0.0);
@@ -120,8 +120,8 @@ impl Collector {
             if let Some(value) = value.filter(|_| keep) {
                 self.figures.push(MetricValue {
                     day: self.last_day,
-                    figure: own.figure,
-                    group: own.group,
+                    figure: daily_value.figure,
+                    group: daily_value.group,
                     value,
                 });
             }

@@ -148,10 +148,10 @@ impl Policy {
             let text = std::fs::read_to_string(name).map_err(|error| wrong(error.to_string()))?;
             return Policy::parse(&ParameterSource { name: name.to_owned(), text });
         }
-        let own = configuration
+        let parameter_source = configuration
             .read_file(format!("policies/{name}.toml"))
             .map_err(|error| wrong(error.to_string()))?;
-        if let Some(source) = own {
+        if let Some(source) = parameter_source {
             return Policy::parse(&source);
         }
         match novamind_assets::policies().into_iter().find(|(shipped, _)| *shipped == name) {

@@ -34,9 +34,10 @@ pub fn attempts_report(title: String, tries: &[AttemptResult]) -> LabReport {
         Column::number("exit_code", "exit code", Measure::Count),
         Column::text("selected", "selected"),
     ];
-    let finished: Vec<&FinishedRun> = tries.iter().filter_map(|own| own.result.as_ref()).collect();
+    let finished: Vec<&FinishedRun> =
+        tries.iter().filter_map(|attempt_result| attempt_result.result.as_ref()).collect();
     let best = best_run(&finished).map(|run| run.run.clone());
-    let rows = tries.iter().map(|own| row_cells(own, best.as_deref())).collect();
+    let rows = tries.iter().map(|result| row_cells(result, best.as_deref())).collect();
     let mut exhibit = LabReport::with_table(title, LabTable { rows, ..LabTable::new("tries", "", columns) });
     exhibit.notes.push(
         "Selected: the run with the most final cash; if all runs went bankrupt, the one with the longest life.".to_owned(),
@@ -58,22 +59,22 @@ pub fn attempts_report(title: String, tries: &[AttemptResult]) -> LabReport {
     exhibit
 }
 
-fn row_cells(own: &AttemptResult, best: Option<&str>) -> Vec<CellValue> {
-    let end = match &own.result {
+fn row_cells(attempt_result: &AttemptResult, best: Option<&str>) -> Vec<CellValue> {
+    let end = match &attempt_result.result {
         None => "unfinished",
         Some(run) if run.is_bankrupt => "bankrupt",
         Some(_) => "last day",
     };
     vec![
-        CellValue::Number(f64::from(own.number)),
-        CellValue::text(&*own.run),
+        CellValue::Number(f64::from(attempt_result.number)),
+        CellValue::text(&*attempt_result.run),
         CellValue::text(end),
-        CellValue::Number(f64::from(own.day)),
-        CellValue::number(own.result.as_ref().map(|run| run.score)),
-        CellValue::number(own.result.as_ref().map(|run| run.calls_per_week)),
-        CellValue::Number(f64::from(own.starts)),
-        CellValue::number(own.exit_code.map(f64::from)),
-        CellValue::text(if best == Some(own.run.as_str()) { "yes" } else { "" }),
+        CellValue::Number(f64::from(attempt_result.day)),
+        CellValue::number(attempt_result.result.as_ref().map(|run| run.score)),
+        CellValue::number(attempt_result.result.as_ref().map(|run| run.calls_per_week)),
+        CellValue::Number(f64::from(attempt_result.starts)),
+        CellValue::number(attempt_result.exit_code.map(f64::from)),
+        CellValue::text(if best == Some(attempt_result.run.as_str()) { "yes" } else { "" }),
     ]
 }
 

@@ -191,9 +191,9 @@ impl ResultsTable {
                 None => played_by_people += 1,
             }
         }
-        let has_one_twice = |own: &Vec<&FinishedRun>| {
-            let seeds: BTreeSet<u64> = own.iter().map(|run| run.seed).collect();
-            seeds.len() < own.len()
+        let has_one_twice = |finished_runs: &Vec<&FinishedRun>| {
+            let seeds: BTreeSet<u64> = finished_runs.iter().map(|run| run.seed).collect();
+            seeds.len() < finished_runs.len()
         };
         let again: Vec<&str> =
             groups.iter().filter(|(_, own)| has_one_twice(own)).map(|((_, name), _)| name.as_str()).collect();

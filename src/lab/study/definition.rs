@@ -141,25 +141,30 @@ impl StudyPlan {
         daily: bool,
         configuration: &Configuration,
     ) -> Result<StudyPlan, ParameterError> {
-        let own = source.parse()?;
+        let study_file = source.parse()?;
         let fits = |letter: char| letter.is_ascii_alphanumeric() || "-_".contains(letter);
-        if own.name.is_empty() || own.name.len() > 60 || !own.name.chars().all(fits) {
+        if study_file.name.is_empty() || study_file.name.len() > 60 || !study_file.name.chars().all(fits) {
             let problem = "use up to 60 letters, digits, hyphens and underscores";
             return Err(source.error_at_key("name", problem));
         }
-        let policies = read_policies(source, &own, folder, configuration)?;
-        check_scenarios(source, &own)?;
-        check_days_and_cash(source, &own)?;
-        let levels = varied_factors(source, &own)?;
-        let seeds = read_seeds(source, &own, (policies.len() * own.scenarios.len().max(1)) as u64, &levels)?;
+        let policies = read_policies(source, &study_file, folder, configuration)?;
+        check_scenarios(source, &study_file)?;
+        check_days_and_cash(source, &study_file)?;
+        let levels = varied_factors(source, &study_file)?;
+        let seeds = read_seeds(
+            source,
+            &study_file,
+            (policies.len() * study_file.scenarios.len().max(1)) as u64,
+            &levels,
+        )?;
         let mut factors = vec!["policy".to_owned(), "scenario".to_owned()];
         factors.extend(levels.names.iter().cloned());
         let (mut arms, mut labels, mut replays_a_record) = (Vec::new(), Vec::new(), false);
         for policy in &policies {
-            for scenario in scenarios_for(&own, policy) {
+            for scenario in scenarios_for(&study_file, policy) {
                 for level in &levels.all {
-                    let arm = own.build_arm(policy, &scenario, level);
-                    let params = validated_parameters(source, &own, &arm, configuration)?;
+                    let arm = study_file.build_arm(policy, &scenario, level);
+                    let params = validated_parameters(source, &study_file, &arm, configuration)?;
                     replays_a_record |= params.series.replayed != Replayed::None;
                     arms.push(arm);
                     let words = [policy.name.clone(), scenario.clone()];
@@ -167,9 +172,9 @@ impl StudyPlan {
                 }
             }
         }
-        let wanted = RecordedFigures { daily: own.daily || daily, figures_on: Vec::new() };
+        let wanted = RecordedFigures { daily: study_file.daily || daily, figures_on: Vec::new() };
         Ok(StudyPlan {
-            name: own.name,
+            name: study_file.name,
             factors,
             levels: labels,
             replays_a_record,
@@ -204,24 +209,24 @@ impl StudyFile {
 }
 
 /// Returns the scenarios of a policy: those of the study, otherwise its own.
-fn scenarios_for(own: &StudyFile, policy: &Policy) -> Vec<String> {
-    match own.scenarios.is_empty() {
+fn scenarios_for(study_file: &StudyFile, policy: &Policy) -> Vec<String> {
+    match study_file.scenarios.is_empty() {
         true => vec![policy.start.scenario.clone().unwrap_or(DEFAULT_SCENARIO.to_owned())],
-        false => own.scenarios.clone(),
+        false => study_file.scenarios.clone(),
     }
 }
 
 fn read_policies(
     source: &StudySource<'_>,
-    own: &StudyFile,
+    study_file: &StudyFile,
     folder: &Path,
     configuration: &Configuration,
 ) -> Result<Vec<Policy>, ParameterError> {
-    if own.policies.is_empty() {
+    if study_file.policies.is_empty() {
         return Err(source.error_at_key("policies", "a study needs at least one policy"));
     }
     let mut found: Vec<Policy> = Vec::new();
-    for (at, name) in own.policies.iter().enumerate() {
+    for (at, name) in study_file.policies.iter().enumerate() {
         let key = format!("policies.{at}");
         let is_file = name.ends_with(".toml") || name.contains(std::path::is_separator);
         let place = if is_file { folder.join(name).display().to_string() } else { name.clone() };
@@ -236,15 +241,15 @@ fn read_policies(
 }
 
 /// Checks that scenarios are unique and that the list is not empty.
-fn check_scenarios(source: &StudySource<'_>, own: &StudyFile) -> Result<(), ParameterError> {
-    if own.scenarios.is_empty() && line_of_key(source.text, "scenarios").is_some() {
+fn check_scenarios(source: &StudySource<'_>, study_file: &StudyFile) -> Result<(), ParameterError> {
+    if study_file.scenarios.is_empty() && line_of_key(source.text, "scenarios").is_some() {
         let problem = "the list is empty; leave the key out to play each policy's own scenario";
         return Err(source.error_at_key("scenarios", problem));
     }
-    let twice = |at: &usize| own.scenarios[..*at].contains(&own.scenarios[*at]);
-    match (0..own.scenarios.len()).find(twice) {
+    let twice = |at: &usize| study_file.scenarios[..*at].contains(&study_file.scenarios[*at]);
+    match (0..study_file.scenarios.len()).find(twice) {
         Some(at) => {
-            let problem = format!("scenario {} appears twice", own.scenarios[at]);
+            let problem = format!("scenario {} appears twice", study_file.scenarios[at]);
             Err(source.error_at_key(&format!("scenarios.{at}"), problem))
         }
         None => Ok(()),
@@ -284,12 +289,12 @@ struct VariedFactors {
     all: Vec<FactorLevel>,
 }
 
-fn varied_factors(source: &StudySource<'_>, own: &StudyFile) -> Result<VariedFactors, ParameterError> {
+fn varied_factors(source: &StudySource<'_>, study_file: &StudyFile) -> Result<VariedFactors, ParameterError> {
     let (mut names, mut all) = (Vec::new(), vec![FactorLevel::default()]);
-    if !own.overrides.is_empty() {
+    if !study_file.overrides.is_empty() {
         names.push("overrides".to_owned());
         let mut sets: Vec<FactorLevel> = Vec::new();
-        for (at, set) in own.overrides.iter().enumerate() {
+        for (at, set) in study_file.overrides.iter().enumerate() {
             let is_taken = sets.iter().any(|other| other.labels[0] == set.name);
             if set.name.is_empty() || is_taken || set.name.chars().any(char::is_control) {
                 let problem = "every set of overrides needs a unique name";
@@ -310,7 +315,7 @@ fn varied_factors(source: &StudySource<'_>, own: &StudyFile) -> Result<VariedFac
         }
         all = cross_levels(&all, &sets);
     }
-    let grid = flatten_table(&own.grid);
+    let grid = flatten_table(&study_file.grid);
     check_reserved_parameters(source, "grid", grid.iter().map(|(key, _)| key))?;
     let is_set = |key: &String| all.iter().any(|level| level.overrides.iter().any(|(own, _)| own == key));
     if let Some((key, _)) = grid.iter().find(|(key, _)| is_set(key)) {
@@ -339,16 +344,16 @@ fn varied_factors(source: &StudySource<'_>, own: &StudyFile) -> Result<VariedFac
             let label = value.as_str().map_or(text.clone(), str::to_owned);
             FactorLevel { labels: vec![label], overrides: vec![(key.clone(), text)] }
         };
-        let own: Vec<FactorLevel> = values.iter().map(level).collect();
+        let factor_levels: Vec<FactorLevel> = values.iter().map(level).collect();
         names.push(key.clone());
-        all = cross_levels(&all, &own);
+        all = cross_levels(&all, &factor_levels);
     }
     Ok(VariedFactors { names, all })
 }
 
 fn read_seeds(
     source: &StudySource<'_>,
-    own: &StudyFile,
+    study_file: &StudyFile,
     arms: u64,
     levels: &VariedFactors,
 ) -> Result<Vec<u64>, ParameterError> {
@@ -360,7 +365,7 @@ fn read_seeds(
         );
         source.error_at_key("seeds", problem)
     };
-    let seeds: Vec<u64> = match &own.seeds {
+    let seeds: Vec<u64> = match &study_file.seeds {
         SeedList::One(seed) => vec![*seed],
         SeedList::List(seeds) => seeds.clone(),
         SeedList::Range(text) => {
@@ -384,10 +389,10 @@ fn read_seeds(
     }
 }
 
-fn check_days_and_cash(source: &StudySource<'_>, own: &StudyFile) -> Result<(), ParameterError> {
-    own.days.map_or(Ok(()), check_days).map_err(|problem| source.error_at_key("days", problem))?;
-    own.cash.map_or(Ok(()), check_cash).map_err(|problem| source.error_at_key("cash", problem))?;
-    match own.until {
+fn check_days_and_cash(source: &StudySource<'_>, study_file: &StudyFile) -> Result<(), ParameterError> {
+    study_file.days.map_or(Ok(()), check_days).map_err(|problem| source.error_at_key("days", problem))?;
+    study_file.cash.map_or(Ok(()), check_cash).map_err(|problem| source.error_at_key("cash", problem))?;
+    match study_file.until {
         Some(0) => Err(source.error_at_key("until", "until must be at least 1")),
         _ => Ok(()),
     }
@@ -396,11 +401,11 @@ fn check_days_and_cash(source: &StudySource<'_>, own: &StudyFile) -> Result<(), 
 /// Checks that the runs of an arm can start.
 fn validated_parameters(
     source: &StudySource<'_>,
-    own: &StudyFile,
+    study_file: &StudyFile,
     arm: &Arm,
     configuration: &Configuration,
 ) -> Result<Params, ParameterError> {
-    let error = match (arm.run_conditions(configuration), own.until) {
+    let error = match (arm.run_conditions(configuration), study_file.until) {
         (Ok((days, ..)), Some(until)) if until > days => {
             return Err(source.error_at_key("until", format!("its runs end on day {days}")));
         }
@@ -413,12 +418,12 @@ fn validated_parameters(
         };
         let given = arm.spec.overrides.iter().map(|(key, _)| key).find(concerns);
         if let Some(key) = given {
-            let is_of_grid = flatten_table(&own.grid).iter().any(|(other, _)| other == key);
+            let is_of_grid = flatten_table(&study_file.grid).iter().any(|(other, _)| other == key);
             let within = if is_of_grid { "grid" } else { "overrides" };
             return Err(source.override_error(within, key, wrong.problem.clone()));
         }
     }
-    let at = own.scenarios.iter().position(|name| Some(name) == arm.spec.scenario.as_ref());
+    let at = study_file.scenarios.iter().position(|name| Some(name) == arm.spec.scenario.as_ref());
     let key = at.map_or("policies".to_owned(), |at| format!("scenarios.{at}"));
     Err(source.error_at_key(&key, error.to_string()))
 }

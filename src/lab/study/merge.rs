@@ -102,22 +102,22 @@ impl ShardSet {
     pub fn write(&self, out: &mut impl Write) -> io::Result<()> {
         let mut readers = Vec::new();
         for (at, file) in self.files.iter().enumerate() {
-            let mut own = RowReader { lines: BufReader::new(File::open(file)?), line: Vec::new() };
-            own.read_next()?;
-            own.read_next()?;
+            let mut row_reader = RowReader { lines: BufReader::new(File::open(file)?), line: Vec::new() };
+            row_reader.read_next()?;
+            row_reader.read_next()?;
             if at == 0 {
-                out.write_all(&own.line)?;
+                out.write_all(&row_reader.line)?;
             }
-            own.read_next()?;
-            readers.push(own);
+            row_reader.read_next()?;
+            readers.push(row_reader);
         }
         for run in 1.. {
             let count = readers.len();
-            let own = &mut readers[(run - 1) % count];
+            let reader = &mut readers[(run - 1) % count];
             let mut has_rows = false;
-            while own.run_number() == Some(run) {
-                out.write_all(&own.line)?;
-                own.read_next()?;
+            while reader.run_number() == Some(run) {
+                out.write_all(&reader.line)?;
+                reader.read_next()?;
                 has_rows = true;
             }
             if !has_rows {
@@ -170,10 +170,10 @@ fn shard_files(places: &[PathBuf]) -> Result<Vec<PathBuf>, MergeError> {
         }
         let entries = std::fs::read_dir(place)
             .map_err(|error| MergeError::single(format!("{}: {error}", place.display())))?;
-        let mut own: Vec<PathBuf> =
+        let mut paths: Vec<PathBuf> =
             entries.flatten().map(|entry| entry.path()).filter(|path| is_named_as_shard(path)).collect();
-        own.sort_unstable();
-        all.extend(own);
+        paths.sort_unstable();
+        all.extend(paths);
     }
     // A file that is given twice counts once.
     let mut seen = std::collections::BTreeSet::new();

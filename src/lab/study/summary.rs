@@ -40,7 +40,7 @@ pub fn study_summary(plan: &StudyPlan, results: &[RunResult]) -> LabReport {
         row.extend(differs.then(|| CellValue::number(start(runs))));
         row.extend([
             CellValue::number(alive / runs.len().max(1) as f64),
-            CellValue::number(middle.map(|own| own.lower)),
+            CellValue::number(middle.map(|quartiles| quartiles.lower)),
             CellValue::number(middle.map(|own| own.median)),
             CellValue::number(middle.map(|own| own.upper)),
             CellValue::interval(Interval::for_median(&cash)),

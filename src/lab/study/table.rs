@@ -36,9 +36,9 @@ const DAY_COLUMNS: [&str; 13] = [
 
 /// Returns the names of the columns.
 pub fn column_names(plan: &StudyPlan) -> Vec<String> {
-    let own: &[&str] = if plan.experiment.recorded.daily { &DAY_COLUMNS } else { &RUN_COLUMNS };
+    let texts: &[&str] = if plan.experiment.recorded.daily { &DAY_COLUMNS } else { &RUN_COLUMNS };
     let before = std::iter::once("run".to_owned()).chain(plan.factors.iter().cloned());
-    before.chain(["seed".to_owned()]).chain(own.iter().map(|name| (*name).to_owned())).collect()
+    before.chain(["seed".to_owned()]).chain(texts.iter().map(|name| (*name).to_owned())).collect()
 }
 
 /// Returns the rows of a run, given its index. Numbers have the shortest form that parses to the same value.
@@ -47,48 +47,48 @@ pub fn rows(plan: &StudyPlan, number: usize, result: &RunResult) -> Vec<Vec<Stri
     let mut before = vec![(number + 1).to_string()];
     before.extend(levels.iter().cloned());
     before.push(seed.to_string());
-    let row = |own: Vec<String>| before.iter().cloned().chain(own).collect();
+    let row = |texts: Vec<String>| before.iter().cloned().chain(texts).collect();
     if plan.experiment.recorded.daily {
         return result.daily.iter().map(day_cells).map(row).collect();
     }
     vec![row(run_cells(result))]
 }
 
-fn run_cells(own: &RunResult) -> Vec<String> {
-    let ended = match own.ended {
+fn run_cells(run_result: &RunResult) -> Vec<String> {
+    let ended = match run_result.ended {
         RunEnd::Horizon => "horizon",
         RunEnd::Until => "until",
         RunEnd::Bankruptcy => "bankruptcy",
     };
     vec![
-        own.start_cash.to_string(),
-        own.days.to_string(),
-        own.day.to_string(),
+        run_result.start_cash.to_string(),
+        run_result.days.to_string(),
+        run_result.day.to_string(),
         ended.to_owned(),
-        own.cash.to_string(),
-        own.subscribers.to_string(),
-        own.seats.to_string(),
-        own.peak_subscribers.to_string(),
-        own.peak_day.to_string(),
-        own.mrr.to_string(),
-        own.state_hash.clone(),
+        run_result.cash.to_string(),
+        run_result.subscribers.to_string(),
+        run_result.seats.to_string(),
+        run_result.peak_subscribers.to_string(),
+        run_result.peak_day.to_string(),
+        run_result.mrr.to_string(),
+        run_result.state_hash.clone(),
     ]
 }
 
-fn day_cells(own: &DayPoint) -> Vec<String> {
+fn day_cells(day_point: &DayPoint) -> Vec<String> {
     vec![
-        own.day.to_string(),
-        own.cash.to_string(),
-        own.mrr.to_string(),
-        own.subscribers.to_string(),
-        own.seats.to_string(),
-        own.individual_leads.to_string(),
-        own.enterprise_leads.to_string(),
-        own.new_subscribers.to_string(),
-        own.cancellations.to_string(),
-        own.payments.to_string(),
-        own.running_costs.to_string(),
-        own.other.to_string(),
-        own.usage.to_string(),
+        day_point.day.to_string(),
+        day_point.cash.to_string(),
+        day_point.mrr.to_string(),
+        day_point.subscribers.to_string(),
+        day_point.seats.to_string(),
+        day_point.individual_leads.to_string(),
+        day_point.enterprise_leads.to_string(),
+        day_point.new_subscribers.to_string(),
+        day_point.cancellations.to_string(),
+        day_point.payments.to_string(),
+        day_point.running_costs.to_string(),
+        day_point.other.to_string(),
+        day_point.usage.to_string(),
     ]
 }

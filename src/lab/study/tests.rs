@@ -185,9 +185,9 @@ fn write_shards(folder: &Path, runs: usize, of: usize, has_many: bool) -> (Strin
     let whole = format!("run,what\n{}", (1..=runs).map(rows).collect::<String>());
     let write = |shard| {
         let part = Shard { shard, of };
-        let own: String = part.run_numbers(runs).into_iter().map(|number| rows(number + 1)).collect();
+        let text: String = part.run_numbers(runs).into_iter().map(|number| rows(number + 1)).collect();
         let path = folder.join(ShardHead::file_name("s", part));
-        fs::write(&path, ShardHead::with_checksum("s", "d", part, &format!("run,what\n{own}")))
+        fs::write(&path, ShardHead::with_checksum("s", "d", part, &format!("run,what\n{text}")))
             .expect("a file");
         path
     };

@@ -93,10 +93,13 @@ impl Interpreter {
                     hit["condition"] = condition.to_string().into();
                     hit
                 };
-                let hits = run
-                    .hits
-                    .iter()
-                    .map(|own| hit(&own.breakpoint.condition, own.breakpoint.number, &own.state));
+                let hits = run.hits.iter().map(|breakpoint_hit| {
+                    hit(
+                        &breakpoint_hit.breakpoint.condition,
+                        breakpoint_hit.breakpoint.number,
+                        &breakpoint_hit.state,
+                    )
+                });
                 data["stopped_by"] = hits.collect();
                 let told = super::advance::week_response("run", &self.session, &run.week).to_text();
                 let text = format!("{told}{}", describe_stop(&run, day, set).join("\n"));
@@ -120,9 +123,11 @@ impl Interpreter {
         let found = match (rest, rest.parse::<u32>()) {
             ("", _) => self.session.inspect().breakpoint_histories(None),
             (_, Ok(number)) => self.session.inspect().breakpoint_histories(Some(number)),
-            _ => {
-                self.session.inspect().condition_history(parse_condition(rest, column)?).map(|own| vec![own])
-            }
+            _ => self
+                .session
+                .inspect()
+                .condition_history(parse_condition(rest, column)?)
+                .map(|condition_history| vec![condition_history]),
         };
         Ok(match found {
             Ok(found) if found.is_empty() => {
@@ -181,28 +186,28 @@ fn breakpoints_to_json(set: &[Breakpoint]) -> Vec<Value> {
     set.iter().map(breakpoint_to_json).collect()
 }
 
-fn breakpoint_to_json(own: &Breakpoint) -> Value {
-    json!({ "number": own.number, "condition": own.condition.to_string() })
+fn breakpoint_to_json(breakpoint: &Breakpoint) -> Value {
+    json!({ "number": breakpoint.number, "condition": breakpoint.condition.to_string() })
 }
 
-pub(super) fn judged_to_json(own: &ConditionState) -> Value {
+pub(super) fn judged_to_json(condition_state: &ConditionState) -> Value {
     json!({
-        "day": own.day, "value": own.value.map(json_number), "before": own.before.map(json_number),
-        "true": own.is_true, "true_before": own.was_true,
+        "day": condition_state.day, "value": condition_state.value.map(json_number), "before": condition_state.before.map(json_number),
+        "true": condition_state.is_true, "true_before": condition_state.was_true,
     })
 }
 
-fn look_back_to_json(own: &ConditionHistory) -> Value {
+fn look_back_to_json(condition_history: &ConditionHistory) -> Value {
     json!({
-        "condition": own.condition.to_string(),
-        "today": judged_to_json(&own.today),
-        "last_true": own.last_true.as_ref().map(judged_to_json),
-        "last_false": own.last_false.as_ref().map(judged_to_json),
-        "since": own.unchanged_since(),
+        "condition": condition_history.condition.to_string(),
+        "today": judged_to_json(&condition_history.today),
+        "last_true": condition_history.last_true.as_ref().map(judged_to_json),
+        "last_false": condition_history.last_false.as_ref().map(judged_to_json),
+        "since": condition_history.unchanged_since(),
     })
 }
 
-pub(super) fn writers_to_json(own: &FigureWrites) -> Value {
+pub(super) fn writers_to_json(figure_writes: &FigureWrites) -> Value {
     let write = |write: &FigureWrite| {
         let mut data = json!({
             "by": describe_source(write), "amount": write.amount(), "before": write.before, "after": write.after,
@@ -216,11 +221,11 @@ pub(super) fn writers_to_json(own: &FigureWrites) -> Value {
         data
     };
     json!({
-        "figure": own.target.to_string(),
-        "day": own.day,
-        "first": own.opening_value,
-        "last": own.closing_value,
-        "change": own.closing_value - own.opening_value,
-        "writes": own.writes.iter().map(write).collect::<Vec<Value>>(),
+        "figure": figure_writes.target.to_string(),
+        "day": figure_writes.day,
+        "first": figure_writes.opening_value,
+        "last": figure_writes.closing_value,
+        "change": figure_writes.closing_value - figure_writes.opening_value,
+        "writes": figure_writes.writes.iter().map(write).collect::<Vec<Value>>(),
     })
 }

@@ -52,8 +52,8 @@ impl Interpreter {
     fn describe_capacity(&self, tool: ToolId, arguments: &Value) -> Option<String> {
         let tier = arguments.get("tier").filter(|_| tool == ToolId::SetCapacityTier)?.as_u64()?;
         let terms = self.session.company().tool_limits();
-        let own = terms.capacities.iter().find(|own| u64::from(own.tier) == tier)?;
-        Some(describe_peak_and_tier(self.session.weeks(), u32::from(own.tier), own.units))
+        let capacity_tier = terms.capacities.iter().find(|own| u64::from(own.tier) == tier)?;
+        Some(describe_peak_and_tier(self.session.weeks(), u32::from(capacity_tier.tier), capacity_tier.units))
     }
 
     /// Describes the level that a study reaches.

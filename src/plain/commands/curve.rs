@@ -23,7 +23,7 @@ impl Interpreter {
     pub(super) fn curve(&mut self, arguments: &[Argument]) -> Result<CommandResponse, ParseError> {
         let (group, product) = parse_request(arguments)?;
         Ok(match CurveExplorer::open(&mut self.session, group) {
-            Ok(own) => curve_response(&own, product),
+            Ok(curve_explorer) => curve_response(&curve_explorer, product),
             Err(refusal) => CommandResponse::rejected("curve", refusal),
         })
     }
@@ -40,11 +40,11 @@ fn parse_request(arguments: &[Argument]) -> Result<CurveRequest, ParseError> {
         };
         ParseError { text, column: first.column }
     })?;
-    let number = |own: &Argument| {
-        let value = own.value.as_f64().filter(|value| own.key.is_none() && *value >= 0.0);
+    let number = |argument: &Argument| {
+        let value = argument.value.as_f64().filter(|value| argument.key.is_none() && *value >= 0.0);
         value.ok_or_else(|| ParseError {
             text: "price and quality must be numbers from 0: curve S1 30 0.4".to_owned(),
-            column: own.column,
+            column: argument.column,
         })
     };
     match rest {
@@ -54,53 +54,63 @@ fn parse_request(arguments: &[Argument]) -> Result<CurveRequest, ParseError> {
     }
 }
 
-fn curve_response(own: &CurveExplorer, product: Option<(f64, f64)>) -> CommandResponse {
-    let basis = describe_basis(&own.basis);
+fn curve_response(curve_explorer: &CurveExplorer, product: Option<(f64, f64)>) -> CommandResponse {
+    let basis = describe_basis(&curve_explorer.basis);
     let mut lines = Vec::new();
     let outcome = match product {
         Some((list, delivered)) => {
             lines.push(format!(
                 "{}: one product at {} with quality {}, by {basis}",
-                own.group,
+                curve_explorer.group,
                 price_to_cents(list),
                 format_quality(delivered)
             ));
-            own.outcome_at(list, delivered)
+            curve_explorer.outcome_at(list, delivered)
         }
         None => {
-            lines.push(format!("{}: quality that leads require at a price, by {basis}", own.group));
-            lines.extend(align_columns(&column_names(own), &rows(own)).lines().map(str::to_owned));
-            own.outcome(&own.plans)
+            lines
+                .push(format!("{}: quality that leads require at a price, by {basis}", curve_explorer.group));
+            lines.extend(
+                align_columns(&column_names(curve_explorer), &rows(curve_explorer))
+                    .lines()
+                    .map(str::to_owned),
+            );
+            curve_explorer.outcome(&curve_explorer.plans)
         }
     };
     if product.is_none() {
         lines.extend(
-            Plan::ALL.map(|plan| describe_plan(plan, &own.plans[plan], outcome.plan_shares.as_ref())),
+            Plan::ALL
+                .map(|plan| describe_plan(plan, &curve_explorer.plans[plan], outcome.plan_shares.as_ref())),
         );
     }
     lines.push(format!("{}; {LEAD_SAMPLE_SIZE} sampled leads", describe_outcome(&outcome)));
-    lines.extend(footnotes(own));
-    CommandResponse::success("curve", lines.join("\n"), curve_to_json(own, product, &outcome))
+    lines.extend(footnotes(curve_explorer));
+    CommandResponse::success("curve", lines.join("\n"), curve_to_json(curve_explorer, product, &outcome))
 }
 
-fn curve_to_json(own: &CurveExplorer, product: Option<(f64, f64)>, outcome: &CurveOutcome) -> Value {
-    let point = |own: &CurvePoint| {
-        let (least, most) = own.median_range;
+fn curve_to_json(
+    curve_explorer: &CurveExplorer,
+    product: Option<(f64, f64)>,
+    outcome: &CurveOutcome,
+) -> Value {
+    let point = |curve_point: &CurvePoint| {
+        let (least, most) = curve_point.median_range;
         json!({
-            "price": own.price, "tenth": own.p10, "half": own.median, "nine_tenths": own.p90,
+            "price": curve_point.price, "tenth": curve_point.p10, "half": curve_point.median, "nine_tenths": curve_point.p90,
             "half_at_least": least, "half_at_most": most,
         })
     };
     let plan = |plan: Plan| {
-        let point = &own.plans[plan];
+        let point = &curve_explorer.plans[plan];
         let taken = outcome.plan_shares.filter(|_| product.is_none()).map(|all| all[plan]);
         json!({ "plan": plan.id(), "list_price": point.list_price, "quality": point.quality, "quota": point.quota, "taken_by": taken })
     };
     json!({
-        "group": own.group,
-        "basis": own.basis,
+        "group": curve_explorer.group,
+        "basis": curve_explorer.basis,
         "asked": product.map(|(price, quality)| json!({ "price": price, "quality": quality })),
-        "curve": own.points.iter().map(point).collect::<Vec<_>>(),
+        "curve": curve_explorer.points.iter().map(point).collect::<Vec<_>>(),
         "plans": Plan::ALL.map(plan),
         "conversion": outcome.conversion,
         "revenue_per_lead": outcome.revenue_per_lead,

@@ -31,7 +31,7 @@ fn result_to_json(found: &InspectionOutput) -> Value {
             let days: Vec<Value> = found.iter().map(judged_to_json).collect();
             json!({ "condition": condition.to_string(), "days": days })
         }
-        InspectionOutput::Writes(own) => writers_to_json(own),
+        InspectionOutput::Writes(figure_writes) => writers_to_json(figure_writes),
         InspectionOutput::Difference(one, other, found) => {
             json!({ "days": [one, other], "difference": difference_to_json(found) })
         }

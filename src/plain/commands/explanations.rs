@@ -35,18 +35,21 @@ pub(super) fn explain_subject(
     subject: Subject,
     numbers: &ParameterNumbers,
 ) -> CommandResponse {
-    let told = Explanation::new(subject, numbers);
-    let sections: Vec<Value> =
-        told.sections.iter().map(|section| json!({ "name": section.name, "text": section.text })).collect();
-    let see: Vec<String> = told.related.iter().map(Subject::name).collect();
+    let explanation = Explanation::new(subject, numbers);
+    let sections: Vec<Value> = explanation
+        .sections
+        .iter()
+        .map(|section| json!({ "name": section.name, "text": section.text }))
+        .collect();
+    let see: Vec<String> = explanation.related.iter().map(Subject::name).collect();
     let data = json!({
         "name": subject.name(),
         "kind": subject.kind(),
-        "title": told.title,
+        "title": explanation.title,
         "sections": sections,
         "see": see,
     });
-    CommandResponse::success(command, told.to_text(), data)
+    CommandResponse::success(command, explanation.to_text(), data)
 }
 
 /// `glossary [WORD]`. If the word is a term with a picture, the picture follows.
@@ -161,11 +164,11 @@ mod tests {
 
     #[test]
     fn explain_returns_text_and_data() {
-        let told = explain("what", "Delivered quality", &ParameterNumbers::bundled());
-        let text = told.to_text();
+        let command_response = explain("what", "Delivered quality", &ParameterNumbers::bundled());
+        let text = command_response.to_text();
         assert!(text.starts_with("Delivered quality (product)\n"), "{text}");
         assert!(text.contains("\nmore: Base quality plus") && text.contains("\nsee: base-quality"), "{text}");
-        let object = told.to_json(3, 7);
+        let object = command_response.to_json(3, 7);
         assert_eq!((&object["command"], &object["data"]["kind"]), (&json!("explain"), &json!("term")));
         assert!(explain("explain", "set_prices.A", &ParameterNumbers::bundled()).is_success());
         for word in "needs rules margin spread load asked needed_quota days_left patience relationship risk"
@@ -212,8 +215,8 @@ mod tests {
             ("spill-over", "reaches a group"),
             ("quality-bank", "base quality      "),
         ] {
-            let told = glossary(word, &run).to_text();
-            assert!(told.contains(part) && told.contains("explain TERM for more"), "{word}: {told}");
+            let text = glossary(word, &run).to_text();
+            assert!(text.contains(part) && text.contains("explain TERM for more"), "{word}: {text}");
         }
         assert!(!glossary("churn", &run).to_text().contains(" |"));
     }

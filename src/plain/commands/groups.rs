@@ -51,13 +51,13 @@ impl Interpreter {
         let mut costs = lead_costs_by_pair(weeks);
         costs.retain(|pair| shown.iter().any(|fit| fit.group == pair.group));
         lines.extend(costs.iter().map(cost_line));
-        let week = |(at, own): (usize, &GroupWeek)| {
+        let week = |(at, group_week): (usize, &GroupWeek)| {
             json!({
                 "week": at + 1,
-                "leads": own.leads,
-                "paid": own.paid_leads(),
-                "word_of_mouth": own.word_of_mouth,
-                "signed": own.signed,
+                "leads": group_week.leads,
+                "paid": group_week.paid_leads(),
+                "word_of_mouth": group_week.word_of_mouth,
+                "signed": group_week.signed,
             })
         };
         let by_week = |group: Group| -> Vec<Value> {
@@ -108,17 +108,18 @@ pub(super) fn with_ranges(session: &Session, answer: &novamind_tools::Answer) ->
 }
 
 fn fit_to_json(fit: &Fit) -> Value {
-    let plan = |own: &PlanFit| {
-        let missing =
-            |concern: &FitCriterion| (concern.name().to_owned(), json!(fit.certain_gap(own.plan, *concern)));
+    let plan = |plan_fit: &PlanFit| {
+        let missing = |concern: &FitCriterion| {
+            (concern.name().to_owned(), json!(fit.certain_gap(plan_fit.plan, *concern)))
+        };
         let missing: serde_json::Map<String, Value> = FitCriterion::ALL.iter().map(missing).collect();
         json!({
-            "plan": own.plan.id(),
-            "list_price": own.list_price,
-            "price_for_leads": own.lead_price,
-            "billed": own.billed_price,
-            "quality": own.quality,
-            "quota": own.quota,
+            "plan": plan_fit.plan.id(),
+            "list_price": plan_fit.list_price,
+            "price_for_leads": plan_fit.lead_price,
+            "billed": plan_fit.billed_price,
+            "quality": plan_fit.quality,
+            "quota": plan_fit.quota,
             "missing": missing,
         })
     };

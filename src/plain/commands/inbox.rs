@@ -110,13 +110,13 @@ fn describe_thread_count(many: usize) -> String {
     pluralize(many as u32, "thread")
 }
 
-fn funnel_to_json(own: &Funnel) -> Value {
+fn funnel_to_json(funnel: &Funnel) -> Value {
     json!({
-        "group": own.group.id(),
-        "came": own.enterprises,
-        "no_plan_good_enough": own.lost_before_request(),
-        "asked": own.requests,
-        "signed": own.deals,
+        "group": funnel.group.id(),
+        "came": funnel.enterprises,
+        "no_plan_good_enough": funnel.lost_before_request(),
+        "asked": funnel.requests,
+        "signed": funnel.deals,
     })
 }
 
@@ -155,17 +155,17 @@ fn group_line(group: &str, threads: &[&ThreadContext]) -> String {
 
 /// Returns the threads as sentences, and how to list the others.
 fn thread_lines(waiting: &[ThreadContext], wanted: &ThreadSelection, names: &EnterpriseNames) -> Vec<String> {
-    let told = if wanted.all { waiting.len() } else { waiting.len().min(LISTED_THREADS) };
-    if told == 0 {
+    let number = if wanted.all { waiting.len() } else { waiting.len().min(LISTED_THREADS) };
+    if number == 0 {
         return Vec::new();
     }
-    let mut lines = vec![match told < waiting.len() {
-        true => format!("the {told} with the earliest deadlines, larger ones first:"),
+    let mut lines = vec![match number < waiting.len() {
+        true => format!("the {number} with the earliest deadlines, larger ones first:"),
         false => "earliest deadline first:".to_owned(),
     }];
-    lines.extend(waiting.iter().take(told).map(|thread| describe_thread(thread, names)));
-    if told < waiting.len() {
-        let more = grouped_number((waiting.len() - told) as f64, 0);
+    lines.extend(waiting.iter().take(number).map(|thread| describe_thread(thread, names)));
+    if number < waiting.len() {
+        let more = grouped_number((waiting.len() - number) as f64, 0);
         lines.push(match wanted.filter {
             Some(_) => format!("{more} more: inbox all where … lists all of them"),
             None => format!(
@@ -180,16 +180,16 @@ fn thread_lines(waiting: &[ThreadContext], wanted: &ThreadSelection, names: &Ent
 
 /// Formats a thread as one sentence.
 fn describe_thread(thread: &ThreadContext, names: &EnterpriseNames) -> String {
-    let own = &thread.waiting;
+    let waiting_thread = &thread.waiting;
     let mut parts = vec![
-        names.name_with_number(own.customer),
-        own.group.to_owned(),
-        pluralize(own.seats, "seat"),
-        own.kind.replace('_', " "),
-        format!("{} left", pluralize(own.days_left, "day")),
+        names.name_with_number(waiting_thread.customer),
+        waiting_thread.group.to_owned(),
+        pluralize(waiting_thread.seats, "seat"),
+        waiting_thread.kind.replace('_', " "),
+        format!("{} left", pluralize(waiting_thread.days_left, "day")),
     ];
     parts.extend(describe_request(thread));
-    parts.push(match own.last_offer.as_slice() {
+    parts.push(match waiting_thread.last_offer.as_slice() {
         [] => "no offer yet".to_owned(),
         offered => format!("last offer {}", describe_offer(offered)),
     });

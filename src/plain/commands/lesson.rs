@@ -143,8 +143,8 @@ fn lesson_to_json(page: &LessonStatus) -> Value {
     })
 }
 
-fn debrief_to_json(own: &Debrief) -> Value {
-    let parting = match &own.comparison {
+fn debrief_to_json(debrief: &Debrief) -> Value {
+    let parting = match &debrief.comparison {
         DecisionComparison::Different(parting) => {
             let effect = parting.effect.as_simulated();
             json!({ "week": parting.week, "day": parting.day, "decisions": parting.decisions, "effect": effect })
@@ -154,16 +154,16 @@ fn debrief_to_json(own: &Debrief) -> Value {
         }
     };
     json!({
-        "title": own.title,
-        "part": own.part,
-        "seed": own.seed,
-        "own": own.cash_by_day,
-        "good": own.reference,
-        "bad": own.bad_play,
-        "same_decisions": matches!(own.comparison, DecisionComparison::Same),
+        "title": debrief.title,
+        "part": debrief.part,
+        "seed": debrief.seed,
+        "own": debrief.cash_by_day,
+        "good": debrief.reference,
+        "bad": debrief.bad_play,
+        "same_decisions": matches!(debrief.comparison, DecisionComparison::Same),
         "parting": parting,
-        "steps": own.steps,
-        "pitfalls": own.pitfalls.iter().map(|(day, say)| json!({ "day": day, "say": say })).collect::<Vec<Value>>(),
-        "text": own.text,
+        "steps": debrief.steps,
+        "pitfalls": debrief.pitfalls.iter().map(|(day, say)| json!({ "day": day, "say": say })).collect::<Vec<Value>>(),
+        "text": debrief.text,
     })
 }

@@ -43,7 +43,7 @@ impl Interpreter {
             .tool_limits()
             .capacities
             .iter()
-            .find(|own| own.tier == tier)
+            .find(|capacity_tier| capacity_tier.tier == tier)
             .map(|own| own.units);
         let next = PeakProjection::from_weeks(self.session.weeks()).zip(units);
         let capacity = next

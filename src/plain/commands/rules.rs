@@ -109,18 +109,18 @@ fn preview_response(batch: &RuleBatch, names: &EnterpriseNames) -> CommandRespon
 
 fn preview_row(ruled: &RuleOutcome, names: &EnterpriseNames) -> Vec<String> {
     let thread = &ruled.thread;
-    let own = &thread.waiting;
+    let waiting_thread = &thread.waiting;
     let plan = thread.asked_plan.map_or(String::new(), |plan| format!("{plan} "));
     let last: Vec<String> =
-        own.last_offer.iter().map(|(plan, price)| format!("{plan} {}", cents(*price))).collect();
+        waiting_thread.last_offer.iter().map(|(plan, price)| format!("{plan} {}", cents(*price))).collect();
     vec![
         ruled.rule_index.map_or(String::new(), |at| (at + 1).to_string()),
-        names.name_with_number(own.customer),
-        own.group.to_owned(),
-        own.seats.to_string(),
-        own.asked.map_or(String::new(), |asked| format!("{plan}{}", cents(asked))),
+        names.name_with_number(waiting_thread.customer),
+        waiting_thread.group.to_owned(),
+        waiting_thread.seats.to_string(),
+        waiting_thread.asked.map_or(String::new(), |asked| format!("{plan}{}", cents(asked))),
         last.join(" or "),
-        own.days_left.to_string(),
+        waiting_thread.days_left.to_string(),
         ruled.describe_reply(),
     ]
 }

@@ -29,8 +29,9 @@ impl Interpreter {
                 "thread needs the number of a thread, for example thread 12",
             ));
         };
-        let told = self.show_thread(&format!("{TURNS_SQL} WHERE thread_id = {thread} ORDER BY message_id"));
-        Ok(told.unwrap_or_else(|| {
+        let command_response =
+            self.show_thread(&format!("{TURNS_SQL} WHERE thread_id = {thread} ORDER BY message_id"));
+        Ok(command_response.unwrap_or_else(|| {
             let text = format!("there is no thread {thread}; inbox NUMBER takes the number of a company");
             CommandResponse::rejected("thread", Rejection::new("thread_not_found", text))
         }))
@@ -58,16 +59,16 @@ impl Interpreter {
         let (thread, customer) = (number_at(first, 0) as u32, number_at(first, 1) as u32);
         let company =
             self.session.query_unrecorded(&format!("{ENTERPRISE_SQL} AND c.customer_id = {customer}")).ok();
-        let waiting = ThreadContext::read_all(&mut self.session)
-            .ok()
-            .and_then(|(waiting, _)| waiting.into_iter().find(|own| own.waiting.thread == thread));
+        let waiting = ThreadContext::read_all(&mut self.session).ok().and_then(|(waiting, _)| {
+            waiting.into_iter().find(|thread_context| thread_context.waiting.thread == thread)
+        });
         let names = self.session.company().company_names();
         let kind = text_at(first, 2).replace('_', " ");
         // The rows of the player count one seat each, whatever the size of the company.
         let theirs = turns.rows.iter().filter(|row| text_at(row, 4) != "agent");
         let seats = waiting.as_ref().map_or_else(
             || theirs.map(|row| number_at(row, 8) as u32).max().unwrap_or(1),
-            |own| own.waiting.seats,
+            |context| context.waiting.seats,
         );
         let mut lines = vec![format!(
             "{}, {}, {kind}, thread {thread}",
@@ -117,7 +118,7 @@ fn describe_enterprise(rows: &QueryResult) -> Option<String> {
 fn describe_turn(row: &[Cell]) -> Option<String> {
     let (day, words) = (number_at(row, 7), text_at(row, 5));
     let (offers, price) = parse_offer(text_at(row, 6));
-    let said = match (text_at(row, 4), text_at(row, 9)) {
+    let text = match (text_at(row, 4), text_at(row, 9)) {
         ("agent", "agent_rejected") => "you ended the thread".to_owned(),
         ("agent", _) => format!("you offered {}", describe_offer(&offers)),
         ("customer", _) if words.is_empty() => format!("they ask {}", cents(price?)),
@@ -125,7 +126,7 @@ fn describe_turn(row: &[Cell]) -> Option<String> {
         _ if words.is_empty() => return None,
         _ => words.to_owned(),
     };
-    Some(format!("day {day}: {said}"))
+    Some(format!("day {day}: {text}"))
 }
 
 /// Returns the state of the thread and the possible next step.

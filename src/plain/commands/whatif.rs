@@ -85,7 +85,9 @@ impl Interpreter {
 
     /// Lists the calls from a week on, with their line numbers.
     fn list_decisions(&mut self, week: u32) -> CommandResponse {
-        let calls = self.prepare_what_if().and_then(|own| Ok((own.decisions(week)?, own.days_per_week())));
+        let calls = self
+            .prepare_what_if()
+            .and_then(|what_if| Ok((what_if.decisions(week)?, what_if.days_per_week())));
         let (calls, days) = match calls {
             Ok(calls) => calls,
             Err(refusal) => return CommandResponse::rejected("whatif", refusal),
@@ -118,10 +120,10 @@ impl Interpreter {
         let go_on = |_, _| continue_unless_stopped(&stop);
         let WhatIfQuestion { from, until, futures, alternatives } = question;
         let is_recorded = record_what_if_inspection(&mut self.session, *from);
-        let answer = self.prepare_what_if().and_then(|own| {
-            own.set_shows_hidden(is_recorded);
-            let found = own.compare_with_futures((*from, *until), alternatives, *futures, &go_on)?;
-            Ok(found.map(|(comparison, drawn)| (comparison, drawn, own.days_per_week())))
+        let answer = self.prepare_what_if().and_then(|what_if| {
+            what_if.set_shows_hidden(is_recorded);
+            let found = what_if.compare_with_futures((*from, *until), alternatives, *futures, &go_on)?;
+            Ok(found.map(|(comparison, drawn)| (comparison, drawn, what_if.days_per_week())))
         });
         self.watch.set_phase(Phase::Working);
         self.record_view("whatif", &[]);
@@ -255,17 +257,17 @@ impl Interpreter {
 
 /// Returns a row for each decision: line, week, tool or key, arguments or value, and whether it was rejected.
 fn decision_rows(decisions: &[RecordedDecision], days: u32) -> Vec<Vec<String>> {
-    let row = |own: &RecordedDecision| {
-        let (what, arguments) = match own {
+    let row = |recorded_decision: &RecordedDecision| {
+        let (what, arguments) = match recorded_decision {
             RecordedDecision::Call(call) => (call.tool.name().to_owned(), call.args.to_string()),
             RecordedDecision::Parameter { key, value, .. } => (format!("set {key}"), value.to_string()),
         };
         vec![
-            own.seq().to_string(),
-            (own.day() / days + 1).to_string(),
+            recorded_decision.seq().to_string(),
+            (recorded_decision.day() / days + 1).to_string(),
             what,
             arguments,
-            own.describe_status(),
+            recorded_decision.describe_status(),
         ]
     };
     decisions.iter().map(row).collect()
@@ -343,8 +345,10 @@ fn comparison_to_text(comparison: &BranchComparison, futures: Option<&Futures>, 
             "\n{number}, at the end of week {}, compared with the original run, future by future:",
             comparison.until.div_ceil(days)
         );
-        let lines =
-            comparison.figures.iter().filter_map(|own| difference_line(comparison, futures, number, *own));
+        let lines = comparison
+            .figures
+            .iter()
+            .filter_map(|branch_figure| difference_line(comparison, futures, number, *branch_figure));
         text.extend(lines.map(|line| format!("\n     {line}")));
     }
     text
@@ -352,19 +356,20 @@ fn comparison_to_text(comparison: &BranchComparison, futures: Option<&Futures>, 
 
 fn comparison_to_json(comparison: &BranchComparison, futures: Option<&Futures>, days: u32) -> Value {
     let number = |value: f64| if value.is_nan() { Value::Null } else { json!(value) };
-    let branch = |own: &BranchFigures| {
+    let branch = |branch_figures: &BranchFigures| {
         let curves = comparison.figures.iter().map(|figure| {
-            let values: Vec<Value> = own.values_by_week(*figure).map(|(_, value)| number(value)).collect();
+            let values: Vec<Value> =
+                branch_figures.values_by_week(*figure).map(|(_, value)| number(value)).collect();
             (figure.id(), Value::Array(values))
         });
         let days_of: Vec<u32> = comparison
             .figures
             .first()
-            .map_or(Vec::new(), |one| own.values_by_week(*one).map(|(day, _)| day).collect());
+            .map_or(Vec::new(), |one| branch_figures.values_by_week(*one).map(|(day, _)| day).collect());
         json!({
-            "name": branch_name(&own.edits),
-            "differs_on": own.first_different_day,
-            "decisions": describe_decisions(own, days),
+            "name": branch_name(&branch_figures.edits),
+            "differs_on": branch_figures.first_different_day,
+            "decisions": describe_decisions(branch_figures, days),
             "days": days_of,
             "figures": Value::Object(curves.collect()),
         })
@@ -385,9 +390,9 @@ fn futures_to_json(comparison: &BranchComparison, futures: &Futures) -> Value {
                 .intervals(at, *figure)
                 .map(|(day, band)| json!({ "day": day, "low": band.low, "median": band.median, "high": band.high }))
                 .collect();
-            let difference = futures.difference(at, *figure, comparison.until).map(|own| {
-                let interval = own.interval.map(|own| [own.low, own.high]);
-                json!({ "mean": own.mean, "interval": interval, "more": own.first_greater, "of": own.pair_count })
+            let difference = futures.difference(at, *figure, comparison.until).map(|paired_difference| {
+                let interval = paired_difference.interval.map(|own| [own.low, own.high]);
+                json!({ "mean": paired_difference.mean, "interval": interval, "more": paired_difference.first_greater, "of": paired_difference.pair_count })
             });
             (figure.id(), json!({ "bands": bands, "difference_at_the_end": difference }))
         });
@@ -417,7 +422,7 @@ mod tests {
         assert_eq!(asked, Ok(expected.clone()));
         let file = "# cheaper\nfrom 20 until 40 futures:\nset_prices * 0.9; drop 7\n\nkeep set_prices\n";
         assert_eq!(parse_question(&question_from_file(file), 1), Ok(expected));
-        assert_eq!(parse_question("from 3", 1).map(|own| own.alternatives), Ok(Vec::new()));
+        assert_eq!(parse_question("from 3", 1).map(|if_question| if_question.alternatives), Ok(Vec::new()));
     }
 
     #[test]
@@ -429,7 +434,7 @@ mod tests {
         assert_eq!((wrong.column, wrong.text.starts_with("to is not understood")), (16, true));
         assert!(said("adopt 5").text.starts_with("adopt needs from and a week"));
         assert!(said("file").text.starts_with("file needs"));
-        assert_eq!(parse_question("from week 3", 1).map(|own| own.from), Ok(3));
+        assert_eq!(parse_question("from week 3", 1).map(|if_question| if_question.from), Ok(3));
         assert!(said("from 20 futures 1: drop 1").text.starts_with("the number of futures"));
         let wrong = said("from 20: set_price * 2");
         assert_eq!((wrong.column, wrong.text.contains("did you mean set_prices")), (17, true));

@@ -19,15 +19,16 @@ impl Interpreter {
         if let Err(refusal) = cause_analysis_folder(&self.session) {
             return Ok(CommandResponse::rejected("why", refusal));
         }
-        let asked: WeekQuestion = words.parse().map_err(|problem: ConditionParseError| ParseError {
-            text: problem.message,
-            column: column + problem.column - 1,
+        let week_question: WeekQuestion = words.parse().map_err(|problem: ConditionParseError| {
+            ParseError { text: problem.message, column: column + problem.column - 1 }
         })?;
         self.record_view(&format!("why {words}"), &[]);
         let stop = self.watch.enter_stoppable();
-        let folder = begin_cause_analysis(&mut self.session, &asked);
+        let folder = begin_cause_analysis(&mut self.session, &week_question);
         let answer = folder.and_then(|folder| {
-            self.cached_causes.get_or_open(folder)?.explain(asked, &|_| continue_unless_stopped(&stop))
+            self.cached_causes
+                .get_or_open(folder)?
+                .explain(week_question, &|_| continue_unless_stopped(&stop))
         });
         self.watch.set_phase(super::Phase::Working);
         Ok(match answer {

@@ -86,12 +86,12 @@ impl Interpreter {
         &mut self,
         arguments: &[Argument],
     ) -> Result<Result<CommandResponse, Rejection>, ParseError> {
-        let held = arguments.iter().filter(|own| own.key.is_some()).map(parse_held_factor);
+        let held = arguments.iter().filter(|argument| argument.key.is_some()).map(parse_held_factor);
         let held: Vec<(LeadFactor, f64)> = held.collect::<Result<_, _>>()?;
         let plain: Vec<&Argument> = arguments.iter().filter(|own| own.key.is_none()).collect();
         let (group, day) = parse_group_and_day("leads", &plain)?;
         Ok(self.session.inspect().lead_equations(group, day).map(|days| {
-            let data = days.last().map_or(Value::Null, |own| leads_to_json(own, &held));
+            let data = days.last().map_or(Value::Null, |equation| leads_to_json(equation, &held));
             CommandResponse::success("xray", describe_lead_equation(&days, &held).join("\n"), data)
         }))
     }
@@ -191,7 +191,8 @@ fn parse_held_factor(argument: &Argument) -> Result<(LeadFactor, f64), ParseErro
     let name = argument.key.as_deref().unwrap_or_default();
     let wrong = |text: String| ParseError { text, column: argument.column };
     let factor = LeadFactor::parse(name).ok_or_else(|| {
-        let letters = LeadFactor::ALL.map(|own| format!("{own} {}", own.name())).join(", ");
+        let letters =
+            LeadFactor::ALL.map(|lead_factor| format!("{lead_factor} {}", lead_factor.name())).join(", ");
         wrong(format!("{name} is not a factor; the factors are {letters}"))
     })?;
     let value = argument.value.as_f64().filter(|value| *value >= 0.0);

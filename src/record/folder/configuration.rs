@@ -97,8 +97,8 @@ impl Configuration {
 
     /// Returns the names of the files with an ending in a folder of the configuration, without the ending, sorted.
     pub fn file_names(&self, folder: &str, ending: &str) -> Vec<String> {
-        let Some(own) = &self.folder else { return Vec::new() };
-        let entries = std::fs::read_dir(own.join(folder)).into_iter().flatten().flatten();
+        let Some(path) = &self.folder else { return Vec::new() };
+        let entries = std::fs::read_dir(path.join(folder)).into_iter().flatten().flatten();
         let mut names: Vec<String> = entries
             .filter_map(|entry| Some(entry.file_name().to_str()?.strip_suffix(ending)?.to_owned()))
             .collect();
@@ -112,9 +112,9 @@ impl Configuration {
             novamind_assets::scenarios().into_iter().map(|(name, _)| name.to_owned()).collect();
         // The default scenario comes first.
         names.sort_by_key(|name| name != DEFAULT_SCENARIO);
-        let own = self.toml_names("scenarios").into_iter().filter(|own| !names.contains(own));
-        let own: Vec<String> = own.collect();
-        names.extend(own);
+        let own = self.toml_names("scenarios").into_iter().filter(|text| !names.contains(text));
+        let texts: Vec<String> = own.collect();
+        names.extend(texts);
         names
     }
 
@@ -277,9 +277,9 @@ impl Configuration {
     pub fn lesson_names(&self) -> Vec<String> {
         let mut names: Vec<String> =
             novamind_assets::lessons().into_iter().map(|(name, _)| name.to_owned()).collect();
-        let own: Vec<String> =
-            self.toml_names("lessons").into_iter().filter(|own| !names.contains(own)).collect();
-        names.extend(own);
+        let texts: Vec<String> =
+            self.toml_names("lessons").into_iter().filter(|text| !names.contains(text)).collect();
+        names.extend(texts);
         names
     }
 }

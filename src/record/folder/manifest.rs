@@ -345,10 +345,10 @@ mod tests {
         for name in configuration.scenario_names() {
             let scenario = configuration.load_scenario(&name).expect("a scenario");
             let params = configuration.load_parameters(&scenario, &[], false).expect("its parameters");
-            let own = test_manifest(&params);
-            own.write(folder.path()).expect("it is written");
+            let manifest = test_manifest(&params);
+            manifest.write(folder.path()).expect("it is written");
             let read = Manifest::read(folder.path()).expect("it is read");
-            assert_eq!(read, own);
+            assert_eq!(read, manifest);
             assert_eq!(read.load_params().expect("its parameters"), params);
         }
         assert!(changed_parameters(&Params::bundled()).is_empty());
@@ -357,16 +357,18 @@ mod tests {
     #[test]
     fn other_parameters_mechanics_and_formats_are_rejected() {
         let folder = tempfile::tempdir().expect("a folder");
-        let mut own = test_manifest(&Params::bundled());
-        own.parameters_digest = "0000000000000000".to_owned();
-        assert!(own.load_params().expect_err("another digest").to_string().contains("Nothing was changed"));
-        own.mechanics = MECHANICS + 1;
-        own.write(folder.path()).expect("it is written");
+        let mut manifest = test_manifest(&Params::bundled());
+        manifest.parameters_digest = "0000000000000000".to_owned();
+        assert!(
+            manifest.load_params().expect_err("another digest").to_string().contains("Nothing was changed")
+        );
+        manifest.mechanics = MECHANICS + 1;
+        manifest.write(folder.path()).expect("it is written");
         let error = Manifest::read(folder.path()).expect_err("other mechanics").to_string();
         assert!(error.contains("version 0.1.0") && error.contains("Nothing was changed"), "{error}");
-        own.mechanics = MECHANICS;
-        own.format = FORMAT + 1;
-        own.write(folder.path()).expect("it is written");
+        manifest.mechanics = MECHANICS;
+        manifest.format = FORMAT + 1;
+        manifest.write(folder.path()).expect("it is written");
         let error = Manifest::read(folder.path()).expect_err("another format").to_string();
         assert!(error.contains(&format!("format {}", FORMAT + 1)), "{error}");
         std::fs::write(folder.path().join("run.toml"), "format = 1\nversion = ").expect("a file");

@@ -81,10 +81,10 @@ fn read_first_line(path: &Path) -> Option<Line> {
 }
 
 /// Adds the fields that only `run.toml` has.
-fn with_unrecorded_fields(told: Manifest, own: &Manifest) -> Manifest {
+fn with_unrecorded_fields(manifest: Manifest, own: &Manifest) -> Manifest {
     // The first line is written shortly after the run was created; in format 1 it does not list earlier runs.
-    let earlier_runs = if told.format == 1 { own.earlier_runs } else { told.earlier_runs };
-    Manifest { created: own.created.clone(), earlier_runs, ..told }
+    let earlier_runs = if manifest.format == 1 { own.earlier_runs } else { manifest.earlier_runs };
+    Manifest { created: own.created.clone(), earlier_runs, ..manifest }
 }
 
 fn describe_manifest_error(error: &RunError) -> String {
@@ -119,13 +119,13 @@ pub fn check_start(path: &Path, first: Option<&Line>, manifest: &Manifest) -> Re
 }
 
 /// Returns one sentence for each field in which `run.toml` differs from the first line; `told` is the manifest of the line.
-pub fn manifest_differences(folder: &Path, told: &Manifest) -> Vec<String> {
+pub fn manifest_differences(folder: &Path, manifest: &Manifest) -> Vec<String> {
     let own = match Manifest::read(folder) {
         Ok(own) => own,
         Err(error) => return vec![describe_manifest_error(&error)],
     };
     let shown = |value: Option<Value>| value.map_or("nothing".to_owned(), |value| value.to_string());
-    let differ = differing_fields(&own, &with_unrecorded_fields(told.clone(), &own)).into_iter();
+    let differ = differing_fields(&own, &with_unrecorded_fields(manifest.clone(), &own)).into_iter();
     let words = |(name, own, told): (String, Option<Value>, Option<Value>)| {
         format!("run.toml says {name} = {}, the first line {}", shown(own), shown(told))
     };
@@ -133,8 +133,8 @@ pub fn manifest_differences(folder: &Path, told: &Manifest) -> Vec<String> {
 }
 
 /// Returns the names of the fields that differ, separated by commas, or `None` if the manifests are equal.
-fn differing_field_names(own: &Manifest, told: &Manifest) -> Option<String> {
-    let names: Vec<String> = differing_fields(own, told).into_iter().map(|(name, ..)| name).collect();
+fn differing_field_names(manifest: &Manifest, told: &Manifest) -> Option<String> {
+    let names: Vec<String> = differing_fields(manifest, told).into_iter().map(|(name, ..)| name).collect();
     (!names.is_empty()).then(|| names.join(", "))
 }
 

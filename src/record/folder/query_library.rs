@@ -206,7 +206,7 @@ impl QueryLibrary {
         let mut all: Vec<NamedQuery> =
             configuration.file_names(QUERIES_FOLDER, ".sql").into_iter().filter_map(own).collect();
         for shipped in QueryLibrary::bundled().0 {
-            if all.iter().all(|own| own.name != shipped.name) {
+            if all.iter().all(|named_query| named_query.name != shipped.name) {
                 all.push(shipped);
             }
         }
@@ -301,7 +301,7 @@ mod tests {
         assert_eq!(library.queries().len(), BUNDLED_QUERIES.len() + 1);
         let mine = library.find("mine").expect("saved");
         assert_eq!((mine.title.as_str(), mine.body(), mine.is_user_query), ("Mine!", "SELECT 3", true));
-        assert_eq!(library.find("economy").map(|own| own.title.as_str()), Some("Other"));
+        assert_eq!(library.find("economy").map(|named_query| named_query.title.as_str()), Some("Other"));
         assert_eq!(library.queries()[0].name, "economy", "user queries come first, by name");
         assert_eq!(library.similar_names("econmy"), ["economy"]);
     }

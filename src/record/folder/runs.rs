@@ -111,10 +111,10 @@ pub fn common_runs_folder(runs: &Path) -> (&Path, Option<String>) {
 pub fn all_run_folders(runs: &Path) -> Vec<PathBuf> {
     let (base, _) = common_runs_folder(runs);
     let entries = std::fs::read_dir(base.join(PARTICIPANTS_FOLDER)).into_iter().flatten().flatten();
-    let mut own: Vec<PathBuf> = entries.map(|entry| entry.path()).filter(|path| path.is_dir()).collect();
-    own.sort_unstable();
-    own.insert(0, base.to_owned());
-    own
+    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.path()).filter(|path| path.is_dir()).collect();
+    paths.sort_unstable();
+    paths.insert(0, base.to_owned());
+    paths
 }
 
 /// Returns all runs, the last played first.

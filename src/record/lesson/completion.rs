@@ -23,10 +23,10 @@ pub fn is_lesson_over(folder: Option<&Path>, manifest: &Manifest) -> bool {
     if is_last(manifest) && run_has_ended(folder) {
         return true;
     }
-    let beside = folder.parent().and_then(|runs| std::fs::read_dir(runs).ok());
-    let mut others = beside.into_iter().flatten().flatten().map(|entry| entry.path());
-    others.any(|own| {
-        ManifestCheck::read(&own).is_ok_and(|derived| is_last(&derived.manifest)) && run_has_ended(&own)
+    let dir = folder.parent().and_then(|runs| std::fs::read_dir(runs).ok());
+    let mut others = dir.into_iter().flatten().flatten().map(|entry| entry.path());
+    others.any(|path| {
+        ManifestCheck::read(&path).is_ok_and(|derived| is_last(&derived.manifest)) && run_has_ended(&path)
     })
 }
 

@@ -227,7 +227,7 @@ impl TryFrom<GuessFile> for Guess {
     type Error = String;
 
     fn try_from(file: GuessFile) -> Result<Guess, String> {
-        let GuessFile { question, figure, sql, over, unit, choices, answer, told } = file;
+        let GuessFile { question, figure, sql, over, unit, choices, answer, told: outcome_timing } = file;
         let form = match (choices, answer) {
             (None, None) => GuessForm::Number {
                 outcome: Measurement::try_from(MeasurementFile { figure, sql, over })?,
@@ -244,7 +244,7 @@ impl TryFrom<GuessFile> for Guess {
             }
             _ => return Err("a guess needs a figure, sql, or choices with an answer".to_owned()),
         };
-        Ok(Guess { question, form, told })
+        Ok(Guess { question, form, told: outcome_timing })
     }
 }
 
@@ -423,7 +423,7 @@ impl ReferencePlay {
 
     /// Returns whether it has calls in a part.
     pub fn has_calls_in(&self, part: usize) -> bool {
-        self.plays.iter().any(|own| own.part == part)
+        self.plays.iter().any(|scheduled_calls| scheduled_calls.part == part)
     }
 }
 

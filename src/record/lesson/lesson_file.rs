@@ -185,13 +185,13 @@ impl Lesson {
             GuessForm::Choice { .. } => None,
         });
         let pitfalls = self.plan.pitfalls.iter().map(|pitfall| &pitfall.measurement);
-        goals.chain(guesses).chain(pitfalls).any(|own| own.needs_database())
+        goals.chain(guesses).chain(pitfalls).any(|measurement| measurement.needs_database())
     }
 
     /// Replaces the names of measured figures in a text by their values.
     pub fn fill_figures(&self, text: &str) -> String {
-        let written = |text: String, own: &MeasuredFigure| {
-            text.replace(&format!("{{{}}}", own.name), &own.formatted_value())
+        let written = |text: String, measured_figure: &MeasuredFigure| {
+            text.replace(&format!("{{{}}}", measured_figure.name), &measured_figure.formatted_value())
         };
         self.plan.measured.iter().fold(text.to_owned(), written)
     }

@@ -35,7 +35,7 @@ impl LessonPart {
 
     /// Returns the weeks that have passed at the start and at the end of a step, from 0.
     pub fn step_weeks(&self, step: usize) -> (u32, u32) {
-        let before: u32 = self.steps.iter().take(step).map(|own| own.weeks).sum();
+        let before: u32 = self.steps.iter().take(step).map(|lesson_step| lesson_step.weeks).sum();
         let begin = self.start_weeks + before;
         (begin, begin + self.steps.get(step).map_or(0, |own| own.weeks))
     }
@@ -147,7 +147,7 @@ impl LessonProgress {
 
     /// Returns whether the guess of a step is missing.
     pub fn awaits_guess(&self, step: usize) -> bool {
-        self.step(step).is_some_and(|own| own.guess.is_some()) && self.guess(step).is_none()
+        self.step(step).is_some_and(|lesson_step| lesson_step.guess.is_some()) && self.guess(step).is_none()
     }
 
     /// Returns how many hints of a step were requested.

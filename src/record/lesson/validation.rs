@@ -69,7 +69,7 @@ fn find_part_defect(part: &LessonPart) -> Option<LessonDefect> {
             return step_of(&step.title, "step.hints", "a step needs one to three hints");
         }
     }
-    let early = part.start.iter().find(|own| own.week > part.start_weeks)?;
+    let early = part.start.iter().find(|scheduled_calls| scheduled_calls.week > part.start_weeks)?;
     Some(LessonDefect {
         place: format!("week = {}", early.week),
         key: "start.week",
@@ -98,33 +98,37 @@ fn find_play_defect(lesson: &Lesson, name: &'static str, play: &ReferencePlay) -
 
 fn find_figure_defect(lesson: &Lesson) -> Option<LessonDefect> {
     let mut names = BTreeSet::new();
-    for own in &lesson.plan.measured {
-        let part = lesson.plan.parts.get(own.part);
+    for measured_figure in &lesson.plan.measured {
+        let part = lesson.plan.parts.get(measured_figure.part);
         let problem = match part {
-            _ if !names.insert(&own.name) => "another figure has this name".to_owned(),
+            _ if !names.insert(&measured_figure.name) => "another figure has this name".to_owned(),
             None => format!("there are {} parts", lesson.plan.parts.len()),
-            Some(part) if own.week.is_some_and(|week| !(1..=part.weeks()).contains(&week)) => {
+            Some(part) if measured_figure.week.is_some_and(|week| !(1..=part.weeks()).contains(&week)) => {
                 format!("the part has weeks 1 to {}", part.weeks())
             }
-            Some(part) => match figure_world_error(part, own) {
+            Some(part) => match figure_world_error(part, measured_figure) {
                 Some(problem) => problem,
                 None => continue,
             },
         };
-        return Some(LessonDefect { place: format!("name = \"{}\"", own.name), key: "measured", problem });
+        return Some(LessonDefect {
+            place: format!("name = \"{}\"", measured_figure.name),
+            key: "measured",
+            problem,
+        });
     }
     None
 }
 
 /// Returns the error of a figure's own scenario and parameters.
-fn figure_world_error(part: &LessonPart, own: &MeasuredFigure) -> Option<String> {
-    if own.scenario.is_none() && own.parameters.is_empty() {
+fn figure_world_error(part: &LessonPart, measured_figure: &MeasuredFigure) -> Option<String> {
+    if measured_figure.scenario.is_none() && measured_figure.parameters.is_empty() {
         return None;
     }
     let shipped = Configuration::bundled();
-    let all = part.parameters.iter().chain(&own.parameters);
+    let all = part.parameters.iter().chain(&measured_figure.parameters);
     let overrides: Vec<(String, String)> = all.map(|(key, value)| (key.clone(), value.to_string())).collect();
-    let scenario = shipped.load_scenario(own.scenario.as_ref().unwrap_or(&part.scenario));
+    let scenario = shipped.load_scenario(measured_figure.scenario.as_ref().unwrap_or(&part.scenario));
     scenario
         .and_then(|scenario| shipped.load_parameters(&scenario, &overrides, false))
         .err()
@@ -135,7 +139,7 @@ fn figure_world_error(part: &LessonPart, own: &MeasuredFigure) -> Option<String>
 fn find_unknown_placeholder(lesson: &Lesson) -> Option<LessonDefect> {
     let steps = lesson.plan.parts.iter().flat_map(|part| &part.steps);
     let texts = steps.flat_map(|step| step.hints.iter().chain([&step.text]));
-    let says = lesson.plan.pitfalls.iter().map(|own| &own.say);
+    let says = lesson.plan.pitfalls.iter().map(|pitfall| &pitfall.say);
     for text in texts.chain(says).chain([&lesson.debrief, &lesson.instructor_notes]) {
         let filled = lesson.fill_figures(text);
         let name = filled.split('{').skip(1).filter_map(|rest| rest.split_once('}')).map(|(name, _)| name);

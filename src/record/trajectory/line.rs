@@ -149,8 +149,8 @@ pub(super) fn with_sum(mut line: Vec<u8>) -> Vec<u8> {
 
 /// Returns `None` if a line has no sum, otherwise whether the sum is correct.
 fn check_sum(line: &[u8]) -> Option<bool> {
-    let (own, tail) = line.split_at_checked(line.len().checked_sub(SUM_PREFIX.len() + SUM_DIGITS + 2)?)?;
+    let (bytes, tail) = line.split_at_checked(line.len().checked_sub(SUM_PREFIX.len() + SUM_DIGITS + 2)?)?;
     let sum = tail.strip_prefix(SUM_PREFIX)?.strip_suffix(b"\"}")?;
-    let without: Vec<u8> = own.iter().copied().chain([b'}']).collect();
+    let without: Vec<u8> = bytes.iter().copied().chain([b'}']).collect();
     Some(line_hash(&without).as_bytes().starts_with(sum))
 }

@@ -178,7 +178,8 @@ mod tests {
         let schema: Value =
             serde_json::from_str(include_str!("../../../assets/trajectory.schema.json")).expect("JSON");
         let kinds = schema["$defs"].as_object().expect("definitions");
-        let examples = kinds.iter().filter_map(|(kind, own)| Some((kind, own.get("examples")?.as_array()?)));
+        let examples =
+            kinds.iter().filter_map(|(kind, value)| Some((kind, value.get("examples")?.as_array()?)));
         examples.flat_map(|(kind, all)| all.iter().map(|one| (kind.clone(), one.clone()))).collect()
     }
 

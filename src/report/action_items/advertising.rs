@@ -16,7 +16,7 @@ const MIN_ENTERPRISES: u32 = 3;
 /// Finds enterprise groups that are advertised to but request no offer.
 pub(super) fn groups_without_requests(situation: &DiagnosisContext<'_>) -> Vec<ActionItem> {
     let recent = &situation.groups[situation.groups.len().saturating_sub(4)..];
-    let enterprises = situation.estimates.iter().filter(|own| own.group.is_enterprise());
+    let enterprises = situation.estimates.iter().filter(|estimates| estimates.group.is_enterprise());
     let paid = enterprises.filter(|own| situation.ads_by_group[own.group] > 0.0);
     let unwanted = paid.filter_map(|own| {
         let came: u32 = recent.iter().map(|week| week[own.group].leads).sum();

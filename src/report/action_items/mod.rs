@@ -203,7 +203,8 @@ pub fn action_items(session: &Session) -> Vec<ActionItem> {
     // Threads and subscribers waiting for an answer are always reported, however small their value.
     found.retain(|need| need.problem == Problem::Threads || need.at_risk >= MIN_RISK_SHARE * moved);
     // Skips forms that the lesson has locked.
-    let is_locked = |tool: ToolId| session.lesson().is_some_and(|own| !own.has_tool(tool));
+    let is_locked =
+        |tool: ToolId| session.lesson().is_some_and(|lesson_progress| !lesson_progress.has_tool(tool));
     found.retain(|need| !matches!(need.target, ActionTarget::Call(tool, _) if is_locked(tool)));
     if !session.rules().advice {
         found.iter_mut().for_each(ActionItem::remove_advice);

@@ -34,7 +34,7 @@ pub(super) fn nothing_on_sale(situation: &DiagnosisContext<'_>) -> Option<Action
         return None;
     }
     let all = empty.len() == priced.len();
-    let most = situation.individuals().map(|own| (own.account_usage_range().1, own.group));
+    let most = situation.individuals().map(|estimates| (estimates.account_usage_range().1, estimates.group));
     let (use_a_day, group) = most.max_by(|left, right| left.0.total_cmp(&right.0))?;
     let quota = round_up_to_two_digits(use_a_day);
     let arguments: Map<String, Value> = Plan::ALL
@@ -68,14 +68,14 @@ pub(super) fn nothing_on_sale(situation: &DiagnosisContext<'_>) -> Option<Action
 fn missing_price(situation: &DiagnosisContext<'_>) -> ActionItem {
     let mut budgets: Vec<&Estimates> = situation.individuals().collect();
     budgets.sort_by(|left, right| left.budget.total_cmp(&right.budget));
-    let half = |at: usize| budgets.get(at).map(|own| (own.budget.round() / 2.0).round().max(1.0));
+    let half = |at: usize| budgets.get(at).map(|estimates| (estimates.budget.round() / 2.0).round().max(1.0));
     let prices: Map<String, Value> = Plan::ALL
         .into_iter()
         .enumerate()
         .filter_map(|(at, plan)| Some((plan.id().to_owned(), json_number(half(at)?))))
         .collect();
     // The form contains half of the displayed estimate, not of the middle of its range.
-    let told: Vec<String> = budgets
+    let texts: Vec<String> = budgets
         .iter()
         .map(|own| {
             let range = TrueValueRange::from_estimate(own.budget, own.max_relative_error).format_money();
@@ -87,7 +87,7 @@ fn missing_price(situation: &DiagnosisContext<'_>) -> ActionItem {
         text: "no plan has a price: no one can subscribe".to_owned(),
         proposal: Some(format!(
             "mean budgets a month: {}; the form proposes half of each estimate",
-            told.join(", ")
+            texts.join(", ")
         )),
         target: ActionTarget::Call(ToolId::SetPrices, Value::Object(prices)),
         at_risk: situation.upcoming_costs() + situation.upcoming_revenue(),
@@ -104,8 +104,9 @@ pub(super) fn no_leads(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
     }
     // Groups are ranked by their fit with the current plans, then with the best model tier, then by budget.
     let group = situation.individuals().min_by(|left, right| {
-        let now =
-            |own: &Estimates| (own.required_quality - best_delivered_quality(situation, own.group)).max(0.0);
+        let now = |estimates: &Estimates| {
+            (estimates.required_quality - best_delivered_quality(situation, estimates.group)).max(0.0)
+        };
         let missing =
             |own: &Estimates| (own.required_quality - best_possible_quality(situation, own.group)).max(0.0);
         let reach = || missing(left).total_cmp(&missing(right));
@@ -161,26 +162,26 @@ pub(super) fn no_sales(situation: &DiagnosisContext<'_>) -> Vec<ActionItem> {
         .into_iter()
         .any(|plan| situation.settings.prices[plan] > 0.0 && situation.settings.quotas[plan].units() != 0.0);
     let Some(week) = situation.last_group_week().filter(|_| on_sale) else { return Vec::new() };
-    let few = |own: &&Estimates| {
-        let figures = &week[own.group];
+    let few = |estimates: &&Estimates| {
+        let figures = &week[estimates.group];
         figures.leads >= MIN_WEEKLY_LEADS && figures.conversion().is_some_and(|share| share < LOW_CONVERSION)
     };
     situation.individuals().filter(few).filter_map(|own| no_sale(situation, own, &week[own.group])).collect()
 }
 
-fn no_sale(situation: &DiagnosisContext<'_>, own: &Estimates, week: &GroupWeek) -> Option<ActionItem> {
-    let offers = GroupOffers::new(situation, own)?;
+fn no_sale(situation: &DiagnosisContext<'_>, estimates: &Estimates, week: &GroupWeek) -> Option<ActionItem> {
+    let offers = GroupOffers::new(situation, estimates)?;
     let missing = offers.missing_aspect();
     let signed = if week.signed == 0 { "none".to_owned() } else { format_whole(f64::from(week.signed)) };
     let share = percent(week.conversion()?, 1);
-    let price = offers.lowest_price().min(own.budget);
+    let price = offers.lowest_price().min(estimates.budget);
     let at_risk = f64::from(week.leads - week.signed) * RISK_DAYS / 7.0 * price;
     let (told, proposal, place) = offers.remedy(missing, at_risk)?;
     Some(ActionItem {
-        problem: Problem::NoSales(own.group),
+        problem: Problem::NoSales(estimates.group),
         text: format!(
             "{}: {} last week, {signed} signed ({share}); {told}",
-            own.group,
+            estimates.group,
             pluralize(week.leads, "lead")
         ),
         proposal: Some(proposal),
@@ -198,8 +199,11 @@ pub(super) struct GroupOffers<'a> {
 
 impl<'a> GroupOffers<'a> {
     /// Returns the offers to a group; `None` if no plan delivers to it.
-    pub(super) fn new(situation: &'a DiagnosisContext<'a>, own: &'a Estimates) -> Option<GroupOffers<'a>> {
-        Some(GroupOffers { situation, own, quality: situation.quality(own.group)? })
+    pub(super) fn new(
+        situation: &'a DiagnosisContext<'a>,
+        estimates: &'a Estimates,
+    ) -> Option<GroupOffers<'a>> {
+        Some(GroupOffers { situation, own: estimates, quality: situation.quality(estimates.group)? })
     }
 
     fn plans(&self) -> impl Iterator<Item = Plan> + '_ {
@@ -282,47 +286,52 @@ impl<'a> GroupOffers<'a> {
         missing: MissingAspect,
         at_risk: f64,
     ) -> Option<(String, String, ActionTarget)> {
-        let (told, proposal, place) = self.direct_remedy(missing, at_risk)?;
+        let (text, proposal, place) = self.direct_remedy(missing, at_risk)?;
         match self.renewed_study(at_risk) {
             Some((study, place)) if matches!(missing, MissingAspect::Quality | MissingAspect::Balance) => {
-                Some((told, study, place))
+                Some((text, study, place))
             }
-            _ => Some((told, proposal, place)),
+            _ => Some((text, proposal, place)),
         }
     }
 
     /// Proposes a study that updates estimates older than four weeks, if it costs no more than is at risk. `None` if
     /// a study is already running.
     fn renewed_study(&self, at_risk: f64) -> Option<(String, ActionTarget)> {
-        let (own, day) = (self.own, self.situation.observation.day);
+        let (estimates, day) = (self.own, self.situation.observation.day);
         let is_studied = || {
-            self.situation.session.company().running_studies().iter().any(|study| study.group == own.group)
+            self.situation
+                .session
+                .company()
+                .running_studies()
+                .iter()
+                .any(|study| study.group == estimates.group)
         };
-        if day < own.as_of + OUTDATED_STUDY_DAYS || is_studied() {
+        if day < estimates.as_of + OUTDATED_STUDY_DAYS || is_studied() {
             return None;
         }
         let terms = &self.situation.terms;
         let study =
-            terms.study_level(own.level.max(terms.targets.0)).filter(|study| study.cost <= at_risk)?;
+            terms.study_level(estimates.level.max(terms.targets.0)).filter(|study| study.cost <= at_risk)?;
         let text = format!(
             "required quality rises as competitors improve, and the estimate is {} old: a level {} study updates it for {} in {}",
-            pluralize(day - own.as_of, "day"),
+            pluralize(day - estimates.as_of, "day"),
             study.level,
             format_money(study.cost),
             pluralize(study.days, "day")
         );
-        let arguments = json!({ "group_id": own.group.id(), "target_level": study.level });
+        let arguments = json!({ "group_id": estimates.group.id(), "target_level": study.level });
         Some((text, ActionTarget::Call(ToolId::ResearchGroup, arguments)))
     }
 
     fn direct_remedy(&self, missing: MissingAspect, at_risk: f64) -> Option<(String, String, ActionTarget)> {
-        let (own, group) = (self.own, self.own.group);
-        let floor =
-            TrueValueRange::from_estimate(own.required_quality, own.max_relative_error).format_quality();
-        let as_of = format!("as of day {}", own.as_of);
+        let (estimates, group) = (self.own, self.own.group);
+        let floor = TrueValueRange::from_estimate(estimates.required_quality, estimates.max_relative_error)
+            .format_quality();
+        let as_of = format!("as of day {}", estimates.as_of);
         match missing {
             MissingAspect::Price => {
-                let least = own.true_range(own.budget).0;
+                let least = estimates.true_range(estimates.budget).0;
                 let price = least.floor().max(1.0);
                 let plan =
                     self.plans().min_by(|left, right| self.price(*left).total_cmp(&self.price(*right)))?;
@@ -330,7 +339,8 @@ impl<'a> GroupOffers<'a> {
                     format!(
                         "price: the lowest is {} for {plan}, the mean budget {} ({as_of})",
                         format_money(self.price(plan)),
-                        TrueValueRange::from_estimate(own.budget, own.max_relative_error).format_money()
+                        TrueValueRange::from_estimate(estimates.budget, estimates.max_relative_error)
+                            .format_money()
                     ),
                     format!("{} is below even the low end of that range", format_money(price)),
                     ActionTarget::Call(ToolId::SetPrices, json!({ plan.id(): json_number(price) })),
@@ -338,7 +348,7 @@ impl<'a> GroupOffers<'a> {
             }
             MissingAspect::Quota => {
                 let plan = self.best_plan()?;
-                let quota = round_up_to_two_digits(own.account_usage_range().1);
+                let quota = round_up_to_two_digits(estimates.account_usage_range().1);
                 let quotas: Map<String, Value> = Plan::ALL
                     .into_iter()
                     .map(|of| {
@@ -351,7 +361,7 @@ impl<'a> GroupOffers<'a> {
                         "quota: {} units a day on {plan}; mean usage{} is {}",
                         format_whole(self.situation.settings.quotas[plan].units()),
                         if group.is_enterprise() { " of the smallest enterprises" } else { "" },
-                        TrueValueRange::from(own.account_usage_range()).format_units()
+                        TrueValueRange::from(estimates.account_usage_range()).format_units()
                     ),
                     format!("{} units a day cover even the high end of that range", format_whole(quota)),
                     ActionTarget::Call(ToolId::SetUsageQuotas, Value::Object(quotas)),
@@ -360,13 +370,18 @@ impl<'a> GroupOffers<'a> {
             MissingAspect::Quality => {
                 let plan = self.best_plan()?;
                 let delivered = self.quality.by_plan[plan];
-                let told = format!(
+                let text = format!(
                     "quality: {}; required on average: {floor} ({as_of})",
                     self.describe_best_plan(plan, delivered)
                 );
-                let (proposal, place) =
-                    better_quality(self.situation, group, plan, (delivered, own.required_quality), at_risk)?;
-                Some((told, proposal, place))
+                let (proposal, place) = better_quality(
+                    self.situation,
+                    group,
+                    plan,
+                    (delivered, estimates.required_quality),
+                    at_risk,
+                )?;
+                Some((text, proposal, place))
             }
             // Customers have not seen an offer that changed today, so last week's leads do not judge it.
             MissingAspect::Balance if self.was_changed_today() => None,
@@ -445,7 +460,7 @@ fn better_quality(
         pluralize(days as u32, "day"),
         format_money(cost)
     );
-    let told = match cost > at_risk {
+    let text = match cost > at_risk {
         true => {
             format!(
                 "{reached}: more than the {} lost in four weeks, but the effect lasts",
@@ -457,5 +472,5 @@ fn better_quality(
     spend.insert(group, DEVELOPMENT_DOLLARS);
     let spend: Map<String, Value> =
         spend.iter().map(|(group, dollars)| (group.id().to_owned(), json_number(*dollars))).collect();
-    Some((told, ActionTarget::Call(ToolId::SetTargetedDevSpend, json!({ "targeted_spend": spend }))))
+    Some((text, ActionTarget::Call(ToolId::SetTargetedDevSpend, json!({ "targeted_spend": spend }))))
 }

@@ -26,7 +26,7 @@ fn healthy_calls() -> Vec<(&'static str, Value)> {
 fn healthy_calls_with(changed: &[(&'static str, Value)]) -> Vec<(&'static str, Value)> {
     let mut calls = healthy_calls();
     for (tool, arguments) in changed {
-        calls.retain(|(own, _)| own != tool);
+        calls.retain(|(text, _)| text != tool);
         calls.push((tool, arguments.clone()));
     }
     calls
@@ -188,12 +188,15 @@ fn a_plan_that_delivers_more_and_has_too_small_a_quota_is_named() {
     ]);
     let session = play_company(7, 1e6, &calls, 2);
     let quality = session.company().delivered_quality();
-    let own = quality.iter().find(|own| own.group == group("S2")).expect("S2 is known");
-    assert!(own.by_plan[Plan::C] > own.by_plan[Plan::B], "C has the better model");
+    let delivered_quality = quality.iter().find(|own| own.group == group("S2")).expect("S2 is known");
+    assert!(
+        delivered_quality.by_plan[Plan::C] > delivered_quality.by_plan[Plan::B],
+        "C has the better model"
+    );
     let named = format!(
         "quality: {:.4} on B; C delivers {:.4} within their estimated budget of $",
-        own.by_plan[Plan::B],
-        own.by_plan[Plan::C]
+        delivered_quality.by_plan[Plan::B],
+        delivered_quality.by_plan[Plan::C]
     );
     assert_first(
         &session,
@@ -390,8 +393,8 @@ fn short_runway_ranks_first() {
     );
     let ActionTarget::Call(ToolId::SetTargetedDevSpend, arguments) = &need.target else { panic!("{need:?}") };
     let proposed = arguments["targeted_spend"]["S1"].as_f64().expect("an amount");
-    let told = format!("at {} a day, cash lasts 8 weeks", crate::formatting::format_money(proposed));
-    assert!(need.describe().contains(&told), "{}: {told}", need.describe());
+    let text = format!("at {} a day, cash lasts 8 weeks", crate::formatting::format_money(proposed));
+    assert!(need.describe().contains(&text), "{}: {text}", need.describe());
     let mut mended = session;
     mended.call("set_targeted_dev_spend", arguments, Via::Script).expect("it is set");
     assert!(
@@ -437,8 +440,8 @@ fn table_budget_is_shown_as_in_the_form() {
     let mut mended = session;
     mended.call("set_targeted_ad_spend", arguments, Via::Script).expect("it is set");
     let kept = mended.settings().targeted_ads.total();
-    let told = format!("at {} a day", crate::formatting::format_money(kept));
-    assert!(need.describe().contains(&told), "{}: {told}", need.describe());
+    let text = format!("at {} a day", crate::formatting::format_money(kept));
+    assert!(need.describe().contains(&text), "{}: {text}", need.describe());
 }
 
 #[test]
@@ -472,8 +475,8 @@ fn advertising_to_enterprises_without_requests_is_found() {
         saved > 0.0
             && after.targeted_spend.values().all(|groups| groups.get(&group).is_none_or(|it| *it == 0.0))
     );
-    let told = format!("removing these ads saves {} a day", crate::formatting::format_money(saved));
-    assert!(need.describe().contains(&told), "{}: {told}", need.describe());
+    let text = format!("removing these ads saves {} a day", crate::formatting::format_money(saved));
+    assert!(need.describe().contains(&text), "{}: {text}", need.describe());
 }
 
 #[test]

@@ -80,7 +80,7 @@ fn draw_curve(svg: &mut String, card: &Card) {
     let last = card.cash_by_day.len().saturating_sub(1);
     let step = card.cash_by_day.len().div_ceil(MAX_CURVE_POINTS).max(1);
     let mut days: Vec<usize> = (0..card.cash_by_day.len()).step_by(step).collect();
-    if days.last().is_some_and(|own| *own < last) {
+    if days.last().is_some_and(|number| *number < last) {
         days.push(last);
     }
     let points: Vec<String> = days

@@ -48,7 +48,8 @@ fn curve_lines(cash: &[f64]) -> Vec<String> {
     let line = |row: usize| {
         let below = 8 * (CURVE_ROWS - 1 - row);
         let label = if row == 0 { format_dollar_tick(most) } else { String::new() };
-        let cells: String = heights.iter().map(|own| EIGHTHS[own.saturating_sub(below).min(8)]).collect();
+        let cells: String =
+            heights.iter().map(|number| EIGHTHS[number.saturating_sub(below).min(8)]).collect();
         format!("{label:>LABEL_WIDTH$} ┤{cells}").trim_end().to_owned()
     };
     let mut lines: Vec<String> = (0..CURVE_ROWS).map(line).collect();
@@ -70,7 +71,8 @@ mod tests {
         assert_eq!(lines.len(), CURVE_ROWS + 2);
         let column = |at: usize| -> usize {
             let cell = |line: &String| line.chars().nth(LABEL_WIDTH + 2 + at).unwrap_or(' ');
-            let eighths = |line: &String| EIGHTHS.iter().position(|own| *own == cell(line)).unwrap_or(0);
+            let eighths =
+                |line: &String| EIGHTHS.iter().position(|character| *character == cell(line)).unwrap_or(0);
             lines[..CURVE_ROWS].iter().map(eighths).sum()
         };
         assert_eq!((column(0), column(65)), (0, 80));

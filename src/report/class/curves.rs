@@ -82,8 +82,9 @@ pub fn scatter<'a>(view: &ClassView<'a>, ranking: &[RankedStudent<'a>], part: u3
 fn names_by_difference(all: &[&BTreeMap<String, f64>]) -> Vec<String> {
     let spread = |name: &String| {
         let values = || all.iter().map(|own| own.get(name).copied().unwrap_or(0.0));
-        let (least, most) = values()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), own| (least.min(own), most.max(own)));
+        let (least, most) = values().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| {
+            (least.min(value), most.max(value))
+        });
         let distinct: BTreeSet<u64> = values().map(f64::to_bits).collect();
         (distinct.len(), (most - least) / most.abs().max(least.abs()).max(1e-9))
     };

@@ -31,7 +31,7 @@ pub(super) fn draw(
     drawing: &PointDrawing<'_>,
     class_of: &dyn Fn(&str) -> Option<(String, String)>,
 ) -> String {
-    let all = || drawing.points.iter().flat_map(|own| &own.points).copied();
+    let all = || drawing.points.iter().flat_map(|student_points| &student_points.points).copied();
     let both = drawing.has_diagonal;
     let across = all().flat_map(|(x, y)| if both { vec![x, y] } else { vec![x] });
     let up = all().flat_map(|(x, y)| if both { vec![x, y] } else { vec![y] });

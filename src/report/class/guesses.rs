@@ -33,9 +33,9 @@ impl<'a> ClassQuestion<'a> {
 pub fn class_questions<'a>(view: &'a ClassView<'a>) -> Vec<ClassQuestion<'a>> {
     let parts = view.lesson.map(|lesson| lesson.plan.parts.as_slice()).unwrap_or_default();
     let mut all = Vec::new();
-    for (part, own) in (1..).zip(parts) {
-        for (step, own) in own.steps.iter().enumerate() {
-            let Some(guess) = &own.guess else { continue };
+    for (part, lesson_part) in (1..).zip(parts) {
+        for (step, lesson_step) in lesson_part.steps.iter().enumerate() {
+            let Some(guess) = &lesson_step.guess else { continue };
             let choices: &[String] = match &guess.form {
                 GuessForm::Choice { choices, .. } => choices,
                 GuessForm::Number { .. } => &[],
@@ -66,7 +66,10 @@ pub(super) fn count_correct_guesses(view: &ClassView<'_>, run: &ClassRun) -> usi
         step.guess.as_ref().is_some_and(|guess| matches!(guess.form, GuessForm::Choice { .. }))
     };
     let all = steps.iter().zip(&run.evidence.steps).filter(|(step, _)| is_choice(step));
-    all.filter(|(_, own)| own.guess.is_some() && own.guess == own.outcome).count()
+    all.filter(|(_, step_evidence)| {
+        step_evidence.guess.is_some() && step_evidence.guess == step_evidence.outcome
+    })
+    .count()
 }
 
 /// A pitfall that at least one student triggered.
@@ -92,12 +95,12 @@ pub fn pitfall_counts<'a>(view: &'a ClassView<'a>) -> Vec<PitfallCount<'a>> {
         labels.len()
     };
     let say = |text: &str| view.lesson.map(|lesson| lesson.fill_figures(text)).unwrap_or_default();
-    let counted = known.iter().map(|own| PitfallCount {
-        name: &own.name,
-        explanation: say(&own.say),
-        students: met_by(&own.name),
+    let counted = known.iter().map(|pitfall| PitfallCount {
+        name: &pitfall.name,
+        explanation: say(&pitfall.say),
+        students: met_by(&pitfall.name),
     });
-    let mut all: Vec<PitfallCount<'a>> = counted.filter(|own| own.students > 0).collect();
+    let mut all: Vec<PitfallCount<'a>> = counted.filter(|pitfall_count| pitfall_count.students > 0).collect();
     all.sort_by(|one, other| other.students.cmp(&one.students).then_with(|| one.name.cmp(other.name)));
     all
 }

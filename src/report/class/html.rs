@@ -43,7 +43,9 @@ pub fn class_to_html(view: &ClassView<'_>) -> String {
     }
     let names = ranking.iter().enumerate();
     let names: String = names
-        .map(|(at, own)| format!("<label class=\"n{at}\" for=\"r{at}\">{}</label>\n", escape_html(&own.name)))
+        .map(|(at, ranked_student)| {
+            format!("<label class=\"n{at}\" for=\"r{at}\">{}</label>\n", escape_html(&ranked_student.name))
+        })
         .collect();
     let _ = write!(page, "<div class=\"names\">\n{names}</div>\n");
     for part in 1..=view.part_count() {
@@ -57,7 +59,7 @@ pub fn class_to_html(view: &ClassView<'_>) -> String {
             .collection
             .findings
             .iter()
-            .map(|own| format!("<li>{}</li>\n", escape_html(&describe_finding(own))));
+            .map(|class_finding| format!("<li>{}</li>\n", escape_html(&describe_finding(class_finding))));
         let _ = write!(
             page,
             "<section>\n<h2>Not counted or missing</h2>\n<ul>\n{}</ul>\n</section>\n",
@@ -81,7 +83,7 @@ fn highlight_style(students: usize) -> String {
 
 fn student_marks<'a>(ranking: &'a [RankedStudent<'a>]) -> impl Fn(&str) -> Option<(String, String)> + 'a {
     |label| {
-        let at = ranking.iter().position(|own| own.label == label)?;
+        let at = ranking.iter().position(|ranked_student| ranked_student.label == label)?;
         Some((format!("c{at}"), ranking[at].name.clone()))
     }
 }
@@ -146,31 +148,34 @@ fn ranking_table(view: &ClassView<'_>, ranking: &[RankedStudent<'_>]) -> String 
 
 fn guesses_html(view: &ClassView<'_>, ranking: &[RankedStudent<'_>]) -> String {
     let mut text = String::new();
-    for asked in class_questions(view).into_iter().filter(|asked| !asked.answers.is_empty()) {
-        if asked.choices.is_empty() {
-            let points = asked.points();
-            let title = format!("{} Outcome by guess", asked.question);
+    for class_question in class_questions(view).into_iter().filter(|asked| !asked.answers.is_empty()) {
+        if class_question.choices.is_empty() {
+            let points = class_question.points();
+            let title = format!("{} Outcome by guess", class_question.question);
             let across = "guess; points on the line were exact".to_owned();
             let drawing =
                 PointDrawing { title, x_label: across, points: &points, is_line: false, has_diagonal: true };
-            text += &figure_html(asked.question, &drawing, ranking);
+            text += &figure_html(class_question.question, &drawing, ranking);
             continue;
         }
-        text += &format!("<h3>{}</h3>\n", escape_html(asked.question));
+        text += &format!("<h3>{}</h3>\n", escape_html(class_question.question));
         let bar = |(number, choice): (u32, &String)| {
-            let taken = asked.answers.iter().filter(|answer| answer.1 == f64::from(number)).count();
-            let is_right = asked.answers.iter().any(|answer| answer.2 == f64::from(number));
+            let taken = class_question.answers.iter().filter(|answer| answer.1 == f64::from(number)).count();
+            let is_right = class_question.answers.iter().any(|answer| answer.2 == f64::from(number));
             (choice.clone(), taken, is_right)
         };
-        text += &bars_html((1..).zip(asked.choices).map(bar), asked.answers.len());
+        text += &bars_html((1..).zip(class_question.choices).map(bar), class_question.answers.len());
     }
     if text.is_empty() { text } else { format!("<section>\n<h2>Guesses</h2>\n{text}</section>\n") }
 }
 
 fn pitfalls_html(view: &ClassView<'_>) -> String {
-    let met = pitfall_counts(view);
-    let Some(most) = met.first() else { return String::new() };
-    let rows = met.iter().enumerate().map(|(at, own)| (own.name.to_owned(), own.students, at == 0));
+    let counts = pitfall_counts(view);
+    let Some(most) = counts.first() else { return String::new() };
+    let rows = counts
+        .iter()
+        .enumerate()
+        .map(|(at, pitfall_count)| (pitfall_count.name.to_owned(), pitfall_count.students, at == 0));
     format!(
         "<section>\n<h2>Pitfalls</h2>\n<p>{}</p>\n{}</section>\n",
         escape_html(&most.explanation),

@@ -52,9 +52,9 @@ pub struct ClassDisplayOptions {
 
 impl<'a> ClassView<'a> {
     /// Returns a view of a class.
-    pub fn new(class: &'a CollectedClass, shown: ClassDisplayOptions) -> ClassView<'a> {
+    pub fn new(class: &'a CollectedClass, display_options: ClassDisplayOptions) -> ClassView<'a> {
         let CollectedClass { class, lesson, collection } = class;
-        ClassView { class, lesson: lesson.as_ref(), collection, display: shown }
+        ClassView { class, lesson: lesson.as_ref(), collection, display: display_options }
     }
 }
 
@@ -103,8 +103,8 @@ impl ClassView<'_> {
 
     /// Returns the title of a part if there are several. Parts are numbered from 1.
     pub fn part_title(&self, part: u32) -> Option<&str> {
-        let own = self.lesson?.plan.parts.get((part as usize).checked_sub(1)?)?;
-        (self.part_count() > 1).then_some(own.title.as_str())
+        let lesson_part = self.lesson?.plan.parts.get((part as usize).checked_sub(1)?)?;
+        (self.part_count() > 1).then_some(lesson_part.title.as_str())
     }
 
     /// Returns a short title: the lesson or the run.
@@ -123,7 +123,7 @@ impl ClassView<'_> {
     /// Returns the value of a goal relative to the reference play on the same seed. Steps and goals are numbered from
     /// 0.
     fn goal_share(&self, run: &ClassRun, step: usize, goal: usize) -> Option<f64> {
-        let value = |own: &Evidence| own.steps.get(step)?.goals.get(goal)?.value;
+        let value = |evidence: &Evidence| evidence.steps.get(step)?.goals.get(goal)?.value;
         let part = self.part_of_run(run)?;
         let bound: GoalBound = part.steps.get(step)?.goals.get(goal)?.bound;
         share_of_reference(Some(bound), value(&run.evidence)?, value(self.reference_play(run)?)?)

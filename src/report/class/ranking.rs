@@ -37,12 +37,12 @@ pub fn rank_students<'a>(view: &'a ClassView<'a>) -> Vec<RankedStudent<'a>> {
 }
 
 fn score_by_parts<'a>(view: &'a ClassView<'a>, label: &str) -> Option<(f64, Vec<&'a ClassRun>)> {
-    let own: Vec<&ClassRun> = view
+    let class_runs: Vec<&ClassRun> = view
         .undamaged_runs()
         .filter(|run| run.label == label && run.verdict == RunVerdict::Finished)
         .collect();
     let best = |part: u32| {
-        let scored = own
+        let scored = class_runs
             .iter()
             .filter(|run| run.evidence.part == part)
             .map(|run| (view.score_share(run).unwrap_or(0.0), *run));
@@ -58,7 +58,7 @@ fn score_by_parts<'a>(view: &'a ClassView<'a>, label: &str) -> Option<(f64, Vec<
 
 fn score_by_cash<'a>(view: &'a ClassView<'a>, label: &str, day: u32) -> Option<(f64, Vec<&'a ClassRun>)> {
     let run = view.undamaged_runs().find(|run| run.label == label)?;
-    let cash = run.evidence.cash.iter().rev().find(|(own, _)| *own <= day)?.1;
+    let cash = run.evidence.cash.iter().rev().find(|(number, _)| *number <= day)?.1;
     Some((cash, vec![run]))
 }
 

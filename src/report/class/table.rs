@@ -47,9 +47,9 @@ fn columns<'a>(view: &ClassView<'_>) -> Vec<Column<ClassRow<'a>>> {
     for step in 0..max_steps(view) {
         columns.extend(columns! { row: ClassRow<'a>;
             format!("guess_{}", step + 1), "", "guess before the step; for choices, the number of the selected one"
-                => format_optional(row.step(step).and_then(|own| own.guess));
+                => format_optional(row.step(step).and_then(|step_evidence| step_evidence.guess));
             format!("outcome_{}", step + 1), "", "outcome; for choices, the number of the correct one"
-                => format_optional(row.step(step).and_then(|own| own.outcome));
+                => format_optional(row.step(step).and_then(|evidence| evidence.outcome));
         });
     }
     for (step, goal) in all_goals(view) {

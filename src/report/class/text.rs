@@ -120,20 +120,24 @@ pub fn class_to_text(view: &ClassView<'_>) -> String {
         text += &drawings_text(view, &ranking, part, lit);
     }
     text += &guesses_text(view, &ranking);
-    let met = pitfall_counts(view);
-    if let Some((most, others)) = met.split_first() {
+    let counts = pitfall_counts(view);
+    if let Some((most, others)) = counts.split_first() {
         let students = pluralize(most.students as u32, "student");
         text += &format!("\nMost common pitfall: {}, by {students}. {}\n", most.name, most.explanation);
-        for own in others {
-            text += &format!("  {}: {}\n", own.name, own.students);
+        for pitfall_count in others {
+            text += &format!("  {}: {}\n", pitfall_count.name, pitfall_count.students);
         }
     }
     match view.display.hides_names {
         // Findings name students.
         true => text,
         false => {
-            let wrong: String =
-                view.collection.findings.iter().map(|own| format!("! {}\n", describe_finding(own))).collect();
+            let wrong: String = view
+                .collection
+                .findings
+                .iter()
+                .map(|class_finding| format!("! {}\n", describe_finding(class_finding)))
+                .collect();
             let text = if wrong.is_empty() { text } else { text + "\n" + &wrong };
             escape_control_characters(&text).into_owned()
         }
@@ -202,19 +206,22 @@ fn drawings_text(
 ) -> String {
     let all = student_curves(view, ranking, part);
     let title = view.part_title(part).map(|title| format!(", {title}")).unwrap_or_default();
-    let name = ranking.iter().find(|own| Some(own.label) == lit).map_or("no one", |own| own.name.as_str());
+    let name = ranking
+        .iter()
+        .find(|ranked_student| Some(ranked_student.label) == lit)
+        .map_or("no one", |student| student.name.as_str());
     let mut text = format!("\nCash by day{title}: {name} #, reference play o, others ·\n");
     let sign = |label: Option<&str>| match label {
         None => 'o',
         label if label == lit => '#',
         Some(_) => '\u{b7}',
     };
-    let drawn = |own: &[super::curves::StudentPoints<'_>], is_line: bool| {
-        let mut all: Vec<PlotSeries<'_>> = own
+    let drawn = |student_points: &[super::curves::StudentPoints<'_>], is_line: bool| {
+        let mut all: Vec<PlotSeries<'_>> = student_points
             .iter()
             .map(|own| PlotSeries { mark: sign(own.label), points: &own.points, is_line })
             .collect();
-        all.sort_by_key(|own| ['\u{b7}', 'o', '#'].iter().position(|sign| *sign == own.mark));
+        all.sort_by_key(|plot_series| ['\u{b7}', 'o', '#'].iter().position(|sign| *sign == plot_series.mark));
         plot_report(&all)
     };
     text += &drawn(&all, true);
@@ -227,16 +234,21 @@ fn drawings_text(
 
 fn guesses_text(view: &ClassView<'_>, ranking: &[RankedStudent<'_>]) -> String {
     let mut text = String::new();
-    for asked in class_questions(view).into_iter().filter(|asked| !asked.answers.is_empty()) {
-        let part = if view.part_count() > 1 { format!("part {}: ", asked.part) } else { String::new() };
-        text += &format!("\nGuesses: {part}{}\n", asked.question);
-        if asked.choices.is_empty() {
-            let mut guesses: Vec<f64> = asked.answers.iter().map(|answer| answer.1).collect();
+    for class_question in class_questions(view).into_iter().filter(|question| !question.answers.is_empty()) {
+        let part =
+            if view.part_count() > 1 { format!("part {}: ", class_question.part) } else { String::new() };
+        text += &format!("\nGuesses: {part}{}\n", class_question.question);
+        if class_question.choices.is_empty() {
+            let mut guesses: Vec<f64> = class_question.answers.iter().map(|answer| answer.1).collect();
             guesses.sort_by(f64::total_cmp);
             let distance = |answer: &&(&str, f64, f64)| (answer.1 - answer.2).abs();
-            let nearest = asked.answers.iter().min_by(|one, other| distance(one).total_cmp(&distance(other)));
+            let nearest =
+                class_question.answers.iter().min_by(|one, other| distance(one).total_cmp(&distance(other)));
             let named = |label: &str| {
-                ranking.iter().find(|own| own.label == label).map_or("-", |own| own.name.as_str())
+                ranking
+                    .iter()
+                    .find(|ranked_student| ranked_student.label == label)
+                    .map_or("-", |student| student.name.as_str())
             };
             let nearest = nearest.map(|(label, guess, outcome)| {
                 format!(
@@ -255,9 +267,10 @@ fn guesses_text(view: &ClassView<'_>, ranking: &[RankedStudent<'_>]) -> String {
                 nearest.unwrap_or_default()
             );
         } else {
-            for (number, choice) in (1..).zip(asked.choices) {
-                let taken = asked.answers.iter().filter(|answer| answer.1 == f64::from(number)).count();
-                let is_right = asked.answers.iter().any(|answer| answer.2 == f64::from(number));
+            for (number, choice) in (1..).zip(class_question.choices) {
+                let taken =
+                    class_question.answers.iter().filter(|answer| answer.1 == f64::from(number)).count();
+                let is_right = class_question.answers.iter().any(|answer| answer.2 == f64::from(number));
                 text += &format!("  {:>3}  {choice}{}\n", taken, if is_right { "  (correct)" } else { "" });
             }
         }

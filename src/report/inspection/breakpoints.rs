@@ -40,7 +40,9 @@ pub fn describe_stop(run: &BreakpointRun, day: u32, breakpoints: usize) -> Vec<S
         (true, count) if run.still_true.is_empty() => {
             vec![format!("{ran}; none of the {count} breakpoints was ever true")]
         }
-        (true, 1) if run.still_true.iter().all(|own| own.first_value_day.is_some()) => {
+        (true, 1)
+            if run.still_true.iter().all(|true_breakpoint| true_breakpoint.first_value_day.is_some()) =>
+        {
             vec![format!(
                 "{ran}; the breakpoint did not become true: it was true at its figure's first value"
             )]
@@ -48,18 +50,23 @@ pub fn describe_stop(run: &BreakpointRun, day: u32, breakpoints: usize) -> Vec<S
         (true, 1) => vec![format!("{ran}; the breakpoint did not become true: it was true before")],
         (true, count) => vec![format!("{ran}; none of the {count} breakpoints became true")],
     };
-    lines.extend(run.still_true.iter().map(|own| describe_still_true(own, day)));
+    lines.extend(
+        run.still_true.iter().map(|still_true_breakpoint| describe_still_true(still_true_breakpoint, day)),
+    );
     clean_up_numbers(lines)
 }
 
-fn describe_still_true(own: &StillTrueBreakpoint, day: u32) -> String {
-    let BreakpointHit { breakpoint, state: judged } = &own.hit;
-    let until = match (own.last_true_day == day, own.first_value_day) {
+fn describe_still_true(true_breakpoint: &StillTrueBreakpoint, day: u32) -> String {
+    let BreakpointHit { breakpoint, state: judged } = &true_breakpoint.hit;
+    let until = match (true_breakpoint.last_true_day == day, true_breakpoint.first_value_day) {
         (true, None) => "true on all these days and on the day before".to_owned(),
-        (false, None) => format!("true until day {}", own.last_true_day),
+        (false, None) => format!("true until day {}", true_breakpoint.last_true_day),
         (true, Some(began)) => format!("true from day {began}, its figure's first value"),
         (false, Some(began)) => {
-            format!("true from day {began}, its figure's first value, until day {}", own.last_true_day)
+            format!(
+                "true from day {began}, its figure's first value, until day {}",
+                true_breakpoint.last_true_day
+            )
         }
     };
     format!(
@@ -70,8 +77,8 @@ fn describe_still_true(own: &StillTrueBreakpoint, day: u32) -> String {
 }
 
 /// Describes since when a condition has its current value, with both sides of the change.
-pub fn describe_condition_history(own: &ConditionHistory) -> Vec<String> {
-    let ConditionHistory { condition, today, last_true, last_false } = own;
+pub fn describe_condition_history(condition_history: &ConditionHistory) -> Vec<String> {
+    let ConditionHistory { condition, today, last_true, last_false } = condition_history;
     let is = if today.is_true { "true" } else { "false" };
     let mut lines =
         vec![format!("{condition} is {is} on day {}: {}", today.day, describe_comparison(condition, today))];
@@ -83,7 +90,7 @@ pub fn describe_condition_history(own: &ConditionHistory) -> Vec<String> {
             if today.is_true { "false" } else { "true" },
             other.day,
             describe_comparison(condition, other),
-            own.unchanged_since()
+            condition_history.unchanged_since()
         ),
     });
     clean_up_numbers(lines)
@@ -92,13 +99,13 @@ pub fn describe_condition_history(own: &ConditionHistory) -> Vec<String> {
 /// Lists the days on which a condition became true, marking first values of its figure.
 pub fn describe_found_days(condition: &Condition, found: &[ConditionState], last_day: u32) -> Vec<String> {
     let days = pluralize(last_day, "day");
-    let head = match found.iter().filter(|own| own.becomes_true()).count() {
+    let head = match found.iter().filter(|condition_state| condition_state.becomes_true()).count() {
         0 => format!("{condition} became true on none of {days}"),
         often => format!("{condition} became true on {often} of {days}"),
     };
-    let line = |own: &ConditionState| {
-        let began = if own.is_first_value { " · its first value" } else { "" };
-        format!("  day {:<4} {}{began}", own.day, describe_comparison(condition, own))
+    let line = |state: &ConditionState| {
+        let began = if state.is_first_value { " · its first value" } else { "" };
+        format!("  day {:<4} {}{began}", state.day, describe_comparison(condition, state))
     };
     clean_up_numbers(std::iter::once(head).chain(found.iter().map(line)).collect())
 }
@@ -176,8 +183,8 @@ mod tests {
             was_true: false,
             is_first_value: false,
         };
-        let said = describe_comparison(&condition, &judged);
-        assert_eq!(said, "reputation(S3) = 0.50788, falls (day before 0.50791)");
+        let text = describe_comparison(&condition, &judged);
+        assert_eq!(text, "reputation(S3) = 0.50788, falls (day before 0.50791)");
         (judged.before, judged.is_true) = (None, false);
         assert_eq!(
             describe_comparison(&condition, &judged),

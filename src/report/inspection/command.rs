@@ -193,12 +193,12 @@ impl InspectionCommand {
             InspectionCommand::Parameters => session
                 .company()
                 .debug_parameters()
-                .and_then(|own| own.changes())
+                .and_then(|debug_parameters| debug_parameters.changes())
                 .map(InspectionOutput::Parameters),
             InspectionCommand::Parameter(key) => session
                 .company()
                 .debug_parameters()
-                .and_then(|own| own.value(key))
+                .and_then(|parameters| parameters.value(key))
                 .map(|value| InspectionOutput::Parameter(key.clone(), value)),
             InspectionCommand::Set(key, value, from) => {
                 session.set_parameter(key, value, *from).map(|set| InspectionOutput::Set(set, today))
@@ -212,7 +212,7 @@ impl InspectionOutput {
     pub fn describe(&self) -> Vec<String> {
         match self {
             InspectionOutput::Days(condition, found, last) => describe_found_days(condition, found, *last),
-            InspectionOutput::Writes(own) => describe_writes(own),
+            InspectionOutput::Writes(figure_writes) => describe_writes(figure_writes),
             InspectionOutput::Difference(one, other, found) => describe_day_difference(found, (*one, *other)),
             InspectionOutput::Parameters(changed) => describe_changed_parameters(changed),
             InspectionOutput::Parameter(key, value) => vec![format!("{key} = {value}")],

@@ -53,14 +53,15 @@ pub fn describe_run_difference(found: &RunDifference, names: (&str, &str)) -> Ve
 
 /// Returns the differences as JSON.
 pub fn difference_to_json(found: &DayDifference) -> Value {
-    let figure = |(name, own, other): &(String, f64, f64)| json!({ "figure": name, "values": [own, other] });
-    let customer = |own: &CustomerDifference| {
-        let columns = own.columns.iter();
+    let figure =
+        |(name, value, other): &(String, f64, f64)| json!({ "figure": name, "values": [value, other] });
+    let customer = |customer_difference: &CustomerDifference| {
+        let columns = customer_difference.columns.iter();
         let columns = columns.map(|(name, one, other)| json!({ "column": name, "values": [one, other] }));
         json!({
-            "customer_id": own.customer,
-            "group": own.group.id(),
-            "subscribes": [own.subscribes.0, own.subscribes.1],
+            "customer_id": customer_difference.customer,
+            "group": customer_difference.group.id(),
+            "subscribes": [customer_difference.subscribes.0, customer_difference.subscribes.1],
             "columns": columns.collect::<Vec<Value>>(),
         })
     };
@@ -78,8 +79,9 @@ pub fn difference_to_json(found: &DayDifference) -> Value {
 }
 
 fn parameter_lines(found: &DayDifference, names: (&str, &str)) -> Vec<String> {
-    let row =
-        |(key, own, other): &(String, Value, Value)| vec![key.clone(), own.to_string(), other.to_string()];
+    let row = |(key, value, other): &(String, Value, Value)| {
+        vec![key.clone(), value.to_string(), other.to_string()]
+    };
     let rows: Vec<Vec<String>> = found.parameters.iter().take(MAX_LISTED_PARAMETERS).map(row).collect();
     if rows.is_empty() {
         return Vec::new();
@@ -91,8 +93,8 @@ fn parameter_lines(found: &DayDifference, names: (&str, &str)) -> Vec<String> {
 }
 
 fn figure_lines(found: &DayDifference, names: (&str, &str)) -> Vec<String> {
-    let row = |(name, own, other): &(String, f64, f64)| {
-        vec![name.clone(), format_distinct(*own, *other), format_distinct(*other, *own)]
+    let row = |(name, value, other): &(String, f64, f64)| {
+        vec![name.clone(), format_distinct(*value, *other), format_distinct(*other, *value)]
     };
     let rows: Vec<Vec<String>> = found.figures.iter().take(MAX_LISTED_FIGURES).map(row).collect();
     if rows.is_empty() {
@@ -114,23 +116,28 @@ fn customer_lines(found: &DayDifference, names: (&str, &str), before: &str) -> V
         count(found.only_in_one.1),
         names.1
     )];
-    lines.extend(found.first_customers.iter().map(|own| customer_line(own, names, before)));
+    lines.extend(
+        found
+            .first_customers
+            .iter()
+            .map(|customer_difference| customer_line(customer_difference, names, before)),
+    );
     lines
 }
 
-fn customer_line(own: &CustomerDifference, names: (&str, &str), before: &str) -> String {
-    let what = match own.subscribes {
+fn customer_line(customer_difference: &CustomerDifference, names: (&str, &str), before: &str) -> String {
+    let what = match customer_difference.subscribes {
         (true, false) => format!("subscribes only {before} {}", names.0),
         (false, _) => format!("subscribes only {before} {}", names.1),
         (true, true) => {
-            let columns = own.columns.iter().map(|(name, one, other)| {
+            let columns = customer_difference.columns.iter().map(|(name, one, other)| {
                 let (one, other) = format_distinct_cells(one, other);
                 format!("{name} {one} → {other}")
             });
             columns.collect::<Vec<String>>().join(", ")
         }
     };
-    format!("  {} {}: {what}", own.customer, own.group)
+    format!("  {} {}: {what}", customer_difference.customer, customer_difference.group)
 }
 
 /// Formats a number with as few decimals as distinguish it from another.

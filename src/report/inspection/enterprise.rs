@@ -10,7 +10,7 @@ pub fn describe_enterprise(lens: &EnterpriseView) -> Vec<String> {
     let EnterpriseView { customer, group, day, days } = lens;
     let mut lines = vec![format!("enterprise {customer} · {group} · day {day}")];
     let before = lines.len();
-    lens.threads_of_day().for_each(|own| lines.extend(describe_thread(own)));
+    lens.threads_of_day().for_each(|thread_day| lines.extend(describe_thread(thread_day)));
     if lines.len() == before {
         lines.push(match days.last() {
             Some(last) => format!("no thread was open on day {day}; the last one was on day {}", last.day),
@@ -20,22 +20,22 @@ pub fn describe_enterprise(lens: &EnterpriseView) -> Vec<String> {
     clean_up_numbers(lines)
 }
 
-fn describe_thread(own: &EnterpriseThreadDay) -> Vec<String> {
+fn describe_thread(thread_day: &EnterpriseThreadDay) -> Vec<String> {
     let mut lines = vec![format!(
         "thread {} ({}): budget {:.2}, {} turns left, relationship {:.4}{}",
-        own.thread,
-        own.kind.id(),
-        own.budget,
-        own.remaining_turns,
-        own.relationship,
-        match own.late_penalty {
+        thread_day.thread,
+        thread_day.kind.id(),
+        thread_day.budget,
+        thread_day.remaining_turns,
+        thread_day.relationship,
+        match thread_day.late_penalty {
             0.0 => String::new(),
             penalty => format!(", {penalty:+.4} if the late answer arrives today"),
         }
     )];
     let head = ["plan", "quality", "if answered today", "accepts", "counteroffer"];
     let row = |plan: Plan| {
-        let judged = own.plans[plan];
+        let judged = thread_day.plans[plan];
         vec![
             plan.to_string(),
             format!("{:.4}", judged.quality),
@@ -48,24 +48,24 @@ fn describe_thread(own: &EnterpriseThreadDay) -> Vec<String> {
         ]
     };
     lines.extend(indented_table(&head, &Plan::ALL.map(row)));
-    if let Some(answer) = &own.answer {
-        let offered: Vec<String> = own
+    if let Some(answer) = &thread_day.answer {
+        let offered: Vec<String> = thread_day
             .offerings
             .iter()
             .map(|offering| format!("{} at {:.2}", offering.plan, offering.price))
             .collect();
-        let when = own.reply_day.map_or(String::new(), |day| format!(", due on day {day}"));
+        let when = thread_day.reply_day.map_or(String::new(), |day| format!(", due on day {day}"));
         lines.push(format!(
             "  offered {}; today's answer{when}: {}",
             offered.join(", "),
-            describe_answer(answer, own)
+            describe_answer(answer, thread_day)
         ));
     }
     lines
 }
 
-fn describe_answer(answer: &OfferResponse, own: &EnterpriseThreadDay) -> String {
-    let plan = |at: usize| own.offerings.get(at).map_or("", |offering| offering.plan.id());
+fn describe_answer(answer: &OfferResponse, thread_day: &EnterpriseThreadDay) -> String {
+    let plan = |at: usize| thread_day.offerings.get(at).map_or("", |offering| offering.plan.id());
     match answer {
         OfferResponse::Accept(at) => format!("accepts plan {}", plan(*at)),
         OfferResponse::Counter(at, price) => format!("counters with {price:.2} for plan {}", plan(*at)),

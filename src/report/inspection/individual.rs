@@ -18,17 +18,22 @@ pub fn describe_individual(lens: &IndividualView) -> Vec<String> {
     let first = &lens.signup;
     let came = format!("arrived on day {} through {}", first.day, first.source.id());
     let mut lines = vec![format!("customer {} · {} · {came}", lens.customer, lens.group), headline(lens)];
-    let Some(shown) = lens.day_shown() else {
+    let Some(individual_day) = lens.day_shown() else {
         lines.extend(describe_signup(first));
         return clean_up_numbers(lines);
     };
-    let curve = shown.weighed_decision.curve;
+    let curve = individual_day.weighed_decision.curve;
     lines.push(format!(
         "curve on day {}: budget {:.2}, quality {:.4} to {:.4}, steepness {:.2} and {:.2}",
-        shown.day, curve.c_max, curve.q_min, curve.q_max, curve.steepness_left, curve.steepness_right
+        individual_day.day,
+        curve.c_max,
+        curve.q_min,
+        curve.q_max,
+        curve.steepness_left,
+        curve.steepness_right
     ));
-    lines.push(format!("plans on day {}, * current:", shown.day));
-    lines.extend(plan_rows(&shown.weighed_decision, shown.plan));
+    lines.push(format!("plans on day {}, * current:", individual_day.day));
+    lines.extend(plan_rows(&individual_day.weighed_decision, individual_day.plan));
     if let Some(bill) = lens.last_bill() {
         lines.push(format!("plans at the last bill, day {}:", bill.day));
         lines.extend(plan_rows(&bill.weighed_decision, bill.plan));
@@ -40,13 +45,13 @@ pub fn describe_individual(lens: &IndividualView) -> Vec<String> {
 
 /// Describes the outcome of a day and the terms that would have changed it.
 fn headline(lens: &IndividualView) -> String {
-    let Some(shown) = lens.day_shown() else { return signup_headline(lens) };
-    let WeighedDecision { choice, plans, decisive_terms: turning, .. } = &shown.weighed_decision;
-    let day = shown.day;
-    match (shown.outcome, choice) {
+    let Some(individual_day) = lens.day_shown() else { return signup_headline(lens) };
+    let WeighedDecision { choice, plans, decisive_terms: turning, .. } = &individual_day.weighed_decision;
+    let day = individual_day.day;
+    match (individual_day.outcome, choice) {
         (SubscriberOutcome::Cancels(EndCause::Involuntary), _) => format!(
             "cancelled on day {day}: the payment failed, with a chance of {:.2} % on that day",
-            shown.payment_failure * 100.0
+            individual_day.payment_failure * 100.0
         ),
         (SubscriberOutcome::Cancels(_), _) => {
             format!(
@@ -63,8 +68,8 @@ fn headline(lens: &IndividualView) -> String {
         (outcome, Some(best)) => {
             let what = match outcome {
                 SubscriberOutcome::Switches(plan) => format!("switched to plan {plan} on day {day}"),
-                _ if shown.is_due => format!("stayed on plan {} on day {day}", shown.plan),
-                _ => format!("on plan {} on day {day}, not a billing day", shown.plan),
+                _ if individual_day.is_due => format!("stayed on plan {} on day {day}", individual_day.plan),
+                _ => format!("on plan {} on day {day}, not a billing day", individual_day.plan),
             };
             format!(
                 "{what}: plan {best} has the largest surplus, {:.4}; {}",
@@ -151,17 +156,17 @@ fn plan_rows(weighed: &WeighedDecision, own: Plan) -> Vec<String> {
 
 fn signup_headline(lens: &IndividualView) -> String {
     let SignupDecision { day, plan, plans, quality_noise: noise, signed_up, curve, .. } = &lens.signup;
-    let own = &plans[*plan];
-    let seen = own.offered.quality * noise;
+    let plan_terms = &plans[*plan];
+    let seen = plan_terms.offered.quality * noise;
     if *signed_up {
         return format!(
             "signed up for plan {plan} on day {day}: quality {seen:.4} with noise {noise:.4}, required {:.4}",
-            own.required
+            plan_terms.required
         );
     }
-    let missing = match own.offered.price <= curve.c_max {
-        true => format!("misses by {:.4} with noise {noise:.4}", own.required - seen),
-        false => format!("costs {:.2}, and the budget is {:.2}", own.offered.price, curve.c_max),
+    let missing = match plan_terms.offered.price <= curve.c_max {
+        true => format!("misses by {:.4} with noise {noise:.4}", plan_terms.required - seen),
+        false => format!("costs {:.2}, and the budget is {:.2}", plan_terms.offered.price, curve.c_max),
     };
     format!("did not sign up on day {day}: plan {plan}, which it considered, {missing}")
 }
@@ -169,14 +174,14 @@ fn signup_headline(lens: &IndividualView) -> String {
 fn describe_signup(first: &SignupDecision) -> Vec<String> {
     let curve = first.curve;
     let row = |plan: Plan| {
-        let own = &first.plans[plan];
+        let plan_terms = &first.plans[plan];
         vec![
             plan.to_string(),
-            format!("{:.2}", own.offered.price),
-            format!("{:.4}", own.offered.quality),
-            format!("{:.4}", own.offered.quality * first.quality_noise),
-            format!("{:.4}", own.required),
-            if own.offered.price <= curve.c_max { String::new() } else { "above budget".to_owned() },
+            format!("{:.2}", plan_terms.offered.price),
+            format!("{:.4}", plan_terms.offered.quality),
+            format!("{:.4}", plan_terms.offered.quality * first.quality_noise),
+            format!("{:.4}", plan_terms.required),
+            if plan_terms.offered.price <= curve.c_max { String::new() } else { "above budget".to_owned() },
         ]
     };
     let mut lines = vec![format!(
@@ -193,8 +198,9 @@ fn describe_signup(first: &SignupDecision) -> Vec<String> {
 /// Lists satisfaction every seventh day, back from the inspected day.
 fn satisfaction_line(lens: &IndividualView) -> String {
     let listed = lens.days.iter().rev().step_by(SATISFACTION_STEP_DAYS).take(12);
-    let mut listed: Vec<String> =
-        listed.map(|own| format!("day {} {:.3}", own.day, own.satisfaction)).collect();
+    let mut listed: Vec<String> = listed
+        .map(|individual_day| format!("day {} {:.3}", individual_day.day, individual_day.satisfaction))
+        .collect();
     listed.reverse();
     format!("{SATISFACTION_PREFIX} {}", listed.join(", "))
 }
@@ -203,24 +209,27 @@ fn event_lines(lens: &IndividualView) -> Vec<String> {
     let first = &lens.signup;
     let mut lines = vec![format!("day {}: signed up for plan {}", first.day, first.plan)];
     let mut waited = 0;
-    for own in &lens.days {
-        let is_new = own.open_issue_days > 0 && (waited == 0 || own.open_issue_days <= waited);
-        if waited > 0 && (own.open_issue_days == 0 || is_new) {
-            lines.push(format!("day {}: the issue was resolved", own.day));
+    for individual_day in &lens.days {
+        let is_new =
+            individual_day.open_issue_days > 0 && (waited == 0 || individual_day.open_issue_days <= waited);
+        if waited > 0 && (individual_day.open_issue_days == 0 || is_new) {
+            lines.push(format!("day {}: the issue was resolved", individual_day.day));
         }
         if is_new {
-            lines.push(format!("day {}: an issue was opened", own.day));
+            lines.push(format!("day {}: an issue was opened", individual_day.day));
         }
-        waited = own.open_issue_days;
-        match own.outcome {
+        waited = individual_day.open_issue_days;
+        match individual_day.outcome {
             SubscriberOutcome::Cancels(EndCause::Involuntary) => {
-                lines.push(format!("day {}: the payment failed", own.day))
+                lines.push(format!("day {}: the payment failed", individual_day.day))
             }
-            SubscriberOutcome::Cancels(_) => lines.push(format!("day {}: cancelled", own.day)),
+            SubscriberOutcome::Cancels(_) => lines.push(format!("day {}: cancelled", individual_day.day)),
             SubscriberOutcome::Switches(plan) => {
-                lines.push(format!("day {}: switched to plan {plan}", own.day))
+                lines.push(format!("day {}: switched to plan {plan}", individual_day.day))
             }
-            SubscriberOutcome::Stays if own.is_due => lines.push(format!("day {}: stayed", own.day)),
+            SubscriberOutcome::Stays if individual_day.is_due => {
+                lines.push(format!("day {}: stayed", individual_day.day))
+            }
             SubscriberOutcome::Stays => {}
         }
     }

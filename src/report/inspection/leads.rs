@@ -10,18 +10,18 @@ pub fn factor_line_index(factor: LeadFactor) -> usize {
 
 /// Describes the equation of the last day, each factor with its range over all days, and λ with factors held fixed.
 pub fn describe_lead_equation(days: &[LeadEquation], held: &[(LeadFactor, f64)]) -> Vec<String> {
-    let Some(own) = days.last() else { return Vec::new() };
-    let mut lines = vec![format!("leads of {} on day {}", own.group, own.day)];
-    if !own.is_known {
+    let Some(lead_equation) = days.last() else { return Vec::new() };
+    let mut lines = vec![format!("leads of {} on day {}", lead_equation.group, lead_equation.day)];
+    if !lead_equation.is_known {
         lines.push("not discovered on that day: no leads".to_owned());
         return lines;
     }
-    lines.push(format_equation(own));
+    lines.push(format_equation(lead_equation));
     lines.extend(LeadFactor::ALL.map(|factor| factor_range(days, factor)));
-    if own.has_unlimited_market {
+    if lead_equation.has_unlimited_market {
         lines.push("  D is always 1: base_market_cap is 0, so the market has no size limit".to_owned());
     }
-    let by_group = own.word_of_mouth.iter().map(|(group, leads)| format!("{group} {leads:.3}"));
+    let by_group = lead_equation.word_of_mouth.iter().map(|(group, leads)| format!("{group} {leads:.3}"));
     let by_group: Vec<String> = by_group.collect();
     lines.push(match by_group.is_empty() {
         true => "  no word of mouth: there are no subscribers".to_owned(),
@@ -29,34 +29,34 @@ pub fn describe_lead_equation(days: &[LeadEquation], held: &[(LeadFactor, f64)])
     });
     if !held.is_empty() {
         let held_at: Vec<String> = held.iter().map(|(factor, value)| format!("{factor} {value}")).collect();
-        let with = own.expected_with(held);
+        let with = lead_equation.expected_with(held);
         lines.push(format!(
             "with {}: λ {with:.2} rather than {:.2}",
             held_at.join(", "),
-            own.expected_leads()
+            lead_equation.expected_leads()
         ));
     }
     lines.push(format!(
         "  p {:.2}: the share of draws around λ that are at least as far from it as {}",
-        own.p_value(),
-        own.actual_leads
+        lead_equation.p_value(),
+        lead_equation.actual_leads
     ));
     clean_up_numbers(lines)
 }
 
 /// Formats `R 0.50 × … × (search_ads 5.0 + word of mouth 12.4) = λ 98.3, actual 104 (p 0.56)`.
-fn format_equation(own: &LeadEquation) -> String {
-    let factors = LeadFactor::ALL.map(|factor| format!("{factor} {:.4}", own.factor(factor)));
+fn format_equation(lead_equation: &LeadEquation) -> String {
+    let factors = LeadFactor::ALL.map(|factor| format!("{factor} {:.4}", lead_equation.factor(factor)));
     let mut sources: Vec<String> =
-        own.channels().map(|(channel, leads)| format!("{} {leads:.2}", channel.id())).collect();
-    sources.push(format!("word of mouth {:.2}", own.word_of_mouth_leads()));
+        lead_equation.channels().map(|(channel, leads)| format!("{} {leads:.2}", channel.id())).collect();
+    sources.push(format!("word of mouth {:.2}", lead_equation.word_of_mouth_leads()));
     format!(
         "  {} × ({}) = λ {:.2}, actual {} (p {:.2})",
         factors.join(" × "),
         sources.join(" + "),
-        own.expected_leads(),
-        own.actual_leads,
-        own.p_value()
+        lead_equation.expected_leads(),
+        lead_equation.actual_leads,
+        lead_equation.p_value()
     )
 }
 

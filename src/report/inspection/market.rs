@@ -6,13 +6,14 @@ use novamind_insight::{CompetitorState, DriftState, GroupDriftState, NextCompeti
 const MAX_LISTED_MOVES: usize = 10;
 
 /// Describes what competitors could copy, their moves so far, and the next move.
-pub fn describe_competitors(own: &CompetitorState) -> Vec<String> {
-    let CompetitorState { day, shared_bonus, shared_bank, common_expectation: everyone, .. } = own;
+pub fn describe_competitors(competitor_state: &CompetitorState) -> Vec<String> {
+    let CompetitorState { day, shared_bonus, shared_bank, common_expectation: everyone, .. } =
+        competitor_state;
     let mut lines = vec![
         format!("competitors at the end of day {day}"),
         format!("  shared improvements {shared_bonus:.4}, not copied {shared_bank:.4}"),
     ];
-    let banks = own
+    let banks = competitor_state
         .group_banks
         .iter()
         .map(|(group, bonus, bank)| vec![group.to_string(), format!("{bonus:.4}"), format!("{bank:.4}")]);
@@ -22,23 +23,23 @@ pub fn describe_competitors(own: &CompetitorState) -> Vec<String> {
     }
     lines
         .push(format!("  competitors and drift have added {everyone:+.4} to the expectations of all groups"));
-    lines.extend(move_lines(own));
-    lines.extend(match &own.next_move {
-        Some(next) => next_move_lines(next, own),
+    lines.extend(move_lines(competitor_state));
+    lines.extend(match &competitor_state.next_move {
+        Some(next) => next_move_lines(next, competitor_state),
         None => vec!["  no further move before the end of the run".to_owned()],
     });
     clean_up_numbers(lines)
 }
 
-fn move_lines(own: &CompetitorState) -> Vec<String> {
-    let count = own.moves.len();
+fn move_lines(competitor_state: &CompetitorState) -> Vec<String> {
+    let count = competitor_state.moves.len();
     let mut lines = vec![match count {
         0 => "  no move so far".to_owned(),
         1 => "  1 move so far".to_owned(),
         count if count > MAX_LISTED_MOVES => format!("  {count} moves so far, the last {MAX_LISTED_MOVES}:"),
         count => format!("  {count} moves so far:"),
     }];
-    let rows: Vec<Vec<String>> = own.moves[count.saturating_sub(MAX_LISTED_MOVES)..]
+    let rows: Vec<Vec<String>> = competitor_state.moves[count.saturating_sub(MAX_LISTED_MOVES)..]
         .iter()
         .map(|(event, severity)| {
             vec![
@@ -60,12 +61,12 @@ fn move_lines(own: &CompetitorState) -> Vec<String> {
     lines
 }
 
-fn next_move_lines(next: &NextCompetitorMove, own: &CompetitorState) -> Vec<String> {
+fn next_move_lines(next: &NextCompetitorMove, competitor_state: &CompetitorState) -> Vec<String> {
     let NextCompetitorMove { day, sampled_size: sampled, copied_share: u, outcome: made, .. } = next;
     let mut lines = vec![format!(
         "  next move on day {day}: drawn size {sampled:.4}, or {:.1} % of the shared bank if larger: {:.4} of today's bank",
         u * 100.0,
-        next.copied_quality(own.shared_bank)
+        next.copied_quality(competitor_state.shared_bank)
     )];
     lines.push(match made {
         Some(made) if made.by_feedback => {
@@ -85,8 +86,9 @@ fn next_move_lines(next: &NextCompetitorMove, own: &CompetitorState) -> Vec<Stri
 }
 
 /// Describes what the market has added to expectations and budgets, and what the next drift adds.
-pub fn describe_drift(own: &DriftState) -> Vec<String> {
-    let DriftState { day, common_expectation: everyone, next_common_step: step, next_day, groups } = own;
+pub fn describe_drift(drift_state: &DriftState) -> Vec<String> {
+    let DriftState { day, common_expectation: everyone, next_common_step: step, next_day, groups } =
+        drift_state;
     let mut lines = vec![
         format!("expectations and budgets at the end of day {day}"),
         match next_day {
@@ -100,18 +102,18 @@ pub fn describe_drift(own: &DriftState) -> Vec<String> {
     if next_day.is_some() {
         head.extend(["next drift: expects", "pays, $"]);
     }
-    let row = |own: &GroupDriftState| {
+    let row = |state: &GroupDriftState| {
         let mut row = vec![
-            format!("{}{}", own.group, if own.is_known { "" } else { " (unknown)" }),
+            format!("{}{}", state.group, if state.is_known { "" } else { " (unknown)" }),
             format!("{everyone:+.4}"),
-            format!("{:+.4}", own.group_expectation),
-            format!("{:+.4}", own.expectation.quality),
-            format!("{:+.4}", own.expectation.c_max),
+            format!("{:+.4}", state.group_expectation),
+            format!("{:+.4}", state.expectation.quality),
+            format!("{:+.4}", state.expectation.c_max),
         ];
         if next_day.is_some() {
             row.extend([
-                format!("{:+.6}", own.next_step.quality + step),
-                format!("{:+.4}", own.next_step.c_max),
+                format!("{:+.6}", state.next_step.quality + step),
+                format!("{:+.4}", state.next_step.c_max),
             ]);
         }
         row

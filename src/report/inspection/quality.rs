@@ -5,18 +5,19 @@ use novamind_insight::{DeliveredPlanQuality, QualityEquation, SharedQualityGains
 use novamind_session::identifiers::Plan;
 
 /// Describes the equation of each plan, the sources of shared quality, and the expectations of the market.
-pub fn describe_quality(own: &QualityEquation) -> Vec<String> {
-    let QualityEquation { group, day, base, shared, group_gain: targeted, service_penalty, .. } = own;
+pub fn describe_quality(quality_equation: &QualityEquation) -> Vec<String> {
+    let QualityEquation { group, day, base, shared, group_gain: targeted, service_penalty, .. } =
+        quality_equation;
     let mut lines = vec![
         format!("quality delivered to {group} on day {day}"),
         format!("  product: base {base:.4} + shared {shared:.4} + {group} {targeted:.4}"),
     ];
     let head = ["plan", "product", "× multiplier", "= delivered", "- service", "= perceived"];
     let row = |plan: Plan| {
-        let DeliveredPlanQuality { tier, multiplier, delivered } = own.plans[plan];
+        let DeliveredPlanQuality { tier, multiplier, delivered } = quality_equation.plans[plan];
         vec![
             plan.to_string(),
-            format!("{:.4}", own.product_quality(1.0)),
+            format!("{:.4}", quality_equation.product_quality(1.0)),
             format!("{multiplier:.2} (tier {tier})"),
             format!("{delivered:.4}"),
             format!("{service_penalty:.4}"),
@@ -24,21 +25,21 @@ pub fn describe_quality(own: &QualityEquation) -> Vec<String> {
         ]
     };
     lines.extend(indented_table(&head, &Plan::ALL.map(row)));
-    let SharedQualityGains { opening, research, development, noise } = own.gains;
+    let SharedQualityGains { opening, research, development, noise } = quality_equation.gains;
     lines.push(format!(
         "  shared: opening {opening:.4} + research {research:.4} + development {development:.4} \
          + daily noise {noise:.4}"
     ));
     lines.push(format!(
         "  not copied by competitors: {:.4} of the shared improvements, {:.4} of those for {group}",
-        own.shared_bank, own.group_bank
+        quality_equation.shared_bank, quality_equation.group_bank
     ));
     lines.push(format!(
         "  the market expects {:+.4} more ({:+.4} all groups, {:+.4} {group}) and pays {:+.2} dollars a month more",
-        own.expectation.quality,
-        own.common_expectation,
-        own.expectation.quality - own.common_expectation,
-        own.expectation.c_max
+        quality_equation.expectation.quality,
+        quality_equation.common_expectation,
+        quality_equation.expectation.quality - quality_equation.common_expectation,
+        quality_equation.expectation.c_max
     ));
     clean_up_numbers(lines)
 }

@@ -6,24 +6,28 @@ use novamind_session::SpilloverEffect;
 use novamind_session::identifiers::Group;
 
 /// Describes the reputation of a group: before, every term, after, and dropped terms.
-pub fn describe_reputation(own: &ReputationEquation) -> Vec<String> {
-    let ReputationEquation { group, day, before, after, thresholds: least, .. } = own;
+pub fn describe_reputation(reputation_equation: &ReputationEquation) -> Vec<String> {
+    let ReputationEquation { group, day, before, after, thresholds: least, .. } = reputation_equation;
     let plain = |name: &str, value: f64| vec![name.to_owned(), format!("{value:.8}")];
     let mut rows = vec![plain("before", *before)];
-    rows.extend(departures_row("cancellations", &own.individual_departures));
-    rows.extend(departures_row("lost enterprises", &own.enterprise_departures));
-    rows.push(term_row(&describe_contribution(&own.contribution, least), own.contribution.applied_change()));
-    let heard = own.spillovers.iter().filter(|spill| spill.counts);
+    rows.extend(departures_row("cancellations", &reputation_equation.individual_departures));
+    rows.extend(departures_row("lost enterprises", &reputation_equation.enterprise_departures));
+    rows.push(term_row(
+        &describe_contribution(&reputation_equation.contribution, least),
+        reputation_equation.contribution.applied_change(),
+    ));
+    let heard = reputation_equation.spillovers.iter().filter(|spill| spill.counts);
     rows.extend(heard.map(|spill| term_row(&spillover_product(spill), spill.change)));
     // Rounding errors are not limits.
-    if own.bounds.abs() > 1e-12 {
-        rows.push(term_row("limits", own.bounds));
+    if reputation_equation.bounds.abs() > 1e-12 {
+        rows.push(term_row("limits", reputation_equation.bounds));
     }
     rows.push(plain("after", *after));
     let mut lines = vec![format!("reputation of {group} on day {day}")];
     lines.extend(indented_table(&["", ""], &rows).into_iter().skip(1));
-    lines.extend(describe_recent_days(own.recent_days.iter().copied()));
-    let dropped: Vec<&SpilloverEffect> = own.spillovers.iter().filter(|spill| !spill.counts).collect();
+    lines.extend(describe_recent_days(reputation_equation.recent_days.iter().copied()));
+    let dropped: Vec<&SpilloverEffect> =
+        reputation_equation.spillovers.iter().filter(|spill| !spill.counts).collect();
     lines.extend(describe_dropped_spillovers(&dropped, least));
     clean_up_numbers(lines)
 }
@@ -38,12 +42,16 @@ fn term_row(name: &str, value: f64) -> Vec<String> {
     vec![name.to_owned(), format!("{value:+.8}")]
 }
 
-fn departures_row(name: &str, own: &DepartureEffect) -> Option<Vec<String>> {
-    (own.count > 0).then(|| term_row(&format!("{} {name}", own.count), own.change))
+fn departures_row(name: &str, departure_effect: &DepartureEffect) -> Option<Vec<String>> {
+    (departure_effect.count > 0)
+        .then(|| term_row(&format!("{} {name}", departure_effect.count), departure_effect.change))
 }
 
-fn describe_contribution(own: &SubscriberContribution, least: &ChangeThresholds) -> String {
-    match own {
+fn describe_contribution(
+    subscriber_contribution: &SubscriberContribution,
+    least: &ChangeThresholds,
+) -> String {
+    match subscriber_contribution {
         SubscriberContribution { subscribers: 0, .. } => "no subscribers in the group".to_owned(),
         SubscriberContribution { subscribers, is_applied: true, .. } => {
             format!("satisfaction of its {subscribers}")

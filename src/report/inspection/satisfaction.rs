@@ -4,25 +4,26 @@ use super::{clean_up_numbers, describe_recent_days, indented_table};
 use novamind_insight::{SatisfactionEquation, SatisfactionTerm};
 
 /// Describes the mean before, each term, the mean after, and the mean at the end of the day.
-pub fn describe_satisfaction(own: &SatisfactionEquation) -> Vec<String> {
-    let SatisfactionEquation { group, day, weight, departed: left, joined: came, subscribers, .. } = *own;
+pub fn describe_satisfaction(satisfaction_equation: &SatisfactionEquation) -> Vec<String> {
+    let SatisfactionEquation { group, day, weight, departed: left, joined: came, subscribers, .. } =
+        *satisfaction_equation;
     let mut lines = vec![format!("satisfaction of {group} on day {day}")];
-    match (own.before(), own.after(), own.instant()) {
+    match (satisfaction_equation.before(), satisfaction_equation.after(), satisfaction_equation.instant()) {
         (Some(before), Some(after), Some(instant)) => {
             lines.push(format!(
                 "  {:.2} × before {before:.4} + {weight:.2} × perceived today {instant:.4} = after {after:.4} \
                  ({:+.4}), mean of {}",
                 1.0 - weight,
                 after - before,
-                subscriber_count(own.included_subscribers())
+                subscriber_count(satisfaction_equation.included_subscribers())
             ));
-            lines.extend(term_lines(own));
+            lines.extend(term_lines(satisfaction_equation));
         }
         _ => {
             lines.push("  no experience today: there were no subscribers at the start of the day".to_owned())
         }
     }
-    let moved = match (own.end_of_day, own.after()) {
+    let moved = match (satisfaction_equation.end_of_day, satisfaction_equation.after()) {
         (Some(evening), Some(after)) => format!("mean {evening:.4} ({:+.4})", evening - after),
         (Some(evening), None) => format!("mean {evening:.4}"),
         (None, _) => "no mean".to_owned(),
@@ -31,7 +32,7 @@ pub fn describe_satisfaction(own: &SatisfactionEquation) -> Vec<String> {
         "  end of day: {left} left, {came} joined, {} remain, {moved}",
         subscriber_count(subscribers)
     ));
-    lines.extend(describe_recent_days(own.recent_days.iter().flatten().copied()));
+    lines.extend(describe_recent_days(satisfaction_equation.recent_days.iter().flatten().copied()));
     clean_up_numbers(lines)
 }
 
@@ -42,7 +43,7 @@ fn subscriber_count(count: u32) -> String {
     }
 }
 
-fn term_lines(own: &SatisfactionEquation) -> Vec<String> {
+fn term_lines(satisfaction_equation: &SatisfactionEquation) -> Vec<String> {
     let head = ["term", "today", "day before", "change", "change of mean"];
     let number = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:+.4}"));
     let row = |name: &str, today: Option<f64>, yesterday: Option<f64>| {
@@ -51,12 +52,17 @@ fn term_lines(own: &SatisfactionEquation) -> Vec<String> {
             number(today),
             number(yesterday),
             number(today.zip(yesterday).map(|(today, yesterday)| today - yesterday)),
-            number(today.map(|today| today * own.weight)),
+            number(today.map(|today| today * satisfaction_equation.weight)),
         ]
     };
-    let mut rows: Vec<Vec<String>> =
-        SatisfactionTerm::ALL.map(|term| row(term.id(), own.term(term), own.term_yesterday(term))).to_vec();
-    let forgotten = own.before().map(|before| format!("{:+.4}", 0.0 - own.weight * before));
+    let mut rows: Vec<Vec<String>> = SatisfactionTerm::ALL
+        .map(|term| {
+            row(term.id(), satisfaction_equation.term(term), satisfaction_equation.term_yesterday(term))
+        })
+        .to_vec();
+    let forgotten = satisfaction_equation
+        .before()
+        .map(|before| format!("{:+.4}", 0.0 - satisfaction_equation.weight * before));
     let blank = String::new;
     rows.push(vec!["decay".to_owned(), blank(), blank(), blank(), forgotten.unwrap_or_default()]);
     indented_table(&head, &rows)

@@ -46,30 +46,35 @@ pub enum SpilloverCell {
 
 impl SpilloverMap {
     /// Returns the map of a day.
-    pub fn new(own: &Spillover) -> SpilloverMap {
-        let Spillover { day, known_groups: known, spillovers: spills, .. } = own;
+    pub fn new(spillover: &Spillover) -> SpilloverMap {
+        let Spillover { day, known_groups: known, spillovers: spills, .. } = spillover;
         let heading = format!("changes of reputation on day {day}: rows are sources, columns are targets");
         let sources: Vec<Group> =
-            known.iter().copied().filter(|group| own.contributions[*group].subscribers > 0).collect();
-        let heard: Vec<&SpilloverEffect> = spills.iter().filter(|spill| spill.counts).collect();
-        let largest = heard.iter().map(|spill| spill.change.abs()).fold(0.0, f64::max);
-        let is_target = |target: &Group| heard.iter().any(|spill| spill.to == *target);
+            known.iter().copied().filter(|group| spillover.contributions[*group].subscribers > 0).collect();
+        let spillover_effects: Vec<&SpilloverEffect> = spills.iter().filter(|spill| spill.counts).collect();
+        let largest = spillover_effects.iter().map(|spill| spill.change.abs()).fold(0.0, f64::max);
+        let is_target = |target: &Group| spillover_effects.iter().any(|spill| spill.to == *target);
         let targets: Vec<Group> = match sources.is_empty() {
             true => Vec::new(),
             false => known.iter().copied().filter(is_target).collect(),
         };
-        let cell = |from: Group, to: Group| match own.between(from, to) {
+        let cell = |from: Group, to: Group| match spillover.between(from, to) {
             Some(spill) if spill.counts => SpilloverCell::Applied(spill.change, heat_level(&spill, largest)),
             Some(_) => SpilloverCell::Dropped,
             None => SpilloverCell::NoWeight,
         };
         let row = |from: &Group| SpilloverRow {
             from: *from,
-            own_change: format_requested_change(own, *from),
+            own_change: format_requested_change(spillover, *from),
             cells: targets.iter().map(|to| cell(*from, *to)).collect(),
         };
         let rows = sources.iter().map(row).collect();
-        SpilloverMap { heading, rows, notes: notes(own, &sources, heard.is_empty()), targets }
+        SpilloverMap {
+            heading,
+            rows,
+            notes: notes(spillover, &sources, spillover_effects.is_empty()),
+            targets,
+        }
     }
 }
 
@@ -84,8 +89,8 @@ impl SpilloverCell {
     }
 }
 
-fn format_requested_change(own: &Spillover, from: Group) -> String {
-    let change = &own.contributions[from];
+fn format_requested_change(spillover: &Spillover, from: Group) -> String {
+    let change = &spillover.contributions[from];
     match change.is_applied {
         true => format!("{:+.6}", change.requested_change),
         false => format!("{:+.6} dropped", change.requested_change),
@@ -123,8 +128,8 @@ fn notes(own: &Spillover, sources: &[Group], is_silent: bool) -> Vec<String> {
 }
 
 /// Returns the spillover of a day as a table in text.
-pub fn describe_spillover(own: &Spillover) -> Vec<String> {
-    let SpilloverMap { heading, targets, rows, notes } = SpilloverMap::new(own);
+pub fn describe_spillover(spillover: &Spillover) -> Vec<String> {
+    let SpilloverMap { heading, targets, rows, notes } = SpilloverMap::new(spillover);
     let mut lines = vec![heading];
     if !rows.is_empty() {
         let mut head = vec!["from", "own change"];

@@ -7,14 +7,14 @@ const MAX_ROW_DRAWS: usize = 8;
 const MAX_LISTED_CUSTOMERS: usize = 12;
 
 /// Lists the streams of the next day, their first draws, and the results.
-pub fn describe_next_draws(own: &NextDraws) -> Vec<String> {
-    let NextDraws { part, day, streams, .. } = own;
-    let over = if own.is_over { "; the run has ended, so this day is not simulated" } else { "" };
+pub fn describe_next_draws(next_draws: &NextDraws) -> Vec<String> {
+    let NextDraws { part, day, streams, .. } = next_draws;
+    let over = if next_draws.is_over { "; the run has ended, so this day is not simulated" } else { "" };
     let mut lines = vec![format!("next draws of {}, day {day}{over}", part.id())];
-    if own.is_replayed {
+    if next_draws.is_replayed {
         lines.push("  a recorded series replaces these draws for its length".to_owned());
     }
-    match streams.iter().any(|own| own.draws.len() > MAX_ROW_DRAWS) {
+    match streams.iter().any(|keyed_draws| keyed_draws.draws.len() > MAX_ROW_DRAWS) {
         true => streams.iter().for_each(|own| lines.extend(all_draws(own))),
         false => lines.extend(stream_rows(streams)),
     }
@@ -22,7 +22,7 @@ pub fn describe_next_draws(own: &NextDraws) -> Vec<String> {
 }
 
 fn stream_rows(streams: &[KeyedDraws]) -> Vec<String> {
-    let count = streams.iter().map(|own| own.draws.len()).max().unwrap_or(0);
+    let count = streams.iter().map(|keyed_draws| keyed_draws.draws.len()).max().unwrap_or(0);
     let numbers: Vec<String> = (1..=count).map(|number| format!("draw {number}")).collect();
     let mut head = vec!["stream", "key"];
     head.extend(numbers.iter().map(String::as_str));
@@ -35,17 +35,22 @@ fn stream_rows(streams: &[KeyedDraws]) -> Vec<String> {
     indented_table(&head, &streams.iter().map(row).collect::<Vec<_>>())
 }
 
-fn format_key(own: &KeyedDraws) -> String {
-    let parts = own.key.iter().map(|(name, value)| match (own.group, *name) {
+fn format_key(keyed_draws: &KeyedDraws) -> String {
+    let parts = keyed_draws.key.iter().map(|(name, value)| match (keyed_draws.group, *name) {
         (Some(group), "group") => group.to_string(),
         _ => format!("{name} {value}"),
     });
     parts.collect::<Vec<String>>().join(", ")
 }
 
-fn all_draws(own: &KeyedDraws) -> Vec<String> {
-    let mut lines = vec![format!("  {} ({}): {}", own.stream, format_key(own), describe_effect(&own.effect))];
-    lines.extend(own.draws.chunks(MAX_ROW_DRAWS).map(|some| {
+fn all_draws(keyed_draws: &KeyedDraws) -> Vec<String> {
+    let mut lines = vec![format!(
+        "  {} ({}): {}",
+        keyed_draws.stream,
+        format_key(keyed_draws),
+        describe_effect(&keyed_draws.effect)
+    )];
+    lines.extend(keyed_draws.draws.chunks(MAX_ROW_DRAWS).map(|some| {
         let draws: Vec<String> = some.iter().map(|draw| format!("{:.6}", draw.uniform)).collect();
         format!("    {}", draws.join(" "))
     }));

@@ -7,8 +7,8 @@ use novamind_insight::{FigureWrite, FigureWrites, WriteSource, WriteTarget};
 use novamind_session::{EndCause, ReputationCause};
 
 /// Describes the figure before and after the day, and each write with its amount and result.
-pub fn describe_writes(own: &FigureWrites) -> Vec<String> {
-    let FigureWrites { target, day, opening_value: first, closing_value: last, writes } = own;
+pub fn describe_writes(figure_writes: &FigureWrites) -> Vec<String> {
+    let FigureWrites { target, day, opening_value: first, closing_value: last, writes } = figure_writes;
     let value = |value: f64| format_value(*target, value);
     let change = format_amount(*target, last - first);
     let mut lines =

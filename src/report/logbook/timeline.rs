@@ -113,8 +113,9 @@ impl Timeline {
                 to: lines[last].at.clone(),
                 seconds,
             });
-            let own = self.spans.iter_mut().find(|span| span.attended.from < to && to <= span.attended.to);
-            own.unwrap_or(&mut self.open).effort.breaks += 1;
+            let week_span =
+                self.spans.iter_mut().find(|span| span.attended.from < to && to <= span.attended.to);
+            week_span.unwrap_or(&mut self.open).effort.breaks += 1;
         }
     }
 

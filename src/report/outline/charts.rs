@@ -237,7 +237,7 @@ mod tests {
         let Plot::Lines { curves, .. } = &chart.plot else { panic!("{chart:?}") };
         let told: Vec<(f64, f64)> = (1..)
             .zip(session.weeks())
-            .map(|(week, own)| (f64::from(week), f64::from(own.individual_subscribers)))
+            .map(|(week, week_figures)| (f64::from(week), f64::from(week_figures.individual_subscribers)))
             .collect();
         assert_eq!(curves[0].points, told);
         let (week, most) = told.iter().rev().max_by(|one, other| one.1.total_cmp(&other.1)).expect("weeks");

@@ -34,29 +34,33 @@ fn plan_sentences(
     models: &[(u8, f64)],
     day: u32,
 ) -> Vec<String> {
-    let own = sales.usage_of_plan(plan);
-    let Some(paid) = own.measured_revenue_per_seat() else {
+    let plan_usage = sales.usage_of_plan(plan);
+    let Some(paid) = plan_usage.measured_revenue_per_seat() else {
         return vec![format!("plan {plan}: no usage on day {day}")];
     };
     let unit_cost = set.unit_cost(models);
     let on_own = |told: &dyn Fn(f64) -> Option<f64>, of: &str| describe_margin(unit_cost.and_then(told), of);
-    let at_list = |unit_cost: f64| margin(set.price, own.compute_cost(unit_cost)?);
+    let at_list = |unit_cost: f64| margin(set.price, plan_usage.compute_cost(unit_cost)?);
     let is_at_list = lever == MarginSetting::Price && differs_by_a_cent(set.price, paid);
     let mut line = format!(
         "plan {plan} on model tier {}: {}",
         set.tier,
-        on_own(&|unit_cost| own.margin(unit_cost), &format!("the {} a seat and month paid now", cents(paid)))
+        on_own(
+            &|unit_cost| plan_usage.margin(unit_cost),
+            &format!("the {} a seat and month paid now", cents(paid))
+        )
     );
     if is_at_list {
         line += &format!("; {}", on_own(&at_list, &format!("the list price of {}", cents(set.price))));
     }
     if lever == MarginSetting::Quota {
-        let full = on_own(&|unit_cost| own.margin_at_full_quota(set.quota, unit_cost), "the price paid");
+        let full =
+            on_own(&|unit_cost| plan_usage.margin_at_full_quota(set.quota, unit_cost), "the price paid");
         line += &format!("; at full quota of {} units, {full}", format_whole(set.quota));
     }
     let mut lines = vec![line];
     lines.extend(group_sentence(sales, plan, unit_cost));
-    let told = |unit_cost: f64| if is_at_list { at_list(unit_cost) } else { own.margin(unit_cost) };
+    let told = |unit_cost: f64| if is_at_list { at_list(unit_cost) } else { plan_usage.margin(unit_cost) };
     let others = models.iter().filter(|(tier, _)| *tier != set.tier);
     let others: Vec<(u8, f64)> =
         others.filter_map(|(tier, unit_cost)| Some((*tier, told(*unit_cost)?))).collect();
@@ -70,13 +74,16 @@ fn plan_sentences(
 
 fn group_sentence(sales: &PlanSales, plan: Plan, unit_cost: Option<f64>) -> Option<String> {
     let groups = sales.by_group(plan);
-    let told = |(group, own): &(_, PlanUsage)| {
-        let paid = own.revenue_per_seat().map_or("nothing".to_owned(), cents);
-        format!("{group} {}", describe_margin(unit_cost.and_then(|unit_cost| own.margin(unit_cost)), &paid))
+    let told = |(group, plan_usage): &(_, PlanUsage)| {
+        let paid = plan_usage.revenue_per_seat().map_or("nothing".to_owned(), cents);
+        format!(
+            "{group} {}",
+            describe_margin(unit_cost.and_then(|unit_cost| plan_usage.margin(unit_cost)), &paid)
+        )
     };
     (groups.len() > 1).then(|| {
-        let told: Vec<String> = groups.iter().map(told).collect();
-        format!("plan {plan} by group: {}", told.join("; "))
+        let texts: Vec<String> = groups.iter().map(told).collect();
+        format!("plan {plan} by group: {}", texts.join("; "))
     })
 }
 
@@ -123,13 +130,13 @@ mod tests {
             quota: core.quotas[plan].units(),
         });
         let models = session.company().tool_limits().unit_costs();
-        let own = sales.usage_of_plan(Plan::B);
+        let plan_usage = sales.usage_of_plan(Plan::B);
         let unit_cost = models.iter().find(|(tier, _)| *tier == now[Plan::B].tier).expect("its model").1;
         let dear = MarginSetting::Price.apply(now, &json!({"B": 250}));
         let lines = margin_sentences(&sales, &dear, MarginSetting::Price, &models, 42);
         let line = lines.iter().find(|line| line.starts_with("plan B on model tier 2: ")).expect("plan B");
-        let paid = describe_margin(own.margin(unit_cost), "the ");
-        let list = margin(250.0, own.compute_cost(unit_cost).expect("compute"));
+        let paid = describe_margin(plan_usage.margin(unit_cost), "the ");
+        let list = margin(250.0, plan_usage.compute_cost(unit_cost).expect("compute"));
         let list = describe_margin(list, "the list price of $250.00");
         assert!(line.contains(&format!("tier 2: {paid}")), "{line} without {paid}");
         assert!(line.ends_with(&list), "{line} without {list}");
@@ -140,8 +147,8 @@ mod tests {
 
     #[test]
     fn losses_are_combined_in_one_sentence() {
-        let told = other_models_sentence(&[(1, 0.5), (3, -0.2), (4, -30.0), (5, -90.0)]);
-        assert_eq!(told.as_deref(), Some("tier 1 50%, a loss on tiers 3, 4 and 5"));
+        let text = other_models_sentence(&[(1, 0.5), (3, -0.2), (4, -30.0), (5, -90.0)]);
+        assert_eq!(text.as_deref(), Some("tier 1 50%, a loss on tiers 3, 4 and 5"));
         assert_eq!(other_models_sentence(&[]), None);
         assert_eq!(describe_margin(Some(-11.4), "$14.00"), "a loss, compute costs 12.40 times $14.00");
     }

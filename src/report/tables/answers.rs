@@ -40,26 +40,29 @@ pub(super) fn columns<'a>() -> Vec<Column<LineRow<'a, ShownQuestion<'a>>>> {
 /// Returns the rows of a run: each question with the answer that follows it.
 pub(super) fn rows<'a>(lines: &'a [LocatedLine<'a>]) -> impl Iterator<Item = LineRow<'a, ShownQuestion<'a>>> {
     lines.iter().enumerate().filter_map(|(at, placed)| {
-        let Record::Activity(Activity::Question(asked)) = &placed.line.record else { return None };
+        let Record::Activity(Activity::Question(question_shown)) = &placed.line.record else { return None };
         let next = lines[at + 1..].iter().find_map(|later| match &later.line.record {
-            Record::Activity(Activity::Answer(answer)) if is_answer_to(answer, asked) => {
+            Record::Activity(Activity::Answer(answer)) if is_answer_to(answer, question_shown) => {
                 Some(Some((later, answer)))
             }
             // The question is shown again, so the answer belongs to the later display.
             Record::Activity(Activity::Question(again))
-                if again.id == asked.id && is_same_question(again, asked) =>
+                if again.id == question_shown.id && is_same_question(again, question_shown) =>
             {
                 Some(None)
             }
             _ => None,
         });
-        Some(LineRow { located: placed, row: ShownQuestion { asked, answer: next.flatten() } })
+        Some(LineRow {
+            located: placed,
+            row: ShownQuestion { asked: question_shown, answer: next.flatten() },
+        })
     })
 }
 
-fn is_answer_to(answer: &QuestionAnswer, asked: &QuestionShown) -> bool {
+fn is_answer_to(answer: &QuestionAnswer, question_shown: &QuestionShown) -> bool {
     (&answer.questionnaire, &answer.occasion, &answer.id)
-        == (&asked.questionnaire, &asked.occasion, &asked.id)
+        == (&question_shown.questionnaire, &question_shown.occasion, &question_shown.id)
 }
 
 fn is_same_question(one: &QuestionShown, other: &QuestionShown) -> bool {

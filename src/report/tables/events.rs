@@ -162,10 +162,10 @@ impl EventRow {
                 event.detail = dialog.steps.iter().map(step).collect();
             }
             Activity::Help(help) => (event.what, event.which) = (help.term.clone(), help.place.clone()),
-            Activity::Question(asked) => {
-                (event.what, event.which) = (asked.questionnaire.clone(), asked.id.clone());
-                (event.value, event.text) = (asked.form.clone(), asked.text.clone());
-                event.detail = vec![("occasion", asked.occasion.clone())];
+            Activity::Question(question_shown) => {
+                (event.what, event.which) = (question_shown.questionnaire.clone(), question_shown.id.clone());
+                (event.value, event.text) = (question_shown.form.clone(), question_shown.text.clone());
+                event.detail = vec![("occasion", question_shown.occasion.clone())];
             }
             Activity::Answer(answer) => {
                 (event.what, event.which) = (answer.questionnaire.clone(), answer.id.clone());

@@ -58,9 +58,11 @@ pub fn table_headings() -> Vec<(&'static str, Vec<ColumnHeading>)> {
 pub fn column_descriptions() -> Vec<Vec<String>> {
     let mut rows = vec![["table", "column", "unit", "meaning"].map(str::to_owned).to_vec()];
     for (table, columns) in table_headings() {
-        rows.extend(
-            columns.iter().map(|own| [table, &own.name, own.unit, own.meaning].map(str::to_owned).to_vec()),
-        );
+        rows.extend(columns.iter().map(|column_heading| {
+            [table, &column_heading.name, column_heading.unit, column_heading.meaning]
+                .map(str::to_owned)
+                .to_vec()
+        }));
     }
     rows
 }
@@ -74,8 +76,9 @@ pub struct StudyTables {
 
 impl Default for StudyTables {
     fn default() -> Self {
-        let head =
-            |columns: Vec<ColumnHeading>| columns.into_iter().map(|own| own.name.into_owned()).collect();
+        let head = |columns: Vec<ColumnHeading>| {
+            columns.into_iter().map(|column_heading| column_heading.name.into_owned()).collect()
+        };
         let tables = table_headings().into_iter().map(|(name, columns)| (name, vec![head(columns)]));
         StudyTables { tables: tables.collect() }
     }
@@ -131,7 +134,7 @@ impl StudyTables {
     }
 
     fn extend(&mut self, name: &str, rows: impl IntoIterator<Item = Vec<String>>) {
-        if let Some((_, table)) = self.tables.iter_mut().find(|(own, _)| *own == name) {
+        if let Some((_, table)) = self.tables.iter_mut().find(|(text, _)| *text == name) {
             table.extend(rows);
         }
     }

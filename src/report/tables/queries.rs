@@ -21,7 +21,7 @@ pub(super) fn columns<'a>() -> Vec<Column<LineRow<'a, &'a Query>>> {
 
 pub(super) fn rows<'a>(lines: &'a [LocatedLine<'a>]) -> impl Iterator<Item = LineRow<'a, &'a Query>> {
     lines.iter().filter_map(|placed| match &placed.line.record {
-        Record::Query(own) => Some(LineRow { located: placed, row: own }),
+        Record::Query(query) => Some(LineRow { located: placed, row: query }),
         _ => None,
     })
 }

@@ -29,7 +29,10 @@ fn first_weeks_error(run: &Logbook, horizon_days: u32) -> Option<f64> {
 
 /// Returns how consent was given, if the program showed the text.
 fn consent_on_screen(run: &Logbook) -> Option<ConsentGiven> {
-    run.consent.as_ref().and_then(|consent| consent.given).filter(|given| given.means != ConsentMeans::Paper)
+    run.consent
+        .as_ref()
+        .and_then(|consent| consent.given)
+        .filter(|consent_given| consent_given.means != ConsentMeans::Paper)
 }
 
 const FIRST_ERROR_MEANING: &str =
@@ -63,7 +66,7 @@ pub(super) fn columns() -> Vec<Column<Logbook>> {
          empty if none was required" => run.consent.as_ref().map(|consent| &consent.at);
         "consent_digest", "hash", "BLAKE3 hash of the consent text" => run.consent.as_ref().map(|consent| &consent.digest);
         "consent_read_ms", "milliseconds", "time from display of that text to consent; this and the next column are empty if none was \
-         required or consent was given on paper" => consent_on_screen(run).map(|given| given.read_ms);
+         required or consent was given on paper" => consent_on_screen(run).map(|consent_given| consent_given.read_ms);
         "consent_scrolled_to_end", "0 or 1", "1: the end of the text was shown before consent"
             => consent_on_screen(run).map(|given| given.scrolled_to_end);
         "format", "number", "format of the trajectory" => run.format;
@@ -114,7 +117,7 @@ pub(super) fn columns() -> Vec<Column<Logbook>> {
          five at the start of the run, which is hidden from players; random spending reaches 0.2; empty before the end"
             => run.measures.truly_best.as_ref().map(|best| best.share);
         "truly_best_channel_share_by_group", "group=share", "the same by group"
-            => format_pairs(run.measures.truly_best.iter().flat_map(|best| best.groups.iter().map(|(name, own)| (name, *own))));
+            => format_pairs(run.measures.truly_best.iter().flat_map(|best| best.groups.iter().map(|(name, value)| (name, *value))));
         "channels_tried", "per group", "mean number of paid channels, over the advertised groups"
             => run.measures.channels.as_ref().map(ChannelSkill::channels_tried);
         "best_tried_channel_share", "share", "share of advertising on the paid channel with the most leads per dollar, \
@@ -164,7 +167,7 @@ pub(super) fn columns() -> Vec<Column<Logbook>> {
         "if_words", "count", "occurrences of \"if\" in rationales" => run.wording.ifs;
         "note_versions", "count", "number of saved versions of the notes before the end" => run.notes.versions;
         "note_words", "count", "words of the last saved notes; this and the next two columns are empty if lines do not contain \
-         their text" => run.notes.wording.map(|own| own.words);
+         their text" => run.notes.wording.map(|word_counts| word_counts.words);
         "note_planning_words", "count", "planning words among them" => run.notes.wording.map(|own| own.planning);
         "note_if_words", "count", "occurrences of \"if\"" => run.notes.wording.map(|own| own.ifs);
         "parameters_digest", "digest", "digest of the effective parameters" => run.parameters_digest;

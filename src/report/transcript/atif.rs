@@ -7,9 +7,9 @@ use super::{AgentContext, Transcript, TranscriptAction, TranscriptStep, WeekResu
 const VERSION: &str = "ATIF-v1.8";
 
 /// Returns the run in this format.
-pub fn to_atif(run: &Transcript, told: &AgentContext) -> Value {
+pub fn to_atif(run: &Transcript, agent_context: &AgentContext) -> Value {
     let mut steps = vec![
-        json!({ "source": "system", "message": told.instructions }),
+        json!({ "source": "system", "message": agent_context.instructions }),
         json!({ "source": "user", "message": run.opening_dashboard }),
     ];
     steps.extend(run.steps.iter().filter_map(step_json));
@@ -19,8 +19,8 @@ pub fn to_atif(run: &Transcript, told: &AgentContext) -> Value {
     let total = steps.len();
     let version = run.manifest.version.clone();
     let mut agent = json!({ "name": run.player_name(), "version": version });
-    if !told.tools.is_empty() {
-        agent["tool_definitions"] = json!(told.tools);
+    if !agent_context.tools.is_empty() {
+        agent["tool_definitions"] = json!(agent_context.tools);
     }
     json!({
         "schema_version": VERSION,
@@ -45,7 +45,7 @@ fn step_json(act: &TranscriptStep) -> Option<Value> {
     };
     let mut step = match &act.action {
         TranscriptAction::Call { tool, args, answer, extra } => {
-            let said = match answer {
+            let value = match answer {
                 Ok(data) => json!({ "success": true, "data": data }),
                 Err(refusal) => json!({
                     "success": false,
@@ -54,7 +54,7 @@ fn step_json(act: &TranscriptStep) -> Option<Value> {
                     "field": refusal.field,
                 }),
             };
-            called(tool.name(), args, said.to_string(), extra)
+            called(tool.name(), args, value.to_string(), extra)
         }
         TranscriptAction::Query { sql, answer, extra } => {
             let said = match answer {
@@ -70,8 +70,11 @@ fn step_json(act: &TranscriptStep) -> Option<Value> {
         }),
         TranscriptAction::Week { rationale, forecasts, result: passed } => {
             let args = json!({ "rationale": rationale, "predictions": forecasts_as_json(forecasts) });
-            let filled: Vec<u32> =
-                forecasts.iter().filter(|own| own.filled_naively).map(|own| own.horizon_days).collect();
+            let filled: Vec<u32> = forecasts
+                .iter()
+                .filter(|filed_forecast| filed_forecast.filled_naively)
+                .map(|forecast| forecast.horizon_days)
+                .collect();
             let extra = Map::from_iter([("naive_horizons_days".to_owned(), json!(filled))]);
             let mut step = called("next_week", &args, describe_week(passed.as_ref()), &extra);
             step["message"] = rationale.clone().into();

@@ -22,8 +22,8 @@ pub fn inspect_file_name(manifest: &Manifest) -> String {
 }
 
 /// Returns the run in this format.
-pub fn to_inspect(run: &Transcript, told: &AgentContext) -> Value {
-    let steps = to_atif(run, told);
+pub fn to_inspect(run: &Transcript, agent_context: &AgentContext) -> Value {
+    let steps = to_atif(run, agent_context);
     let steps = steps["steps"].as_array().map(Vec::as_slice).unwrap_or_default();
     let steps: Vec<MessageStep> =
         steps.iter().map(|step| MessageStep::from_json(step, &run.manifest)).collect();
@@ -61,7 +61,7 @@ pub fn to_inspect(run: &Transcript, told: &AgentContext) -> Value {
             "id": run.manifest.id,
             "uuid": run.manifest.id,
             "epoch": 1,
-            "input": told.instructions,
+            "input": agent_context.instructions,
             "target": "",
             "messages": messages,
             "output": { "model": model, "choices": [] },

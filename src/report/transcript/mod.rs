@@ -124,7 +124,7 @@ impl Transcript {
         let lines: Vec<Line> = playback.lines().to_vec();
         let manifest = playback.session().manifest().clone();
         let opening = playback.session().company().dashboard();
-        let mut told = Transcript {
+        let mut transcript = Transcript {
             last_day_and_cash: (0, manifest.cash),
             manifest,
             numbers: ParameterNumbers::for_params(playback.session().params()),
@@ -139,9 +139,9 @@ impl Transcript {
                 progress(day);
                 ControlFlow::Continue(())
             })?;
-            told.add_line(line, playback.session_mut());
+            transcript.add_line(line, playback.session_mut());
         }
-        Ok(told)
+        Ok(transcript)
     }
 
     fn add_line(&mut self, line: &Line, session: &mut Session) {
@@ -219,16 +219,16 @@ impl Transcript {
 
     /// Returns the definition and result of the run, for metadata fields of the formats.
     fn run_facts(&self) -> Map<String, Value> {
-        let own = &self.manifest;
+        let manifest = &self.manifest;
         let all = json!({
-            "run": own.id,
-            "seed": own.seed,
-            "scenario": own.scenario,
-            "mode": own.mode.id(),
-            "days": own.days,
-            "starting_cash": own.cash,
-            "parameters_digest": own.parameters_digest,
-            "program": format!("NovaMind console {}", own.version),
+            "run": manifest.id,
+            "seed": manifest.seed,
+            "scenario": manifest.scenario,
+            "mode": manifest.mode.id(),
+            "days": manifest.days,
+            "starting_cash": manifest.cash,
+            "parameters_digest": manifest.parameters_digest,
+            "program": format!("NovaMind console {}", manifest.version),
             "last_day": self.last_day_and_cash.0,
             "cash": self.last_day_and_cash.1,
             "state_hash": self.state_hash,
@@ -242,8 +242,8 @@ impl Transcript {
 
 fn forecasts_as_json(forecasts: &[FiledForecast]) -> Value {
     let one = |(key, filed): (&&str, &FiledForecast)| {
-        let said = json!({ "point": filed.point, "lower": filed.lower, "upper": filed.upper });
-        ((*key).to_owned(), said)
+        let value = json!({ "point": filed.point, "lower": filed.lower, "upper": filed.upper });
+        ((*key).to_owned(), value)
     };
     Value::Object(FORECAST_KEYS.iter().zip(forecasts).map(one).collect())
 }

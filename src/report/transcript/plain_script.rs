@@ -8,18 +8,18 @@ use novamind_record::trajectory::record::CalledTool;
 
 /// Returns the script, with the command that runs it in the first lines.
 pub fn to_plain_script(run: &Transcript) -> String {
-    let own = &run.manifest;
+    let manifest = &run.manifest;
     let head = format!(
         "# Run {} of NovaMind console {}, {} days of which {} passed; last state {}.\n\
          # novamind play --plain --strict {}{} < THIS FILE\n",
-        own.id,
-        own.version,
-        own.days,
+        manifest.id,
+        manifest.version,
+        manifest.days,
         run.last_day_and_cash.0,
         run.state_hash,
         new_run_options(run),
         // The label must not be the original participant's.
-        if own.mode == Mode::Baseline { " --participant again" } else { "" },
+        if manifest.mode == Mode::Baseline { " --participant again" } else { "" },
     );
     let head = head + &describe_unreproducible(run).map(|words| format!("# {words}\n")).unwrap_or_default();
     let lines: String = run.steps.iter().filter_map(step_line).map(|line| line + "\n").collect();
@@ -42,20 +42,20 @@ pub(super) fn rejected_call_comment(tool: &CalledTool, args: &Value, code: &str)
 }
 
 pub(super) fn new_run_options(run: &Transcript) -> String {
-    let own = &run.manifest;
+    let manifest = &run.manifest;
     let mut options = format!(
         "--seed {} --scenario {} --days {} --cash {} --mode {}",
-        own.seed,
-        own.scenario,
-        own.days,
-        own.cash,
-        own.mode.id()
+        manifest.seed,
+        manifest.scenario,
+        manifest.days,
+        manifest.cash,
+        manifest.mode.id()
     );
-    if own.mode == Mode::Debug {
+    if manifest.mode == Mode::Debug {
         let mut all = Vec::new();
-        collect_parameters("", &own.parameters, &mut all);
+        collect_parameters("", &manifest.parameters, &mut all);
         options.extend(all.iter().map(|(key, value)| format!(" --set '{key}={value}'")));
-        options.extend(own.fault.map(|fault| format!(" --fault {}", u32::from(fault))));
+        options.extend(manifest.fault.map(|fault| format!(" --fault {}", u32::from(fault))));
     }
     options
 }

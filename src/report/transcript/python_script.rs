@@ -11,16 +11,16 @@ use novamind_record::error::RunError;
 /// # Errors
 /// Returns an error if the run has single days or changed parameters, which no server offers.
 pub fn to_python_script(run: &Transcript) -> Result<String, RunError> {
-    let own = &run.manifest;
+    let manifest = &run.manifest;
     let mut text = format!(
         "\"\"\"Run {} of NovaMind console {}: {} days of which {} passed; last state {}.\n\n    \
          novamind serve --client client\n    \
          novamind serve --new {} --port 8001\n    \
          NOVAMIND_API_PORT=8001 PYTHONPATH=client python3 THIS_FILE\n\"\"\"\n\
          from novamind import call, next_week\n\n",
-        own.id,
-        own.version,
-        own.days,
+        manifest.id,
+        manifest.version,
+        manifest.days,
         run.last_day_and_cash.0,
         run.state_hash,
         new_run_options(run),

@@ -78,7 +78,7 @@ impl BoundPort {
 /// The token file cannot be read, or the end of the record cannot be written.
 pub fn serve_http(
     session: Session,
-    held: BoundPort,
+    bound_port: BoundPort,
     options: &HttpOptions,
     ready: impl FnOnce(&Announcement),
     on_defect: OnDefect,
@@ -93,7 +93,7 @@ pub fn serve_http(
         SessionWorker::start(session, InterfaceInfo { via: Via::Http, interface: "http", on_defect });
     let served = runtime.block_on(async {
         let failed = || RunError::io(Path::new("the port"));
-        let listener = TcpListener::from_std(held.0).map_err(failed())?;
+        let listener = TcpListener::from_std(bound_port.0).map_err(failed())?;
         let port = listener.local_addr().map_err(failed())?.port();
         let file = options.token.as_deref().map(|file| std::path::absolute(file).unwrap_or(file.to_owned()));
         let announcement =

@@ -61,6 +61,6 @@ pub async fn read(
 
 async fn resource_text(handle: &SessionHandle, request: ApiRequest, pointer: &str) -> String {
     let answer = handle.send(request).await;
-    let told = answer.body.pointer(pointer).or_else(|| answer.body.get("error"));
-    told.and_then(|text| text.as_str()).unwrap_or_default().to_owned()
+    let value = answer.body.pointer(pointer).or_else(|| answer.body.get("error"));
+    value.and_then(|text| text.as_str()).unwrap_or_default().to_owned()
 }

@@ -70,7 +70,7 @@ pub fn import_run(runs: &Path, archive: &Path, name: Option<&str>) -> Result<Imp
     let folder = destination_folder(runs, &draft, &seal)?;
     // A name must be unique on a machine, across all participants.
     let own_name = name.unwrap_or(&seal.run);
-    let there = all_run_folders(runs).into_iter().chain([folder.clone()]).map(|own| own.join(own_name));
+    let there = all_run_folders(runs).into_iter().chain([folder.clone()]).map(|path| path.join(own_name));
     if let Some(place) = there.into_iter().find(|place| place.exists()) {
         let same = match name {
             None => compare_with_existing(&draft, &place, &seal)?,
@@ -98,8 +98,8 @@ fn destination_folder(runs: &Path, draft: &Path, seal: &Seal) -> Result<PathBuf,
             seal.run
         ))),
         (None, Some(label)) => {
-            let own = participant_folder(runs, &label).ok().filter(|folder| folder.is_dir());
-            Ok(own.unwrap_or_else(|| runs.to_owned()))
+            let path = participant_folder(runs, &label).ok().filter(|folder| folder.is_dir());
+            Ok(path.unwrap_or_else(|| runs.to_owned()))
         }
         _ => Ok(runs.to_owned()),
     }
@@ -233,7 +233,7 @@ fn check_seal(archive: &Path, found: &UnpackedArchive) -> Result<Seal, RunError>
     for sealed in &seal.file {
         match there.get(sealed.name.as_str()) {
             None => return Err(archive_error(archive, format!("{} is missing", sealed.name))),
-            Some(own) if *own != sealed => {
+            Some(sealed_file) if *sealed_file != sealed => {
                 return Err(archive_error(
                     archive,
                     format!("{} is not the file that was sealed", sealed.name),
@@ -291,15 +291,15 @@ fn problem_without_path(error: RunError) -> String {
 /// Compares the existing run with that of the archive.
 fn compare_with_existing(draft: &Path, place: &Path, seal: &Seal) -> Result<ImportOutcome, RunError> {
     let read = |folder: &Path, name: &str| std::fs::read(folder.join(name)).unwrap_or_default();
-    let (own, there) = (read(draft, TRAJECTORY_FILE), read(place, TRAJECTORY_FILE));
-    if read(draft, MANIFEST_FILE) == read(place, MANIFEST_FILE) && own == there {
+    let (bytes, there) = (read(draft, TRAJECTORY_FILE), read(place, TRAJECTORY_FILE));
+    if read(draft, MANIFEST_FILE) == read(place, MANIFEST_FILE) && bytes == there {
         return Ok(ImportOutcome::AlreadyPresent {
             notes_differ: read(draft, NOTES_FILE) != read(place, NOTES_FILE),
         });
     }
-    let how = if there.starts_with(&own) {
+    let how = if there.starts_with(&bytes) {
         "it is the same run and was continued after the export".to_owned()
-    } else if own.starts_with(&there) {
+    } else if bytes.starts_with(&there) {
         "the archive has a later state of it; delete or move the older run to import it".to_owned()
     } else {
         describe_difference(draft, place)

@@ -191,13 +191,13 @@ mod tests {
     #[test]
     fn key_files_round_trip_and_are_owner_only() {
         let folder = tempfile::tempdir().expect("a folder");
-        let (own, public) = (folder.path().join("lab.key"), folder.path().join("lab.pub"));
+        let (path, public) = (folder.path().join("lab.key"), folder.path().join("lab.pub"));
         let key = LabKey::generate().expect("a key");
-        key.write(&own).expect("written");
+        key.write(&path).expect("written");
         key.public_key().write(&public).expect("written");
-        assert_eq!(LabKey::read(&own).expect("a key").public_key(), key.public_key());
+        assert_eq!(LabKey::read(&path).expect("a key").public_key(), key.public_key());
         assert_eq!(LabPublicKey::read(&public).expect("a key"), key.public_key());
-        assert!(key.write(&own).is_err(), "a key is not overwritten");
+        assert!(key.write(&path).is_err(), "a key is not overwritten");
         assert_ne!(
             LabKey::generate().expect("a key").public_key().fingerprint(),
             key.public_key().fingerprint()
@@ -205,12 +205,12 @@ mod tests {
         #[cfg(unix)]
         {
             use std::os::unix::fs::PermissionsExt;
-            let mode = std::fs::metadata(&own).expect("a file").permissions().mode();
+            let mode = std::fs::metadata(&path).expect("a file").permissions().mode();
             assert_eq!(mode & 0o777, 0o600);
         }
         for text in ["", "novamind lab key 1", &std::fs::read_to_string(&public).expect("text")] {
-            std::fs::write(&own, text).expect("written");
-            let problem = LabKey::read(&own).err().expect("no key").to_string();
+            std::fs::write(&path, text).expect("written");
+            let problem = LabKey::read(&path).err().expect("no key").to_string();
             assert!(problem.contains("is not a key of this kind"), "{problem}");
         }
     }

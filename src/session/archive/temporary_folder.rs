@@ -28,14 +28,14 @@ impl TemporaryFolder {
     /// The folder cannot be written, or the program is about to end.
     pub fn create_in(folder: &Path) -> Result<TemporaryFolder, RunError> {
         create_folder(folder)?;
-        let own = folder.join(format!(".novamind-{}", new_run_id()));
+        let path = folder.join(format!(".novamind-{}", new_run_id()));
         let mut open = lock_open_folders();
         if open.is_closed {
             return Err(RunError::InvalidRequest("the program is about to end".to_owned()));
         }
-        std::fs::create_dir(&own).map_err(RunError::io(&own))?;
-        open.folders.push(own.clone());
-        Ok(TemporaryFolder(own))
+        std::fs::create_dir(&path).map_err(RunError::io(&path))?;
+        open.folders.push(path.clone());
+        Ok(TemporaryFolder(path))
     }
 
     /// Returns its path.

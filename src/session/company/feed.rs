@@ -95,8 +95,8 @@ impl Feed {
 
     /// Replaces the text of a post. Does nothing if the post does not exist.
     pub(crate) fn replace_text(&mut self, post: u32, text: &str) {
-        let own = (post as usize).checked_sub(1).and_then(|at| self.posts.get_mut(at));
-        let Some(own) = own else { return };
+        let public_post = (post as usize).checked_sub(1).and_then(|at| self.posts.get_mut(at));
+        let Some(own) = public_post else { return };
         let before = std::mem::replace(&mut own.content, text.to_owned());
         self.built_in.entry(post).or_insert(before);
     }
@@ -105,9 +105,9 @@ impl Feed {
     /// because the effect of a reply is part of the world's state.
     pub(crate) fn original_post(&self, post: u32) -> Option<OriginalPost<'_>> {
         let at = (post as usize).checked_sub(1)?;
-        let own = self.posts.get(at)?;
-        let content = self.built_in.get(&post).unwrap_or(&own.content);
-        Some(OriginalPost { content, negative: self.complains[at], group: own.written_by })
+        let public_post = self.posts.get(at)?;
+        let content = self.built_in.get(&post).unwrap_or(&public_post.content);
+        Some(OriginalPost { content, negative: self.complains[at], group: public_post.written_by })
     }
 }
 

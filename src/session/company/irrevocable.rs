@@ -35,9 +35,9 @@ pub(crate) enum IrrevocableAction {
 
 impl IrrevocableAction {
     pub(crate) fn merge_all(done: &mut Vec<IrrevocableAction>, more: Vec<IrrevocableAction>) {
-        for own in more {
-            if !done.iter_mut().any(|before| before.try_merge(&own)) {
-                done.push(own);
+        for irrevocable_action in more {
+            if !done.iter_mut().any(|before| before.try_merge(&irrevocable_action)) {
+                done.push(irrevocable_action);
             }
         }
     }

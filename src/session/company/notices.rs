@@ -22,8 +22,8 @@ impl Simulation {
         let Notice::OwnPostSeen(reaction) = notice else {
             return novamind_voice::notices::notice_text(notice, party);
         };
-        let own = self.world.market.social.own.get(reaction.post as usize - 1);
-        let content = own.map_or("", |post| post.content.as_str());
+        let own_post = self.world.market.social.own.get(reaction.post as usize - 1);
+        let content = own_post.map_or("", |post| post.content.as_str());
         novamind_voice::notices::reaction_text(content, reaction, &self.params.ceo_posts)
     }
 }
@@ -59,8 +59,12 @@ impl NoticeParties {
             .openings
             .iter()
             .filter(|opening| opening.status == SubscriptionStatus::Lead)
-            .filter_map(|own| {
-                Some(NoticeCustomer { customer: own.customer, group: group(own.customer)?, seats: own.seats })
+            .filter_map(|subscription_opened| {
+                Some(NoticeCustomer {
+                    customer: subscription_opened.customer,
+                    group: group(subscription_opened.customer)?,
+                    seats: subscription_opened.seats,
+                })
             })
             .collect();
         let agreed: Vec<NoticeCustomer> = facts

@@ -76,7 +76,7 @@ impl Overrides {
 
     /// Returns the scheduled changes.
     pub fn scheduled_changes(&self) -> impl Iterator<Item = &ParameterChange> {
-        self.scheduled.iter().map(|own| &own.change)
+        self.scheduled.iter().map(|scheduled_change| &scheduled_change.change)
     }
 
     /// Adds a change. Checks that all scheduled changes remain valid, so that none can fail on its day.
@@ -90,7 +90,7 @@ impl Overrides {
     ) -> Result<UpdatedParams, ParameterConflict> {
         let (mut now, mut later): (_, Vec<ParameterChange>) =
             (now.clone(), self.scheduled_changes().cloned().collect());
-        let own = change.seq;
+        let number = change.seq;
         match change.from_day {
             None => {
                 now = params_with(&now, &change).map_err(|error| ParameterConflict { day: None, error })?
@@ -101,37 +101,37 @@ impl Overrides {
         for change in later {
             let before = waiting.last().map_or(&now, |last| &last.params);
             let params = params_with(before, &change).map_err(|error| {
-                let day = change.from_day.filter(|_| change.seq != own);
+                let day = change.from_day.filter(|_| change.seq != number);
                 ParameterConflict { day, error }
             })?;
             waiting.push(ScheduledChange { day: change.from_day.unwrap_or_default(), change, params });
         }
         let changed =
-            waiting.iter().find(|waits| waits.change.seq == own).map_or(&now, |waits| &waits.params);
-        let taken = UpdatedParams { after_change: changed.clone(), current: now };
+            waiting.iter().find(|waits| waits.change.seq == number).map_or(&now, |waits| &waits.params);
+        let updated_params = UpdatedParams { after_change: changed.clone(), current: now };
         *self = Overrides { has_changes: true, scheduled: waiting };
-        Ok(taken)
+        Ok(updated_params)
     }
 
     pub(crate) fn params_due_on(&self, day: u32) -> Option<&Arc<Params>> {
-        let count = self.scheduled.partition_point(|own| own.day <= day);
-        self.scheduled[..count].last().map(|own| &own.params)
+        let count = self.scheduled.partition_point(|scheduled_change| scheduled_change.day <= day);
+        self.scheduled[..count].last().map(|change| &change.params)
     }
 
     /// Returns the parameters for a day, if they change on it, and removes the changes from the schedule.
     pub(crate) fn take_due_params(&mut self, day: u32) -> Option<Arc<Params>> {
-        let count = self.scheduled.partition_point(|own| own.day <= day);
-        self.scheduled.drain(..count).next_back().map(|own| own.params)
+        let count = self.scheduled.partition_point(|scheduled_change| scheduled_change.day <= day);
+        self.scheduled.drain(..count).next_back().map(|change| change.params)
     }
 
     /// Returns the scheduled changes applied to other parameters, without those of the lines in `dropped`. Omits
     /// changes that are not valid for these parameters.
     pub fn rebased_on(&self, now: &Arc<Params>, dropped: &BTreeSet<u64>) -> Overrides {
-        let mut own = Overrides { has_changes: self.has_changes, scheduled: Vec::new() };
+        let mut overrides = Overrides { has_changes: self.has_changes, scheduled: Vec::new() };
         for change in self.scheduled_changes().filter(|change| !dropped.contains(&change.seq)) {
-            let _ = own.add_change(now, change.clone());
+            let _ = overrides.add_change(now, change.clone());
         }
-        own
+        overrides
     }
 
     /// Replays the parameter changes in `lines` up to the end of a day, starting with the parameters `opening`.
@@ -141,14 +141,14 @@ impl Overrides {
         lines: &[Line],
         day: u32,
     ) -> Option<(Arc<Params>, Overrides)> {
-        let (mut now, mut own) = (opening.clone(), Overrides::default());
+        let (mut now, mut overrides) = (opening.clone(), Overrides::default());
         for line in lines {
             let Record::Override(change) = &line.record else { continue };
-            now = own.take_due_params(line.day).unwrap_or(now);
-            now = own.add_change(&now, ParameterChange::from_record(line.seq, change)?).ok()?.current;
+            now = overrides.take_due_params(line.day).unwrap_or(now);
+            now = overrides.add_change(&now, ParameterChange::from_record(line.seq, change)?).ok()?.current;
         }
-        now = own.take_due_params(day).unwrap_or(now);
-        Some((now, own))
+        now = overrides.take_due_params(day).unwrap_or(now);
+        Some((now, overrides))
     }
 }
 
@@ -246,39 +246,42 @@ mod tests {
 
     #[test]
     fn scheduled_changes_apply_on_their_day_and_accumulate() {
-        let (now, mut own) = (Arc::new(Params::bundled()), Overrides::default());
-        assert!(!own.has_changes());
-        own.add_change(&now, change(5, "satisfaction.satisfaction_ema_alpha", 0.5, Some(30)))
+        let (now, mut overrides) = (Arc::new(Params::bundled()), Overrides::default());
+        assert!(!overrides.has_changes());
+        overrides
+            .add_change(&now, change(5, "satisfaction.satisfaction_ema_alpha", 0.5, Some(30)))
             .expect("it fits");
-        own.add_change(&now, change(6, "satisfaction.satisfaction_ema_alpha", 0.6, Some(20)))
+        overrides
+            .add_change(&now, change(6, "satisfaction.satisfaction_ema_alpha", 0.6, Some(20)))
             .expect("it fits");
-        let taken =
-            own.add_change(&now, change(7, "operations.base_outage_prob", 0.7, None)).expect("it fits");
-        assert_eq!(taken.current.operations.base_outage_prob, 0.7);
-        assert!(own.take_due_params(19).is_none());
-        let on_20 = own.take_due_params(20).expect("one is due");
+        let updated_params =
+            overrides.add_change(&now, change(7, "operations.base_outage_prob", 0.7, None)).expect("it fits");
+        assert_eq!(updated_params.current.operations.base_outage_prob, 0.7);
+        assert!(overrides.take_due_params(19).is_none());
+        let on_20 = overrides.take_due_params(20).expect("one is due");
         assert_eq!(on_20.satisfaction.satisfaction_ema_alpha, 0.6);
         assert_eq!(on_20.operations.base_outage_prob, 0.7);
-        let later = own.take_due_params(44).expect("one is due");
+        let later = overrides.take_due_params(44).expect("one is due");
         assert_eq!(later.satisfaction.satisfaction_ema_alpha, 0.5);
-        assert_eq!(own.scheduled_changes().count(), 0);
-        assert!(own.has_changes());
+        assert_eq!(overrides.scheduled_changes().count(), 0);
+        assert!(overrides.has_changes());
     }
 
     #[test]
     fn add_change_rejects_later_contradictions() {
-        let (now, mut own) = (Arc::new(Params::bundled()), Overrides::default());
+        let (now, mut overrides) = (Arc::new(Params::bundled()), Overrides::default());
         let most = now.competitor.competitor_feedback_u_max;
-        own.add_change(&now, change(1, MIN_KEY, most - 0.01, Some(30))).expect("it fits");
-        let unfit = own
+        overrides.add_change(&now, change(1, MIN_KEY, most - 0.01, Some(30))).expect("it fits");
+        let unfit = overrides
             .add_change(&now, change(2, MAX_KEY, most - 0.02, None))
             .err()
             .expect("the values contradict each other on day 30");
         assert_eq!(unfit.day, Some(30));
-        assert_eq!(own.scheduled_changes().count(), 1, "the schedule is unchanged");
-        own.add_change(&now, change(3, MIN_KEY, most - 0.05, Some(30)))
+        assert_eq!(overrides.scheduled_changes().count(), 1, "the schedule is unchanged");
+        overrides
+            .add_change(&now, change(3, MIN_KEY, most - 0.05, Some(30)))
             .expect("the later of two changes on a day applies");
-        assert_eq!(own.rebased_on(&now, &BTreeSet::from([3])).scheduled_changes().count(), 1);
+        assert_eq!(overrides.rebased_on(&now, &BTreeSet::from([3])).scheduled_changes().count(), 1);
     }
 
     #[test]

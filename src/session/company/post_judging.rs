@@ -15,25 +15,25 @@ impl Simulation {
         if self.params.fidelity.post_judge == PostJudge::None {
             return;
         }
-        let own = &self.world.market.social.own;
-        if own.iter().all(|post| post.effects.is_some()) {
+        let own_posts = &self.world.market.social.own;
+        if own_posts.iter().all(|post| post.effects.is_some()) {
             return;
         }
         let lexicon = Lexicon::bundled();
         let circumstances = JudgeContext::from_world(&self.world, &self.params, lexicon);
         let known: Vec<Group> = Group::all().filter(|group| self.world.market.is_known(*group)).collect();
         let mut verdicts = Vec::new();
-        self.feed.judgements.resize(own.len(), Vec::new());
-        for (at, post) in own.iter().enumerate().filter(|(_, post)| post.effects.is_none()) {
+        self.feed.judgements.resize(own_posts.len(), Vec::new());
+        for (at, post) in own_posts.iter().enumerate().filter(|(_, post)| post.effects.is_none()) {
             let submission = SubmittedPost {
                 content: &post.content,
                 day: post.day,
                 original: post.reply_to.and_then(|post| self.feed.original_post(post)),
-                earlier: own[..at].iter().map(|post| (post.day, post.content.as_str())).collect(),
+                earlier: own_posts[..at].iter().map(|post| (post.day, post.content.as_str())).collect(),
             };
             let judgements = judge::judge_post(&submission, known.iter().copied(), &circumstances, lexicon);
             let judgements = self.recorded_scores.apply_to(post, judgements);
-            let effects = judgements.iter().map(|own| (own.group, own.effect)).collect();
+            let effects = judgements.iter().map(|judgement| (judgement.group, judgement.effect)).collect();
             verdicts.push(PostReactions { post: at as u32 + 1, effects });
             self.feed.judgements[at] = judgements;
         }
@@ -65,10 +65,11 @@ impl RecordedScores {
     /// Returns the judgements of a post, with recorded scores in place of those of the built-in judge.
     pub(crate) fn apply_to(&self, post: &OwnPost, judgements: Vec<Judgement>) -> Vec<Judgement> {
         let Some(judged) = self.latest(post) else { return judgements };
-        let scored = |own: Judgement| match judged.scores.iter().find(|score| score.group == own.group) {
-            Some(score) => own.with_model_score(score),
-            None => own,
-        };
+        let scored =
+            |judgement: Judgement| match judged.scores.iter().find(|score| score.group == judgement.group) {
+                Some(score) => judgement.with_model_score(score),
+                None => judgement,
+            };
         judgements.into_iter().map(scored).collect()
     }
 }

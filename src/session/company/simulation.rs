@@ -114,7 +114,7 @@ impl Simulation {
 
     /// Adds recorded scores of the player's posts.
     pub fn add_scores(&mut self, judged: &[JudgedPost]) {
-        judged.iter().for_each(|own| self.recorded_scores.add(own.clone()));
+        judged.iter().for_each(|judged_post| self.recorded_scores.add(judged_post.clone()));
     }
 
     /// Ends the hash chain of a week's facts.
@@ -177,7 +177,7 @@ impl Simulation {
     pub fn check_lead_capacity(&self) -> Result<(), Rejection> {
         let (world, day) = (&self.world, self.world.day + 1);
         let due = self.overrides.params_due_on(day).unwrap_or(&self.params);
-        let told = match exceeded_limit_on_next_day(world, due, &self.streams) {
+        let text = match exceeded_limit_on_next_day(world, due, &self.streams) {
             None => return Ok(()),
             Some(ExceededLimit::Leads) => {
                 format!("more than {} leads", grouped_number(f64::from(MAX_LEADS_PER_DAY), 0))
@@ -189,7 +189,7 @@ impl Simulation {
             Some(ExceededLimit::Numbers) => "more leads than there are customer numbers".to_owned(),
         };
         let message = format!(
-            "day {day} would bring {told}, which exceeds the limits of the program. Nothing after day {} is simulated. \
+            "day {day} would bring {text}, which exceeds the limits of the program. Nothing after day {} is simulated. \
              Spend less on advertising, or revert the parameter that multiplies leads",
             world.day
         );
@@ -200,7 +200,7 @@ impl Simulation {
     /// notices are given in `day_before`.
     pub fn simulate_day(
         &mut self,
-        held: &FixedInputs,
+        fixed_inputs: &FixedInputs,
         entries: EntryWriter<'_>,
         day_before: Option<Vec<String>>,
     ) -> DayFigures {
@@ -221,7 +221,7 @@ impl Simulation {
         let today = reusable_facts(facts, entries);
         let follow_up = FollowUp { feed, facts_chain, entries, params, streams };
         let ((figures, trace), ()) = rayon::join(
-            || step_day_observed(world, &due, streams, held, today, &**watch),
+            || step_day_observed(world, &due, streams, fixed_inputs, today, &**watch),
             || follow_up.process(facts_before, day_before, None),
         );
         self.trace = trace;

@@ -50,8 +50,8 @@ impl NewRun {
             configuration.days_and_cash(&configuration.load_scenario(DEFAULT_SCENARIO)?, false)?;
         let other = [
             (self.scenario != DEFAULT_SCENARIO).then(|| format!("scenario {}", self.scenario)),
-            self.days.filter(|own| *own != days).map(format_days),
-            self.cash.filter(|own| *own != cash).map(dollars),
+            self.days.filter(|number| *number != days).map(format_days),
+            self.cash.filter(|value| *value != cash).map(dollars),
         ];
         Ok(other.into_iter().flatten().collect())
     }

@@ -112,9 +112,9 @@ mod tests {
         assert_eq!(as_text(&there), ["price B 0 -> 25", "ads linkedin S1 0 -> 40"]);
         assert_eq!(as_text(&setting_changes(&new, &old)), ["price B 25 -> 0", "ads linkedin S1 40 -> 0"]);
         assert!(setting_changes(&new, &new).is_empty());
-        let told =
+        let value =
             json!({"tool": "set_prices", "setting": "price B", "old": 0.0, "new": 25.0, "unit": "$/month"});
-        assert_eq!(json!(there[0]), told);
+        assert_eq!(json!(there[0]), value);
         let decided = Decisions { day: 0, until: 7, changes: there, purchases: Vec::new() };
         let kept = serde_json::to_string(&decided).expect("text");
         assert_eq!(serde_json::from_str::<Decisions>(&kept).expect("the stored decisions"), decided);

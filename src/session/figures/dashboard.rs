@@ -294,9 +294,13 @@ mod tests {
     #[test]
     fn posts_block_lists_posts_of_the_last_week() {
         let (mut world, params) = world();
-        let own = &mut world.market.social.own;
-        own.push(OwnPost::new(0, "An old one.", None));
-        own.push(OwnPost { views: 1840, comments: vec![91, 92], ..OwnPost::new(7, "y".repeat(90), None) });
+        let own_posts = &mut world.market.social.own;
+        own_posts.push(OwnPost::new(0, "An old one.", None));
+        own_posts.push(OwnPost {
+            views: 1840,
+            comments: vec![91, 92],
+            ..OwnPost::new(7, "y".repeat(90), None)
+        });
         world.day = 14;
         let text =
             dashboard_text(&world, &params, None, &WeekFigures::default(), &[], WaitingLeads::default());

@@ -80,9 +80,9 @@ pub fn count_day(week: &mut ByGroup<GroupWeek>, figures: &DayFigures, facts: &Fa
     let came: BTreeMap<u32, &Arrival> =
         facts.arrivals.iter().map(|arrival| (arrival.customer, arrival)).collect();
     for arrival in came.values() {
-        let own = &mut week[arrival.group];
-        own.leads += 1;
-        own.word_of_mouth += u32::from(arrival.source.channel().is_none());
+        let group_week = &mut week[arrival.group];
+        group_week.leads += 1;
+        group_week.word_of_mouth += u32::from(arrival.source.channel().is_none());
     }
     for pair in &facts.channel_leads {
         let paid = &mut week[pair.group].paid[pair.channel];
@@ -131,9 +131,9 @@ pub(crate) fn finish_week(
     params: &Params,
     floor: impl Fn(Group) -> Option<(f64, f64)>,
 ) {
-    for own in delivered_quality(world, params) {
-        week[own.group].quality = Some(own.by_plan);
-        week[own.group].floor = floor(own.group);
+    for quality in delivered_quality(world, params) {
+        week[quality.group].quality = Some(quality.by_plan);
+        week[quality.group].floor = floor(quality.group);
     }
     for (group, block) in world.customers.blocks().filter(|(group, _)| !group.is_enterprise()) {
         for (plan, price) in block.plan.iter().zip(&block.effective_price) {
@@ -155,14 +155,14 @@ pub fn mean_satisfaction(world: &World, group: Group) -> Option<(f64, f64)> {
 /// Returns the figures of a group at the end of the days that `counted` covers.
 pub fn measure_group(group: Group, counted: &GroupWeek, world: &World) -> GroupFigures {
     let (satisfaction, relationship) = mean_satisfaction(world, group).unzip();
-    let own = &world.customers.groups[group];
+    let group_customers = &world.customers.groups[group];
     GroupFigures {
         leads: counted.leads,
         signed: counted.signed,
         left: counted.left,
         usage: counted.usage.0.iter().sum(),
-        subscribers: own.active_count(),
-        open_issues: own.blocks.iter().map(Block::open_issues).sum(),
+        subscribers: group_customers.active_count(),
+        open_issues: group_customers.blocks.iter().map(Block::open_issues).sum(),
         reputation: world.market.reputation.get(group),
         satisfaction,
         relationship,

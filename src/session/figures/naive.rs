@@ -136,9 +136,9 @@ impl ErrorBands {
         horizons.dedup();
         let band = |(horizon, stage): (u32, GrowthStage)| {
             let own = errors.iter().filter(|error| (error.0, error.1) == (stage, horizon));
-            let mut own: Vec<f64> = own.map(|(_, _, error)| *error).collect();
-            own.sort_unstable_by(f64::total_cmp);
-            let [below, above] = INTERVAL_QUANTILES.map(|share| quantile(&own, share));
+            let mut values: Vec<f64> = own.map(|(_, _, error)| *error).collect();
+            values.sort_unstable_by(f64::total_cmp);
+            let [below, above] = INTERVAL_QUANTILES.map(|share| quantile(&values, share));
             // Four decimals exceed the precision of the measurement; the interval contains the point.
             let rounded = |value: f64| (value * 1e4).round() / 1e4;
             ErrorBand {
@@ -146,7 +146,7 @@ impl ErrorBands {
                 horizon,
                 below: rounded(below.min(-MIN_INTERVAL_SHARE)),
                 above: rounded(above.max(MIN_INTERVAL_SHARE)),
-                forecasts: own.len(),
+                forecasts: values.len(),
             }
         };
         let cells = horizons.into_iter().flat_map(|horizon| GrowthStage::ALL.map(|stage| (horizon, stage)));
@@ -163,8 +163,8 @@ impl ErrorBands {
 
     /// Describes the measured coverage: `97 % of 17,000 such intervals …`.
     pub fn describe_coverage(&self) -> String {
-        let held = self.coverage.iter().map(|own| own.held);
-        let (least, most) = held.fold((1.0f64, 0.0f64), |all, own| (all.0.min(own), all.1.max(own)));
+        let held = self.coverage.iter().map(|coverage| coverage.held);
+        let (least, most) = held.fold((1.0f64, 0.0f64), |all, value| (all.0.min(value), all.1.max(value)));
         let count: usize = self.coverage.iter().map(|own| own.forecasts).sum();
         let percent = |share: f64| (share * 100.0).round();
         let share = match percent(least) == percent(most) {
@@ -352,7 +352,7 @@ mod tests {
         let errors = hindcasts(&calm, 28, bands);
         // The first forecast is made before there is any income.
         assert_eq!(errors.len(), 17);
-        assert!(errors[1..].iter().all(|own| own.error.abs() < 1e-9 && own.is_covered));
+        assert!(errors[1..].iter().all(|hindcast| hindcast.error.abs() < 1e-9 && hindcast.is_covered));
         assert_eq!(widening_factor(&errors[1..], 20), 1.0);
         let wild: Vec<f64> = (0..20).map(|at| if at % 8 < 4 { 100.0 } else { 90_000.0 }).collect();
         let errors = hindcasts(&weeks_with_payments(&wild), 28, bands);
@@ -373,7 +373,10 @@ mod tests {
         all[6].cash_change -= 50_000.0;
         all[6..].iter_mut().for_each(|week| week.cash -= 50_000.0);
         let errors = hindcasts(&all, 7, ErrorBands::bundled());
-        assert!(errors[1..].iter().all(|own| own.error.abs() < 1e-9 && own.is_covered), "{errors:?}");
+        assert!(
+            errors[1..].iter().all(|hindcast| hindcast.error.abs() < 1e-9 && hindcast.is_covered),
+            "{errors:?}"
+        );
         let later = hindcasts(&all, 28, ErrorBands::bundled());
         assert!(later[1..].iter().all(|own| own.error.abs() < 1e-9), "{later:?}");
         assert!(!later[4].is_covered, "later purchases are part of the outcome");

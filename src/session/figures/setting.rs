@@ -175,43 +175,49 @@ pub fn setting_values(settings: &Settings) -> Vec<(SettingId, f64)> {
 }
 
 fn operations_by_audience(settings: &Settings) -> impl Iterator<Item = (Audience, f64)> {
-    let own = &settings.targeted_operations;
-    let groups = own.by_group.iter().map(|(group, value)| (Audience::Group(*group), *value));
-    let plans = own.by_plan.iter().map(|(plan, value)| (Audience::Plan(*plan), *value));
-    let both = own.by_group_plan.iter().flat_map(|(group, plans)| {
+    let targeted_operations = &settings.targeted_operations;
+    let groups = targeted_operations.by_group.iter().map(|(group, value)| (Audience::Group(*group), *value));
+    let plans = targeted_operations.by_plan.iter().map(|(plan, value)| (Audience::Plan(*plan), *value));
+    let both = targeted_operations.by_group_plan.iter().flat_map(|(group, plans)| {
         plans.iter().map(|(plan, value)| (Audience::GroupPlan(*group, *plan), *value))
     });
-    let customers = own.by_customer.iter().map(|(customer, value)| (Audience::Customer(*customer), *value));
+    let customers = targeted_operations
+        .by_customer
+        .iter()
+        .map(|(customer, value)| (Audience::Customer(*customer), *value));
     groups.chain(plans).chain(both).chain(customers)
 }
 
 fn discounts_by_audience(settings: &Settings) -> impl Iterator<Item = (Audience, f64)> {
-    let own = &settings.promotion;
-    let everybody = std::iter::once((Audience::Everybody, own.global));
-    let groups = own.by_group.iter().map(|(group, value)| (Audience::Group(*group), *value));
-    let customers = own.by_customer.iter().map(|(customer, value)| (Audience::Customer(*customer), *value));
-    let both = own.by_group_plan.iter().flat_map(|(group, plans)| {
+    let promotion = &settings.promotion;
+    let everybody = std::iter::once((Audience::Everybody, promotion.global));
+    let groups = promotion.by_group.iter().map(|(group, value)| (Audience::Group(*group), *value));
+    let customers =
+        promotion.by_customer.iter().map(|(customer, value)| (Audience::Customer(*customer), *value));
+    let both = promotion.by_group_plan.iter().flat_map(|(group, plans)| {
         plans.iter().map(|(plan, value)| (Audience::GroupPlan(*group, *plan), *value))
     });
     everybody.chain(groups).chain(customers).chain(both)
 }
 
 fn lead_discounts_by_audience(settings: &Settings) -> impl Iterator<Item = (Audience, f64)> {
-    let own = &settings.lead_promotion;
-    let everybody = std::iter::once((Audience::Everybody, own.global));
-    let groups = own.by_group.iter().map(|(group, value)| (Audience::Group(*group), *value));
-    let channels = own.by_channel.iter().map(|(channel, value)| (Audience::Channel(*channel), *value));
-    let both = own.by_channel_group.iter().flat_map(|(channel, groups)| {
+    let lead_promotion = &settings.lead_promotion;
+    let everybody = std::iter::once((Audience::Everybody, lead_promotion.global));
+    let groups = lead_promotion.by_group.iter().map(|(group, value)| (Audience::Group(*group), *value));
+    let channels =
+        lead_promotion.by_channel.iter().map(|(channel, value)| (Audience::Channel(*channel), *value));
+    let both = lead_promotion.by_channel_group.iter().flat_map(|(channel, groups)| {
         groups.iter().map(|(group, value)| (Audience::ChannelGroup(*channel, *group), *value))
     });
     everybody.chain(groups).chain(channels).chain(both)
 }
 
 fn ads_strength_by_audience(settings: &Settings) -> impl Iterator<Item = (Audience, f64)> {
-    let own = &settings.ads_strength;
-    let everybody = std::iter::once((Audience::Everybody, own.global));
-    let groups = own.by_group.iter().map(|(group, value)| (Audience::Group(*group), *value));
-    let customers = own.by_customer.iter().map(|(customer, value)| (Audience::Customer(*customer), *value));
+    let ads_strength = &settings.ads_strength;
+    let everybody = std::iter::once((Audience::Everybody, ads_strength.global));
+    let groups = ads_strength.by_group.iter().map(|(group, value)| (Audience::Group(*group), *value));
+    let customers =
+        ads_strength.by_customer.iter().map(|(customer, value)| (Audience::Customer(*customer), *value));
     everybody.chain(groups).chain(customers)
 }
 

@@ -78,9 +78,9 @@ mod tests {
 
     #[test]
     fn naive_share_is_described() {
-        let told =
+        let texts =
             [[false; 4], [false, true, true, true], [true; 4]].map(|filled| describe_naive_share(&filled));
-        assert_eq!(told, [None, Some("3 of 4 by projection".to_owned()), Some("by projection".to_owned())]);
+        assert_eq!(texts, [None, Some("3 of 4 by projection".to_owned()), Some("by projection".to_owned())]);
     }
 
     #[test]

@@ -73,9 +73,9 @@ mod over_http {
                 return Err(format!("it responded with status {status}"));
             }
             let read = response.body_mut().with_config().limit(MAX_RESPONSE_BYTES).read_to_string();
-            let told: Value = serde_json::from_str(&read.map_err(describe_error)?)
+            let value: Value = serde_json::from_str(&read.map_err(describe_error)?)
                 .map_err(|_| "its response is not JSON".to_owned())?;
-            let content = told.pointer("/choices/0/message/content").and_then(Value::as_str);
+            let content = value.pointer("/choices/0/message/content").and_then(Value::as_str);
             content.map(str::to_owned).ok_or_else(|| "its response has no message".to_owned())
         }
     }

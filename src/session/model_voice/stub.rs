@@ -41,14 +41,14 @@ impl StubModel {
         let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
         let port = listener.local_addr().expect("an address").port();
         let (asked, stopped) = (Arc::new(Mutex::new(Vec::new())), Arc::new(AtomicBool::new(false)));
-        let (heard, stop) = (asked.clone(), stopped.clone());
+        let (values, stop) = (asked.clone(), stopped.clone());
         let thread = std::thread::spawn(move || {
             for stream in listener.incoming() {
                 if stop.load(Ordering::SeqCst) {
                     return;
                 }
                 // The client may have closed the connection.
-                let _ = stream.and_then(|stream| serve_request(stream, manner, &heard));
+                let _ = stream.and_then(|stream| serve_request(stream, manner, &values));
             }
         });
         StubModel { port, requests: asked, is_stopped: stopped, thread: Some(thread) }
@@ -81,7 +81,7 @@ impl Drop for StubModel {
     }
 }
 
-fn serve_request(stream: TcpStream, manner: StubBehavior, heard: &Mutex<Vec<Value>>) -> std::io::Result<()> {
+fn serve_request(stream: TcpStream, manner: StubBehavior, values: &Mutex<Vec<Value>>) -> std::io::Result<()> {
     let mut reader = BufReader::new(stream);
     let mut length = 0;
     loop {
@@ -90,14 +90,15 @@ fn serve_request(stream: TcpStream, manner: StubBehavior, heard: &Mutex<Vec<Valu
             break;
         }
         let header = line.to_lowercase();
-        length = header.strip_prefix("content-length:").map_or(length, |own| own.trim().parse().unwrap_or(0));
+        length =
+            header.strip_prefix("content-length:").map_or(length, |text| text.trim().parse().unwrap_or(0));
     }
     let mut body = vec![0; length];
     reader.read_exact(&mut body)?;
     let asked: Value = serde_json::from_slice(&body)?;
     let material = asked["messages"][1]["content"].as_str().unwrap_or_default();
     let material: Value = serde_json::from_str(material)?;
-    heard.lock().expect("not poisoned").push(asked);
+    values.lock().expect("not poisoned").push(asked);
     let mut said = correct_answer(&material);
     match manner {
         StubBehavior::Late => std::thread::sleep(Duration::from_secs(3)),

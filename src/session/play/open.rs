@@ -94,9 +94,10 @@ impl Session {
         let finished = (projection && access == Access::Read)
             .then(|| integrity.finished_database(folder, &trajectory))
             .flatten();
-        let keeping = keeping.filter(|own| (own.may_store)(folder, &manifest, &trajectory, &key));
+        let keeping = keeping
+            .filter(|cache_functions| (cache_functions.may_store)(folder, &manifest, &trajectory, &key));
         let simulates = projection && finished.is_none();
-        if simulates && keeping.is_some_and(|own| (own.store_database)(folder, &key)) {
+        if simulates && keeping.is_some_and(|functions| (functions.store_database)(folder, &key)) {
             return Session::open_sealed(folder, access, projection, key);
         }
         let database = match projection && finished.is_none() {

@@ -104,7 +104,10 @@ mod tests {
         session.database.limit_pages(Some(1));
         play_weeks(&mut session, 2);
         let problem = session.wait_for_database().expect_err("the disk is full").message;
-        assert_eq!(session.database().failure().map(|own| own.to_string()), Some(problem.clone()));
+        assert_eq!(
+            session.database().failure().map(|projection_error| projection_error.to_string()),
+            Some(problem.clone())
+        );
         assert!(problem.contains("full") && problem.contains("the run is safe"), "{problem}");
         // With free disk space, a query repairs the database and the run continues.
         let remark = advance_week(&mut session).remark.expect("the week says so");

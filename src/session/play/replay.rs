@@ -26,16 +26,16 @@ impl Session {
         lines: &[Line],
         snapshot: Option<&Snapshot>,
     ) -> (Session, usize) {
-        let own = Some(folder.to_owned());
+        let path = Some(folder.to_owned());
         let recall = |snapshot: &Snapshot| snapshot.restore_session(&manifest, &params, lines);
         let recalled = snapshot.and_then(|snapshot| Some((recall(snapshot)?, snapshot)));
         let Some((RestoredSession { simulation, history, notebook }, snapshot)) = recalled else {
-            return (Session::read_only(manifest, own, params, None), 0);
+            return (Session::read_only(manifest, path, params, None), 0);
         };
         let position = snapshot.position();
         let seen = position.seq as usize + 1;
         let surroundings = RunContext { notebook, ..RunContext::default() };
-        let mut session = Session::assemble(manifest, own, simulation, RunDatabase::default());
+        let mut session = Session::assemble(manifest, path, simulation, RunDatabase::default());
         session.log.set_position(position);
         (Session { history, context: surroundings, ..session }, seen)
     }
@@ -119,7 +119,7 @@ impl Session {
                 self.commit_projection();
             }
             Record::Override(change) => self.replay_override(line.seq, change)?,
-            Record::Voice(said) => self.replay_voice(said)?,
+            Record::Voice(voice_answer) => self.replay_voice(voice_answer)?,
             Record::Query(query) => self.add_to_query_history(query),
             Record::Activity(_)
             | Record::Memo(_)

@@ -25,13 +25,13 @@ const MAX_REMARK_CHARACTERS: usize = 2000;
 const OUTPUT_TRUNCATED: &str = "stdout is cut after 5,000 characters\n";
 
 /// Appends a result as a table, and its remarks, up to the limits.
-fn append_result(said: &mut RawScriptOutput, rows: &QueryResult) {
-    if said.results.len() <= 4 * MAX_OUTPUT_CHARACTERS {
-        said.results += &text::format_columns(rows);
+fn append_result(script_output: &mut RawScriptOutput, rows: &QueryResult) {
+    if script_output.results.len() <= 4 * MAX_OUTPUT_CHARACTERS {
+        script_output.results += &text::format_columns(rows);
     }
     for remark in [&rows.warning, &rows.hint].into_iter().flatten() {
-        if said.remarks.len() <= 4 * MAX_REMARK_CHARACTERS {
-            said.remarks += &format!("{remark}\n");
+        if script_output.remarks.len() <= 4 * MAX_REMARK_CHARACTERS {
+            script_output.remarks += &format!("{remark}\n");
         }
     }
 }
@@ -52,19 +52,19 @@ impl Session {
     /// `script_failed`, `script_timeout`, with the location.
     pub(super) fn run_script(&mut self, script: &Script, via: Via) -> Result<ScriptOutput, Rejection> {
         let time = Duration::from_secs_f64(script.timeout_seconds);
-        let said = match Language::detect(&script.code) {
+        let script_output = match Language::detect(&script.code) {
             Language::Sql => self.run_statements(&script.code, time)?,
             Language::Python => {
                 self.check_python_allowed(via)?;
                 self.run_python(&script.code, time, true)?
             }
         };
-        let stdout = truncate(&said.results, MAX_OUTPUT_CHARACTERS);
-        let cut = if stdout.len() < said.results.len() { OUTPUT_TRUNCATED } else { "" };
+        let stdout = truncate(&script_output.results, MAX_OUTPUT_CHARACTERS);
+        let cut = if stdout.len() < script_output.results.len() { OUTPUT_TRUNCATED } else { "" };
         Ok(ScriptOutput {
             returncode: 0,
             stdout,
-            stderr: truncate(&format!("{cut}{}", said.remarks), MAX_REMARK_CHARACTERS),
+            stderr: truncate(&format!("{cut}{}", script_output.remarks), MAX_REMARK_CHARACTERS),
         })
     }
 
@@ -100,8 +100,8 @@ impl Session {
 
     fn query_for_script(&mut self, sql: &str, left: Duration, noted: bool) -> Result<QueryResult, Rejection> {
         let started = Instant::now();
-        let own = self.company().query_limits();
-        let limits = QueryLimits { time: own.time.min(left), ..own };
+        let query_limits = self.company().query_limits();
+        let limits = QueryLimits { time: query_limits.time.min(left), ..query_limits };
         let ticket = self.new_ticket()?;
         let answer = self.query_with_limits(ticket, sql, limits);
         if noted {
@@ -114,9 +114,9 @@ impl Session {
         let limits = self.company().query_limits();
         let connection = self.up_to_date_database().and_then(|database| database.connection());
         let connection = connection.map_err(|refusal| Rejection::new("script_failed", refusal.message))?;
-        let mut said = RawScriptOutput::default();
-        match connection.run_script(code, limits, time, |rows| append_result(&mut said, &rows)) {
-            Ok(()) => Ok(said),
+        let mut script_output = RawScriptOutput::default();
+        match connection.run_script(code, limits, time, |rows| append_result(&mut script_output, &rows)) {
+            Ok(()) => Ok(script_output),
             Err(stopped) => {
                 let refusal = query_rejection(stopped.error);
                 let was_stopped = ["sql_timeout", SQL_CANCELLED].contains(&refusal.code);
@@ -151,7 +151,7 @@ impl Session {
                 }
             };
             let output = match said {
-                Ok(said) => said.results,
+                Ok(script_output) => script_output.results,
                 Err(refusal) => format!("failed: {}", refusal.message),
             };
             CalculationOutput { name, output: truncate(&output, shown) }

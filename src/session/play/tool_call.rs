@@ -173,14 +173,14 @@ impl Session {
     fn apply_call(
         &mut self,
         spec: &ToolSpec,
-        given: &Arguments,
+        arguments: &Arguments,
         reversal: Option<Reversal>,
         accepted: AcceptedCall,
     ) {
         let (AcceptedCall { resolved, change, row }, seq) = (accepted, self.log.position().seq);
         change.iter().for_each(|change| self.apply_notebook_change(change));
         if !resolved.is_read_only() {
-            let args = Value::Object(given.as_map().clone());
+            let args = Value::Object(arguments.as_map().clone());
             let (day, tool) = (self.simulation.world.day, spec.id);
             self.history.journal.push(JournalEntry::Call { seq, day, tool, args, reversal });
         }
@@ -376,7 +376,7 @@ impl Session {
     /// The reason why the call is not possible now: the line was changed, or another version recorded it.
     pub(crate) fn replay_call(&mut self, call: &Call, answer: &Value) -> Result<(), String> {
         let tool = call.tool.tool_id().ok_or("the call names an unknown tool")?.tool();
-        let (given, planned) =
+        let (arguments, planned) =
             self.plan_recorded_call(tool, &call.args).map_err(|refusal| refusal.to_string())?;
         let PlannedCall { command, notebook_change: change, settings_row: row, reply } = planned;
         let resolved = self.simulation.resolve(command);
@@ -389,7 +389,7 @@ impl Session {
         if is_told_again && reply.into_answer_without_script(&resolved).is_some_and(differs) {
             return Err("the call now has a different result".to_owned());
         }
-        self.apply_call(tool.spec(), &given, call.reversal, AcceptedCall { resolved, change, row });
+        self.apply_call(tool.spec(), &arguments, call.reversal, AcceptedCall { resolved, change, row });
         Ok(())
     }
 }

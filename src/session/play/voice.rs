@@ -62,8 +62,9 @@ impl Session {
 
     fn inherited_scores(&self, at: usize) -> Option<JudgedPost> {
         let post = self.simulation.world.market.social.own.get(at)?;
-        let said = self.voice.inherited_scores.iter().rev().find(|judged| is_for_post(judged, post))?;
-        Some(JudgedPost { post: at as u32 + 1, took_ms: 0.0, ..said.clone() })
+        let judged_post =
+            self.voice.inherited_scores.iter().rev().find(|judged| is_for_post(judged, post))?;
+        Some(JudgedPost { post: at as u32 + 1, took_ms: 0.0, ..judged_post.clone() })
     }
 
     fn request_scores(&mut self, at: usize) -> Option<JudgedPost> {
@@ -93,21 +94,25 @@ impl Session {
     }
 
     fn scoring_prompt(&self, at: usize, known: &[Group]) -> Option<ModelPrompt> {
-        let own = &self.simulation.world.market.social.own;
-        let (post, posts) = (own.get(at)?, &self.simulation.feed.posts);
+        let own_posts = &self.simulation.world.market.social.own;
+        let (post, posts) = (own_posts.get(at)?, &self.simulation.feed.posts);
         let shown = |number: u32| Some(posts.get((number as usize).checked_sub(1)?)?.content.as_str());
         let who = |group: &Group| (*group, self.simulation.params.group(*group).description.as_str());
         Some(scoring::prompt(&PostToScore {
             content: &post.content,
             day: post.day,
             original: post.reply_to.and_then(shown),
-            earlier: own[..at].iter().map(|post| (post.day, post.content.as_str())).collect(),
+            earlier: own_posts[..at].iter().map(|post| (post.day, post.content.as_str())).collect(),
             groups: known.iter().map(who).collect(),
         }))
     }
 
-    fn record_failure(&mut self, asked: ModelTask, problem: String, took_ms: f64) {
-        self.record_event(Record::Voice(VoiceAnswer::Failed(FailedAnswer { asked, problem, took_ms })));
+    fn record_failure(&mut self, model_task: ModelTask, problem: String, took_ms: f64) {
+        self.record_event(Record::Voice(VoiceAnswer::Failed(FailedAnswer {
+            asked: model_task,
+            problem,
+            took_ms,
+        })));
     }
 
     /// Requests other words for the newest posts after a day. Without a usable answer, the posts keep their texts.
@@ -143,7 +148,8 @@ impl Session {
         for WordedPost { post, text } in posts {
             self.simulation.feed.replace_text(*post, text);
         }
-        let rewordings = || posts.iter().map(|own| (own.post, own.text.clone())).collect();
+        let rewordings =
+            || posts.iter().map(|worded_post| (worded_post.post, worded_post.text.clone())).collect();
         self.database
             .entry_writer()
             .send(|| ProjectionEntry { rewordings: rewordings(), ..ProjectionEntry::default() });
@@ -153,11 +159,11 @@ impl Session {
     ///
     /// # Errors
     /// The line is not possible: the run has no language model for it, or no model could have produced it.
-    pub(crate) fn replay_voice(&mut self, said: &VoiceAnswer) -> Result<(), String> {
+    pub(crate) fn replay_voice(&mut self, voice_answer: &VoiceAnswer) -> Result<(), String> {
         let Some(model) = &self.manifest.voice else {
             return Err("the run has no language model: the line was inserted".to_owned());
         };
-        match said {
+        match voice_answer {
             VoiceAnswer::Scores(judged) => {
                 let fits =
                     model.judge && judged.scores.iter().all(|score: &ModelScore| score.check().is_ok());
@@ -170,7 +176,9 @@ impl Session {
                 let feed = &self.simulation.feed;
                 let is_there = |post: u32| post > 0 && post as usize <= feed.posts.len();
                 let mut posts = worded.posts.iter();
-                let fits = posts.all(|own| is_there(own.post) && wording::check(&own.text).is_ok());
+                let fits = posts.all(|worded_post| {
+                    is_there(worded_post.post) && wording::check(&worded_post.text).is_ok()
+                });
                 if !(model.words && fits) {
                     return Err("the language model of this run cannot have written these texts".to_owned());
                 }

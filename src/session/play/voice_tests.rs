@@ -54,16 +54,16 @@ fn advance_week(session: &mut Session) -> Option<String> {
 /// Simulates three weeks, with a post before the second.
 fn play_three_weeks(runs: &Path, configuration: &Configuration) -> (Session, Vec<Option<String>>) {
     let mut session = start_company(runs, configuration);
-    let mut told = vec![advance_week(&mut session)];
+    let mut texts = vec![advance_week(&mut session)];
     publish_post(&mut session);
-    told.extend([advance_week(&mut session), advance_week(&mut session)]);
-    (session, told)
+    texts.extend([advance_week(&mut session), advance_week(&mut session)]);
+    (session, texts)
 }
 
 fn voice_answers(folder: &Path) -> Vec<VoiceAnswer> {
     let lines = Trajectory::read(&folder.join("trajectory.jsonl")).expect("a trajectory").lines;
     let said = lines.into_iter().filter_map(|line| match line.record {
-        Record::Voice(said) => Some(said),
+        Record::Voice(voice_answer) => Some(voice_answer),
         _ => None,
     });
     said.collect()
@@ -96,20 +96,25 @@ fn voice_answers_replay_without_the_model() {
     let (hash, words) = (session.state_hash().0, post_texts(&session));
     let effects = session.simulation.world.market.social.own[0].effects.expect("it was judged");
     assert!(effects.iter().filter(|effect| **effect == 0.8).count() >= 6);
-    assert!(session.simulation.feed.judgements[0].iter().all(|own| own.reason() == "It speaks to me."));
+    assert!(
+        session.simulation.feed.judgements[0]
+            .iter()
+            .all(|judgement| judgement.reason() == "It speaks to me.")
+    );
     assert!(
         words.len() > 3 && words.iter().rev().take(3).all(|text| text.starts_with("Well: ")),
         "{words:?}"
     );
     assert_eq!(queried_post_texts(&mut session), words);
     let answers = voice_answers(&folder);
-    let scored =
-        answers.iter().filter(|said| matches!(said, VoiceAnswer::Scores(judged) if judged.post == 1));
+    let scored = answers
+        .iter()
+        .filter(|voice_answer| matches!(voice_answer, VoiceAnswer::Scores(judged) if judged.post == 1));
     assert_eq!(scored.count(), 1);
     let asked = stub.requests();
     assert_eq!(asked.len(), answers.len(), "one request for each answer");
     let all = serde_json::to_string(&asked).expect("JSON");
-    assert!(asked.iter().all(|own| own["model"] == "stub") && !all.contains("satisfaction"), "{all}");
+    assert!(asked.iter().all(|value| value["model"] == "stub") && !all.contains("satisfaction"), "{all}");
     session.save().expect("saved");
     drop((session, stub));
 
@@ -170,14 +175,14 @@ fn failing_model_changes_nothing_and_is_reported_once() {
         assert!(notices.len() == 1 && notices[0].contains(why), "{manner:?}: {notices:?}");
         let failed = voice_answers(&run_folder(&session));
         let is_of = |what: ModelTask| {
-            failed.iter().any(|said| matches!(said, VoiceAnswer::Failed(own) if own.asked == what))
+            failed.iter().any(|voice_answer| matches!(voice_answer, VoiceAnswer::Failed(failed_answer) if failed_answer.asked == what))
         };
         assert!(is_of(ModelTask::Scores) && is_of(ModelTask::Words), "{failed:?}");
         verify(&run_folder(&session)).expect("it replays");
     }
     // The server is gone.
-    let gone = StubModel::start(StubBehavior::Correct).configuration(true, true, 1);
-    let (session, told) = play_three_weeks(runs.path(), &gone);
+    let configuration = StubModel::start(StubBehavior::Correct).configuration(true, true, 1);
+    let (session, told) = play_three_weeks(runs.path(), &configuration);
     assert_eq!(session.state_hash(), plain.state_hash());
     assert_eq!(told.iter().flatten().count(), 1, "{told:?}");
 }
@@ -222,8 +227,8 @@ fn missing_key_prevents_the_run_and_other_model_is_rejected() {
     let runs = tempfile::tempdir().expect("a folder");
     let stub = StubModel::start(StubBehavior::Correct);
     let mut named = stub.configuration(false, true, 30);
-    let own = named.voice.as_mut().expect("a model");
-    own.key_variable = Some("NOVAMIND_NO_SUCH_KEY".to_owned());
+    let model_settings = named.voice.as_mut().expect("a model");
+    model_settings.key_variable = Some("NOVAMIND_NO_SUCH_KEY".to_owned());
     let refused =
         Session::create(new_run(runs.path(), Mode::Sandbox), &named).err().expect("refused").to_string();
     assert!(

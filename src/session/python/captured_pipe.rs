@@ -43,9 +43,9 @@ impl CapturedPipe {
     pub fn start(pipe: impl Read + Send + 'static) -> std::io::Result<CapturedPipe> {
         let kept = Arc::<Mutex<CaptureBuffer>>::default();
         let (tell, end) = channel();
-        let own = Arc::clone(&kept);
+        let capture_buffer = Arc::clone(&kept);
         thread::Builder::new().name("script output".to_owned()).spawn(move || {
-            read_to_end(pipe, &own);
+            read_to_end(pipe, &capture_buffer);
             // Fails if the script was terminated and nothing waits for its output.
             let _ = tell.send(());
         })?;

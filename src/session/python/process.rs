@@ -113,7 +113,7 @@ impl ScriptProcess {
             if self.time_left().is_zero() {
                 return self.terminate(ScriptEnd::TimedOut);
             }
-            let heard = match is_heard {
+            let channel_event = match is_heard {
                 true => self.channel.receive(POLL_INTERVAL.min(self.time_left())),
                 false => {
                     self.channel.close();
@@ -121,10 +121,10 @@ impl ScriptProcess {
                     ChannelEvent::Idle
                 }
             };
-            match heard {
+            match channel_event {
                 ChannelEvent::Request(request) => {
-                    let told = answer(request, self.time_left());
-                    is_heard = self.send_line(&told, is_stopped).is_ok();
+                    let value = answer(request, self.time_left());
+                    is_heard = self.send_line(&value, is_stopped).is_ok();
                 }
                 ChannelEvent::Closed => is_heard = false,
                 ChannelEvent::Idle => {

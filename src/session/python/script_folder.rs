@@ -49,8 +49,11 @@ impl ScriptFolder {
 fn remove_stale_folders(place: &Path, left_behind: Duration) {
     for entry in std::fs::read_dir(place).into_iter().flatten().flatten() {
         let is_ours = entry.file_name().to_string_lossy().starts_with(NAME_PREFIX);
-        let touched =
-            entry.metadata().ok().filter(|own| is_ours && own.is_dir()).and_then(|own| own.modified().ok());
+        let touched = entry
+            .metadata()
+            .ok()
+            .filter(|metadata| is_ours && metadata.is_dir())
+            .and_then(|own| own.modified().ok());
         if touched.and_then(|at| at.elapsed().ok()).is_some_and(|age| age > left_behind) {
             let _ = std::fs::remove_dir_all(entry.path());
         }
@@ -80,7 +83,8 @@ mod tests {
         std::thread::sleep(Duration::from_millis(5));
         remove_stale_folders(place.path(), Duration::ZERO);
         let names = std::fs::read_dir(place.path()).expect("a folder").flatten();
-        let mut left: Vec<String> = names.map(|own| own.file_name().to_string_lossy().into_owned()).collect();
+        let mut left: Vec<String> =
+            names.map(|dir_entry| dir_entry.file_name().to_string_lossy().into_owned()).collect();
         left.sort_unstable();
         assert_eq!(left, ["novamind-script-3-0", "novamind-scripts", "other"]);
     }

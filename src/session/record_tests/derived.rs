@@ -61,8 +61,8 @@ fn manifest_is_restored_from_the_first_line() {
             expected["created"] = restored["created"].clone();
         }
         assert_eq!(restored, expected, "{told}");
-        let again = Session::open(&run.folder, Access::Write, true).expect("it opens");
-        assert_eq!(again.remarks(), [""; 0], "the remark appears once");
+        let session = Session::open(&run.folder, Access::Write, true).expect("it opens");
+        assert_eq!(session.remarks(), [""; 0], "the remark appears once");
     }
 }
 

@@ -111,8 +111,8 @@ fn confirmed_lines_are_saved_next_to_a_lost_file() {
     // A simulated week cannot be reverted: its line is saved with the others.
     let aside = kept(writer.append_irrevocable(9, &memo_record()).expect_err("there is no file"));
     assert_eq!(aside.parent(), Some(folder.as_path()));
-    let told = writer.loss_reason().expect("it is lost").to_owned();
-    assert!(told.contains("trajectory-unsaved-") && told.contains("open the run again"), "{told}");
+    let text = writer.loss_reason().expect("it is lost").to_owned();
+    assert!(text.contains("trajectory-unsaved-") && text.contains("open the run again"), "{text}");
     let saved = std::fs::read(&aside).expect("a copy");
     assert!(saved.starts_with(&confirmed) && saved.len() > confirmed.len());
     assert_eq!(
@@ -139,7 +139,7 @@ fn confirmed_lines_are_saved_next_to_a_lost_file() {
 fn parse_detects_flipped_bytes_and_missing_lines() {
     let folder = tempfile::tempdir().expect("a folder");
     let bytes = std::fs::read(write_trajectory(folder.path(), 4)).expect("bytes");
-    let whole = Trajectory::parse(&bytes).expect("it reads");
+    let trajectory = Trajectory::parse(&bytes).expect("it reads");
     // Without its line end the last line counts as unfinished.
     for at in 0..bytes.len() - 1 {
         let mut damaged = bytes.clone();
@@ -151,7 +151,7 @@ fn parse_detects_flipped_bytes_and_missing_lines() {
     assert_eq!(Trajectory::parse(&lines.concat()).expect_err("a line is missing").0, 2);
     lines.swap(0, 1);
     assert_eq!(Trajectory::parse(&lines.concat()).expect_err("out of order").0, 1);
-    assert_eq!(whole.unfinished_bytes, 0);
+    assert_eq!(trajectory.unfinished_bytes, 0);
     assert_eq!(Trajectory::parse(b"").expect("an empty file").lines.len(), 0);
 }
 

@@ -130,7 +130,7 @@ impl<'a> ActivityLog<'a> {
         if self.is_over || self.log.is_clock_stopped() {
             return Vec::new();
         }
-        let mut told = Vec::new();
+        let mut limits = Vec::new();
         for left in self.log.time_left() {
             let Some(event) = self.log.clock.due_event(left, &self.log.rules.limits) else { continue };
             let used_ms = ((f64::from(left.minutes) * 60.0 - left.seconds) * 1e3) as u64;
@@ -139,9 +139,9 @@ impl<'a> ActivityLog<'a> {
             // Set even if the rules exclude limit lines from the record.
             self.log.clock.reported_limits.insert((limit.limit, event != LimitEvent::Warned));
             self.log.clock.is_stopped_by_limit |= event == LimitEvent::Paused;
-            told.push(limit);
+            limits.push(limit);
         }
-        told
+        limits
     }
 }
 

@@ -119,38 +119,45 @@ mod tests {
         let limits =
             TimeLimits { warning_minutes: Some(2), at_limit: AtLimit::Naive, ..TimeLimits::default() };
         let left = |scope, seconds| TimeLeft { scope, minutes: 10, seconds };
-        let mut own = SessionClock::default();
-        assert_eq!(own.due_event(left(LimitScope::Week, 121.0), &limits), None);
-        assert_eq!(own.due_event(left(LimitScope::Week, 119.0), &limits), Some(LimitEvent::Warned));
-        own.apply(&limit_record(LimitScope::Week, LimitEvent::Warned), 0.0);
-        assert_eq!(own.due_event(left(LimitScope::Week, 60.0), &limits), None);
-        assert_eq!(own.due_event(left(LimitScope::Week, 0.0), &limits), Some(LimitEvent::FiledNaively));
-        own.apply(&limit_record(LimitScope::Week, LimitEvent::FiledNaively), 0.0);
-        assert_eq!(own.due_event(left(LimitScope::Week, -5.0), &limits), None);
-        let (figures, state_hash, parts) = Default::default();
-        own.apply(&Record::Week(Closing { days_run: 7, figures, cash: 0.0, state_hash, parts }), 0.0);
+        let mut session_clock = SessionClock::default();
+        assert_eq!(session_clock.due_event(left(LimitScope::Week, 121.0), &limits), None);
+        assert_eq!(session_clock.due_event(left(LimitScope::Week, 119.0), &limits), Some(LimitEvent::Warned));
+        session_clock.apply(&limit_record(LimitScope::Week, LimitEvent::Warned), 0.0);
+        assert_eq!(session_clock.due_event(left(LimitScope::Week, 60.0), &limits), None);
         assert_eq!(
-            own.due_event(left(LimitScope::Week, 100.0), &limits),
+            session_clock.due_event(left(LimitScope::Week, 0.0), &limits),
+            Some(LimitEvent::FiledNaively)
+        );
+        session_clock.apply(&limit_record(LimitScope::Week, LimitEvent::FiledNaively), 0.0);
+        assert_eq!(session_clock.due_event(left(LimitScope::Week, -5.0), &limits), None);
+        let (figures, state_hash, parts) = Default::default();
+        session_clock
+            .apply(&Record::Week(Closing { days_run: 7, figures, cash: 0.0, state_hash, parts }), 0.0);
+        assert_eq!(
+            session_clock.due_event(left(LimitScope::Week, 100.0), &limits),
             Some(LimitEvent::Warned),
             "a new week"
         );
-        let paused = own.due_event(left(LimitScope::Session, 0.0), &limits);
+        let paused = session_clock.due_event(left(LimitScope::Session, 0.0), &limits);
         assert_eq!(paused, Some(LimitEvent::Paused), "a session cannot be submitted");
         assert_eq!(left(LimitScope::Week, 61.0).describe(), "2 of 10 min left for this week");
     }
 
     #[test]
     fn clock_stopped_by_limit_stays_stopped_until_started() {
-        let mut own = SessionClock::default();
+        let mut session_clock = SessionClock::default();
         for record in [
             limit_record(LimitScope::Study, LimitEvent::Paused),
             clock_record(ClockEvent::Stopped),
             clock_record(ClockEvent::Forgotten),
         ] {
-            own.apply(&record, 5.0);
+            session_clock.apply(&record, 5.0);
         }
-        assert!(own.is_stopped_by_limit && own.stopped_at.is_none(), "closing the run does not start it");
-        own.apply(&clock_record(ClockEvent::Started), 6.0);
-        assert!(!own.is_stopped_by_limit);
+        assert!(
+            session_clock.is_stopped_by_limit && session_clock.stopped_at.is_none(),
+            "closing the run does not start it"
+        );
+        session_clock.apply(&clock_record(ClockEvent::Started), 6.0);
+        assert!(!session_clock.is_stopped_by_limit);
     }
 }

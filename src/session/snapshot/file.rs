@@ -311,11 +311,12 @@ fn unseal_file(file: &mut [u8], folder: &Path, key: &SealKey) -> Result<usize, &
     if of == STUDY_KEY_MARK && !key.has_secret() {
         return Err("is sealed with the key of a study");
     }
-    let own = if of == RUN_KEY_MARK { &SealKey::default() } else { key };
+    let seal_key = if of == RUN_KEY_MARK { &SealKey::default() } else { key };
     let first =
         first_line_hash(&folder.join(TRAJECTORY_FILE)).ok_or("belongs to a trajectory that is not there")?;
     let at = TITLE.len() + 1 + Envelope::LENGTH_BYTES;
-    own.derive_run_keys(&first)
+    seal_key
+        .derive_run_keys(&first)
         .open(&envelope, &mut file[at..])
         .then_some(at)
         .ok_or("is damaged or of another run")

@@ -90,9 +90,9 @@ impl Integrity {
         let last = trajectory.lines.last().filter(|line| matches!(line.record, Record::End(_)))?;
         let position = self.database.as_ref()?;
         let complete = position.seq == last.seq && position.line_hash == last.hash;
-        let own = database_location(folder);
-        (complete && has_current_layout(&own) && self.matches_closing_digest(folder) == Some(true))
-            .then_some(own)
+        let location = database_location(folder);
+        (complete && has_current_layout(&location) && self.matches_closing_digest(folder) == Some(true))
+            .then_some(location)
     }
 
     /// Returns the snapshot, if its line is in the trajectory and the database lacks no row before it.

@@ -90,7 +90,7 @@ mod tests {
                 .company()
                 .identical_plans()
                 .iter()
-                .map(|own| (own.cheap, own.dear))
+                .map(|identical_plans| (identical_plans.cheap, identical_plans.dear))
                 .collect::<Vec<(Plan, Plan)>>()
         };
         let all = [(Plan::A, Plan::B), (Plan::A, Plan::C), (Plan::B, Plan::C)];

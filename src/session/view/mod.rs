@@ -110,10 +110,10 @@ impl<'a> CompanyView<'a> {
 
     /// Returns the limits of a query in this run.
     pub fn query_limits(&self) -> QueryLimits {
-        let own = &self.simulation.params.limits;
+        let limits = &self.simulation.params.limits;
         QueryLimits {
-            rows: own.query_row_limit as usize,
-            time: Duration::from_secs(u64::from(own.query_timeout_seconds)),
+            rows: limits.query_row_limit as usize,
+            time: Duration::from_secs(u64::from(limits.query_timeout_seconds)),
             steps: None,
         }
     }

@@ -229,7 +229,11 @@ impl CompanyView<'_> {
                 kind: thread.kind.id(),
                 turn: thread.last().number,
                 offers_so_far: thread.player_turn_count(),
-                last_offer: thread.last_offerings().iter().map(|own| (own.plan, own.price)).collect(),
+                last_offer: thread
+                    .last_offerings()
+                    .iter()
+                    .map(|offering| (offering.plan, offering.price))
+                    .collect(),
                 asked: thread.last_asked_price(),
                 days_left: (thread.last().day + patience).saturating_sub(self.simulation.world.day),
             }

@@ -90,7 +90,7 @@ impl RunFacts {
 
     fn count_activity(&mut self, activity: &Activity) {
         match activity {
-            Activity::Draft(draft) => self.pasted = self.pasted.map(|own| own + draft.pasted),
+            Activity::Draft(draft) => self.pasted = self.pasted.map(|number| number + draft.pasted),
             Activity::Answer(answer) => self.failed_checks += u32::from(answer.as_expected == Some(false)),
             _ => {}
         }

@@ -27,8 +27,10 @@ pub(super) fn hidden_view_findings(study: &Study, runs: &[&RunRecord]) -> Vec<Au
     let finding = |run: &&RunRecord| {
         let manifest = run.manifest.as_ref()?;
         let view = first_view(run, manifest)?;
-        let is_affected = |(own, session, end): &&(&RunRecord, &Manifest, Option<f64>)| {
-            own.id != run.id && session.seed == manifest.seed && end.is_none_or(|end| view.seconds < end)
+        let is_affected = |(run_record, session, end): &&(&RunRecord, &Manifest, Option<f64>)| {
+            run_record.id != run.id
+                && session.seed == manifest.seed
+                && end.is_none_or(|end| view.seconds < end)
         };
         let mut labels: Vec<&str> = sessions
             .iter()

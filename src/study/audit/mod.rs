@@ -57,9 +57,9 @@ pub fn audit_study(study: &Study, machines: &[PathBuf]) -> Result<AuditReport, R
     };
     for machine in &records {
         for run in machine.iter().filter(|run| run.belongs_to_study(&study.digest)) {
-            let own = RunAudit { study, machine, run };
-            audit.findings.extend(own.findings());
-            audit.runs.extend(own.facts());
+            let run_audit = RunAudit { study, machine, run };
+            audit.findings.extend(run_audit.findings());
+            audit.runs.extend(run_audit.facts());
         }
     }
     let all: Vec<&RunRecord> = records.iter().flatten().collect();
@@ -232,7 +232,7 @@ impl RunAudit<'_> {
     /// Returns findings on contradictions between `run.toml` and the first line.
     fn check_manifest(&self) -> Vec<AuditFinding> {
         let told = self.run.manifest.iter();
-        told.flat_map(|told| manifest_differences(&self.run.folder, told))
+        told.flat_map(|manifest| manifest_differences(&self.run.folder, manifest))
             .map(|words| self.finding(FindingKind::Manifest, Some(1), "", words))
             .collect()
     }

@@ -149,8 +149,8 @@ fn to_social_post(post: &PublicPost, view: &ToolContext<'_>) -> SocialPost {
     // The market observer counts as an individual of the first group.
     let group = post.written_by.or_else(|| Group::at(0));
     let company = group.is_some_and(Group::is_enterprise);
-    let own = &view.world().market.social.own;
-    let answered = post.own_post.and_then(|number| own.get(number as usize - 1));
+    let own_posts = &view.world().market.social.own;
+    let answered = post.own_post.and_then(|number| own_posts.get(number as usize - 1));
     SocialPost {
         post_id: post.post,
         day: post.day,

@@ -153,20 +153,20 @@ impl Tool for SetTargetedOpsSpend {
     fn plan(
         &self,
         view: &ToolContext<'_>,
-        given: SupportScopes,
+        support_scopes: SupportScopes,
     ) -> Result<PlannedCall<SupportBudgets>, Rejection> {
         let mut operations = view.settings().targeted_operations.clone();
-        replace_if_given(&mut operations.by_group, given.by_group);
-        replace_if_given(&mut operations.by_plan, given.by_plan);
-        replace_if_given(&mut operations.by_group_plan, given.by_group_plan);
-        replace_if_given(&mut operations.by_customer, given.by_customer);
-        let own = operations.clone();
+        replace_if_given(&mut operations.by_group, support_scopes.by_group);
+        replace_if_given(&mut operations.by_plan, support_scopes.by_plan);
+        replace_if_given(&mut operations.by_group_plan, support_scopes.by_group_plan);
+        replace_if_given(&mut operations.by_customer, support_scopes.by_customer);
+        let targeted_operations = operations.clone();
         let answer = SupportBudgets {
-            targeted_spend: own.by_group.clone(),
-            by_group: own.by_group,
-            by_plan: own.by_plan,
-            by_group_plan: own.by_group_plan,
-            by_customer: own.by_customer,
+            targeted_spend: targeted_operations.by_group.clone(),
+            by_group: targeted_operations.by_group,
+            by_plan: targeted_operations.by_plan,
+            by_group_plan: targeted_operations.by_group_plan,
+            by_customer: targeted_operations.by_customer,
             total_extra_per_day: operations.total(),
         };
         Ok(PlannedCall::with_settings_change(SettingsChange::TargetedOperations(operations), answer))

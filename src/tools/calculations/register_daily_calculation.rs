@@ -66,7 +66,7 @@ impl Tool for RegisterDailyCalculation {
         })
     }
 
-    fn plan(&self, _: &ToolContext<'_>, given: NamedCode) -> Result<PlannedCall<StoredCode>, Rejection> {
-        Ok(given.store(NotebookSection::Calculation))
+    fn plan(&self, _: &ToolContext<'_>, named_code: NamedCode) -> Result<PlannedCall<StoredCode>, Rejection> {
+        Ok(named_code.store(NotebookSection::Calculation))
     }
 }

@@ -71,13 +71,17 @@ impl Tool for DescribeTables {
     fn plan(
         &self,
         view: &ToolContext<'_>,
-        asked: NameSelection,
+        name_selection: NameSelection,
     ) -> Result<PlannedCall<TableDescriptions>, Rejection> {
         let tables = view.session().tables();
         let known: Vec<&str> = tables.iter().map(|table| table.name).collect();
-        let names = asked.resolve(&known, "table_names", "table_not_found")?;
+        let names = name_selection.resolve(&known, "table_names", "table_not_found")?;
         let entry = |table: &TableDocument| {
-            let columns = table.columns.iter().map(|own| (own.name, own.format_line())).collect();
+            let columns = table
+                .columns
+                .iter()
+                .map(|column_document| (column_document.name, column_document.format_line()))
+                .collect();
             (table.name, TableDescription { description: table.description, columns })
         };
         let tables = tables.iter().filter(|table| names.contains(&table.name)).map(entry).collect();

@@ -45,7 +45,7 @@ impl NameSelection {
     ) -> Result<Vec<&'a str>, Rejection> {
         let NameSelection::Named(asked) = self else { return Ok(known.to_vec()) };
         let found: Vec<&str> =
-            known.iter().copied().filter(|name| asked.iter().any(|own| own == name)).collect();
+            known.iter().copied().filter(|name| asked.iter().any(|text| text == name)).collect();
         if !found.is_empty() {
             return Ok(found);
         }

@@ -107,12 +107,12 @@ impl Tool for SetAdsStrength {
     fn plan(
         &self,
         view: &ToolContext<'_>,
-        given: AdStrengths,
+        ad_strengths: AdStrengths,
     ) -> Result<PlannedCall<AdsStrength>, Rejection> {
         let mut ads = view.settings().ads_strength.clone();
-        replace_if_given(&mut ads.global, given.global);
-        replace_if_given(&mut ads.by_group, given.by_group);
-        replace_if_given(&mut ads.by_customer, given.by_customer);
+        replace_if_given(&mut ads.global, ad_strengths.global);
+        replace_if_given(&mut ads.by_group, ad_strengths.by_group);
+        replace_if_given(&mut ads.by_customer, ad_strengths.by_customer);
         Ok(PlannedCall::with_settings_change(SettingsChange::AdsStrength(ads.clone()), ads))
     }
 }

@@ -119,13 +119,13 @@ impl Tool for SetLeadPromotion {
     fn plan(
         &self,
         view: &ToolContext<'_>,
-        given: LeadDiscounts,
+        lead_discounts: LeadDiscounts,
     ) -> Result<PlannedCall<LeadPromotion>, Rejection> {
         let mut promotion = view.settings().lead_promotion.clone();
-        replace_if_given(&mut promotion.global, given.global);
-        replace_if_given(&mut promotion.by_group, given.by_group);
-        replace_if_given(&mut promotion.by_channel, given.by_channel);
-        replace_if_given(&mut promotion.by_channel_group, given.by_channel_group);
+        replace_if_given(&mut promotion.global, lead_discounts.global);
+        replace_if_given(&mut promotion.by_group, lead_discounts.by_group);
+        replace_if_given(&mut promotion.by_channel, lead_discounts.by_channel);
+        replace_if_given(&mut promotion.by_channel_group, lead_discounts.by_channel_group);
         Ok(PlannedCall::with_settings_change(SettingsChange::LeadPromotion(promotion.clone()), promotion))
     }
 }

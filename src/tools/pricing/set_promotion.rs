@@ -116,12 +116,16 @@ impl Tool for SetPromotion {
         })
     }
 
-    fn plan(&self, view: &ToolContext<'_>, given: Discounts) -> Result<PlannedCall<Promotion>, Rejection> {
+    fn plan(
+        &self,
+        view: &ToolContext<'_>,
+        discounts: Discounts,
+    ) -> Result<PlannedCall<Promotion>, Rejection> {
         let mut promotion = view.settings().promotion.clone();
-        replace_if_given(&mut promotion.global, given.global);
-        replace_if_given(&mut promotion.by_group, given.by_group);
-        replace_if_given(&mut promotion.by_customer, given.by_customer);
-        replace_if_given(&mut promotion.by_group_plan, given.by_group_plan);
+        replace_if_given(&mut promotion.global, discounts.global);
+        replace_if_given(&mut promotion.by_group, discounts.by_group);
+        replace_if_given(&mut promotion.by_customer, discounts.by_customer);
+        replace_if_given(&mut promotion.by_group_plan, discounts.by_group_plan);
         Ok(PlannedCall::with_settings_change(SettingsChange::Promotion(promotion.clone()), promotion))
     }
 }

@@ -83,7 +83,7 @@ impl Tool for SetUsageQuotas {
     }
 
     fn read(&self, _: &ToolContext<'_>, arguments: &Arguments) -> Result<Self::Args, Rejection> {
-        let given: Vec<SentNumber> = Plan::ALL
+        let sent_numbers: Vec<SentNumber> = Plan::ALL
             .into_iter()
             .map(|plan| parse_quota(plan, arguments.get(plan.id())))
             .collect::<Result<_, _>>()?;
@@ -91,7 +91,7 @@ impl Tool for SetUsageQuotas {
             Some(quota) => Ok((plan, (sent, quota))),
             None => Err(too_large_rejection(MAX_UNITS_PER_DAY, plan.id(), "units/day")),
         };
-        Plan::ALL.into_iter().zip(given).map(stored).collect()
+        Plan::ALL.into_iter().zip(sent_numbers).map(stored).collect()
     }
 
     fn plan(&self, view: &ToolContext<'_>, given: Self::Args) -> Result<PlannedCall<UsageQuotas>, Rejection> {

@@ -65,7 +65,7 @@ impl Tool for RegisterScript {
         Ok(NamedCode { name: name.to_owned(), code: text_argument(arguments, "code")?.to_owned() })
     }
 
-    fn plan(&self, _: &ToolContext<'_>, given: NamedCode) -> Result<PlannedCall<StoredCode>, Rejection> {
-        Ok(given.store(NotebookSection::Script))
+    fn plan(&self, _: &ToolContext<'_>, named_code: NamedCode) -> Result<PlannedCall<StoredCode>, Rejection> {
+        Ok(named_code.store(NotebookSection::Script))
     }
 }

@@ -75,7 +75,7 @@ impl Raster {
                 Marker::HalfBlock => ['▀', '▄', '█'][usize::from(*bits - 1).min(2)],
                 Marker::Block => '█',
                 Marker::Bar => '▄',
-                Marker::Custom(own) => own,
+                Marker::Custom(character) => character,
                 _ => '•',
             };
             let (x, y) = (area.x + (at % self.columns) as u16, area.y + (at / self.columns) as u16);

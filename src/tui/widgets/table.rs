@@ -360,7 +360,7 @@ impl Table {
 
     /// Returns the widths of the columns after shrinking.
     fn fit_widths(&self, width: u16) -> Vec<u16> {
-        let all: usize = self.widths.iter().map(|own| usize::from(*own) + 2).sum();
+        let all: usize = self.widths.iter().map(|number| usize::from(*number) + 2).sum();
         let mut missing = all.saturating_sub(usize::from(width) + 2).min(usize::from(u16::MAX)) as u16;
         let fitted = |(own, column): (&u16, &TableColumn)| {
             let given = own.saturating_sub(column.min_width).min(missing);
@@ -378,18 +378,18 @@ impl Table {
             let mut columns = Vec::new();
             let order = std::iter::once(0).chain(from..self.columns.len());
             for at in order.filter(|at| *at < self.columns.len()) {
-                let own = widths[at];
+                let number = widths[at];
                 // A truncated column must still be readable text.
                 let room = width.saturating_sub(x);
                 let readable = match self.columns[at].align {
-                    Align::Right => own,
-                    _ => own.min(MIN_TEXT_WIDTH),
+                    Align::Right => number,
+                    _ => number.min(MIN_TEXT_WIDTH),
                 };
                 if room == 0 || (x > 0 && room < readable) {
                     break;
                 }
-                columns.push((at, (x, own.min(width - x))));
-                x += own + 2;
+                columns.push((at, (x, number.min(width - x))));
+                x += number + 2;
             }
             let whole = |(at, (_, shown)): &(usize, (u16, u16))| *at == self.column && *shown == widths[*at];
             if self.column < from

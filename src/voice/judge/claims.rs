@@ -41,28 +41,37 @@ pub fn evaluate_claims(
     found
 }
 
-fn verdict(name: &str, readers: &ReaderGroup, own: &JudgeContext, lexicon: &Lexicon) -> Option<bool> {
+fn verdict(
+    name: &str,
+    readers: &ReaderGroup,
+    judge_context: &JudgeContext,
+    lexicon: &Lexicon,
+) -> Option<bool> {
     let law = &lexicon.verdicts;
     match name {
-        "price_down" => Some(own.price_cut),
+        "price_down" => Some(judge_context.price_cut),
         "quality_up" => {
             let happy = readers.satisfaction >= law.quality_satisfaction;
-            if (readers.progress >= law.quality_progress || own.research_done) && happy {
+            if (readers.progress >= law.quality_progress || judge_context.research_done) && happy {
                 Some(true)
             } else {
                 (readers.progress < 0.0 || !happy).then_some(false)
             }
         }
-        "reliability" if own.outage_days >= 1 => Some(false),
-        "reliability" => (own.overload < law.reliability_overload).then_some(true),
-        "speed" if own.p95_ms <= law.speed_true_ms => Some(true),
-        "speed" => (own.p95_ms > law.speed_false_ms).then_some(false),
-        "support" if own.issue_age <= law.support_true_age && own.issue_rate <= law.support_true_rate => {
+        "reliability" if judge_context.outage_days >= 1 => Some(false),
+        "reliability" => (judge_context.overload < law.reliability_overload).then_some(true),
+        "speed" if judge_context.p95_ms <= law.speed_true_ms => Some(true),
+        "speed" => (judge_context.p95_ms > law.speed_false_ms).then_some(false),
+        "support"
+            if judge_context.issue_age <= law.support_true_age
+                && judge_context.issue_rate <= law.support_true_rate =>
+        {
             Some(true)
         }
-        "support" => (own.issue_age > law.support_false_age || own.issue_rate > law.support_false_rate)
+        "support" => (judge_context.issue_age > law.support_false_age
+            || judge_context.issue_rate > law.support_false_rate)
             .then_some(false),
-        "limits" => Some(own.quota_up),
+        "limits" => Some(judge_context.quota_up),
         _ => None,
     }
 }

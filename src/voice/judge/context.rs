@@ -100,7 +100,7 @@ impl JudgeContext {
         let latencies: Vec<f64> = chronicle.newest_first(WEEK).filter_map(|page| page.p95_ms).collect();
         // A price of 0 means that nothing was on sale.
         let cheaper = |plan: &Plan| today.prices[*plan] < before.prices[*plan];
-        let mut own = JudgeContext {
+        let mut judge_context = JudgeContext {
             groups: ByGroup::from_fn(|group| reader_group(group, world)),
             subscribers: world.customers.active_by_group().0.iter().sum(),
             research_done: research_ages(world).any(|age| age <= FOUR_WEEKS),
@@ -114,8 +114,8 @@ impl JudgeContext {
             issue_age,
             live_events: Vec::new(),
         };
-        own.live_events = live_events(world, params, lexicon, &own, short);
-        own
+        judge_context.live_events = live_events(world, params, lexicon, &judge_context, short);
+        judge_context
     }
 
     /// Returns the age of a current event, or `None` if it is not current.
@@ -125,9 +125,9 @@ impl JudgeContext {
 }
 
 fn reader_group(group: Group, world: &World) -> ReaderGroup {
-    let own = &world.customers.groups[group];
-    let count = own.active_count();
-    let sum: f64 = own.blocks.iter().flat_map(|block| &block.satisfaction).sum();
+    let group_customers = &world.customers.groups[group];
+    let count = group_customers.active_count();
+    let sum: f64 = group_customers.blocks.iter().flat_map(|block| &block.satisfaction).sum();
     let satisfaction = if count == 0 { 0.0 } else { sum / f64::from(count) };
     ReaderGroup {
         subscribers: count,
@@ -164,7 +164,7 @@ fn live_events(
     world: &World,
     params: &Params,
     lexicon: &Lexicon,
-    own: &JudgeContext,
+    judge_context: &JudgeContext,
     short: f64,
 ) -> Vec<(LiveEvent, u32)> {
     let (day, law) = (world.day, &lexicon.events);
@@ -178,7 +178,7 @@ fn live_events(
     };
     let outage = chronicle.newest_first(TWO_WEEKS + 1).find(|page| page.outage).map(age);
     let price_up = chronicle.consecutive_pages().find(raised).map(|(_, after)| age(after));
-    let issues = own.issue_rate > law.issue_rate || own.issue_age > law.issue_age;
+    let issues = judge_context.issue_rate > law.issue_rate || judge_context.issue_age > law.issue_age;
     let rivals = world.market.competitors.iter().rev();
     let rival = rivals
         .filter(|event| severity(event.boost, &params.competitor) >= Severity::Moderate)

@@ -142,7 +142,9 @@ pub fn judge_post(
         recent: since(lexicon.terms.recipe_days)
             .map(|(_, text)| Features::from_post(text, lexicon))
             .collect(),
-        original: submission.original.map(|own| (Features::from_post(own.content, lexicon), own)),
+        original: submission
+            .original
+            .map(|original_post| (Features::from_post(original_post.content, lexicon), original_post)),
         features,
         circumstances,
         lexicon,

@@ -140,11 +140,12 @@ impl GroupJudge<'_> {
 
     /// T: fit of the tone, -1..=1.
     fn tone_match(&self) -> f64 {
-        let (law, features, own) = (&self.case.lexicon.terms, &self.case.features, self.profile);
-        let casual = law.casual * (own.m - law.casual_neutral) * features.casual;
-        let formal = law.formal * own.f * (1.0 - features.casual);
-        let technical = (law.tech_liked * own.t - law.tech_disliked * (1.0 - own.t)) * features.technical;
-        (casual + formal + technical - own.a * features.buzzwords).clamp(-1.0, 1.0)
+        let (law, features, profile) = (&self.case.lexicon.terms, &self.case.features, self.profile);
+        let casual = law.casual * (profile.m - law.casual_neutral) * features.casual;
+        let formal = law.formal * profile.f * (1.0 - features.casual);
+        let technical =
+            (law.tech_liked * profile.t - law.tech_disliked * (1.0 - profile.t)) * features.technical;
+        (casual + formal + technical - profile.a * features.buzzwords).clamp(-1.0, 1.0)
     }
 
     /// E: whether the post addresses a current event, -0.6..=1, with that event.
@@ -275,12 +276,12 @@ impl GroupJudge<'_> {
     /// Returns the terms of a reply for the post that it answers.
     fn reply_terms(&self) -> Vec<ScoreTerm> {
         let (features, law) = (&self.case.features, &self.case.lexicon.terms);
-        let Some((original, own)) = &self.case.original else { return Vec::new() };
+        let Some((original, original_post)) = &self.case.original else { return Vec::new() };
         let asked: Vec<usize> =
             (0..original.topics.len()).filter(|topic| original.mentions_topic(*topic)).collect();
-        let met = asked.iter().filter(|topic| features.mentions_topic(**topic)).count() as f64;
-        let share = if asked.is_empty() { 0.0 } else { met / asked.len() as f64 };
-        let missed = share == 0.0 && own.negative;
+        let value = asked.iter().filter(|topic| features.mentions_topic(**topic)).count() as f64;
+        let share = if asked.is_empty() { 0.0 } else { value / asked.len() as f64 };
+        let missed = share == 0.0 && original_post.negative;
         vec![
             term(
                 "reply",

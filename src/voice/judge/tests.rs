@@ -26,7 +26,7 @@ fn default_context() -> JudgeContext {
         _ => 0,
     };
     let readers =
-        |own: Group| ReaderGroup { subscribers: count(own.id()), satisfaction: 0.0, progress: 0.012 };
+        |group: Group| ReaderGroup { subscribers: count(group.id()), satisfaction: 0.0, progress: 0.012 };
     JudgeContext {
         groups: ByGroup::from_fn(readers),
         subscribers: 5520,
@@ -173,11 +173,11 @@ fn worked_examples_have_expected_scores() {
     for example in examples() {
         let judgements = judge_all(&example.submission, &example.facts);
         for (id, expected) in EXAMPLE_GROUPS.into_iter().zip(example.expected) {
-            let own = &judgements[group(id).index()];
-            if (own.effect - expected).abs() > 1e-9 {
+            let judgement = &judgements[group(id).index()];
+            if (judgement.effect - expected).abs() > 1e-9 {
                 wrong.push(format!(
                     "{} {id}: {} instead of {expected}: {:?}",
-                    example.name, own.effect, own.terms
+                    example.name, judgement.effect, judgement.terms
                 ));
             }
         }
@@ -219,9 +219,10 @@ fn worked_examples_have_expected_terms() {
             ],
         ),
     ] {
-        let own = of(name, id);
+        let judgement = of(name, id);
         for (term, value) in expected {
-            let found = own.terms.iter().find(|own| own.name == *term).map(|own| own.value);
+            let found =
+                judgement.terms.iter().find(|score_term| score_term.name == *term).map(|own| own.value);
             assert!(found.is_some_and(|found| (found - value).abs() < 5e-5), "{name} {id} {term}: {found:?}");
         }
     }
@@ -294,7 +295,7 @@ fn keyword_stuffing_does_not_help() {
             })
             .collect();
         let judgements = judge_all(&post(&words.join(" ")), &facts);
-        assert!(judgements.iter().all(|own| (-1.0..=1.0).contains(&own.effect)));
+        assert!(judgements.iter().all(|judgement| (-1.0..=1.0).contains(&judgement.effect)));
         viral += judgements.iter().filter(|own| own.effect >= 0.6).count();
         judged += judgements.len();
     }
@@ -305,7 +306,7 @@ fn keyword_stuffing_does_not_help() {
 fn any_text_gets_a_score() {
     for content in ["", " ", "\u{1F680}", "ok", "\u{0}\u{ffff}", "$", "#", "%%%", "ÄÖÜ ß İ", "a'b-c"] {
         let judgements = judge_all(&post(content), &default_context());
-        assert!(judgements.iter().all(|own| (-1.0..=1.0).contains(&own.effect)), "{content}");
+        assert!(judgements.iter().all(|judgement| (-1.0..=1.0).contains(&judgement.effect)), "{content}");
     }
     assert!(judge_all(&post("Good morning!"), &default_context()).iter().all(|own| own.effect == 0.0));
 }
@@ -337,8 +338,8 @@ fn events_are_fresh_for_a_week_and_remembered_for_another() {
     let timing = |example: &Example, event: LiveEvent, age: u32| {
         let facts = JudgeContext { live_events: vec![(event, age)], ..example.facts.clone() };
         let judgements = judge_all(&example.submission, &facts);
-        let own = &judgements[group("S2").index()];
-        own.terms.iter().find(|term| term.name == "timing").map_or(0.0, |term| term.value)
+        let judgement = &judgements[group("S2").index()];
+        judgement.terms.iter().find(|term| term.name == "timing").map_or(0.0, |term| term.value)
     };
     let apology = of("f");
     let fresh = timing(&apology, LiveEvent::Outage, 0);

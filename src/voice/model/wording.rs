@@ -147,8 +147,8 @@ mod tests {
         let company =
             BuiltInPost { text: "We stay.", group: Group::parse("E2"), profile: Some("Castell & Byrne") };
         let press = BuiltInPost { text: "\"Growth.\"", group: None, profile: None };
-        let asked = prompt(&[post("It is down."), company, press]);
-        let material: Value = serde_json::from_str(&asked.input).expect("JSON");
+        let model_prompt = prompt(&[post("It is down."), company, press]);
+        let material: Value = serde_json::from_str(&model_prompt.input).expect("JSON");
         assert_eq!(
             material,
             json!([
@@ -157,6 +157,6 @@ mod tests {
                 { "writer": "the press", "text": "\"Growth.\"" },
             ])
         );
-        assert!(asked.task.contains("number"));
+        assert!(model_prompt.task.contains("number"));
     }
 }

@@ -40,7 +40,7 @@ pub(super) fn context(author: &PostAuthor, opinion: &Opinion, tone: Sentiment, p
     let tone_id = tone_id(tone);
     let situation = situation(opinion);
     let register = SpeechRegister::for_group(Some(author.group)).id();
-    let also = |trouble: bool, own: PostCause| trouble && opinion.cause != own;
+    let also = |trouble: bool, post_cause: PostCause| trouble && opinion.cause != post_cause;
     let days = opinion.days_subscribed;
     let kind = match opinion.cause {
         PostCause::Lost { thread, .. } => Some(thread.id()),

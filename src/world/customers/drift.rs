@@ -63,9 +63,9 @@ pub fn global_drift_step(law: &Drift) -> f64 {
 
 /// Returns the change of a group's expectations and budgets by one application.
 pub fn group_drift_step(group: Group, params: &Params) -> Expectation {
-    let (own, days) =
+    let (group_drift, days) =
         (&params.group(group).group_drift_per_day, f64::from(params.drift.days_per_application));
-    Expectation { quality: days * own.q_bias_drift, c_max: days * own.c_max_drift }
+    Expectation { quality: days * group_drift.q_bias_drift, c_max: days * group_drift.c_max_drift }
 }
 
 /// Changes the group totals and each active subscriber's curve and seats. `seat_multiplier` is yesterday's

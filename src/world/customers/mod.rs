@@ -142,10 +142,15 @@ impl Customers {
 
     /// Records the arrival of `count` customers with consecutive numbers.
     pub fn record_arrival(&mut self, day: u32, group: Group, count: u32) -> ArrivalRun {
-        let own = &mut self.groups[group];
-        let run =
-            ArrivalRun { day, group, first_customer: self.next_customer, first_n: own.created + 1, count };
-        own.created += count;
+        let group_customers = &mut self.groups[group];
+        let run = ArrivalRun {
+            day,
+            group,
+            first_customer: self.next_customer,
+            first_n: group_customers.created + 1,
+            count,
+        };
+        group_customers.created += count;
         self.next_customer += count;
         self.numbers.add(run);
         run
@@ -183,8 +188,8 @@ impl Customers {
 
     fn nonempty_blocks_mut(&mut self) -> Vec<(Group, u32, &mut Block)> {
         let mut jobs = Vec::new();
-        for (group, own) in Group::all().zip(&mut self.groups.0) {
-            let blocks = own.blocks.iter_mut().enumerate();
+        for (group, group_customers) in Group::all().zip(&mut self.groups.0) {
+            let blocks = group_customers.blocks.iter_mut().enumerate();
             jobs.extend(
                 blocks.filter(|(_, block)| !block.is_empty()).map(|(at, block)| (group, at as u32, block)),
             );
@@ -221,7 +226,9 @@ impl Customers {
     pub fn blocks(&self) -> impl Iterator<Item = (Group, &Block)> {
         self.groups
             .pairs()
-            .flat_map(|(group, own)| own.blocks.iter().map(move |block| (group, block)))
+            .flat_map(|(group, group_customers)| {
+                group_customers.blocks.iter().map(move |block| (group, block))
+            })
             .filter(|(_, block)| !block.is_empty())
     }
 }

@@ -28,21 +28,29 @@ impl Restore for PersonaPicks {
 impl PersonaPicks {
     /// Draws one position per axis.
     pub fn draw(group: Group, params: &Params, stream: &mut Stream) -> PersonaPicks {
-        let own = &params.personas.group[group.index()];
+        let group_persona = &params.personas.group[group.index()];
         let axes = if group.is_enterprise() {
             [
-                own.industry.len(),
-                own.role.len(),
+                group_persona.industry.len(),
+                group_persona.role.len(),
                 params.personas.enterprise.tech_savvy.len(),
-                own.company_size.len(),
-                own.culture.len(),
-                own.decision_style.len(),
-                own.primary_concern.len(),
+                group_persona.company_size.len(),
+                group_persona.culture.len(),
+                group_persona.decision_style.len(),
+                group_persona.primary_concern.len(),
             ]
         } else {
             let common = &params.personas.individual;
             let (experience, skill) = (common.experience_levels.len(), common.tech_savvy.len());
-            [own.industry.len(), own.role.len(), experience, own.work_style.len(), skill, 0, 0]
+            [
+                group_persona.industry.len(),
+                group_persona.role.len(),
+                experience,
+                group_persona.work_style.len(),
+                skill,
+                0,
+                0,
+            ]
         };
         PersonaPicks(axes.map(|length| if length == 0 { 0 } else { stream.index(length) as u8 }))
     }

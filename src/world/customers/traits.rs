@@ -55,7 +55,7 @@ pub fn draw_traits_from_stream(
     deal_velocity: f64,
     params: &Params,
 ) -> Traits {
-    let (own, bounds) = (params.group(group), &params.customer_generation);
+    let (group_params, bounds) = (params.group(group), &params.customer_generation);
     let steepness = |exponential: f64, offset: f64, low, high| (exponential + offset).clamp(low, high);
     let steepness_left = steepness(
         stream.exponential(bounds.steepness_left_exp_scale),
@@ -69,20 +69,22 @@ pub fn draw_traits_from_stream(
         bounds.steepness_right_min,
         bounds.steepness_right_max,
     );
-    let c_max =
-        stream.normal(own.c_max_mean, bounds.c_max_std_multiplier * own.c_max_std).max(bounds.c_max_min);
-    let q_min = stream.normal(own.q_min_mean, own.q_min_std).max(bounds.q_min_min);
-    let q_range = stream.normal(own.q_range_mean, own.q_range_std).max(bounds.q_range_min);
-    let usage_demand =
-        stream.normal(own.usage_demand_mean, own.usage_demand_std).max(bounds.usage_demand_min);
+    let c_max = stream
+        .normal(group_params.c_max_mean, bounds.c_max_std_multiplier * group_params.c_max_std)
+        .max(bounds.c_max_min);
+    let q_min = stream.normal(group_params.q_min_mean, group_params.q_min_std).max(bounds.q_min_min);
+    let q_range = stream.normal(group_params.q_range_mean, group_params.q_range_std).max(bounds.q_range_min);
+    let usage_demand = stream
+        .normal(group_params.usage_demand_mean, group_params.usage_demand_std)
+        .max(bounds.usage_demand_min);
     let ads_quality_sensitivity = stream
-        .normal(own.ads_quality_sensitivity_mean, own.ads_quality_sensitivity_std)
+        .normal(group_params.ads_quality_sensitivity_mean, group_params.ads_quality_sensitivity_std)
         .max(bounds.ads_quality_sensitivity_min);
     let ads_return_sensitivity = stream
-        .normal(own.ads_return_sensitivity_mean, own.ads_return_sensitivity_std)
+        .normal(group_params.ads_return_sensitivity_mean, group_params.ads_return_sensitivity_std)
         .max(bounds.ads_return_sensitivity_min);
     let (seats, negotiator) = if group.is_enterprise() {
-        let (seats, negotiator) = draw_enterprise_traits(own, deal_velocity, params, &mut stream);
+        let (seats, negotiator) = draw_enterprise_traits(group_params, deal_velocity, params, &mut stream);
         (seats, Some(negotiator))
     } else {
         (1.0, None)
@@ -101,18 +103,19 @@ pub fn draw_traits_from_stream(
 }
 
 fn draw_enterprise_traits(
-    own: &GroupParams,
+    group_params: &GroupParams,
     deal_velocity: f64,
     params: &Params,
     stream: &mut Stream,
 ) -> (f64, Negotiator) {
     let (bounds, sales) = (&params.customer_generation, &params.enterprise);
     let expected = "enterprise groups are complete, checked by Params::load";
-    let (fewest, most) = (own.seat_count_min.expect(expected), own.seat_count_max.expect(expected));
+    let (fewest, most) =
+        (group_params.seat_count_min.expect(expected), group_params.seat_count_max.expect(expected));
     let (delay_mean, delay_std) =
-        (own.reply_delay_mean.expect(expected), own.reply_delay_std.expect(expected));
-    let turns_mean = own.max_negotiation_turns_mean.expect(expected);
-    let turns_std = own.max_negotiation_turns_std.expect(expected);
+        (group_params.reply_delay_mean.expect(expected), group_params.reply_delay_std.expect(expected));
+    let turns_mean = group_params.max_negotiation_turns_mean.expect(expected);
+    let turns_std = group_params.max_negotiation_turns_std.expect(expected);
     let velocity = if deal_velocity > 0.0 { deal_velocity } else { 1.0 };
     let seats = f64::from(stream.integer(fewest, most));
     let reply_delay_mean = stream

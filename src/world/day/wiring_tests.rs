@@ -285,6 +285,6 @@ fn day_figures_match_the_facts() {
         (sums.upgrades, sums.downgrades) =
             (sums.upgrades + figures.upgrades, sums.downgrades + figures.downgrades);
     }
-    let told = [sums.new_enterprise_leads, sums.cancellations, sums.upgrades, sums.downgrades];
-    assert!(told.iter().all(|sum| *sum > 3), "too few events to distinguish the fields: {told:?}");
+    let numbers = [sums.new_enterprise_leads, sums.cancellations, sums.upgrades, sums.downgrades];
+    assert!(numbers.iter().all(|sum| *sum > 3), "too few events to distinguish the fields: {numbers:?}");
 }

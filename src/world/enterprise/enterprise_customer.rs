@@ -86,9 +86,9 @@ impl Company {
         match &mut self.standing {
             EnterpriseStatus::Lead(row) | EnterpriseStatus::Lost(row) => row.relationship = relationship,
             EnterpriseStatus::Subscriber => {
-                let own = &mut customers.groups[self.group];
-                if let Some((block, at)) = own.subscriber_position(self.n) {
-                    own.blocks[block].relationship[at] = relationship;
+                let group_customers = &mut customers.groups[self.group];
+                if let Some((block, at)) = group_customers.subscriber_position(self.n) {
+                    group_customers.blocks[block].relationship[at] = relationship;
                 }
             }
         }

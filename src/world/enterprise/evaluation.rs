@@ -176,27 +176,30 @@ pub(super) mod tests {
     #[test]
     fn best_offering_is_accepted_before_the_last_turn() {
         let params = Params::bundled();
-        let own = evaluator(0.72, 0.80, 0.88);
+        let offer_evaluator = evaluator(0.72, 0.80, 0.88);
         let three = offers(&[(Plan::A, 30.0), (Plan::B, 35.0), (Plan::C, 50.0)]);
-        assert_eq!(own.respond(&three, 1, &params), OfferResponse::Accept(1));
+        assert_eq!(offer_evaluator.respond(&three, 1, &params), OfferResponse::Accept(1));
         near(surplus(0.80, 35.0, &K, &params), 0.067249831);
         for (price, missing) in [(44.0, -0.018921704), (50.0, -0.114254451)] {
             assert_eq!(
-                own.respond(&offers(&[(Plan::B, price)]), 1, &params),
+                offer_evaluator.respond(&offers(&[(Plan::B, price)]), 1, &params),
                 OfferResponse::Counter(0, 35.41)
             );
             near(surplus(0.80, price, &K, &params), missing);
         }
         let gift = offers(&[(Plan::B, 1.0)]);
-        assert_eq!(own.respond(&gift, 6, &params), OfferResponse::Silence);
+        assert_eq!(offer_evaluator.respond(&gift, 6, &params), OfferResponse::Silence);
         near(surplus(0.80, 1.0, &K, &params), 0.280110073);
-        assert_eq!(own.respond(&gift, 5, &params), OfferResponse::Accept(0));
+        assert_eq!(offer_evaluator.respond(&gift, 5, &params), OfferResponse::Accept(0));
         assert_eq!(
-            own.respond(&offers(&[(Plan::B, 35.0), (Plan::B, 35.0)]), 1, &params),
+            offer_evaluator.respond(&offers(&[(Plan::B, 35.0), (Plan::B, 35.0)]), 1, &params),
             OfferResponse::Accept(0)
         );
-        assert_eq!(own.respond(&offers(&[(Plan::B, -5.0)]), 1, &params), OfferResponse::Accept(0));
-        assert_eq!(own.respond(&[], 1, &params), OfferResponse::Silence);
+        assert_eq!(
+            offer_evaluator.respond(&offers(&[(Plan::B, -5.0)]), 1, &params),
+            OfferResponse::Accept(0)
+        );
+        assert_eq!(offer_evaluator.respond(&[], 1, &params), OfferResponse::Silence);
     }
 
     #[test]
@@ -215,9 +218,9 @@ pub(super) mod tests {
     fn first_impression_changes_the_counter_price() {
         let params = Params::bundled();
         for (noise, price) in [(0.8, 14.85), (0.9, 24.75), (1.0, 35.41), (1.1, 39.09)] {
-            let own = evaluator(0.0, 0.8 * noise, 0.0);
+            let offer_evaluator = evaluator(0.0, 0.8 * noise, 0.0);
             assert_eq!(
-                own.respond(&offers(&[(Plan::B, 59.0)]), 1, &params),
+                offer_evaluator.respond(&offers(&[(Plan::B, 59.0)]), 1, &params),
                 OfferResponse::Counter(0, price)
             );
         }
@@ -227,17 +230,17 @@ pub(super) mod tests {
     fn price_ceiling_rejects_prices_above_the_budget() {
         let mut params = Params::bundled();
         params.fidelity.deal_price_ceiling = true;
-        let own = evaluator(0.9, 0.96, 1.1);
+        let offer_evaluator = evaluator(0.9, 0.96, 1.1);
         // The expensive offering has the largest surplus, but the affordable one is accepted.
         let mixed = offers(&[(Plan::C, 61.0), (Plan::B, 58.0)]);
-        assert_eq!(own.respond(&mixed, 1, &params), OfferResponse::Accept(1));
+        assert_eq!(offer_evaluator.respond(&mixed, 1, &params), OfferResponse::Accept(1));
         // If no offering is affordable, the best of all determines the plan of the counter-offer.
         let dear = offers(&[(Plan::B, 61.0), (Plan::C, 70.0)]);
-        let OfferResponse::Counter(1, price) = own.respond(&dear, 1, &params) else {
+        let OfferResponse::Counter(1, price) = offer_evaluator.respond(&dear, 1, &params) else {
             panic!("a counter-offer")
         };
         near(price, counter_price(60.0, 0.75, 1, &params));
         params.fidelity.deal_price_ceiling = false;
-        assert_eq!(own.respond(&dear, 1, &params), OfferResponse::Accept(1));
+        assert_eq!(offer_evaluator.respond(&dear, 1, &params), OfferResponse::Accept(1));
     }
 }

@@ -89,9 +89,9 @@ impl NegotiationStep<'_> {
         let (params, group) = (self.day.params, self.customer_group(customer));
         let promotion = ongoing_discount(customer, group, offering.plan, self.day.settings, params);
         let n = self.enterprise.company(customer)?.n;
-        let own = &mut self.customers.groups[group];
-        let (block, at) = own.subscriber_position(n)?;
-        let block = &mut own.blocks[block];
+        let group_customers = &mut self.customers.groups[group];
+        let (block, at) = group_customers.subscriber_position(n)?;
+        let block = &mut group_customers.blocks[block];
         block.plan[at] = offering.plan;
         block.listed_price[at] = offering.price;
         block.promotion[at] = promotion;
@@ -103,9 +103,9 @@ impl NegotiationStep<'_> {
     fn refresh_terms(&mut self, customer: u32) -> Option<TermsChanged> {
         let group = self.customer_group(customer);
         let n = self.enterprise.company(customer)?.n;
-        let own = &mut self.customers.groups[group];
-        let (block, at) = own.subscriber_position(n)?;
-        let block = &mut own.blocks[block];
+        let group_customers = &mut self.customers.groups[group];
+        let (block, at) = group_customers.subscriber_position(n)?;
+        let block = &mut group_customers.blocks[block];
         refresh_required(block, at, self.day.morning.expectations[group].c_max, self.day.params);
         Some(row_terms(block, at))
     }

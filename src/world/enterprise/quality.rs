@@ -91,8 +91,8 @@ mod tests {
     use super::*;
 
     fn assert_near(actual: ByPlan<f64>, expected: [f64; 3]) {
-        for (own, expected) in actual.iter().zip(expected) {
-            assert!((own - expected).abs() < 1e-10, "got {actual:?}, expected {expected:?}");
+        for (value, expected) in actual.iter().zip(expected) {
+            assert!((value - expected).abs() < 1e-10, "got {actual:?}, expected {expected:?}");
         }
     }
 

@@ -81,13 +81,13 @@ fn lead_is_lost_by_silence_or_timeout() {
     for day in 8..=14 {
         kit.run_day(day);
         // The counter-offer of day 3 is the newest turn that is not dead.
-        let again = Notice::LeadLossRepeated {
+        let notice = Notice::LeadLossRepeated {
             days: day - 3,
             customer: 2,
             cause: LossCause::Silence,
             message_day: 4,
         };
-        let expected = if day < 10 { vec![] } else { vec![again] };
+        let expected = if day < 10 { vec![] } else { vec![notice] };
         assert_eq!(kit.facts.notices, expected, "day {day}");
         assert!(kit.facts.endings.is_empty() && kit.facts.turns.is_empty());
     }
@@ -150,8 +150,8 @@ fn unanswered_threat_loses_the_subscriber() {
     let mut before = kit.reputation.get(kit.group);
     assert!(before < reputation);
     for day in 13..=16 {
-        let again = kit.run_day(day);
-        assert_eq!((again.lost.len(), again.lost[0].days_subscribed), (1, None));
+        let day_result = kit.run_day(day);
+        assert_eq!((day_result.lost.len(), day_result.lost[0].days_subscribed), (1, None));
         assert!(kit.facts.endings.is_empty() && kit.facts.notices.is_empty());
         let damage = before - kit.reputation.get(kit.group);
         assert!((9.375e-5..2.8125e-4).contains(&damage), "{damage}");
@@ -217,8 +217,8 @@ fn failed_renegotiation_loses_the_customer() {
 fn repeated_offers_use_turns_and_only_the_newest_is_answered() {
     let mut kit = lead(3.0, 3);
     kit.send_offer(&[(Plan::B, 59.0)]);
-    let again = kit.send_offer(&[(Plan::B, 20.0)]);
-    assert_eq!((again[0].turn, again[0].relationship), (2, None));
+    let offer_messages = kit.send_offer(&[(Plan::B, 20.0)]);
+    assert_eq!((offer_messages[0].turn, offer_messages[0].relationship), (2, None));
     days(&mut kit, 1..=3);
     assert_eq!(turns(&kit), [(Sender::Customer, 3), (Sender::System, 4)]);
     let mut kit = lead(3.0, 2);
@@ -243,7 +243,7 @@ fn late_reply_lowers_relationship_once() {
         None,
         "a second message has no further penalty"
     );
-    let row = kit.enterprise.company(2).and_then(|own| own.row(&kit.customers)).expect("a row");
+    let row = kit.enterprise.company(2).and_then(|company| company.row(&kit.customers)).expect("a row");
     assert!((row.relationship - 0.44).abs() < 1e-12);
 }
 

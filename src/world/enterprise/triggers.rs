@@ -76,9 +76,9 @@ impl NegotiationContext<'_> {
             if price > curve.c_max {
                 continue;
             }
-            let own = surplus(quality[plan], price, &curve, self.day.params);
-            if own > 0.0 && own > best.map_or(present, |(most, _)| most) {
-                best = Some((own, plan));
+            let value = surplus(quality[plan], price, &curve, self.day.params);
+            if value > 0.0 && value > best.map_or(present, |(most, _)| most) {
+                best = Some((value, plan));
             }
         }
         let (most, to) = best?;

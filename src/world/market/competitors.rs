@@ -124,7 +124,7 @@ pub fn move_on_day(
     let chance = event_probability(day, total_days, last_event, params);
     let mut stream = streams.open(Part::CompetitorEvent, [u64::from(day)]);
     let drawn = match params.replayed_series().and_then(|series| series.competitor_event(day)) {
-        Some(given) => given.filter(|_| can_occur(day, total_days, params)),
+        Some(recorded_event) => recorded_event.filter(|_| can_occur(day, total_days, params)),
         None => draw_event(chance, law, &mut stream),
     };
     let RecordedEvent { size, u } = drawn?;

@@ -113,9 +113,12 @@ mod tests {
         let group = Group::parse("D_S06").expect("a group");
         let attempt = Attempt { earlier: 0, cost: 25_000.0, found: Some(group) };
         market.record_attempt(&attempt, 28, &params);
-        let own = market.knowledge[group];
-        assert_eq!((own.level, own.discovered_day, own.last_research_day), (1, Some(28), Some(28)));
-        let snapshot = own.snapshot.expect("a snapshot");
+        let knowledge = market.knowledge[group];
+        assert_eq!(
+            (knowledge.level, knowledge.discovered_day, knowledge.last_research_day),
+            (1, Some(28), Some(28))
+        );
+        let snapshot = knowledge.snapshot.expect("a snapshot");
         assert_eq!(snapshot.day, 28);
         assert!((snapshot.q_min - (params.group(group).q_min_mean + 0.12)).abs() < 1e-12);
         assert_eq!(market.undiscovered().count(), 19);

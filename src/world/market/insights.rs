@@ -13,13 +13,18 @@ use novamind_base::formatting::round_to;
 impl Snapshot {
     /// Takes a snapshot of a group on a day, including drift of the whole group but not of single customers.
     pub fn take_snapshot(group: Group, day: u32, drift: &DriftTotals, params: &Params) -> Snapshot {
-        let own = params.group(group);
+        let group_params = params.group(group);
         let moved = drift.expectation(group);
         Snapshot {
             day,
-            c_max: own.c_max_mean + moved.c_max,
-            q_min: own.q_min_mean + moved.quality,
-            market_cap: market_cap(own.base_market_cap, own.annual_cap_growth_rate, day, &params.leads),
+            c_max: group_params.c_max_mean + moved.c_max,
+            q_min: group_params.q_min_mean + moved.quality,
+            market_cap: market_cap(
+                group_params.base_market_cap,
+                group_params.annual_cap_growth_rate,
+                day,
+                &params.leads,
+            ),
         }
     }
 }
@@ -167,19 +172,21 @@ fn insights_with(
 ) -> Option<Insights> {
     let known = &market.knowledge[group];
     let snapshot = known.snapshot.filter(|_| known.level >= 1)?;
-    let (own, law) = (params.group(group), &params.group_research);
+    let (group_params, law) = (params.group(group), &params.group_research);
     let noise = params.level(known.level).noise;
     let mut estimate = |field: EstimatedField, truth: f64| truth * (1.0 + noise * draw(field));
     let willingness_to_pay =
         round_to(estimate(EstimatedField::WillingnessToPay, snapshot.c_max), law.willingness_to_pay_decimals);
-    let usage_volume =
-        round_to(estimate(EstimatedField::UsageVolume, own.usage_demand_mean), law.usage_volume_decimals);
+    let usage_volume = round_to(
+        estimate(EstimatedField::UsageVolume, group_params.usage_demand_mean),
+        law.usage_volume_decimals,
+    );
     let quality_floor =
         round_to(estimate(EstimatedField::QualityFloor, snapshot.q_min), law.quality_floor_decimals);
     let market_cap = truncate_to_at_least_one(estimate(EstimatedField::MarketCap, snapshot.market_cap));
-    let growth = estimate(EstimatedField::GrowthRate, own.annual_cap_growth_rate).max(0.0);
-    let lockin = estimate(EstimatedField::LockinAversion, own.lockin_penalty_mean).max(0.0);
-    let company = enterprise_insights(own, law.response_days_decimals, &mut estimate);
+    let growth = estimate(EstimatedField::GrowthRate, group_params.annual_cap_growth_rate).max(0.0);
+    let lockin = estimate(EstimatedField::LockinAversion, group_params.lockin_penalty_mean).max(0.0);
+    let company = enterprise_insights(group_params, law.response_days_decimals, &mut estimate);
     let links = |estimate: &mut dyn FnMut(EstimatedField, f64) -> f64,
                  field: fn(Group) -> EstimatedField,
                  least: f64,
@@ -230,12 +237,12 @@ fn insights_with(
 }
 
 fn enterprise_insights(
-    own: &GroupParams,
+    group_params: &GroupParams,
     decimals: u32,
     estimate: &mut dyn FnMut(EstimatedField, f64) -> f64,
 ) -> Option<EnterpriseInsights> {
-    let (least, most) = (f64::from(own.seat_count_min?), f64::from(own.seat_count_max?));
-    let (rounds, delay) = (own.max_negotiation_turns_mean?, own.reply_delay_mean?);
+    let (least, most) = (f64::from(group_params.seat_count_min?), f64::from(group_params.seat_count_max?));
+    let (rounds, delay) = (group_params.max_negotiation_turns_mean?, group_params.reply_delay_mean?);
     let seats_least = truncate_to_at_least_one(estimate(EstimatedField::SeatMinimum, least));
     let seats_most = truncate_to_at_least_one(estimate(EstimatedField::SeatMaximum, most)).max(seats_least);
     let decision_rounds = truncate_to_at_least_one(estimate(EstimatedField::DecisionRounds, rounds));
@@ -274,16 +281,16 @@ mod tests {
             ("S1", 5, [48.14, 80.9, 0.099, 0.192, 0.16235], 272_062),
             ("D_S01", 1, [58.18, 86.4, 0.097, 0.1781, 0.09051], 37_155),
         ] {
-            let own = estimates(id, level, 0);
+            let insights = estimates(id, level, 0);
             let shown = [
-                own.willingness_to_pay,
-                own.usage_volume,
-                own.quality_floor,
-                own.growth_rate,
-                own.lockin_aversion,
+                insights.willingness_to_pay,
+                insights.usage_volume,
+                insights.quality_floor,
+                insights.growth_rate,
+                insights.lockin_aversion,
             ];
-            assert_eq!((shown, own.market_cap), (values, cap), "{id} at level {level}");
-            assert_eq!(own.enterprise, None);
+            assert_eq!((shown, insights.market_cap), (values, cap), "{id} at level {level}");
+            assert_eq!(insights.enterprise, None);
         }
     }
 
@@ -301,16 +308,16 @@ mod tests {
             ("E1", 1, [19.62, 52.1, 0.736, 0.0516, 0.07558], 1471, company(25, 740, 6, 5.2)),
             ("E3", 3, [101.61, 114.4, 0.719, 0.0801, 0.03472], 116, company(247, 1963, 15, 22.1)),
         ] {
-            let own = estimates(id, level, 0);
+            let insights = estimates(id, level, 0);
             let shown = [
-                own.willingness_to_pay,
-                own.usage_volume,
-                own.quality_floor,
-                own.growth_rate,
-                own.lockin_aversion,
+                insights.willingness_to_pay,
+                insights.usage_volume,
+                insights.quality_floor,
+                insights.growth_rate,
+                insights.lockin_aversion,
             ];
-            assert_eq!((shown, own.market_cap), (values, cap), "{id} at level {level}");
-            assert_eq!(own.enterprise, of_company, "{id}");
+            assert_eq!((shown, insights.market_cap), (values, cap), "{id} at level {level}");
+            assert_eq!(insights.enterprise, of_company, "{id}");
         }
         let ten = estimates("D_E10", 1, 0);
         assert_eq!((ten.willingness_to_pay, ten.usage_volume, ten.quality_floor), (53.07, 98.7, 0.55));
@@ -340,9 +347,14 @@ mod tests {
             (4, 35, 44.43, 82.6, 277_407, 0.1760),
             (5, 52, 48.14, 80.9, 279_814, 0.1920),
         ] {
-            let own = estimates("S1", level, day);
+            let insights = estimates("S1", level, day);
             assert_eq!(
-                (own.willingness_to_pay, own.usage_volume, own.market_cap, own.growth_rate),
+                (
+                    insights.willingness_to_pay,
+                    insights.usage_volume,
+                    insights.market_cap,
+                    insights.growth_rate
+                ),
                 (pay, usage, cap, growth),
                 "level {level}"
             );

@@ -152,9 +152,13 @@ mod tests {
             (40.0, [0.02, 0.35, 0.56]),
         ] {
             for (quality, conversion) in [0.2, 0.4, 0.6].into_iter().zip(simulated) {
-                let own = s1.choose(&same_offers(price, quality), 0.0, &ByPlan([0.0; 3]), &params);
-                let off = own.conversion() - conversion;
-                assert!(off.abs() <= 0.02, "${price} at {quality}: {} and {conversion}", own.conversion());
+                let lead_choices = s1.choose(&same_offers(price, quality), 0.0, &ByPlan([0.0; 3]), &params);
+                let off = lead_choices.conversion() - conversion;
+                assert!(
+                    off.abs() <= 0.02,
+                    "${price} at {quality}: {} and {conversion}",
+                    lead_choices.conversion()
+                );
             }
         }
     }
@@ -165,8 +169,8 @@ mod tests {
         let s1 = sample("S1");
         assert_eq!(s1.leads.len(), 2000);
         for n in [1, 9, 2000] {
-            let own = draw_traits(group("S1"), n, 0.3, &params, &streams);
-            assert_eq!(s1.leads[n as usize - 1].curve, own.curve);
+            let traits = draw_traits(group("S1"), n, 0.3, &params, &streams);
+            assert_eq!(s1.leads[n as usize - 1].curve, traits.curve);
         }
     }
 
@@ -176,7 +180,10 @@ mod tests {
         let [low, median, high]: [f64; 3] =
             s1.required_quality_quantiles(14.0, &[0.1, 0.5, 0.9], &params).try_into().expect("three shares");
         assert!(low < median && median < high && high < 1.0, "{low} {median} {high}");
-        let asked = s1.leads.iter().filter(|own| required_quality(14.0, &own.curve, &params) <= median);
+        let asked = s1
+            .leads
+            .iter()
+            .filter(|sampled_lead| required_quality(14.0, &sampled_lead.curve, &params) <= median);
         assert_eq!(asked.count(), 1001);
         assert_eq!(
             s1.required_quality_quantiles(s1.budget_quantile(0.5) + 0.01, &[0.5], &params),

@@ -123,8 +123,9 @@ pub fn word_of_mouth<'a>(
 /// Returns the factors of a discovered group.
 pub fn lead_factors(group: Group, context: &LeadContext<'_>) -> LeadFactors {
     let &LeadContext { day, calendar, market, subscribers, ads, params } = context;
-    let own = params.group(group);
-    let cap = market_cap(own.base_market_cap, own.annual_cap_growth_rate, day, &params.leads);
+    let group_params = params.group(group);
+    let cap =
+        market_cap(group_params.base_market_cap, group_params.annual_cap_growth_rate, day, &params.leads);
     let paid = |channel: Channel| {
         let spend = ads.spend(channel, group);
         if spend > 0.0 { paid_leads(spend, market.yields[channel][group], &params.leads) } else { 0.0 }

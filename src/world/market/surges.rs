@@ -38,10 +38,10 @@ pub fn surge_on_day(day: u32, params: &Params, streams: &Streams) -> Option<Surg
     let law = &params.demand_surge;
     match params.replayed_series().and_then(|series| series.demand_surge(day)) {
         None => draw_surge(day, law, streams),
-        Some(given) => given.filter(|_| law.probability > 0.0).map(|given| Surge {
+        Some(recorded_surge) => recorded_surge.filter(|_| law.probability > 0.0).map(|surge| Surge {
             day,
-            end_day: day + given.days,
-            multiplier: given.multiplier,
+            end_day: day + surge.days,
+            multiplier: surge.multiplier,
         }),
     }
 }

@@ -58,11 +58,15 @@ impl Params {
         }
         let checked = from_tables(tables).map_err(|(key, problem)| parameter_error(&key, problem))?;
         let other = Params { fault: self.fault, ..checked };
-        match self.differences(&other).into_iter().find(|own| is_start_only(&own.key)) {
+        match self
+            .differences(&other)
+            .into_iter()
+            .find(|parameter_difference| is_start_only(&parameter_difference.key))
+        {
             None => Ok(other),
-            Some(own) => {
+            Some(difference) => {
                 let problem = "acts only when a run begins; begin one with --set to change it".to_owned();
-                Err(parameter_error(&own.key, problem))
+                Err(parameter_error(&difference.key, problem))
             }
         }
     }
@@ -168,8 +172,8 @@ mod tests {
             ("run.seed", Value::Integer(5), "acts only when a run begins"),
         ] {
             let error = set(key, value).expect_err(key);
-            let told = format!("{}: {}", error.key, error.problem);
-            assert!(told.contains(part), "{key}: {told}");
+            let text = format!("{}: {}", error.key, error.problem);
+            assert!(text.contains(part), "{key}: {text}");
         }
         assert!(set("initial.customer_satisfaction", 0.1).is_ok());
         assert!(set("run.bankruptcy_cash_threshold", -5).is_ok());

@@ -221,33 +221,37 @@ fn check_groups(params: &Params) -> Checked {
         format!("there are {personas} groups, but must be {}", Group::COUNT)
     })?;
     for group in Group::all() {
-        let (own, persona) = (params.group(group), &params.personas.group[group.index()]);
+        let (group_params, persona) = (params.group(group), &params.personas.group[group.index()]);
         let key = |name: &str| format!("group.{}.{name}", group.index());
-        require(own.id == group.id(), &key("id"), || {
-            format!("is {}, but the order asks for {group}", own.id)
+        require(group_params.id == group.id(), &key("id"), || {
+            format!("is {}, but the order asks for {group}", group_params.id)
         })?;
         require(persona.id == group.id(), &format!("personas.group.{}.id", group.index()), || {
             format!("is {}, but the order asks for {group}", persona.id)
         })?;
-        require((own.segment == Segment::Enterprise) == group.is_enterprise(), &key("segment"), || {
-            "does not fit the identifier: S is individual, E is enterprise".to_owned()
-        })?;
-        require(own.initially_known == group.is_initially_known(), &key("initially_known"), || {
+        require(
+            (group_params.segment == Segment::Enterprise) == group.is_enterprise(),
+            &key("segment"),
+            || "does not fit the identifier: S is individual, E is enterprise".to_owned(),
+        )?;
+        require(group_params.initially_known == group.is_initially_known(), &key("initially_known"), || {
             "does not fit the identifier: D_ groups have to be discovered".to_owned()
         })?;
         if group.is_enterprise() {
-            let complete = own.seat_count_min.is_some()
-                && own.seat_count_max.is_some()
-                && own.reply_delay_mean.is_some()
-                && own.reply_delay_std.is_some()
-                && own.max_negotiation_turns_mean.is_some()
-                && own.max_negotiation_turns_std.is_some();
+            let complete = group_params.seat_count_min.is_some()
+                && group_params.seat_count_max.is_some()
+                && group_params.reply_delay_mean.is_some()
+                && group_params.reply_delay_std.is_some()
+                && group_params.max_negotiation_turns_mean.is_some()
+                && group_params.max_negotiation_turns_std.is_some();
             require(complete, &key("id"), || {
                 "an enterprise group needs seat_count, reply_delay and max_negotiation_turns".to_owned()
             })?;
-            require(own.seat_count_min <= own.seat_count_max, &key("seat_count_min"), || {
-                "the lower bound is above the upper bound".to_owned()
-            })?;
+            require(
+                group_params.seat_count_min <= group_params.seat_count_max,
+                &key("seat_count_min"),
+                || "the lower bound is above the upper bound".to_owned(),
+            )?;
         }
     }
     Ok(())

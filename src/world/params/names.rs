@@ -11,13 +11,13 @@ pub(super) const NAME_FIELDS: [&str; 3] = ["id", "tier", "level"];
 
 /// Returns the name of a list element.
 pub(super) fn element_name(list: &[Value], at: usize) -> String {
-    let own = NAME_FIELDS.iter().find_map(|field| match list.get(at)?.get(field)? {
+    let text = NAME_FIELDS.iter().find_map(|field| match list.get(at)?.get(field)? {
         Value::String(id) => Some(id.clone()),
         Value::Integer(number) => Some(number.to_string()),
         _ => None,
     });
     let of_group = || Group::all().nth(at).filter(|_| is_by_group(list)).map(|group| group.id().to_owned());
-    own.or_else(of_group).unwrap_or_else(|| at.to_string())
+    text.or_else(of_group).unwrap_or_else(|| at.to_string())
 }
 
 /// Returns the index of a list element with a given name.
@@ -83,9 +83,9 @@ fn collect_keys(path: String, value: &Value, all: &mut Vec<String>) {
 pub(super) fn nearest_keys(tables: &Table, key: &str) -> Vec<String> {
     let all = keys(tables);
     let last = |key: &str| key.rsplit('.').next().unwrap_or_default().to_owned();
-    let own = last(key);
-    let is_place = own.parse::<usize>().is_ok();
-    let ends_alike = |one: &&String| !is_place && last(one) == own;
+    let text = last(key);
+    let is_place = text.parse::<usize>().is_ok();
+    let ends_alike = |one: &&String| !is_place && last(one) == text;
     let alike: Vec<&str> = all.iter().filter(ends_alike).map(String::as_str).collect();
     let near = match alike.is_empty() {
         // Regardless of distance: the user probably meant a key with the same last part.

@@ -43,11 +43,11 @@ impl<'a> AdLoad<'a> {
     /// Handles customers with an individual setting, in a separate function to keep the common case fast.
     #[cold]
     fn for_single_customer(&self, group: Group, customer: u32) -> f64 {
-        let own = self.setting.for_customer(customer);
-        if own == 0.0 {
+        let value = self.setting.for_customer(customer);
+        if value == 0.0 {
             self.by_group[group]
         } else {
-            ads_effect(self.setting.for_group(group) + own, &self.params.ads)
+            ads_effect(self.setting.for_group(group) + value, &self.params.ads)
         }
     }
 

@@ -128,9 +128,9 @@ mod tests {
                 drawn.iter().filter(|project| holds(project)).count() as f64 / 4000.0
             };
             for days in [30, 60, 150, 400] {
-                let told = share_done_within(days, law, &params.development);
+                let value = share_done_within(days, law, &params.development);
                 assert!(
-                    (share(&|project| project.due_day <= days) - told).abs() < 0.025,
+                    (share(&|project| project.due_day <= days) - value).abs() < 0.025,
                     "tier {tier}, {days}"
                 );
             }

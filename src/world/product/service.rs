@@ -55,16 +55,17 @@ pub struct FixedService {
 pub fn observe_service(
     total_usage: u64,
     morning: &Morning,
-    held: Option<FixedService>,
+    fixed_service: Option<FixedService>,
     params: &Params,
     streams: &Streams,
     facts: &mut Facts,
 ) -> ServiceDay {
     let operations = &params.operations;
     let capacity_units = params.capacity(morning.core.capacity_tier).capacity_units;
-    let load = held.map_or(total_usage, |held| (total_usage as f64 * held.load_factor).round() as u64);
+    let load =
+        fixed_service.map_or(total_usage, |held| (total_usage as f64 * held.load_factor).round() as u64);
     let overload = overload(load, f64::from(capacity_units), operations);
-    let luck_of = held.map_or(morning.day, |held| held.draw_day);
+    let luck_of = fixed_service.map_or(morning.day, |held| held.draw_day);
     let mut stream = streams.open(Part::Service, [u64::from(luck_of)]);
     let outage = stream.bernoulli(outage_probability(morning.core.operations, overload, operations));
     let downtime_minutes = if outage { draw_downtime_minutes(&mut stream, operations) } else { 0 };

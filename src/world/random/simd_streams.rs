@@ -57,8 +57,8 @@ pub fn first_words<const KEYS: usize>(
 fn keys_in_lanes<const KEYS: usize>(part: &[u8; 32], entities: &[[u64; KEYS]; LANES]) -> [Key; LANES] {
     let mut keys = [[0u32; 8]; LANES];
     for (at, word) in hash_keys(part, entities).into_iter().enumerate() {
-        for (key, own) in keys.iter_mut().zip(to_lanes(word)) {
-            key[at] = own;
+        for (key, number) in keys.iter_mut().zip(to_lanes(word)) {
+            key[at] = number;
         }
     }
     keys

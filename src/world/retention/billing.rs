@@ -53,9 +53,10 @@ pub fn collect_payments(
     });
     let mut received = 0.0;
     let mut billed = billed.into_iter().filter(|early| !early.payments.is_empty()).peekable();
-    for own in late {
-        let early = billed.next_if(|early| (early.group, early.number) == (own.group, own.number));
-        let of_block = || early.iter().chain([&own]);
+    for block_bills in late {
+        let early =
+            billed.next_if(|early| (early.group, early.number) == (block_bills.group, block_bills.number));
+        let of_block = || early.iter().chain([&block_bills]);
         received += of_block().flat_map(|bills| &bills.payments).map(|payment| payment.amount).sum::<f64>();
         for bills in of_block() {
             facts.payments.extend_from_slice(&bills.payments);

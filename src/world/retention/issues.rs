@@ -109,7 +109,10 @@ pub fn find_issues(group: Group, number: u32, block: &Block, day: &DayContext<'_
         let rows = (block.len() - first).min(ROWS_PER_WORD);
         let range = first..first + rows;
         if group.is_enterprise() {
-            seats.iter_mut().zip(&block.seats[range.clone()]).for_each(|(whole, own)| *whole = own.trunc());
+            seats
+                .iter_mut()
+                .zip(&block.seats[range.clone()])
+                .for_each(|(whole, value)| *whole = value.trunc());
         }
         let satisfaction = &block.satisfaction[range.clone()];
         for at in 0..rows {
@@ -151,9 +154,9 @@ pub fn allocate_resolutions(
     let &DayContext { params, streams, .. } = day;
     let day = day.day();
     ResolutionRound { day, calls, customers, params, streams }.resolve_all(settings);
-    for own in calls {
-        own.first_issue = desk.next_issue;
-        desk.next_issue += own.new.len() as u32;
+    for issue_batch in calls {
+        issue_batch.first_issue = desk.next_issue;
+        desk.next_issue += issue_batch.new.len() as u32;
     }
 }
 
@@ -169,29 +172,29 @@ pub struct SettledIssues {
 }
 
 /// Resolves, ages and opens issues of a block. No row may have been removed since they were found.
-pub fn settle(block: &mut Block, own: &IssueBatch, day: &DayContext<'_>) -> SettledIssues {
+pub fn settle(block: &mut Block, issue_batch: &IssueBatch, day: &DayContext<'_>) -> SettledIssues {
     let &DayContext { service, params, .. } = day;
     let outage = service.outage;
     SettledIssues {
-        any_open: !own.open.is_empty(),
-        resolved: settle_open(block, own, outage, params),
-        opened: open_new(block, own, params),
+        any_open: !issue_batch.open.is_empty(),
+        resolved: settle_open(block, issue_batch, outage, params),
+        opened: open_new(block, issue_batch, params),
     }
 }
 
 /// Records the results.
 pub fn record_issues(by_block: Vec<SettledIssues>, facts: &mut Facts) {
-    for own in by_block {
-        facts.issues_aged |= own.any_open;
-        facts.issues_resolved.extend(own.resolved);
-        facts.issues_opened.extend(own.opened);
+    for settled_issues in by_block {
+        facts.issues_aged |= settled_issues.any_open;
+        facts.issues_resolved.extend(settled_issues.resolved);
+        facts.issues_opened.extend(settled_issues.opened);
     }
 }
 
 /// Resolves or ages the open issues of a block; returns the numbers of the resolved ones.
-fn settle_open(block: &mut Block, own: &IssueBatch, outage: bool, params: &Params) -> Vec<u32> {
-    let mut resolved = Vec::with_capacity(own.solved.iter().filter(|solved| **solved).count());
-    for (&at, &solved) in own.open.iter().zip(&own.solved) {
+fn settle_open(block: &mut Block, issue_batch: &IssueBatch, outage: bool, params: &Params) -> Vec<u32> {
+    let mut resolved = Vec::with_capacity(issue_batch.solved.iter().filter(|solved| **solved).count());
+    for (&at, &solved) in issue_batch.open.iter().zip(&issue_batch.solved) {
         let at = usize::from(at);
         let (relationship, days) = (&mut block.relationship[at], &mut block.open_issue_days[at]);
         if solved {
@@ -206,14 +209,14 @@ fn settle_open(block: &mut Block, own: &IssueBatch, outage: bool, params: &Param
     resolved
 }
 
-fn open_new(block: &mut Block, own: &IssueBatch, params: &Params) -> Vec<IssueOpened> {
+fn open_new(block: &mut Block, issue_batch: &IssueBatch, params: &Params) -> Vec<IssueOpened> {
     let open = |(issue, &at): (u32, &u16)| {
         let at = usize::from(at);
         block.open_issue_days[at] = params.issues.new_issue_open_days;
         block.issue[at] = issue;
-        IssueOpened { issue, customer: block.customer[at], group: own.group }
+        IssueOpened { issue, customer: block.customer[at], group: issue_batch.group }
     };
-    (own.first_issue..).zip(&own.new).map(open).collect()
+    (issue_batch.first_issue..).zip(&issue_batch.new).map(open).collect()
 }
 
 #[cfg(test)]
@@ -304,7 +307,7 @@ mod tests {
         let settled = with_day_context(&morning(3), &settings, &quiet, (&params, &streams), |day| {
             let mut calls = customers.sweep(|group, number, block| find_issues(group, number, block, day));
             allocate_resolutions(&mut calls, &settings, customers, &mut desk, day);
-            customers.sweep_with(calls, |_, _, block, own| settle(block, &own, day))
+            customers.sweep_with(calls, |_, _, block, issue_batch| settle(block, &issue_batch, day))
         });
         record_issues(settled, &mut facts);
         (facts, desk)

@@ -90,8 +90,8 @@ impl PlanComparison {
 }
 
 /// Returns the curve of an individual with the market's change.
-pub fn drifted_curve(own: Curve, expectation: Expectation, params: &Params) -> Curve {
-    own.with_drift(expectation.quality, expectation.c_max, params.quality.read_time_c_max_min)
+pub fn drifted_curve(curve: Curve, expectation: Expectation, params: &Params) -> Curve {
+    curve.with_drift(expectation.quality, expectation.c_max, params.quality.read_time_c_max_min)
 }
 
 /// Returns the acceptable plan with the largest surplus, the earlier one on a tie, or `None` if none is acceptable.

@@ -36,8 +36,8 @@ pub fn group_involuntary_rate(group: Group, day: u32, params: &Params, streams: 
     }
     let keys = [group.index() as u64, u64::from(month)];
     let z = streams.open_for_day(month * law.month_days, Part::InvoluntaryMu, keys).standard_normal();
-    let own = params.group(group);
-    involuntary_rate(own.involuntary_churn_mean, own.involuntary_churn_std, z, law)
+    let group_params = params.group(group);
+    involuntary_rate(group_params.involuntary_churn_mean, group_params.involuntary_churn_std, z, law)
 }
 
 /// An individual who cancelled today because no plan was acceptable.

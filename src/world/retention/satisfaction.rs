@@ -55,22 +55,22 @@ pub fn satisfaction_terms(group: Group, block: &Block, at: usize, day: &DayConte
     let quality = &params.quality;
     let penalty = service_penalty(service.overload, service.outage, quality);
     let plan = block.plan[at];
-    let own = SubscriberInputs {
+    let subscriber_inputs = SubscriberInputs {
         usage_rate: block.usage_rate[at],
         relationship: block.relationship[at],
         open_issue_days: block.open_issue_days[at],
         ads_sensitivity: block.ads_quality_sensitivity[at],
     };
-    let met = DayInputs {
+    let day_inputs = DayInputs {
         delivered: morning.delivered(group, plan) - penalty,
         quota: match params.has_fault(Fault::QuotaInverted) {
-            true => inverted_quota(morning.quotas[plan], own.usage_rate * morning.weekday),
+            true => inverted_quota(morning.quotas[plan], subscriber_inputs.usage_rate * morning.weekday),
             false => morning.quotas[plan],
         },
         tenure: tenure.bonus(morning.day - block.start_day[at]),
         ads: ads.for_customer(group, block.customer[at]),
     };
-    let experience = build_experience(own, met, morning.weekday, quality, params);
+    let experience = build_experience(subscriber_inputs, day_inputs, morning.weekday, quality, params);
     let perceived = perceived_quality(experience, params.fidelity.perceived_quality);
     let (required, expectation) = (block.required[at], morning.expectations[group].quality);
     let (before, instant) = (block.satisfaction[at], perceived - (required + expectation));
@@ -104,20 +104,23 @@ struct DayInputs {
 // Always inlined, because rows are vectorized only if this is part of the loop.
 #[inline(always)]
 fn build_experience(
-    own: SubscriberInputs,
-    met: DayInputs,
+    subscriber_inputs: SubscriberInputs,
+    day_inputs: DayInputs,
     weekday: f64,
     quality: &Quality,
     params: &Params,
 ) -> Experience {
-    let demand = quota_demand(own.usage_rate * weekday, own.usage_rate, params);
+    let demand = quota_demand(subscriber_inputs.usage_rate * weekday, subscriber_inputs.usage_rate, params);
     Experience {
-        delivered: met.delivered,
-        relationship: relationship_bonus(relationship_as_read(own.relationship, quality), quality),
-        tenure: met.tenure,
-        quota: quota_factor(met.quota, demand, quality),
-        issues: quality.issue_penalty_per_open_day * f64::from(own.open_issue_days),
-        ads: own.ads_sensitivity * met.ads,
+        delivered: day_inputs.delivered,
+        relationship: relationship_bonus(
+            relationship_as_read(subscriber_inputs.relationship, quality),
+            quality,
+        ),
+        tenure: day_inputs.tenure,
+        quota: quota_factor(day_inputs.quota, demand, quality),
+        issues: quality.issue_penalty_per_open_day * f64::from(subscriber_inputs.open_issue_days),
+        ads: subscriber_inputs.ads_sensitivity * day_inputs.ads,
     }
 }
 
@@ -199,19 +202,22 @@ pub fn update_block(group: Group, block: &mut Block, day: &DayContext<'_>) -> Re
         let sensitivity = &block.ads_quality_sensitivity[range.clone()];
         let satisfaction = &mut block.satisfaction[range];
         for at in 0..rows {
-            let own = SubscriberInputs {
+            let subscriber_inputs = SubscriberInputs {
                 usage_rate: rate[at],
                 relationship: relationship[at],
                 open_issue_days: open_days[at],
                 ads_sensitivity: sensitivity[at],
             };
-            let met = DayInputs {
+            let day_inputs = DayInputs {
                 delivered: found.delivered[at],
                 quota: found.quota[at],
                 tenure: found.tenure[at],
                 ads: found.ads[at],
             };
-            let perceived = perceived_quality(build_experience(own, met, weekday, quality, params), form);
+            let perceived = perceived_quality(
+                build_experience(subscriber_inputs, day_inputs, weekday, quality, params),
+                form,
+            );
             let instant = perceived - (required[at] + expectation);
             moved[at] = smoothed_satisfaction(satisfaction[at], instant, alpha);
         }

@@ -93,13 +93,13 @@ impl ResolutionRound<'_> {
         }
         let members = self.members(pool);
         let of_pool: u32 = members.iter().map(PoolMembers::count).sum();
-        for (group, own) in Group::all().zip(&members.0).filter(|(_, own)| own.count() > 0) {
+        for (group, pool_members) in Group::all().zip(&members.0).filter(|(_, own)| own.count() > 0) {
             let [kind, which] = pool.keys();
             let keys = [u64::from(self.day), kind, which, group.index() as u64];
             let mut stream = self.streams.open(Part::IssueResolution, keys);
-            let mean = mean_resolved(base, spend, group, own.count(), of_pool, &self.params.issues);
-            let solved = stream.poisson(mean).min(u64::from(own.count())) as usize;
-            let mut order: Vec<u32> = (0..own.count()).collect();
+            let mean = mean_resolved(base, spend, group, pool_members.count(), of_pool, &self.params.issues);
+            let solved = stream.poisson(mean).min(u64::from(pool_members.count())) as usize;
+            let mut order: Vec<u32> = (0..pool_members.count()).collect();
             let mut chosen = vec![false; order.len()];
             // A partial shuffle: the first `solved` members are a uniform sample without replacement.
             for first in 0..solved {
@@ -107,7 +107,7 @@ impl ResolutionRound<'_> {
                 order.swap(first, other);
                 chosen[order[first] as usize] = true;
             }
-            own.mark_solved(&chosen, self.calls);
+            pool_members.mark_solved(&chosen, self.calls);
         }
     }
 
@@ -115,16 +115,17 @@ impl ResolutionRound<'_> {
     fn members(&self, pool: SupportPool) -> ByGroup<PoolMembers> {
         let mut members: ByGroup<PoolMembers> = ByGroup::default();
         let calls = (0..).zip(&*self.calls);
-        for (number, own) in calls.filter(|(_, own)| pool.only_group().is_none_or(|group| group == own.group))
+        for (number, issue_batch) in
+            calls.filter(|(_, batch)| pool.only_group().is_none_or(|group| group == batch.group))
         {
-            let of_group = &mut members[own.group];
-            if pool.contains_group(own.group) && !own.solved.contains(&true) {
-                of_group.add_block(number, own.open.len() as u32);
+            let of_group = &mut members[issue_batch.group];
+            if pool.contains_group(issue_batch.group) && !issue_batch.solved.contains(&true) {
+                of_group.add_block(number, issue_batch.open.len() as u32);
                 continue;
             }
-            let block = &self.customers.groups[own.group].blocks[own.block as usize];
-            for (entry, (&at, &solved)) in (0..).zip(own.open.iter().zip(&own.solved)) {
-                if !solved && pool.contains(own.group, block, usize::from(at)) {
+            let block = &self.customers.groups[issue_batch.group].blocks[issue_batch.block as usize];
+            for (entry, (&at, &solved)) in (0..).zip(issue_batch.open.iter().zip(&issue_batch.solved)) {
+                if !solved && pool.contains(issue_batch.group, block, usize::from(at)) {
                     of_group.add(number, entry);
                 }
             }
@@ -201,8 +202,9 @@ mod tests {
         members.add_block(4, 2);
         assert_eq!(members.count(), 7);
         members.mark_solved(&[false, true, true, true, false, false, true], &mut calls);
-        let solved =
-            |own: &IssueBatch| -> Vec<usize> { (0..own.solved.len()).filter(|at| own.solved[*at]).collect() };
+        let solved = |issue_batch: &IssueBatch| -> Vec<usize> {
+            (0..issue_batch.solved.len()).filter(|at| issue_batch.solved[*at]).collect()
+        };
         let solved: Vec<Vec<usize>> = calls.iter().map(solved).collect();
         assert_eq!(solved, [vec![1, 2], vec![], vec![7], vec![], vec![1]]);
     }

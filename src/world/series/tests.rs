@@ -113,9 +113,9 @@ fn competitor_events_and_expectations_match_the_record() {
     assert_eq!(seen, recorded);
     let params = replay_params();
     for row in measured!("competitor_events_dev_groups_0") {
-        let given = SEED_42.competitor_event(day(row[0])).flatten().expect("an event");
-        assert_eq!(given.u, number(row[4]));
-        assert_eq!(sampled_boost(given.size, day(row[0]), 500, &params.competitor), number(row[3]));
+        let recorded_event = SEED_42.competitor_event(day(row[0])).flatten().expect("an event");
+        assert_eq!(recorded_event.u, number(row[4]));
+        assert_eq!(sampled_boost(recorded_event.size, day(row[0]), 500, &params.competitor), number(row[3]));
     }
 }
 
@@ -166,8 +166,8 @@ fn channel_yields_match_the_record() {
         let month = world.day - world.day % 30;
         if [0, 29].contains(&(world.day % 30)) {
             for row in measured!("channel_drift").filter(|row| day(row[0]) == month) {
-                let own = world.market.yields[channel(row[1])][group(row[2])];
-                assert_eq!(own.to_bits(), number(row[3]).to_bits(), "{row:?}");
+                let value = world.market.yields[channel(row[1])][group(row[2])];
+                assert_eq!(value.to_bits(), number(row[3]).to_bits(), "{row:?}");
             }
         }
     });

@@ -82,8 +82,8 @@ fn check_damage_to_the_trajectory(places: usize) {
                 );
                 let told = session.remarks().iter().any(|text| text.contains("unfinished"));
                 assert!(told, "byte {at}, cut {cut}");
-                let own = view(&mut session);
-                assert_eq!(own["weeks"], expected["weeks"], "byte {at}, cut {cut}");
+                let value = view(&mut session);
+                assert_eq!(value["weeks"], expected["weeks"], "byte {at}, cut {cut}");
                 dropped += 1;
             }
             Err(error) => {

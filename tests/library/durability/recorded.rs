@@ -197,7 +197,7 @@ fn runs_of_other_mechanics_and_parameters_are_refused_with_the_version_that_can(
     let path = folder.join("trajectory.jsonl");
     let whole = fs::read_to_string(&path).expect("a trajectory");
     let (first, rest) = whole.split_once('\n').expect("lines");
-    for (name, value, told) in [
+    for (name, value, text) in [
         ("mechanics", json!(9), "mechanics 9"),
         ("parameters_digest", json!("0123"), "parameters 0123"),
         ("format", json!(7), "format 7"),
@@ -210,7 +210,7 @@ fn runs_of_other_mechanics_and_parameters_are_refused_with_the_version_that_can(
         let changed = format!("{},\"sum\":\"{sum}\"}}\n{rest}", &bare[..bare.len() - 1]);
         fs::write(&path, changed).expect("written");
         let error = Session::open(&folder, Access::Write, true).err().expect("it is refused").to_string();
-        assert!(error.contains(told) && error.contains("Nothing was changed"), "{error}");
+        assert!(error.contains(text) && error.contains("Nothing was changed"), "{error}");
         assert!(error.contains("0.9.3") || error.contains("newer version"), "{error}");
     }
     fs::write(&path, whole).expect("written");

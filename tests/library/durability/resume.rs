@@ -72,7 +72,7 @@ fn unusable_snapshots_are_replaced_by_replay() {
     *changed.last_mut().expect("bytes") ^= 1;
     let mut of_the_future = late.clone();
     of_the_future[18] = b'9';
-    for (name, bytes, told) in [
+    for (name, bytes, text) in [
         ("none", None, None),
         ("an earlier one", Some(early), None),
         ("one of another run", Some(foreign), Some("of another run")),
@@ -90,8 +90,8 @@ fn unusable_snapshots_are_replaced_by_replay() {
         let mut session = open(&place);
         assert_eq!(view(&mut session), expected, "{name}");
         let remarks = session.remarks().join(" ");
-        assert_eq!(told.is_some(), !remarks.is_empty(), "{name}: {remarks}");
-        assert!(remarks.contains(told.unwrap_or_default()), "{name}: {remarks}");
+        assert_eq!(text.is_some(), !remarks.is_empty(), "{name}: {remarks}");
+        assert!(remarks.contains(text.unwrap_or_default()), "{name}: {remarks}");
         advance_week(&mut session);
         session.save().expect("saved");
         drop(session);

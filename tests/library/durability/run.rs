@@ -28,12 +28,12 @@ pub fn open(folder: &Path) -> Session {
 
 /// Copies a run folder.
 pub fn copy(folder: &Path, to: &Path) -> PathBuf {
-    let own = to.join(folder.file_name().expect("a name"));
-    fs::create_dir_all(&own).expect("a folder");
+    let path = to.join(folder.file_name().expect("a name"));
+    fs::create_dir_all(&path).expect("a folder");
     for entry in fs::read_dir(folder).expect("a folder").flatten() {
-        fs::copy(entry.path(), own.join(entry.file_name())).expect("a copy");
+        fs::copy(entry.path(), path.join(entry.file_name())).expect("a copy");
     }
-    own
+    path
 }
 
 /// Returns everything visible of a session, and its state hash.

@@ -58,13 +58,19 @@ impl WatchedTables {
             let added = [drift.global_quality, drift.quality[group], drift.c_max[group]].map(cell);
             self.add("hidden.drift", [vec![day.clone(), id.clone()], added.to_vec()].concat());
             if world.market.is_known(group) {
-                let own = xray.lead_factors(group);
-                let factors =
-                    [own.reputation, own.saturation, own.calendar, own.economy, own.social, own.surge];
-                let paid = Channel::ALL.map(|channel| cell(own.paid[channel]));
+                let lead_factors = xray.lead_factors(group);
+                let factors = [
+                    lead_factors.reputation,
+                    lead_factors.saturation,
+                    lead_factors.calendar,
+                    lead_factors.economy,
+                    lead_factors.social,
+                    lead_factors.surge,
+                ];
+                let paid = Channel::ALL.map(|channel| cell(lead_factors.paid[channel]));
                 let came = xray.facts().arrivals.iter().filter(|arrival| arrival.group == group).count();
                 let mut row = [vec![day.clone(), id], factors.map(cell).to_vec(), paid.to_vec()].concat();
-                row.extend([cell(own.network), cell(own.expected()), integer(came as i64)]);
+                row.extend([cell(lead_factors.network), cell(lead_factors.expected()), integer(came as i64)]);
                 self.add("hidden.factors", row);
             }
         }
@@ -139,23 +145,23 @@ fn subscribers(session: &Session) -> Vec<Vec<Cell>> {
     for group in Group::all() {
         for block in xray.blocks(group) {
             rows.extend((0..block.len()).map(|at| {
-                let own = block.row(at);
+                let subscriber = block.row(at);
                 vec![
-                    integer(own.customer),
+                    integer(subscriber.customer),
                     text(group.id()),
-                    text(own.plan.id()),
-                    integer(own.start_day),
-                    cell(own.satisfaction),
-                    cell(own.relationship),
-                    integer(own.open_issue_days),
-                    cell(own.steepness_left),
-                    cell(own.c_max),
-                    cell(own.q_min),
-                    cell(own.q_max),
-                    cell(own.required),
-                    cell(own.usage_demand),
-                    cell(own.seats),
-                    cell(own.effective_price),
+                    text(subscriber.plan.id()),
+                    integer(subscriber.start_day),
+                    cell(subscriber.satisfaction),
+                    cell(subscriber.relationship),
+                    integer(subscriber.open_issue_days),
+                    cell(subscriber.steepness_left),
+                    cell(subscriber.c_max),
+                    cell(subscriber.q_min),
+                    cell(subscriber.q_max),
+                    cell(subscriber.required),
+                    cell(subscriber.usage_demand),
+                    cell(subscriber.seats),
+                    cell(subscriber.effective_price),
                 ]
             }));
         }
@@ -244,28 +250,31 @@ fn hidden_threads_match_the_customer_view() {
         else {
             panic!("a company")
         };
-        let own = lens.threads_of_day().find(|own| own.thread == number(1)).expect("its thread");
-        let judged = own.plans[Plan::B];
-        let (answer, price) = match own.answer {
+        let thread_day = lens
+            .threads_of_day()
+            .find(|enterprise_thread_day| enterprise_thread_day.thread == number(1))
+            .expect("its thread");
+        let judged = thread_day.plans[Plan::B];
+        let (answer, price) = match thread_day.answer {
             None => (Cell::Null, Cell::Null),
             Some(OfferResponse::Silence) => (text("silence"), Cell::Null),
-            Some(OfferResponse::Accept(at)) => (text("accept"), cell(own.offerings[at].price)),
+            Some(OfferResponse::Accept(at)) => (text("accept"), cell(thread_day.offerings[at].price)),
             Some(OfferResponse::Counter(_, price)) => (text("counter"), cell(price)),
         };
         *answers.entry(format!("{answer:?}")).or_insert(0) += 1;
         let expected = vec![
-            cell(own.budget),
-            integer(own.remaining_turns),
-            cell(own.relationship),
-            cell(own.late_penalty),
-            own.reply_day.map_or(Cell::Null, integer),
+            cell(thread_day.budget),
+            integer(thread_day.remaining_turns),
+            cell(thread_day.relationship),
+            cell(thread_day.late_penalty),
+            thread_day.reply_day.map_or(Cell::Null, integer),
             cell(judged.quality),
             cell((!judged.accepts_any_price).then_some(judged.accepts_below)),
             cell(judged.counter),
             answer,
         ];
         assert_eq!(row[3..12], expected[..], "{row:?}");
-        assert_eq!((&row[13], &row[14]), (&price, &text(own.kind.id())));
+        assert_eq!((&row[13], &row[14]), (&price, &text(thread_day.kind.id())));
     }
     assert!(answers.len() > 2, "{answers:?}");
 }

@@ -56,7 +56,10 @@ fn open_many_markets(session: &mut Session) {
 fn make_offers(session: &mut Session) {
     let waiting = session.company().observe().waiting;
     let deal = |(customer, asked): (u32, f64)| json!([customer, [["C", asked * 1.3], ["B", asked * 1.05]]]);
-    let deals: Vec<_> = waiting.iter().map(|own| deal((own.customer, own.asked.unwrap_or(40.0)))).collect();
+    let deals: Vec<_> = waiting
+        .iter()
+        .map(|waiting_thread| deal((waiting_thread.customer, waiting_thread.asked.unwrap_or(40.0))))
+        .collect();
     if !deals.is_empty() {
         session.call("send_enterprise_deal", &json!({ "deals": deals }), Via::Script).expect("offers");
     }

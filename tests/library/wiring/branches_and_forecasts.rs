@@ -54,8 +54,9 @@ const TWELVE_NUMBERS: [[f64; 3]; 4] = [
 fn plain_mode_forecast_numbers_are_in_order() {
     let home = Home::new();
     let list: Vec<String> = TWELVE_NUMBERS.iter().flatten().map(f64::to_string).collect();
-    let said = home.play(&["--seed", "7", "--days", "28"], &format!("next \"why\" {}\n", list.join(" ")));
-    assert_eq!(said.exit_code, 0, "{}{}", said.stdout, said.stderr);
+    let program_output =
+        home.play(&["--seed", "7", "--days", "28"], &format!("next \"why\" {}\n", list.join(" ")));
+    assert_eq!(program_output.exit_code, 0, "{}{}", program_output.stdout, program_output.stderr);
     let mut session = Session::open(&home.only_run(), Access::Read, true).expect("it opens");
     let sql =
         "SELECT horizon_days, predicted_value, predicted_lower, predicted_upper FROM predictions ORDER BY 1";

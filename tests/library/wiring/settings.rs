@@ -111,17 +111,17 @@ fn the_change_review_names_every_number_that_was_set() {
         call_tool(&mut session, tool, two_calls(tool)[1].clone());
         let mut expected = Vec::new();
         leaves(&two_calls(tool)[1], &mut expected);
-        let mut told: Vec<f64> =
+        let mut values: Vec<f64> =
             session.company().setting_changes().iter().map(|change| change.new).collect();
         // An unchanged number is not a change.
         expected.retain(|number| *number != 0.0);
-        told.retain(|number| *number != 0.0);
-        for number in &told {
+        values.retain(|number| *number != 0.0);
+        for number in &values {
             assert!(expected.contains(number), "{tool}: {number} was never sent");
         }
         let initially = |number: &f64| tool == "set_model_tiers" && *number == 1.0;
         for number in expected.iter().filter(|number| !initially(number)) {
-            assert!(told.contains(number), "{tool}: {number} is not in the review: {told:?}");
+            assert!(values.contains(number), "{tool}: {number} is not in the review: {values:?}");
         }
     }
 }

@@ -35,9 +35,13 @@ fn collect_takes_each_run_in_its_latest_state() {
     assert_eq!(one.play(&["--run", &run_id(&first)], "next \"the end\" naive\n").exit_code, 0);
     let sources = [one.runs(), archive, two.runs()];
     let sources: Vec<&Path> = sources.iter().map(std::path::PathBuf::as_path).collect();
-    let (said, out) = collect(&lab, &sources, &[]);
-    assert_eq!(said.exit_code, 0, "{}{}", said.stdout, said.stderr);
-    assert!(said.stdout.contains("early.tar.gz is an earlier state or a copy of"), "{}", said.stdout);
+    let (program_output, out) = collect(&lab, &sources, &[]);
+    assert_eq!(program_output.exit_code, 0, "{}{}", program_output.stdout, program_output.stderr);
+    assert!(
+        program_output.stdout.contains("early.tar.gz is an earlier state or a copy of"),
+        "{}",
+        program_output.stdout
+    );
     let runs = read_table(&out.join("runs.csv"));
     let days: Vec<(&str, &str)> = runs.iter().map(|row| (&*row["run"], &*row["day"])).collect();
     assert_eq!(days, [(&*run_id(&first), "28"), (&*run_id(&second), "21")]);
@@ -46,9 +50,9 @@ fn collect_takes_each_run_in_its_latest_state() {
     let hidden = fs::read_dir(&out).expect("a folder").flatten();
     assert!(!hidden.into_iter().any(|entry| entry.file_name().to_string_lossy().starts_with('.')));
     // Again, into the same folder: its contents are not a source.
-    let (said, out) = collect(&lab, &[lab.0.path(), &one.runs()], &["--json"]);
-    assert_eq!(said.exit_code, 0, "{}{}", said.stdout, said.stderr);
-    let object: Value = serde_json::from_str(&said.stdout).expect("JSON");
+    let (output, out) = collect(&lab, &[lab.0.path(), &one.runs()], &["--json"]);
+    assert_eq!(output.exit_code, 0, "{}{}", output.stdout, output.stderr);
+    let object: Value = serde_json::from_str(&output.stdout).expect("JSON");
     assert_eq!(object["runs"].as_array().expect("runs").len(), 1);
     assert_eq!(read_table(&out.join("runs.csv")).len(), 1);
 }
@@ -69,8 +73,8 @@ fn collect_reports_conflicts_shared_labels_and_damage() {
     fs::write(broken.join("trajectory.jsonl"), "nonsense\n").expect("damage");
     let labels = lab.0.path().join("labels.csv");
     fs::write(&labels, format!("run,participant\n{},P 9\nffffffff,P10\n", run_id(&fourth))).expect("labels");
-    let (said, out) = collect(&lab, &[&one.runs(), &two.runs()], &["--labels", &text(&labels)]);
-    assert_eq!(said.exit_code, 1, "{}{}", said.stdout, said.stderr);
+    let (program_output, out) = collect(&lab, &[&one.runs(), &two.runs()], &["--labels", &text(&labels)]);
+    assert_eq!(program_output.exit_code, 1, "{}{}", program_output.stdout, program_output.stderr);
     for part in [
         format!("conflict: run {} has two records that differ from line ", run_id(&first)),
         "label P02 has 2 sessions".to_owned(),
@@ -78,7 +82,7 @@ fn collect_reports_conflicts_shared_labels_and_damage() {
         "the mapping names run ffffffff, which was not found".to_owned(),
         "0badc0de".to_owned(),
     ] {
-        assert!(said.stdout.contains(&part), "{part} is missing in {}", said.stdout);
+        assert!(program_output.stdout.contains(&part), "{part} is missing in {}", program_output.stdout);
     }
     let runs = read_table(&out.join("runs.csv"));
     let row = |run: &str| runs.iter().find(|row| row["run"] == run).expect("a row").clone();
@@ -92,8 +96,8 @@ fn collect_reports_conflicts_shared_labels_and_damage() {
     for number in 1..=2 {
         assert!(out.join(format!("conflicts/{}-{number}.tar.gz", run_id(&first))).exists());
     }
-    let (said, _) = collect(&lab, &[&lab.0.path().join("nowhere")], &[]);
-    said.assert_fails(1, &["1 note"]);
+    let (output, _) = collect(&lab, &[&lab.0.path().join("nowhere")], &[]);
+    output.assert_fails(1, &["1 note"]);
 }
 
 #[test]
@@ -101,29 +105,30 @@ fn collect_lists_missing_participants() {
     let (machine, lab) = (Home::new(), Home::new());
     let pilot = text(&lab.0.path().join("pilot"));
     for arguments in [&["study", "new", &pilot][..], &["study", "assign", &pilot, "--participants", "2"]] {
-        let said = lab.run(arguments);
-        assert_eq!(said.exit_code, 0, "{}", said.stderr);
+        let program_output = lab.run(arguments);
+        assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
     }
     let assigned = fs::read_to_string(lab.0.path().join("pilot/assignment.csv")).expect("an assignment");
     let label = assigned.lines().nth(1).and_then(|line| line.split(',').next()).expect("a label").to_owned();
     played_run(&machine, &label);
-    let (said, _) = collect(&lab, &[&machine.runs()], &["--protocol", &pilot]);
+    let (output, _) = collect(&lab, &[&machine.runs()], &["--protocol", &pilot]);
     assert!(
-        said.exit_code == 1 && said.stdout.matches("has no session").count() == 1,
+        output.exit_code == 1 && output.stdout.matches("has no session").count() == 1,
         "{}{}",
-        said.stdout,
-        said.stderr
+        output.stdout,
+        output.stderr
     );
-    assert!(!said.stdout.contains(&format!("label {label} has no session")), "{}", said.stdout);
+    assert!(!output.stdout.contains(&format!("label {label} has no session")), "{}", output.stdout);
 }
 
 #[test]
 fn read_commands_find_listed_runs() {
     let home = Home::new();
-    let mut own = home.program();
-    own.args(["--as", "P01", "play", "--plain", "--days", "14"]);
-    let said = crate::support::home::run_with_input(&mut own, "set_prices A=12\nnext \"a\" naive\n");
-    assert_eq!(said.exit_code, 0, "{}", said.stderr);
+    let mut command = home.program();
+    command.args(["--as", "P01", "play", "--plain", "--days", "14"]);
+    let program_output =
+        crate::support::home::run_with_input(&mut command, "set_prices A=12\nnext \"a\" naive\n");
+    assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
     let list = home.run(&["runs", "list"]).stdout;
     let run = list.split_whitespace().next().expect("a run").to_owned();
     for arguments in [
@@ -134,7 +139,7 @@ fn read_commands_find_listed_runs() {
         &["lab", "compare", &run[..4]],
         &["runs", "show", &run],
     ] {
-        let said = home.run(arguments);
-        assert_eq!(said.exit_code, 0, "{arguments:?}: {}", said.stderr);
+        let output = home.run(arguments);
+        assert_eq!(output.exit_code, 0, "{arguments:?}: {}", output.stderr);
     }
 }

@@ -7,8 +7,8 @@ use std::path::Path;
 use super::{export, played_run, run_folders, text};
 use crate::support::home::{Home, ProgramOutput, run_id, run_with_input};
 
-fn checksum(said: &ProgramOutput) -> String {
-    said.stdout.split("checksum ").nth(1).expect("a checksum").trim().to_owned()
+fn checksum(program_output: &ProgramOutput) -> String {
+    program_output.stdout.split("checksum ").nth(1).expect("a checksum").trim().to_owned()
 }
 
 #[test]
@@ -24,8 +24,8 @@ fn export_is_reproducible() {
     let go_on = home.play(&["--run", &run_id(&run)], "set_prices A=13\n");
     assert_eq!(go_on.exit_code, 0, "{}", go_on.stderr);
     let (_, changed) = export(&home, &run, "third.tar");
-    let (_, again) = export(&home, &run, "fourth.tar");
-    assert_eq!(checksum(&changed), checksum(&again));
+    let (_, program_output) = export(&home, &run, "fourth.tar");
+    assert_eq!(checksum(&changed), checksum(&program_output));
     let before = fs::read(home.0.path().join("first.tar")).expect("bytes");
     assert!(fs::read(home.0.path().join("third.tar")).expect("bytes") != before);
 }
@@ -68,22 +68,22 @@ fn a_run_is_imported_into_the_folder_of_its_participant() {
     let (home, lab) = (Home::new(), Home::new());
     let run = played_run(&home, "P01");
     let (archive, _) = export(&home, &run, "run.tar");
-    let own = lab.runs().join("participants/P01");
+    let path = lab.runs().join("participants/P01");
     let import = |options: &[&str]| lab.run(&[options, &["runs", "import", &text(&archive)]].concat());
     import(&["--as", "P02"])
         .assert_fails(1, &["belongs to P01, not to P02", "--as P01", "Nothing was imported"]);
     assert!(!lab.runs().join("participants/P02").join(run_id(&run)).exists());
-    fs::create_dir_all(&own).expect("a folder");
+    fs::create_dir_all(&path).expect("a folder");
     let imported = import(&[]);
     assert_eq!(imported.exit_code, 0, "{}", imported.stderr);
-    assert_eq!(run_folders(&own), [own.join(run_id(&run))], "where its participant finds it");
+    assert_eq!(run_folders(&path), [path.join(run_id(&run))], "where its participant finds it");
     for options in [&[][..], &["--as", "P01"]] {
-        let again = import(options);
+        let program_output = import(options);
         assert!(
-            again.exit_code == 0 && again.stdout.contains("already exists"),
+            program_output.exit_code == 0 && program_output.stdout.contains("already exists"),
             "{}{}",
-            again.stdout,
-            again.stderr
+            program_output.stdout,
+            program_output.stderr
         );
     }
     let list = lab.run(&["runs"]);

@@ -32,8 +32,8 @@ next \"as planned\" naive
 fn played_run(home: &Home, participant: &str) -> PathBuf {
     let before: Vec<PathBuf> = run_folders(&home.runs());
     let options = ["--mode", "baseline", "--participant", participant, "--seed", "7"];
-    let said = home.play(&options, PLAY);
-    assert_eq!(said.exit_code, 0, "{}", said.stderr);
+    let program_output = home.play(&options, PLAY);
+    assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
     run_folders(&home.runs()).into_iter().find(|folder| !before.contains(folder)).expect("a new run")
 }
 
@@ -47,8 +47,8 @@ fn text(path: &Path) -> String {
 
 fn export(home: &Home, run: &Path, name: &str) -> (PathBuf, ProgramOutput) {
     let archive = home.0.path().join(name);
-    let said = home.run(&["runs", "export", &run_id(run), "--out", &text(&archive)]);
-    (archive, said)
+    let program_output = home.run(&["runs", "export", &run_id(run), "--out", &text(&archive)]);
+    (archive, program_output)
 }
 
 fn import(home: &Home, archive: &Path) -> ProgramOutput {
@@ -96,12 +96,12 @@ fn exported_run_imports_unchanged() {
     let run = played_run(&home, "P01");
     let before = read_bytes(&run, "trajectory.jsonl");
     for name in ["run.tar.gz", "run.tar"] {
-        let (archive, said) = export(&home, &run, name);
-        assert_eq!(said.exit_code, 0, "{}", said.stderr);
-        let checksum = said.stdout.split("checksum ").nth(1).expect("a checksum").trim().to_owned();
+        let (archive, program_output) = export(&home, &run, name);
+        assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
+        let checksum = program_output.stdout.split("checksum ").nth(1).expect("a checksum").trim().to_owned();
         assert_eq!(checksum.len(), 64);
-        let (_, again) = export(&home, &run, name);
-        again.assert_fails(1, &["already exists"]);
+        let (_, output) = export(&home, &run, name);
+        output.assert_fails(1, &["already exists"]);
         let imported = import(&other, &archive);
         assert_eq!(imported.exit_code, 0, "{}", imported.stderr);
         assert!(imported.stdout.contains(&checksum), "{}", imported.stdout);
@@ -184,8 +184,8 @@ fn archive_database_opens_in_plain_sqlite() {
         "SELECT coalesce(sum(revenue), 0.0) FROM ads_revenue",
         "SELECT sum(amount) FROM ledger",
     ] {
-        let own = home.run(&["query", &run_id(&run), sql, "--format", "csv"]);
-        let expected: f64 = own.stdout.lines().nth(1).expect("a row").parse().expect("a number");
+        let program_output = home.run(&["query", &run_id(&run), sql, "--format", "csv"]);
+        let expected: f64 = program_output.stdout.lines().nth(1).expect("a row").parse().expect("a number");
         assert!(
             (ask(sql) - expected).abs() <= 1e-9 * expected.abs(),
             "{sql}: {} is not {expected}",
@@ -319,14 +319,14 @@ fn damaged_runs_are_not_exported_and_unfinished_lines_are_left_out() {
     let good = read_bytes(&run, "trajectory.jsonl");
     let torn = [&good[..], b"{\"seq\":99,\"ki"].concat();
     fs::write(run.join("trajectory.jsonl"), &torn).expect("a torn line");
-    let (archive, said) = export(&home, &run, "torn.tar");
-    assert_eq!(said.exit_code, 0, "{}", said.stderr);
+    let (archive, program_output) = export(&home, &run, "torn.tar");
+    assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
     assert_eq!(archive_contents(&archive)[&format!("{}/trajectory.jsonl", run_id(&run))], good);
     assert_eq!(read_bytes(&run, "trajectory.jsonl"), torn, "an export changes nothing");
     let text = String::from_utf8(good).expect("text");
     fs::write(run.join("trajectory.jsonl"), text.replacen("\"A\":12", "\"A\":13", 1)).expect("a change");
-    let (archive, said) = export(&home, &run, "bad.tar");
-    said.assert_fails(3, &["trajectory.jsonl, line 3", "its sum", "good"]);
+    let (archive, output) = export(&home, &run, "bad.tar");
+    output.assert_fails(3, &["trajectory.jsonl, line 3", "its sum", "good"]);
     assert!(!archive.exists());
     let hidden = |entry: &PathBuf| {
         entry.file_name().is_some_and(|name| name.to_string_lossy().starts_with(".novamind"))
@@ -344,8 +344,8 @@ fn export_all_writes_consistent_tables() {
     let home = Home::new();
     let (first, second) = (played_run(&home, "P01"), played_run(&home, "P, \"02\""));
     let out = home.0.path().join("study");
-    let said = home.run(&["runs", "export", "--all", "--out", &text(&out)]);
-    assert_eq!(said.exit_code, 0, "{}", said.stderr);
+    let program_output = home.run(&["runs", "export", "--all", "--out", &text(&out)]);
+    assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
     let runs = read_table(&out.join("runs.csv"));
     assert_eq!(
         runs.iter().map(|row| row["run"].clone()).collect::<Vec<_>>(),
@@ -394,8 +394,8 @@ fn export_all_writes_consistent_tables() {
     assert_eq!(list.stdout.lines().count(), 1, "{}", list.stdout);
     // A damaged run is reported and does not prevent the export of the others.
     fs::write(first.join("trajectory.jsonl"), "nonsense\n").expect("damage");
-    let said = home.run(&["runs", "export", "--all", "--out", &text(&out)]);
-    said.assert_fails(3, &["1 of 2 runs"]);
+    let output = home.run(&["runs", "export", "--all", "--out", &text(&out)]);
+    output.assert_fails(3, &["1 of 2 runs"]);
     let damaged = read_table(&out.join("runs.csv"))
         .into_iter()
         .find(|row| row["run"] == run_id(&first))
@@ -425,10 +425,15 @@ fn reports_summarize_sessions_and_compare_runs() {
     home.run(&["report", &run_id(&first), "--format", "json"]).assert_fails(2, &["--session"]);
 
     let names = [run_id(&first), run_id(&second)];
-    let said = home.run(&["lab", "compare", &names[0], &names[1]]);
+    let program_output = home.run(&["lab", "compare", &names[0], &names[1]]);
     for part in ["P01", "P02", "rule-based baseline", "cash on day 21", "day 0", "Claude Fable 5", "differ"] {
         // Both runs have the same decisions, so only their end differs.
-        assert_eq!(said.stdout.contains(part), part != "differ", "{part}: {}", said.stdout);
+        assert_eq!(
+            program_output.stdout.contains(part),
+            part != "differ",
+            "{part}: {}",
+            program_output.stdout
+        );
     }
     let object = home.run(&["lab", "compare", &names[0], &names[1], "--json"]).stdout;
     let object: Value = serde_json::from_str(&object).expect("JSON");
@@ -449,9 +454,9 @@ fn reports_summarize_sessions_and_compare_runs() {
 
 #[test]
 fn documents_match_the_column_explanations() {
-    let said = Home::new().run(&["runs", "columns"]);
+    let program_output = Home::new().run(&["runs", "columns"]);
     assert_eq!(
-        said.stdout,
+        program_output.stdout,
         include_str!("../../../assets/columns.md"),
         "write it again with: novamind runs columns"
     );

@@ -45,7 +45,7 @@ fn problems(root: &Value, part: &Value, value: &Value, place: &str, found: &mut 
             "minItems" => value.as_array().is_none_or(|own| own.len() as f64 >= number(rule)),
             "maxItems" => value.as_array().is_none_or(|own| own.len() as f64 <= number(rule)),
             "pattern" => {
-                value.as_str().is_none_or(|own| is_hexadecimal(own, rule.as_str().expect("a pattern")))
+                value.as_str().is_none_or(|text| is_hexadecimal(text, rule.as_str().expect("a pattern")))
             }
             "format" => value.as_str().is_none_or(|own| OffsetDateTime::parse(own, &Rfc3339).is_ok()),
             "required" => names(rule).iter().all(|name| value.get(name).is_some()),
@@ -133,7 +133,7 @@ fn line_problems(root: &Value, line: &Value) -> Vec<String> {
 
 fn kinds(root: &Value) -> BTreeSet<String> {
     let references = root["oneOf"].as_array().expect("kinds").iter();
-    references.map(|own| own["$ref"].as_str().expect("a reference").replace("#/$defs/", "")).collect()
+    references.map(|value| value["$ref"].as_str().expect("a reference").replace("#/$defs/", "")).collect()
 }
 
 /// Checks the examples of a document: valid lines, one of each kind.
@@ -260,13 +260,13 @@ fn recorded_lines_match_the_schema() {
 fn schema_has_examples_of_all_kinds_and_fields() {
     let root = schema();
     for kind in kinds(&root) {
-        let own = root.pointer(&format!("/$defs/{kind}")).expect("a kind");
-        assert!(own["description"].as_str().is_some_and(|text| text.len() > 15), "{kind}");
-        for (name, field) in own["properties"].as_object().expect("fields") {
+        let value = root.pointer(&format!("/$defs/{kind}")).expect("a kind");
+        assert!(value["description"].as_str().is_some_and(|text| text.len() > 15), "{kind}");
+        for (name, field) in value["properties"].as_object().expect("fields") {
             let explained = resolve(&root, field).get("description").or(field.get("description")).is_some();
             assert!(explained || field.get("const").is_some(), "{kind}.{name}");
         }
-        let examples = own["examples"].as_array().expect("examples");
+        let examples = value["examples"].as_array().expect("examples");
         assert!(!examples.is_empty());
         for example in examples {
             assert_eq!(line_problems(&root, example), Vec::<String>::new());
@@ -278,13 +278,14 @@ fn schema_has_examples_of_all_kinds_and_fields() {
 fn invalid_lines_violate_the_schema() {
     let root = schema();
     for kind in kinds(&root) {
-        let own = root.pointer(&format!("/$defs/{kind}")).expect("a kind");
-        let example: Map<String, Value> = own["examples"][0].as_object().expect("an example").clone();
-        for name in names(&own["required"]) {
+        let value = root.pointer(&format!("/$defs/{kind}")).expect("a kind");
+        let example: Map<String, Value> = value["examples"][0].as_object().expect("an example").clone();
+        for name in names(&value["required"]) {
             let mut without = example.clone();
             without.remove(name);
             assert!(!line_problems(&root, &without.into()).is_empty(), "{kind} without {name}");
-            if own["properties"][name].get("type").is_some() || own["properties"][name].get("$ref").is_some()
+            if value["properties"][name].get("type").is_some()
+                || value["properties"][name].get("$ref").is_some()
             {
                 let mut twisted = example.clone();
                 twisted.insert(name.to_owned(), json!([["no such thing"]]));
@@ -297,6 +298,6 @@ fn invalid_lines_violate_the_schema() {
 
 #[test]
 fn the_program_prints_the_schema() {
-    let said = Home::new().run(&["runs", "schema"]);
-    assert_eq!(serde_json::from_str::<Value>(&said.stdout).expect("JSON"), schema());
+    let program_output = Home::new().run(&["runs", "schema"]);
+    assert_eq!(serde_json::from_str::<Value>(&program_output.stdout).expect("JSON"), schema());
 }

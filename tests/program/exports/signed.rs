@@ -52,16 +52,22 @@ fn signature_names_the_signer_and_rejects_modifications() {
     files(&|name, bytes| Some(if name.ends_with("seal.sig") { vec![b'#'; 4096] } else { bytes }));
     import(&other, &bad).assert_fails(3, &["seal.sig is too large"]);
 
-    let said = import(&other, &archive);
+    let program_output = import(&other, &archive);
     assert!(
-        said.exit_code == 0 && said.stdout.contains(&format!("signed by the lab key {fingerprint}")),
+        program_output.exit_code == 0
+            && program_output.stdout.contains(&format!("signed by the lab key {fingerprint}")),
         "{}",
-        said.stdout
+        program_output.stdout
     );
     // Without its signature it is a complete unsigned archive.
     files(&|name, bytes| (!name.ends_with("seal.sig")).then_some(bytes));
-    let said = import(&other, &bad);
-    assert!(said.exit_code == 0 && said.stdout.contains("not signed"), "{}{}", said.stdout, said.stderr);
+    let output = import(&other, &bad);
+    assert!(
+        output.exit_code == 0 && output.stdout.contains("not signed"),
+        "{}{}",
+        output.stdout,
+        output.stderr
+    );
     // An invalid key is reported before the run is simulated, and nothing is written.
     let nothing = home.0.path().join("nothing.tar");
     fs::write(&file, "no key").expect("written");

@@ -42,8 +42,8 @@ const HOSTILE: &[&str] = &["=1+1", "+1+cmd", "-1+cmd", "@SUM(A1)", "\u{1b}[31mre
 
 fn export(home: &Home) -> std::path::PathBuf {
     let out = home.0.path().join("study");
-    let said = home.run(&["runs", "export", "--all", "--out", &text(&out)]);
-    assert_eq!(said.exit_code, 0, "{}", said.stderr);
+    let program_output = home.run(&["runs", "export", "--all", "--out", &text(&out)]);
+    assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
     out
 }
 
@@ -148,8 +148,8 @@ fn run_with_all_activity_lines(home: &Home) {
 #[test]
 fn independent_script_reproduces_every_measure() {
     let home = Home::new();
-    let said = home.play(&["--days", "28", "--seed", "7"], FOUR_WEEKS);
-    assert_eq!(said.exit_code, 0, "{}{}", said.stdout, said.stderr);
+    let program_output = home.play(&["--days", "28", "--seed", "7"], FOUR_WEEKS);
+    assert_eq!(program_output.exit_code, 0, "{}{}", program_output.stdout, program_output.stderr);
     played_run(&home, "P01");
     run_with_all_activity_lines(&home);
     let out = export(&home);
@@ -199,9 +199,9 @@ fn exported_texts_are_escaped() {
         lines += &format!("sql {hostile}\nmemo {hostile}\nnext {:?} naive\n", hostile.replace('\t', " "));
     }
     lines += "post_social_media \"=1+1 \u{1b}[31m\u{202e}\"\n";
-    let said = home.play(&["--days", "70", "--participant", "=cmd|' /C calc'!A0"], &lines);
+    let program_output = home.play(&["--days", "70", "--participant", "=cmd|' /C calc'!A0"], &lines);
     let acts = |text: &str| text.contains(['\u{1b}', '\u{202e}']);
-    assert!(!acts(&said.stdout) && !acts(&said.stderr), "{}", said.stdout);
+    assert!(!acts(&program_output.stdout) && !acts(&program_output.stderr), "{}", program_output.stdout);
     let out = export(&home);
     for name in ["runs", "weeks", "forecasts", "queries", "events", "answers", "notes"] {
         let path = out.join(format!("{name}.csv"));
@@ -231,11 +231,11 @@ fn exported_texts_are_escaped() {
         vec!["query", &run, "SELECT content FROM agent_social_media_posts", "--format", "csv"],
         vec!["query", &run, "SELECT content FROM agent_social_media_posts", "--format", "md"],
     ] {
-        let said = home.run(&arguments);
-        assert!(!acts(&said.stdout) && !acts(&said.stderr), "{arguments:?}: {}", said.stdout);
+        let output = home.run(&arguments);
+        assert!(!acts(&output.stdout) && !acts(&output.stderr), "{arguments:?}: {}", output.stdout);
         if arguments.contains(&"csv") || arguments.contains(&"--csv") {
             let formula = |line: &str| line.starts_with(['=', '@', '+']) || line.contains(",=");
-            assert!(!said.stdout.lines().any(formula), "{arguments:?}: {}", said.stdout);
+            assert!(!output.stdout.lines().any(formula), "{arguments:?}: {}", output.stdout);
         }
     }
 }
@@ -253,8 +253,8 @@ fn anonymized_tables_can_be_linked_only_with_the_secret() {
             &[&["study", "anonymise", &place("study"), "--out", out, "--secret", &secret], more].concat(),
         )
     };
-    let said = anonymise(&anonymous, &[]);
-    assert_eq!(said.exit_code, 0, "{}{}", said.stdout, said.stderr);
+    let program_output = anonymise(&anonymous, &[]);
+    assert_eq!(program_output.exit_code, 0, "{}{}", program_output.stdout, program_output.stderr);
     let links = read_table(&home.0.path().join("study.links.csv"));
     let runs = read_table(&Path::new(&anonymous).join("runs.csv"));
     let original = read_table(&out.join("runs.csv"));
@@ -295,13 +295,20 @@ fn anonymized_tables_can_be_linked_only_with_the_secret() {
         assert!(rows.iter().map(|row| &row["participant"]).is_sorted(), "{name}");
     }
     assert!(
-        said.stdout.contains("the smallest group of sessions with the same seed and condition has "),
+        program_output
+            .stdout
+            .contains("the smallest group of sessions with the same seed and condition has "),
         "{}",
-        said.stdout
+        program_output.stdout
     );
     let fewer = place("fewer");
-    let said = anonymise(&fewer, &["--without", "seed,condition"]);
-    assert!(said.exit_code == 0 && !said.stdout.contains("smallest group"), "{}{}", said.stdout, said.stderr);
+    let output = anonymise(&fewer, &["--without", "seed,condition"]);
+    assert!(
+        output.exit_code == 0 && !output.stdout.contains("smallest group"),
+        "{}{}",
+        output.stdout,
+        output.stderr
+    );
     let without = read_table(&Path::new(&fewer).join("runs.csv"));
     assert!(!without[0].contains_key("seed") && !without[0].contains_key("condition"));
     assert_eq!(without[0]["cash"], runs[0]["cash"]);

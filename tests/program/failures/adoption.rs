@@ -27,9 +27,9 @@ fn staging_folders(home: &Home) -> Vec<PathBuf> {
 }
 
 fn listed_runs(home: &Home) -> Vec<Value> {
-    let said = home.run(&["runs", "list", "--json"]);
-    let list: Value =
-        serde_json::from_str(&said.stdout).unwrap_or_else(|error| panic!("{error}: {}", said.stdout));
+    let program_output = home.run(&["runs", "list", "--json"]);
+    let list: Value = serde_json::from_str(&program_output.stdout)
+        .unwrap_or_else(|error| panic!("{error}: {}", program_output.stdout));
     list.as_array().or(list["runs"].as_array()).expect("a list").clone()
 }
 
@@ -60,13 +60,14 @@ fn killed_adoption_leaves_no_run() {
     child.wait().expect("it ends");
     assert_eq!(staging_folders(&home).len(), 1, "it was killed on the way");
     assert_eq!(listed_runs(&home).len(), 1, "an incomplete branch is not a run");
-    let again =
+    let program_output =
         home.play(&["--run", &run_id(&run), "--json"], "whatif adopt from 2: set_prices * 0.9\nstatus\n");
-    assert_eq!(again.exit_code, 0, "{}", again.stderr);
+    assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
     assert_eq!((staging_folders(&home), listed_runs(&home).len()), (Vec::new(), 2));
-    assert_eq!(again.json_lines().last().expect("an answer")["day"], 105);
+    assert_eq!(program_output.json_lines().last().expect("an answer")["day"], 105);
     let branch =
-        listed_runs(&home).iter().find(|own| own["id"] != run_id(&run)).expect("the branch")["id"].clone();
+        listed_runs(&home).iter().find(|value| value["id"] != run_id(&run)).expect("the branch")["id"]
+            .clone();
     assert_eq!(home.run(&["replay", branch.as_str().expect("an id"), "--verify"]).exit_code, 0);
 }
 

@@ -41,9 +41,9 @@ fn unsaved_call_has_no_effect() {
         lines += &format!("set_prices A={amount}\n");
     }
     lines += "next naive\nget_vars\nchanges\n";
-    let said = play_with_file_limit(&home, "--days 28", &lines);
-    assert_eq!((said.exit_code, said.stderr.as_str()), (0, ""));
-    let objects = said.json_lines();
+    let program_output = play_with_file_limit(&home, "--days 28", &lines);
+    assert_eq!((program_output.exit_code, program_output.stderr.as_str()), (0, ""));
+    let objects = program_output.json_lines();
     let refused: Vec<&Value> = objects.iter().filter(|object| object["code"] == "not_saved").collect();
     assert!(refused.len() > 10, "the disk is not full: {}", objects.len());
     assert!(refused.iter().all(|object| {
@@ -58,11 +58,11 @@ fn unsaved_call_has_no_effect() {
     assert_eq!((next["code"].as_str(), next["day"].as_u64()), (Some("not_saved"), Some(0)));
 
     let folder = home.only_run();
-    let again = home.play(&["--run", &run_id(&folder), "--json"], "changes\nset_prices A=5\nnext naive\n");
-    assert_eq!(again.exit_code, 0, "{}", again.stderr);
-    let objects = again.json_lines();
+    let output = home.play(&["--run", &run_id(&folder), "--json"], "changes\nset_prices A=5\nnext naive\n");
+    assert_eq!(output.exit_code, 0, "{}", output.stderr);
+    let objects = output.json_lines();
     assert_eq!(last_price(&objects), accepted, "the file has exactly what was confirmed");
-    assert!(objects.iter().all(|object| object["ok"] != false), "there is space again: {}", again.stdout);
+    assert!(objects.iter().all(|object| object["ok"] != false), "there is space again: {}", output.stdout);
     assert_eq!(home.run(&["replay", &run_id(&folder), "--verify"]).exit_code, 0);
 }
 
@@ -84,13 +84,13 @@ fn week_without_its_line_is_simulated_again() {
     {
         let home = Home::new();
         let more = BLOCKS * 512 - before - room - frame;
-        let said = play_with_file_limit(
+        let program_output = play_with_file_limit(
             &home,
             "--days 28",
             &(start.clone() + &padding(more) + "next naive\nstatus\n"),
         );
-        assert_eq!(said.exit_code, 0, "{}", said.stderr);
-        let objects = said.json_lines();
+        assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
+        let objects = program_output.json_lines();
         let next = objects.iter().find(|object| object["command"] == "next").expect("an answer");
         assert_eq!(next["ok"], accepted, "space for {room} bytes: {next}");
         let told = next["data"]["remark"].as_str().is_some_and(|text| text.contains("simulated again"));
@@ -99,9 +99,9 @@ fn week_without_its_line_is_simulated_again() {
         let folder = home.only_run();
         assert!(trajectory_length(&folder) <= BLOCKS * 512);
 
-        let again = home.play(&["--run", &run_id(&folder), "--json"], "status\n");
-        assert_eq!(again.exit_code, 0, "{}", again.stderr);
-        let objects = again.json_lines();
+        let output = home.play(&["--run", &run_id(&folder), "--json"], "status\n");
+        assert_eq!(output.exit_code, 0, "{}", output.stderr);
+        let objects = output.json_lines();
         assert_eq!(objects[1]["data"], status["data"], "space for {room} bytes");
         assert_eq!(objects[0]["day"], if accepted { 7 } else { 0 });
         assert_eq!(home.run(&["replay", &run_id(&folder), "--verify"]).exit_code, 0);

@@ -51,7 +51,12 @@ fn deleted_trajectory_stops_the_run_and_can_be_restored() {
     assert!(fs::read(aside).expect("a copy").starts_with(&confirmed));
     fs::rename(aside, folder.join("trajectory.jsonl")).expect("renamed");
     let id = run_id(&folder);
-    let said = home.play(&["--run", &id, "--json"], "set_prices B=20\n");
-    assert!(said.exit_code == 0 && said.stdout.contains("\"ok\":true"), "{}{}", said.stdout, said.stderr);
+    let program_output = home.play(&["--run", &id, "--json"], "set_prices B=20\n");
+    assert!(
+        program_output.exit_code == 0 && program_output.stdout.contains("\"ok\":true"),
+        "{}{}",
+        program_output.stdout,
+        program_output.stderr
+    );
     assert_eq!(home.run(&["replay", &id, "--verify"]).exit_code, 0);
 }

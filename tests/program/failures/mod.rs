@@ -53,9 +53,9 @@ fn a_wrong_scenario_names_file_line_key_and_what_is_allowed() {
     ] {
         home.write("scenarios/mine.toml", &text);
         for arguments in [&["play", "--plain", "--scenario", "mine"][..], &["scenario", "show", "mine"]] {
-            let said = home.run(arguments);
-            said.assert_fails(3, &["scenarios/mine.toml"]);
-            said.assert_fails(3, parts);
+            let program_output = home.run(arguments);
+            program_output.assert_fails(3, &["scenarios/mine.toml"]);
+            program_output.assert_fails(3, parts);
         }
     }
     home.write("scenarios/mine.toml", b"\xff\xfe");
@@ -77,11 +77,11 @@ fn valid_scenario_is_accepted_in_every_notation() {
         "[world]\nquality.base_product_quality = 0.75\n",
     ] {
         home.write("scenarios/mine.toml", format!("{HEAD}{text}"));
-        let said = home.run(&["scenario", "show", "mine"]);
+        let program_output = home.run(&["scenario", "show", "mine"]);
         assert!(
-            said.exit_code == 0 && said.stdout.contains("base_product_quality = 0.75"),
+            program_output.exit_code == 0 && program_output.stdout.contains("base_product_quality = 0.75"),
             "{text}{}",
-            said.stderr
+            program_output.stderr
         );
     }
 }
@@ -91,9 +91,13 @@ fn invalid_scenario_does_not_hide_others() {
     let home = Home::new();
     home.write("scenarios/bad.toml", "title = \n");
     home.write("scenarios/good.toml", HEAD);
-    let said = home.run(&["scenario", "list"]);
-    said.assert_fails(3, &["bad.toml, line 1"]);
-    assert!(said.stdout.contains("default") && said.stdout.contains("My own."), "{}", said.stdout);
+    let program_output = home.run(&["scenario", "list"]);
+    program_output.assert_fails(3, &["bad.toml, line 1"]);
+    assert!(
+        program_output.stdout.contains("default") && program_output.stdout.contains("My own."),
+        "{}",
+        program_output.stdout
+    );
 }
 
 #[test]
@@ -162,21 +166,21 @@ fn a_damaged_trajectory_is_refused_with_its_line_and_left_as_it_is() {
         let mut bytes = good.clone();
         damage(&mut bytes);
         fs::write(folder.join("trajectory.jsonl"), &bytes).expect("written");
-        let said = home.play(&["--run", &id], "set_prices A=1\n");
-        said.assert_fails(3, &["trajectory.jsonl"]);
-        said.assert_fails(3, parts);
+        let program_output = home.play(&["--run", &id], "set_prices A=1\n");
+        program_output.assert_fails(3, &["trajectory.jsonl"]);
+        program_output.assert_fails(3, parts);
         assert_eq!(read_bytes(&folder, "trajectory.jsonl"), bytes, "the file is left as it is");
         fs::write(folder.join("trajectory.jsonl"), &good).expect("written");
     }
     fs::remove_file(folder.join("trajectory.jsonl")).expect("gone");
     home.play(&["--run", &id], "").assert_fails(3, &["trajectory.jsonl"]);
     fs::write(folder.join("trajectory.jsonl"), &good).expect("written");
-    let said = home.run(&["replay", &id, "--verify"]);
+    let output = home.run(&["replay", &id, "--verify"]);
     assert!(
-        said.exit_code == 0 && said.stdout.contains("2 states verified"),
+        output.exit_code == 0 && output.stdout.contains("2 states verified"),
         "{}{}",
-        said.stdout,
-        said.stderr
+        output.stdout,
+        output.stderr
     );
 }
 
@@ -204,8 +208,8 @@ fn incomplete_last_line_is_removed() {
     for lost in [1, 5, 300] {
         let (home, folder, id, good) = played();
         fs::write(folder.join("trajectory.jsonl"), &good[..good.len() - lost]).expect("written");
-        let said = home.play(&["--run", &id], "set_prices A=13\n");
-        assert_eq!(said.exit_code, 0, "{}", said.stderr);
+        let program_output = home.play(&["--run", &id], "set_prices A=13\n");
+        assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
         // The torn line ended a confirmed week, which is simulated again.
         for part in [
             "day 14 of 28",
@@ -213,19 +217,19 @@ fn incomplete_last_line_is_removed() {
             "simulated again",
             "ok set_prices",
         ] {
-            assert!(said.stdout.contains(part), "{part} is missing in {}", said.stdout);
+            assert!(program_output.stdout.contains(part), "{part} is missing in {}", program_output.stdout);
         }
         assert_eq!(home.run(&["replay", &id, "--verify"]).exit_code, 0);
     }
     let (home, folder, id, good) = played();
     let unfinished = [&good[..], &good[..100]].concat();
     fs::write(folder.join("trajectory.jsonl"), unfinished).expect("written");
-    let said = home.play(&["--run", &id], "");
+    let output = home.play(&["--run", &id], "");
     assert!(
-        said.exit_code == 0 && said.stdout.contains("unfinished (100 bytes)"),
+        output.exit_code == 0 && output.stdout.contains("unfinished (100 bytes)"),
         "{}{}",
-        said.stdout,
-        said.stderr
+        output.stdout,
+        output.stderr
     );
     let bytes = read_bytes(&folder, "trajectory.jsonl");
     assert!(
@@ -262,18 +266,23 @@ fn damaged_manifest_is_rebuilt() {
         fs::write(folder.join("run.toml"), text).expect("written");
         let list = home.run(&["runs"]);
         assert!(list.stdout.contains(&id) && !list.stdout.contains("cannot be read"), "{}", list.stdout);
-        let said = home.play(&["--run", &id], "");
-        assert!(said.exit_code == 0 && said.stdout.contains(&part), "{part}: {}{}", said.stdout, said.stderr);
+        let program_output = home.play(&["--run", &id], "");
+        assert!(
+            program_output.exit_code == 0 && program_output.stdout.contains(&part),
+            "{part}: {}{}",
+            program_output.stdout,
+            program_output.stderr
+        );
         assert!(!home.play(&["--run", &id], "").stdout.contains("run.toml"), "it is reported once");
     }
     fs::remove_file(folder.join("run.toml")).expect("gone");
     assert!(!home.run(&["runs"]).stdout.contains("cannot be read"));
-    let said = home.play(&["--run", &id], "");
+    let output = home.play(&["--run", &id], "");
     assert!(
-        said.exit_code == 0 && said.stdout.contains("run.toml was missing"),
+        output.exit_code == 0 && output.stdout.contains("run.toml was missing"),
         "{}{}",
-        said.stdout,
-        said.stderr
+        output.stdout,
+        output.stderr
     );
     let restored = fs::read_to_string(folder.join("run.toml")).expect("text");
     let without_moment = |text: &str| -> Vec<String> {
@@ -313,9 +322,13 @@ fn blocking_files_are_reported() {
         fs::rename(&aside, &path).expect("moved");
     }
     fs::create_dir(folder.join("memo.md")).expect("a folder");
-    let said = home.play(&["--run", &id], "memo remember\nset_prices A=14\n");
-    assert!(said.stdout.contains("refused not_") && said.stdout.contains("memo.md"), "{}", said.stdout);
-    assert!(said.stdout.contains("ok set_prices"), "the game continues: {}", said.stdout);
+    let program_output = home.play(&["--run", &id], "memo remember\nset_prices A=14\n");
+    assert!(
+        program_output.stdout.contains("refused not_") && program_output.stdout.contains("memo.md"),
+        "{}",
+        program_output.stdout
+    );
+    assert!(program_output.stdout.contains("ok set_prices"), "the game continues: {}", program_output.stdout);
 
     let file = home.0.path().join("file");
     fs::write(&file, "in the way").expect("a file");
@@ -394,10 +407,10 @@ fn recovery_creates_a_branch_of_the_undamaged_prefix() {
     let rescued = home.run(&["runs", "recover", &run_id(&folder)]);
     assert_eq!(rescued.exit_code, 0, "{}", rescued.stderr);
     assert!(rescued.stdout.contains("is on day 7"), "{}", rescued.stdout);
-    let own = rescued.stdout.split_whitespace().nth(1).expect("a name").to_owned();
-    assert_eq!(home.run(&["replay", &own, "--verify"]).exit_code, 0);
+    let text = rescued.stdout.split_whitespace().nth(1).expect("a name").to_owned();
+    assert_eq!(home.run(&["replay", &text, "--verify"]).exit_code, 0);
     assert_eq!(fs::read(&path).expect("a trajectory"), bytes, "the damaged run was changed");
-    home.run(&["replay", &own]).assert_fails(2, &["--verify"]);
+    home.run(&["replay", &text]).assert_fails(2, &["--verify"]);
 }
 
 #[test]
@@ -426,20 +439,25 @@ fn a_run_whose_trajectory_cannot_be_read_is_listed_as_such() {
 #[test]
 fn database_of_another_run_is_rebuilt() {
     let (home, other) = (Home::new(), Home::new());
-    let (own, foreign) = (home.two_weeks(), other.two_weeks());
+    let (path, foreign) = (home.two_weeks(), other.two_weeks());
     let hash = |home: &Home| home.run(&["query", "latest", "SELECT sum(amount) FROM ledger"]).stdout;
     let before = hash(&home);
     for suffix in ["", "-wal", "-shm"] {
-        let _ = fs::remove_file(own.join(format!("world.db{suffix}")));
+        let _ = fs::remove_file(path.join(format!("world.db{suffix}")));
     }
-    fs::copy(foreign.join("world.db"), own.join("world.db")).expect("copied");
+    fs::copy(foreign.join("world.db"), path.join("world.db")).expect("copied");
     for remark in [true, false] {
-        let said = home.play(&["--run", &run_id(&own)], "status\n");
-        assert_eq!(said.exit_code, 0, "{}", said.stderr);
-        assert_eq!(said.stdout.contains("world.db belongs to another run"), remark, "{}", said.stdout);
+        let program_output = home.play(&["--run", &run_id(&path)], "status\n");
+        assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
+        assert_eq!(
+            program_output.stdout.contains("world.db belongs to another run"),
+            remark,
+            "{}",
+            program_output.stdout
+        );
     }
     assert_eq!(hash(&home), before);
-    assert_eq!(home.run(&["replay", &run_id(&own), "--verify"]).exit_code, 0);
+    assert_eq!(home.run(&["replay", &run_id(&path), "--verify"]).exit_code, 0);
 }
 
 #[test]
@@ -482,12 +500,14 @@ fn unknown_runs_are_named_with_the_way_to_the_list() {
 #[test]
 fn plain_mode_is_used_without_a_terminal() {
     let home = Home::new();
-    let said = run_with_input(home.program().args(["--seed", "7", "--days", "28"]), "set_prices A=12\n");
-    assert_eq!((said.exit_code, said.stderr.as_str()), (0, ""));
+    let program_output =
+        run_with_input(home.program().args(["--seed", "7", "--days", "28"]), "set_prices A=12\n");
+    assert_eq!((program_output.exit_code, program_output.stderr.as_str()), (0, ""));
     assert!(
-        said.stdout.contains("seed 7 · day 0 of 28") && said.stdout.contains("ok set_prices"),
+        program_output.stdout.contains("seed 7 · day 0 of 28")
+            && program_output.stdout.contains("ok set_prices"),
         "{}",
-        said.stdout
+        program_output.stdout
     );
     let nothing =
         home.program().args(["play", "--days", "28"]).stdin(Stdio::null()).output().expect("it runs");

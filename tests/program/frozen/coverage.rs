@@ -87,9 +87,9 @@ impl Help {
 
 /// Collects every command without subcommands, and its forms with each of their values.
 fn expected(home: &Home, path: &[&str], found: &mut BTreeSet<String>) {
-    let said = home.run(&[path, &["--help"]].concat());
-    assert_eq!(said.exit_code, 0, "{path:?}: {}", said.stderr);
-    let help = Help::read(&said.stdout);
+    let program_output = home.run(&[path, &["--help"]].concat());
+    assert_eq!(program_output.exit_code, 0, "{path:?}: {}", program_output.stderr);
+    let help = Help::read(&program_output.stdout);
     let name = path.join(" ");
     if help.commands.is_empty() {
         found.insert(name.clone());

@@ -70,7 +70,7 @@ impl FrozenHome {
         {
             command.env_remove(variable);
         }
-        let said = if case.in_turn {
+        let program_output = if case.in_turn {
             run_line_by_line(&mut command, &case.input)
         } else {
             run_with_input(&mut command, &case.input)
@@ -81,12 +81,13 @@ impl FrozenHome {
             self.masks.find_class(&place.join(file).join("class.toml"));
             self.masks.find_new_ids(&place.join(file));
         }
-        let mut output = stored_form(self.masks.apply(&said.stdout));
-        if !said.stderr.is_empty() {
-            write!(output, "--- standard error\n{}", self.masks.apply(&said.stderr)).expect("a text");
+        let mut output = stored_form(self.masks.apply(&program_output.stdout));
+        if !program_output.stderr.is_empty() {
+            write!(output, "--- standard error\n{}", self.masks.apply(&program_output.stderr))
+                .expect("a text");
         }
-        if said.exit_code != 0 {
-            writeln!(output, "--- exit code {}", said.exit_code).expect("a text");
+        if program_output.exit_code != 0 {
+            writeln!(output, "--- exit code {}", program_output.exit_code).expect("a text");
         }
         for file in &case.files {
             self.write_file(&place.join(file), &mut output);

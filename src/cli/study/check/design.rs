@@ -29,11 +29,16 @@ fn days_and_horizons(study: &Study, configuration: &Configuration) -> Result<(u3
 /// Reports questionnaires that are due after weeks that a session does not have.
 fn check_questionnaires(study: &Study, weeks: u32) -> Option<CheckItem> {
     let (mut never, mut words) = (false, Vec::new());
-    for own in study.questionnaires.iter().filter(|own| own.when == Occasion::Weeks) {
-        let late: Vec<String> = own.weeks.iter().filter(|week| **week > weeks).map(u32::to_string).collect();
+    for questionnaire in study.questionnaires.iter().filter(|own| own.when == Occasion::Weeks) {
+        let late: Vec<String> =
+            questionnaire.weeks.iter().filter(|week| **week > weeks).map(u32::to_string).collect();
         if !late.is_empty() {
-            never |= late.len() == own.weeks.len();
-            words.push(format!("questions/{}.toml is due after week {}", own.name, late.join(", ")));
+            never |= late.len() == questionnaire.weeks.len();
+            words.push(format!(
+                "questions/{}.toml is due after week {}",
+                questionnaire.name,
+                late.join(", ")
+            ));
         }
     }
     if words.is_empty() {

@@ -73,7 +73,11 @@ impl ComparisonView {
     }
 
     fn resample(&mut self) {
-        let differs = self.comparison.branches.get(self.selected).is_some_and(|own| !own.edits.is_empty());
+        let differs = self
+            .comparison
+            .branches
+            .get(self.selected)
+            .is_some_and(|branch_figures| !branch_figures.edits.is_empty());
         let line = |futures| difference_line(&self.comparison, futures, self.selected, self.shown_figure());
         self.confidence_text = self.futures.as_ref().filter(|_| differs).and_then(line);
     }
@@ -108,8 +112,8 @@ impl ComparisonView {
             self.draw_chart(canvas, split_top(&mut rest, height));
         }
         self.draw_table(canvas, split_top(&mut rest, table), lines);
-        let told = self.selection_lines();
-        for (row, line) in row_rects(rest).zip(&told) {
+        let texts = self.selection_lines();
+        for (row, line) in row_rects(rest).zip(&texts) {
             canvas.draw_text(row, &truncate_to_width(line, row.width as usize), Role::Dim);
         }
     }
@@ -216,16 +220,16 @@ impl ComparisonView {
     /// Describes the uncertainty of the difference and the edits of the selected branch.
     fn selection_lines(&self) -> Vec<String> {
         let Some(branch) = self.comparison.branches.get(self.selected) else { return Vec::new() };
-        let mut told = Vec::new();
+        let mut texts = Vec::new();
         if let Some(futures) = &self.futures {
-            told.push(futures_heading(futures));
-            told.extend(self.confidence_text.iter().map(|line| format!("at the end: {line}")));
-            told.extend(
+            texts.push(futures_heading(futures));
+            texts.extend(self.confidence_text.iter().map(|line| format!("at the end: {line}")));
+            texts.extend(
                 (0..self.comparison.branches.len()).filter_map(|at| describe_bankruptcies(futures, at)),
             );
         }
-        told.extend(describe_decisions(branch, self.days_per_week));
-        told
+        texts.extend(describe_decisions(branch, self.days_per_week));
+        texts
     }
 }
 

@@ -72,7 +72,7 @@ impl DecisionList {
 
     /// Returns the alternatives that have edits.
     pub(super) fn alternatives(&self) -> Vec<Vec<DecisionEdit>> {
-        self.alternatives.iter().filter(|own| !own.is_empty()).cloned().collect()
+        self.alternatives.iter().filter(|decision_edits| !decision_edits.is_empty()).cloned().collect()
     }
 
     pub(super) fn is_typing(&self) -> bool {
@@ -96,7 +96,11 @@ impl DecisionList {
         let edits = self.alternatives[self.current].iter().enumerate();
         let free = edits.filter(|(_, edit)| line_of(edit).is_none()).map(|(at, _)| DecisionRow::Edit(at));
         let from = (self.week - 1) * self.days_per_week;
-        let past = self.recorded().iter().enumerate().filter(|(_, own)| own.day() >= from);
+        let past = self
+            .recorded()
+            .iter()
+            .enumerate()
+            .filter(|(_, recorded_decision)| recorded_decision.day() >= from);
         free.chain(past.map(|(at, _)| DecisionRow::Recorded(at))).collect()
     }
 
@@ -139,7 +143,10 @@ impl DecisionList {
         self.week = week.clamp(1, self.last_week);
         let from = (self.week - 1) * self.days_per_week;
         let past = self.recorded.as_deref().unwrap_or_default();
-        let later = |line: u64| past.iter().any(|own| own.seq() == line && own.day() >= from);
+        let later = |line: u64| {
+            past.iter()
+                .any(|recorded_decision| recorded_decision.seq() == line && recorded_decision.day() >= from)
+        };
         for edits in &mut self.alternatives {
             edits.retain(|edit| line_of(edit).is_none_or(later));
         }
@@ -239,9 +246,9 @@ impl DecisionList {
             _ => {}
         }
         let first = first_visible_row(self.selected, list.height as usize, rows.len());
-        for (row, (at, own)) in row_rects(list).zip(rows.iter().enumerate().skip(first)) {
+        for (row, (at, decision_row)) in row_rects(list).zip(rows.iter().enumerate().skip(first)) {
             let here = at == self.selected && self.input.is_none();
-            let (text, role) = self.row_text(*own);
+            let (text, role) = self.row_text(*decision_row);
             if here {
                 canvas.clear(row, Role::Selection);
             }
@@ -272,20 +279,21 @@ impl DecisionList {
             }
             DecisionRow::Recorded(at) => at,
         };
-        let own = &self.recorded()[at];
-        let week = own.day() / self.days_per_week + 1;
-        let edit = self.edit_of_line(own.seq()).map(|edit| &self.alternatives[self.current][edit]);
+        let recorded_decision = &self.recorded()[at];
+        let week = recorded_decision.day() / self.days_per_week + 1;
+        let edit =
+            self.edit_of_line(recorded_decision.seq()).map(|edit| &self.alternatives[self.current][edit]);
         let (sign, rest, role) = match edit {
             Some(DecisionEdit::Drop(_)) => ("×", " · omitted".to_owned(), Role::Bad),
             Some(DecisionEdit::Change { args, .. }) => ("~", format!(" → {args}"), Role::Strong),
             _ => {
-                let is_refused = own.call().is_some_and(|call| !call.accepted);
-                let remark = own.describe_status();
+                let is_refused = recorded_decision.call().is_some_and(|call| !call.accepted);
+                let remark = recorded_decision.describe_status();
                 let remark = if remark.is_empty() { remark } else { format!(" · {remark}") };
                 (" ", remark, if is_refused { Role::Dim } else { Role::Text })
             }
         };
-        let decided = match own {
+        let decided = match recorded_decision {
             RecordedDecision::Call(call) => format!("{} {}", call.tool.name(), call.args),
             RecordedDecision::Parameter { key, value, .. } => format!("set {key} {value}"),
         };

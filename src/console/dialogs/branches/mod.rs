@@ -39,9 +39,9 @@ pub struct BranchesPage {
 impl BranchesPage {
     /// Opens the page at `week`, which the user can move up to `last_week`. Requests the recorded decisions.
     pub fn new(week: u32, last_week: u32) -> (BranchesPage, OutgoingQuestion) {
-        let (asked, ask) = Pending::with_question(BranchesQuestion::Decisions);
+        let (pending, ask) = Pending::with_question(BranchesQuestion::Decisions);
         let decisions = DecisionList::new(week, last_week);
-        (BranchesPage { decisions, page: BranchesView::Decisions, asked, problem: None }, ask)
+        (BranchesPage { decisions, page: BranchesView::Decisions, asked: pending, problem: None }, ask)
     }
 
     fn request_comparison(&mut self, futures: Option<u32>) -> DialogResponse {

@@ -71,7 +71,7 @@ fn typed_decisions_and_alternatives_are_kept() {
     assert!(dialog_action(&mut page, Action::SimulateBranches, &company).effects.is_empty());
     assert!(dialog_text(&page, &company, 80, 24).contains("change a decision first"));
     type_text(&mut page, "set_price * 2");
-    assert!(page.problem.as_ref().is_some_and(|told| told.contains("did you mean set_prices")));
+    assert!(page.problem.as_ref().is_some_and(|text| text.contains("did you mean set_prices")));
     dialog_action(&mut page, Action::Discard, &company);
     type_text(&mut page, "set_prices * 0.9");
     dialog_action(&mut page, Action::NextAlternative, &company);
@@ -80,8 +80,9 @@ fn typed_decisions_and_alternatives_are_kept() {
     let BranchesQuestion::Compare { week: 5, alternatives, futures: None } = asked(&effects) else {
         panic!("{effects:?}")
     };
-    let told: Vec<String> = alternatives.iter().map(|own| own[0].to_string()).collect();
-    assert_eq!(told, ["set_prices * 0.9", "keep set_prices"]);
+    let texts: Vec<String> =
+        alternatives.iter().map(|decision_edits| decision_edits[0].to_string()).collect();
+    assert_eq!(texts, ["set_prices * 0.9", "keep set_prices"]);
     // The first esc stops the work, the second one closes the page.
     assert!(!dialog_action(&mut page, Action::Cancel, &company).closes && !page.asked.is_waiting());
     assert!(dialog_action(&mut page, Action::Close, &company).closes);

@@ -114,12 +114,12 @@ impl CurveDialog {
     }
 
     fn plans_summary(&self, opened: &CurveExploration) -> String {
-        let words = |(plan, own): (Plan, &PlanPoint)| {
+        let words = |(plan, plan_point): (Plan, &PlanPoint)| {
             format!(
                 "{}{plan} {} {}",
                 self.selection_mark(plan),
-                price_to_cents(own.list_price),
-                format_quality(own.quality)
+                price_to_cents(plan_point.list_price),
+                format_quality(plan_point.quality)
             )
         };
         opened.plans.pairs().map(words).collect::<Vec<_>>().join("  ")
@@ -128,7 +128,7 @@ impl CurveDialog {
     fn draw_chart(&self, canvas: &mut Canvas<'_>, area: Rect, opened: &CurveExploration) {
         let points = &opened.explorer.points;
         let plans = || opened.plans.iter().chain(opened.explorer.plans.iter());
-        let top = plans().map(|own| own.quality).fold(1.0, f64::max);
+        let top = plans().map(|plan_point| plan_point.quality).fold(1.0, f64::max);
         let most = opened.max_price();
         // Unaffordable prices are not drawn: lines end there, and the band extends to its upper edge.
         let line = |of: fn(&CurvePoint) -> f64, role| {

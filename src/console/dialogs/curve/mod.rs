@@ -42,8 +42,8 @@ pub struct CurveDialog {
 impl CurveDialog {
     /// Requests the curve of a group.
     pub fn new(group: Group) -> (CurveDialog, OutgoingQuestion) {
-        let (asked, ask) = Pending::with_question(CurveQuestion(group));
-        (CurveDialog { group, asked, exploration: None, selected_plan: Some(Plan::A) }, ask)
+        let (pending, ask) = Pending::with_question(CurveQuestion(group));
+        (CurveDialog { group, asked: pending, exploration: None, selected_plan: Some(Plan::A) }, ask)
     }
 
     fn set_result(&mut self, explorer: CurveExplorer) -> CurveExploration {
@@ -73,14 +73,15 @@ impl CurveDialog {
     fn adjust_price(&mut self, steps: f64) {
         let Some(most) = self.successful_exploration().map(CurveExploration::max_price) else { return };
         let step = price_step(most);
-        self.adjust_plans(|own| {
-            own.list_price = step_to_multiple(own.list_price, steps, step).clamp(0.0, most)
+        self.adjust_plans(|plan_point| {
+            plan_point.list_price = step_to_multiple(plan_point.list_price, steps, step).clamp(0.0, most)
         });
     }
 
     fn adjust_quality(&mut self, steps: f64) {
-        self.adjust_plans(|own| {
-            own.quality = step_to_multiple(own.quality, steps, QUALITY_STEP).clamp(0.0, MAX_QUALITY)
+        self.adjust_plans(|plan_point| {
+            plan_point.quality =
+                step_to_multiple(plan_point.quality, steps, QUALITY_STEP).clamp(0.0, MAX_QUALITY)
         });
     }
 
@@ -102,7 +103,9 @@ impl CurveDialog {
     /// Requests the curve of the next or previous known group.
     fn change_group(&mut self, forward: bool, look: &ScreenContext<'_>) -> DialogResponse {
         let known = &look.company.observation.known_groups;
-        let Some(at) = known.iter().position(|own| *own == self.group) else { return DialogResponse::stay() };
+        let Some(at) = known.iter().position(|group| *group == self.group) else {
+            return DialogResponse::stay();
+        };
         let step = if forward { 1 } else { known.len() - 1 };
         self.group = known[(at + step) % known.len()];
         self.exploration = None;

@@ -47,12 +47,15 @@ fn adjusting_a_plan_updates_the_outcome() {
 #[test]
 fn adjusted_prices_fill_the_form_without_a_call() {
     let (mut page, company) = explored_page("S1");
-    let shown = dialog_action(&mut page, Action::Open, &company);
-    assert!(matches!(shown.effects[..], [Effect::CloseDialogs, Effect::ShowTool(ToolId::SetPrices)]));
+    let dialog_response = dialog_action(&mut page, Action::Open, &company);
+    assert!(matches!(
+        dialog_response.effects[..],
+        [Effect::CloseDialogs, Effect::ShowTool(ToolId::SetPrices)]
+    ));
     dialog_action(&mut page, Action::Right, &company);
-    let shown = dialog_action(&mut page, Action::Open, &company);
+    let response = dialog_action(&mut page, Action::Open, &company);
     assert!(
-        matches!(&shown.effects[..], [Effect::CloseDialogs, Effect::Prefill { tool: ToolId::SetPrices, arguments }]
+        matches!(&response.effects[..], [Effect::CloseDialogs, Effect::Prefill { tool: ToolId::SetPrices, arguments }]
             if arguments.as_object().is_some_and(|own| own.len() == 1 && own.contains_key("A")))
     );
     let next = dialog_action(&mut page, Action::NextCurve, &company);

@@ -62,9 +62,9 @@ impl NextWeekDialog {
             (false, Some(key)) => format!("{key} fills empty cells"),
             _ => "marked as projection".to_owned(),
         };
-        let said = format!("{fills}: the last four weeks continue at current costs");
+        let text = format!("{fills}: the last four weeks continue at current costs");
         let mut lines: Vec<(String, Role)> =
-            wrap(&said, width).into_iter().map(|line| (line, Role::Dim)).collect();
+            wrap(&text, width).into_iter().map(|line| (line, Role::Dim)).collect();
         if filled && roomy && !look.company.is_baseline() {
             let coverage = wrap(&ErrorBands::bundled().describe_coverage(), width);
             lines.extend(coverage.into_iter().map(|line| (line, Role::Dim)));

@@ -446,11 +446,11 @@ mod tests {
 
     #[test]
     fn rationale_prompts_contain_no_counted_word() {
-        for said in [RATIONALE_QUESTION, RATIONALE_HINT, RATIONALE_NEEDED] {
-            let words = said.to_lowercase();
+        for text in [RATIONALE_QUESTION, RATIONALE_HINT, RATIONALE_NEEDED] {
+            let words = text.to_lowercase();
             let words = words.split(|letter: char| !letter.is_alphabetic());
             let counted: Vec<&str> = words.filter(|word| PLANNING_WORDS.contains(word)).collect();
-            assert_eq!(counted, Vec::<&str>::new(), "{said}");
+            assert_eq!(counted, Vec::<&str>::new(), "{text}");
         }
     }
 }

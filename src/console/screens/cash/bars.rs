@@ -220,10 +220,10 @@ fn draw_week(canvas: &mut Canvas<'_>, column: Rect, line: u16, amounts: &Amounts
             if coloured {
                 draw_eighths(canvas, cell, income, (near, eighths), beyond);
             } else if eighths >= 4 || beyond.is_some() {
-                let own = if eighths >= 4 { near } else { beyond.unwrap_or(near) };
+                let number = if eighths >= 4 { near } else { beyond.unwrap_or(near) };
                 let text: String =
-                    std::iter::repeat_n(CATEGORIES[own].glyph, column.width as usize).collect();
-                canvas.draw_text(cell, &text, Role::Series(own));
+                    std::iter::repeat_n(CATEGORIES[number].glyph, column.width as usize).collect();
+                canvas.draw_text(cell, &text, Role::Series(number));
             }
         }
     }
@@ -339,8 +339,8 @@ mod tests {
         for (week, amounts) in books.last_weeks(6) {
             let net: f64 = amounts.iter().sum();
             let sign = if net < 0.0 { "-" } else { "+" };
-            let told = format!("{sign}{}", novamind_base::formatting::compact_number(net.abs()));
-            assert!(picture.contains(&told), "{told} of week {week} in {picture}");
+            let text = format!("{sign}{}", novamind_base::formatting::compact_number(net.abs()));
+            assert!(picture.contains(&text), "{text} of week {week} in {picture}");
         }
     }
 
@@ -350,7 +350,7 @@ mod tests {
             buffer.content.iter().map(|cell| cell.symbol().to_owned()).collect::<String>()
         };
         let coloured = draw_bars_to_buffer("dark", Marker::Braille);
-        let signs: Vec<char> = CATEGORIES.iter().skip(1).map(|own| own.glyph).collect();
+        let signs: Vec<char> = CATEGORIES.iter().skip(1).map(|category_display| category_display.glyph).collect();
         let bars = letters(&coloured);
         assert!(bars.contains('█') && !bars.contains(['≡', '▒']), "{bars}");
         let mut colours: Vec<_> =

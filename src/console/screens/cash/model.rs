@@ -179,17 +179,17 @@ pub fn cash_steps(books: &WeeklyLedger, company: &DisplayedCompany, week: u32, m
     let mut steps = vec![level(format!("day {}", 7 * (week - 1)), before)];
     let mut cash = before;
     let room = most.saturating_sub(2).max(1);
-    let own = if moved.len() > room { room - 1 } else { moved.len() };
-    for at in &moved[..own] {
+    let number = if moved.len() > room { room - 1 } else { moved.len() };
+    for at in &moved[..number] {
         let to = cash + amounts[*at];
         let (name, subject) = (CATEGORIES[*at].name().to_owned(), LedgerSubject::Category(*at));
         steps.push(CashStep { name, from: cash, to, is_level: false, subject });
         cash = to;
     }
-    if own < moved.len() {
-        let rest: f64 = moved[own..].iter().map(|at| amounts[*at]).sum();
-        let name = if own == 0 { "net" } else { "other costs" }.to_owned();
-        let subject = if own == 0 { LedgerSubject::Net } else { LedgerSubject::Costs };
+    if number < moved.len() {
+        let rest: f64 = moved[number..].iter().map(|at| amounts[*at]).sum();
+        let name = if number == 0 { "net" } else { "other costs" }.to_owned();
+        let subject = if number == 0 { LedgerSubject::Net } else { LedgerSubject::Costs };
         steps.push(CashStep { name, from: cash, to: cash + rest, is_level: false, subject });
     }
     steps.push(level(format!("day {}", (7 * week).min(company.observation.day)), after));

@@ -16,7 +16,7 @@ fn weekly_ledger_agrees_with_the_database() {
         else {
             panic!("{row:?}");
         };
-        let at = CATEGORIES.iter().position(|own| own.category.id() == category).expect("a category");
+        let at = CATEGORIES.iter().position(|category_display| category_display.category.id() == category).expect("a category");
         if *week == 0 {
             assert_eq!((category.as_str(), *amount), ("initial_funding", company.observation.starting_cash));
             continue;

@@ -117,16 +117,16 @@ impl Cohorts {
     /// Summarizes the triangle in at most `room` columns.
     pub fn summary(&self, group: Group, now: u32, room: usize) -> String {
         let mean = |since| self.mean_retention(group, since, now).map(|kept| (since, kept));
-        let told: Vec<String> = [4, 8, 12]
+        let texts: Vec<String> = [4, 8, 12]
             .into_iter()
             .filter_map(mean)
             .map(|(since, kept)| format!("{} after {since} weeks", percent(kept, 0)))
             .collect();
         let fitting = |count: usize| {
-            let words = told[..count].join(", ");
+            let words = texts[..count].join(", ");
             (words.len() <= room).then_some(words)
         };
-        (1..=told.len()).rev().find_map(fitting).unwrap_or_default()
+        (1..=texts.len()).rev().find_map(fitting).unwrap_or_default()
     }
 }
 

@@ -84,7 +84,7 @@ pub fn columns(company: &DisplayedCompany) -> Vec<TableColumn> {
 fn market_share(group: Group, facts: &GroupFacts, company: &DisplayedCompany) -> Option<(f64, f64)> {
     let (market, noise) = (company.insights.get(&group)?.estimates.market_cap, company.fit(group)?.max_relative_error);
     let (least, most) = true_value_range(market as f64, noise);
-    let customers = facts.sum(|held| held.customers);
+    let customers = facts.sum(|plan_subscribers| plan_subscribers.customers);
     (market > 0).then(|| (customers / most, customers / least))
 }
 
@@ -120,8 +120,8 @@ fn group_cell(what: GroupColumn, group: Group, facts: &GroupFacts, company: &Dis
             let noise = company.tool_limits.study_level(level).map_or(0.0, |level| level.noise);
             TableCell::from_number(f64::from(level), format!("{level} ±{}", percent(noise, 0)))
         }
-        GroupColumn::Customers => count_cell(facts.sum(|held| held.customers)),
-        GroupColumn::Seats => optional_cell(large.then(|| facts.sum(|held| held.seats)), &|seats| grouped_number(seats, 0)),
+        GroupColumn::Customers => count_cell(facts.sum(|plan_subscribers| plan_subscribers.customers)),
+        GroupColumn::Seats => optional_cell(large.then(|| facts.sum(|subscribers| subscribers.seats)), &|seats| grouped_number(seats, 0)),
         GroupColumn::MarketShare => match market_share(group, facts, company) {
             Some((least, most)) => {
                 TableCell::from_number(most, format!("{:.1} to {}", least * 100.0, percent(most.min(1.0), 1)))
@@ -282,6 +282,6 @@ fn statement(what: GroupColumn, group: Group, week: u32, day: u32) -> Option<Str
 }
 
 pub fn figure_named(head: &str, group: Group, company: &DisplayedCompany) -> Option<Figure> {
-    let column = visible_columns(company).position(|(_, own, _)| *own == head)?;
+    let column = visible_columns(company).position(|(_, text, _)| *text == head)?;
     figure(group, column, company)
 }

@@ -152,10 +152,10 @@ fn enterprise_lines(company: &DisplayedCompany, group: Group) -> Vec<FactLine> {
 }
 
 fn plans(facts: &GroupFacts, group: Group, bars: usize) -> Vec<FactLine> {
-    let customers = facts.sum(|held| held.customers).max(1.0);
-    let line = |(plan, held): (&Plan, &super::model::PlanSubscribers)| {
-        let share = held.customers / customers;
-        let figures = format!("{:>9} {:>6}", grouped_number(held.customers, 0), percent(share, 0));
+    let customers = facts.sum(|plan_subscribers| plan_subscribers.customers).max(1.0);
+    let line = |(plan, subscribers): (&Plan, &super::model::PlanSubscribers)| {
+        let share = subscribers.customers / customers;
+        let figures = format!("{:>9} {:>6}", grouped_number(subscribers.customers, 0), percent(share, 0));
         let sql = format!(
             "SELECT s.customer_id, s.plan, s.seat_count, s.effective_price, s.start_day\nFROM subscriptions s\n\
              JOIN customers c ON c.customer_id = s.customer_id\nWHERE c.group_id = '{group}'\n    \
@@ -175,10 +175,10 @@ fn sources(company: &DisplayedCompany, facts: &GroupFacts, group: Group) -> Vec<
     let mut sources: Vec<_> = facts.sources.iter().collect();
     sources.sort_by(|left, right| right.1.0.total_cmp(&left.1.0));
     let leads = sources.iter().map(|(_, (leads, _))| leads).sum::<f64>().max(1.0);
-    for (source, (own, signed)) in sources {
-        let conversion = if *own > 0.0 { percent(signed / own, 0) } else { "–".to_owned() };
-        let share = percent(own / leads, 0);
-        let figures = format!("{:>6}{share:>6}{conversion:>6}", compact_number(*own));
+    for (source, (value, signed)) in sources {
+        let conversion = if *value > 0.0 { percent(signed / value, 0) } else { "–".to_owned() };
+        let share = percent(value / leads, 0);
+        let figures = format!("{:>6}{share:>6}{conversion:>6}", compact_number(*value));
         let sql = format!(
             "SELECT c.customer_id, c.created_day, s.plan, s.status, s.start_day, s.end_day\nFROM customers c\n\
              JOIN subscriptions s ON s.customer_id = c.customer_id\nWHERE c.group_id = '{group}'\n    \
@@ -211,7 +211,7 @@ fn money_lines(company: &DisplayedCompany, market: &CustomerData, facts: &GroupF
     let explained = churn.as_ref().and_then(|figure| figure.week_quantity);
     let rows = |figure: &Option<Figure>| figure.as_ref().and_then(|figure| figure.sql.clone());
     for (name, value, term, sql) in [
-        ("revenue a month", dollars(facts.sum(|held| held.monthly_revenue)), "mrr", rows(&revenue)),
+        ("revenue a month", dollars(facts.sum(|plan_subscribers| plan_subscribers.monthly_revenue)), "mrr", rows(&revenue)),
         (
             if group.is_enterprise() { "per seat" } else { "per subscriber" },
             or_none(facts.revenue_per_seat(), cents),

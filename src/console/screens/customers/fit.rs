@@ -95,12 +95,12 @@ fn lines(fit: &Fit, width: usize, tier: &dyn Fn(Plan) -> String) -> Vec<FitLine>
     lines.push(line(format!("price    budget {}{per}", fit.budget.format_money()), Role::Header));
     let prices = Plan::ALL.map(|plan| fit.plans[plan].lead_price);
     lines.extend(Plan::ALL.map(|plan| {
-        let own = &fit.plans[plan];
-        let name = if own.lead_price < own.list_price { "lead" } else { "list" };
+        let plan_fit = &fit.plans[plan];
+        let name = if plan_fit.lead_price < plan_fit.list_price { "lead" } else { "list" };
         bar_line(
             fit,
             (plan, FitCriterion::Price),
-            (name, &price_to_cents(own.lead_price)),
+            (name, &price_to_cents(plan_fit.lead_price)),
             (fit.budget, &prices),
             width,
         )

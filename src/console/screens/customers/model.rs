@@ -68,7 +68,7 @@ impl GroupFacts {
 
     /// Returns the subscriptions at the end of each of the last weeks, computed backwards from today's.
     pub fn subscriptions_by_week(&self, week: u32) -> Vec<(u32, f64)> {
-        let mut stock = self.sum(|held| held.customers);
+        let mut stock = self.sum(|plan_subscribers| plan_subscribers.customers);
         let mut all = Vec::new();
         for (week, _) in self.weekly_values(week, |_| 0.0).into_iter().rev() {
             all.push((week, stock));
@@ -81,20 +81,20 @@ impl GroupFacts {
 
     /// Returns the 30-day churn as a share.
     pub fn churn(&self) -> Option<f64> {
-        let before = self.sum(|held| held.active_30_days_ago) + self.lost_in_30_days;
+        let before = self.sum(|plan_subscribers| plan_subscribers.active_30_days_ago) + self.lost_in_30_days;
         (before > 0.0).then(|| self.lost_in_30_days / before)
     }
 
     /// Returns the dollars per month and seat.
     pub fn revenue_per_seat(&self) -> Option<f64> {
-        let seats = self.sum(|held| held.seats);
-        (seats > 0.0).then(|| self.sum(|held| held.monthly_revenue) / seats)
+        let seats = self.sum(|plan_subscribers| plan_subscribers.seats);
+        (seats > 0.0).then(|| self.sum(|subscribers| subscribers.monthly_revenue) / seats)
     }
 
     /// Returns the units per seat on the last day.
     pub fn usage(&self) -> Option<f64> {
-        let users = self.sum(|held| held.users);
-        (users > 0.0).then(|| self.sum(|held| held.units) / users)
+        let users = self.sum(|plan_subscribers| plan_subscribers.users);
+        (users > 0.0).then(|| self.sum(|subscribers| subscribers.units) / users)
     }
 }
 
@@ -137,15 +137,15 @@ impl CustomerData {
         self.clear_reading(reading);
         for row in &rows.rows {
             match reading {
-                Reading::Subscribers => self.update_plan(row, |held, row| {
-                    held.customers = number_at(row, 2);
-                    held.seats = number_at(row, 3);
-                    held.monthly_revenue = number_at(row, 4);
-                    held.active_30_days_ago = number_at(row, 5);
+                Reading::Subscribers => self.update_plan(row, |plan_subscribers, row| {
+                    plan_subscribers.customers = number_at(row, 2);
+                    plan_subscribers.seats = number_at(row, 3);
+                    plan_subscribers.monthly_revenue = number_at(row, 4);
+                    plan_subscribers.active_30_days_ago = number_at(row, 5);
                 }),
-                Reading::Usage => self.update_plan(row, |held, row| {
-                    held.users = number_at(row, 2);
-                    held.units = number_at(row, 4);
+                Reading::Usage => self.update_plan(row, |subscribers, row| {
+                    subscribers.users = number_at(row, 2);
+                    subscribers.units = number_at(row, 4);
                 }),
                 Reading::Arrivals => self.add_leads(row),
                 Reading::Departures => {
@@ -173,11 +173,11 @@ impl CustomerData {
         }
         for facts in self.groups.values_mut() {
             match reading {
-                Reading::Subscribers => facts.plans.iter_mut().for_each(|held| {
-                    *held = PlanSubscribers { users: held.users, units: held.units, ..PlanSubscribers::default() };
+                Reading::Subscribers => facts.plans.iter_mut().for_each(|plan_subscribers| {
+                    *plan_subscribers = PlanSubscribers { users: plan_subscribers.users, units: plan_subscribers.units, ..PlanSubscribers::default() };
                 }),
-                Reading::Usage => facts.plans.iter_mut().for_each(|held| {
-                    *held = PlanSubscribers { users: 0.0, units: 0.0, ..*held };
+                Reading::Usage => facts.plans.iter_mut().for_each(|subscribers| {
+                    *subscribers = PlanSubscribers { users: 0.0, units: 0.0, ..*subscribers };
                 }),
                 Reading::Arrivals => {
                     facts.sources.clear();
@@ -220,8 +220,8 @@ impl CustomerData {
 /// Returns the advertising budget of a group in a channel, $ per day.
 pub fn ad_budget(company: &DisplayedCompany, channel: Channel, group: Group) -> f64 {
     let spend = company.settings.get(&ToolId::SetTargetedAdSpend).and_then(|all| all.get("targeted_spend"));
-    let own = spend.and_then(|all| all.get(channel.id())).and_then(|groups| groups.get(group.id()));
-    own.and_then(Value::as_f64).unwrap_or(0.0)
+    let value = spend.and_then(|all| all.get(channel.id())).and_then(|groups| groups.get(group.id()));
+    value.and_then(Value::as_f64).unwrap_or(0.0)
 }
 
 /// Returns the advertising budget of a group in all channels, $ per day.

@@ -20,12 +20,12 @@ fn group_sums_equal_the_week_figures() {
     };
     let week = company.observation.last_week.expect("a week");
     let now = |figure: fn(&WeekFlow) -> f64| move |facts: &GroupFacts| figure(&facts.week(6));
-    assert_eq!(sum(&|facts| facts.sum(|held| held.customers), false), f64::from(week.individual_subscribers));
+    assert_eq!(sum(&|facts| facts.sum(|plan_subscribers| plan_subscribers.customers), false), f64::from(week.individual_subscribers));
     assert_eq!(sum(&now(|flow| flow.leads), false), f64::from(week.new_individual_leads));
     assert_eq!(sum(&now(|flow| flow.signups), false), f64::from(week.new_individual_subscribers));
     assert_eq!(sum(&now(|flow| flow.cancellations), false), f64::from(week.cancellations));
     let monthly: f64 =
-        [false, true].map(|kind| sum(&|facts| facts.sum(|held| held.monthly_revenue), kind)).iter().sum();
+        [false, true].map(|kind| sum(&|facts| facts.sum(|subscribers| subscribers.monthly_revenue), kind)).iter().sum();
     assert!((monthly - week.recurring_revenue).abs() < 0.01);
     let stock = screen.data.facts_of_group(group("S1")).subscriptions_by_week(6);
     let held = screen.data.facts_of_group(group("S1")).sum(|held| held.customers);
@@ -41,7 +41,7 @@ fn applying_rows_replaces_earlier_rows() {
     let row = |cells: &[Value]| QueryResult { rows: vec![cells.to_vec()], ..QueryResult::default() };
     let text = |text: &str| Value::Text(text.to_owned());
     let mut market = CustomerData::default();
-    let held = row(&[
+    let query_result = row(&[
         text("S1"),
         text("B"),
         Value::Integer(10),
@@ -51,7 +51,7 @@ fn applying_rows_replaces_earlier_rows() {
     ]);
     let left = row(&[Value::Integer(3), text("S1"), Value::Integer(2), Value::Integer(2)]);
     for _ in 0..2 {
-        market.apply_rows(Reading::Subscribers, &held);
+        market.apply_rows(Reading::Subscribers, &query_result);
         market.apply_rows(Reading::Departures, &left);
     }
     let facts = market.facts_of_group(group("S1"));
@@ -114,8 +114,8 @@ fn table_figures_equal_their_rows() {
         let facts = screen.data.facts_of_group(*group);
         let flow = facts.week(7);
         for (head, shown, what) in [
-            ("subs", facts.sum(|held| held.customers), "count(*)"),
-            ("billed seats", facts.sum(|held| held.seats), "sum(seat_count)"),
+            ("subs", facts.sum(|plan_subscribers| plan_subscribers.customers), "count(*)"),
+            ("billed seats", facts.sum(|subscribers| subscribers.seats), "sum(seat_count)"),
             ("billed/mo", facts.sum(|held| held.monthly_revenue), "sum(amount)"),
             ("leads", flow.leads, "count(*)"),
             ("new", flow.signups, "count(*)"),

@@ -35,12 +35,12 @@ impl TrueValue {
         cell.with_role(Role::Changed)
     }
 
-    fn value_and_text(self, own: &TrueGroupValues) -> Option<(f64, String)> {
+    fn value_and_text(self, group_values: &TrueGroupValues) -> Option<(f64, String)> {
         match self {
-            TrueValue::Satisfaction => own.satisfaction.map(|value| (value, grouped_number(value, 3))),
-            TrueValue::Reputation => Some((own.reputation, grouped_number(own.reputation, 3))),
-            TrueValue::Leads => own.is_known.then(|| (own.expected_leads, grouped_number(own.expected_leads, 1))),
-            TrueValue::Market => Some(match own.market_cap {
+            TrueValue::Satisfaction => group_values.satisfaction.map(|value| (value, grouped_number(value, 3))),
+            TrueValue::Reputation => Some((group_values.reputation, grouped_number(group_values.reputation, 3))),
+            TrueValue::Leads => group_values.is_known.then(|| (group_values.expected_leads, grouped_number(group_values.expected_leads, 1))),
+            TrueValue::Market => Some(match group_values.market_cap {
                 cap if cap > 0.0 => (cap, grouped_number(cap, 0)),
                 _ => (f64::INFINITY, "no limit".to_owned()),
             }),

@@ -80,9 +80,9 @@ impl Pane<Customers> for WeeksPane {
 
     fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
         let Some(group) = customers.group(look.company) else { return };
-        let own = customers.data.facts_of_group(group);
+        let group_facts = customers.data.facts_of_group(group);
         let week = look.company.observation.week;
-        let trend = |figure: fn(&WeekFlow) -> f64| points(own.weekly_values(week, figure));
+        let trend = |figure: fn(&WeekFlow) -> f64| points(group_facts.weekly_values(week, figure));
         let lines = [
             Curve::from_points(trend(|flow| flow.leads), Role::Series(2)).with_name("leads"),
             Curve::from_points(trend(|flow| flow.signups), Role::Good).with_name("new"),
@@ -130,7 +130,7 @@ fn draw_plot(canvas: &mut Canvas<'_>, area: Rect, lines: &[Curve], mark: Option<
 /// Describes a week: the selected flow with its change, or all flows.
 fn flow_summary(facts: &GroupFacts, week: u32, flow: usize, room: usize) -> String {
     let (now, before) = (facts.week(week), facts.week(week.saturating_sub(1)));
-    let of = |own: &WeekFlow| [own.leads, own.signups, own.cancellations];
+    let of = |week_flow: &WeekFlow| [week_flow.leads, week_flow.signups, week_flow.cancellations];
     let whole = |value: f64| grouped_number(value, 0);
     if let Some((name, ..)) = FLOWS.get(flow) {
         let (now, before) = (of(&now)[flow], of(&before)[flow]);

@@ -12,7 +12,7 @@ const DAYS_PER_MONTH: f64 = 30.0;
 /// Returns the sales figures for the rules.
 pub fn rules_market(company: &DisplayedCompany, usage: &SeatUsage) -> PlanEconomics {
     let per_plan = |tool: ToolId| Plan::ALL.map(|plan| company.setting(tool, plan.id()));
-    let studied = company.insights.iter().map(|(group, told)| (*group, told.estimates.usage_volume));
+    let studied = company.insights.iter().map(|(group, group_insights)| (*group, group_insights.estimates.usage_volume));
     PlanEconomics {
         list_prices: per_plan(ToolId::SetPrices),
         quotas: per_plan(ToolId::SetUsageQuotas),

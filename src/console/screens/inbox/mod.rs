@@ -177,7 +177,7 @@ impl Inbox {
     fn waiting_threads(&self, company: &DisplayedCompany) -> Vec<ThreadContext> {
         let market = rules_market(company, &self.usage);
         let waiting = company.observation.waiting.iter();
-        waiting.map(|own| ThreadContext::new(own, &self.asked_plans, &market)).collect()
+        waiting.map(|waiting_thread| ThreadContext::new(waiting_thread, &self.asked_plans, &market)).collect()
     }
 
     /// Selects a waiting thread.
@@ -218,8 +218,8 @@ impl Inbox {
             return self.rule.clone().unwrap_or_else(OfferDraft::at_list_price);
         }
         let Some(thread) = self.selected_thread() else { return OfferDraft::at_list_price() };
-        let own = self.drafts.get(&thread.number).or(self.last_offer.as_ref()).cloned();
-        own.unwrap_or_else(|| OfferDraft::initial_for(thread))
+        let offer_draft = self.drafts.get(&thread.number).or(self.last_offer.as_ref()).cloned();
+        offer_draft.unwrap_or_else(|| OfferDraft::initial_for(thread))
     }
 
     fn set_offer(&mut self, offer: OfferDraft) {
@@ -320,7 +320,7 @@ impl ScreenState for Inbox {
     fn apply_rows(&mut self, reading: Reading, rows: &QueryResult, look: &ScreenContext<'_>) {
         match reading {
             Reading::FirstOffers => {
-                self.outcomes.iter_mut().for_each(|own| own.set_rows(rows));
+                self.outcomes.iter_mut().for_each(|offer_outcomes| offer_outcomes.set_rows(rows));
                 return;
             }
             Reading::Usage => self.usage = SeatUsage::from_rows(rows),
@@ -442,8 +442,8 @@ impl PaneScreen for Inbox {
             Action::RejectOffer => return Some(self.confirm_rejection(look.company)),
             Action::InboxGroup => {
                 let group = self.selected_thread().and_then(|thread| Group::parse(&thread.group));
-                let shown = group.map(|group| Effect::ShowGroup(ScreenId::Customers, group));
-                return Some(shown.into_iter().collect());
+                let effect = group.map(|group| Effect::ShowGroup(ScreenId::Customers, group));
+                return Some(effect.into_iter().collect());
             }
             Action::InboxSql => return Some(self.selected_thread().map(sending::statement).into_iter().collect()),
             _ => return None,
@@ -474,11 +474,11 @@ impl PaneScreen for Inbox {
             Layout::vertical([Constraint::Min(0), Constraint::Length(OFFER_HEIGHT)]).areas(right);
         draw_pane(self, first, canvas, list, look);
         // Messages are drawn above the preview if both fit.
-        let beside = match !self.marked.is_empty() && above.height >= 20 {
+        let constraint = match !self.marked.is_empty() && above.height >= 20 {
             true => Constraint::Percentage(45),
             false => Constraint::Length(0),
         };
-        let [said, own] = Layout::vertical([beside, Constraint::Min(0)]).areas(above);
+        let [said, own] = Layout::vertical([constraint, Constraint::Min(0)]).areas(above);
         if !said.is_empty() {
             canvas.register_click(said, Click::Pane(Thread as usize));
             thread::draw_side_thread(self, canvas, said, look);

@@ -89,8 +89,8 @@ impl Thread {
 
     /// Returns the last price that the enterprise named, with the plan if its message names one.
     pub fn asked_price(&self) -> Option<(Option<Plan>, f64)> {
-        if let Some(own) = &self.waiting_thread {
-            return Some((own.asked_plan, own.waiting.asked?));
+        if let Some(thread_context) = &self.waiting_thread {
+            return Some((thread_context.asked_plan, thread_context.waiting.asked?));
         }
         let turn = self.messages.iter().rev().find(|turn| turn.price.is_some())?;
         Some((first_plan_in(&turn.text).or_else(|| self.single_offered_plan()), turn.price?))
@@ -99,7 +99,7 @@ impl Thread {
     /// Returns the plan for its price, or the plan whose price it asks about.
     pub fn asked_plan(&self) -> Option<Plan> {
         match &self.waiting_thread {
-            Some(own) => own.asked_plan,
+            Some(thread_context) => thread_context.asked_plan,
             None => self.asked_price()?.0,
         }
     }
@@ -128,11 +128,11 @@ impl Thread {
 
     /// Returns the player's last offer.
     pub fn last_offer(&self) -> &[(Plan, f64)] {
-        if let Some(own) = &self.waiting_thread {
-            return &own.waiting.last_offer;
+        if let Some(thread_context) = &self.waiting_thread {
+            return &thread_context.waiting.last_offer;
         }
-        let own = self.messages.iter().rev().find(|turn| !turn.offers.is_empty());
-        own.map_or(&[], |turn| &turn.offers)
+        let thread_message = self.messages.iter().rev().find(|turn| !turn.offers.is_empty());
+        thread_message.map_or(&[], |turn| &turn.offers)
     }
 }
 
@@ -175,7 +175,7 @@ impl ThreadStore {
     /// Combines the threads with the waiting ones and sorts them.
     pub fn merge_waiting(&mut self, waiting: Vec<ThreadContext>, names: &EnterpriseNames) {
         let mut left = self.recorded.clone();
-        let mut threads: Vec<Thread> = waiting.into_iter().map(|own| thread_from_waiting(own, &mut left)).collect();
+        let mut threads: Vec<Thread> = waiting.into_iter().map(|thread_context| thread_from_waiting(thread_context, &mut left)).collect();
         // An enterprise has at most one open thread, its newest.
         let mut newest: BTreeSet<u32> = threads.iter().map(|thread| thread.customer).collect();
         for (_, mut thread) in left.into_iter().rev() {

@@ -189,7 +189,7 @@ fn offer_notes(
         notes.push((text, Role::Warning));
     }
     if let Some((_, price)) = thread.asked_price() {
-        let best = offers.iter().map(|(_, own)| own - price).fold(f64::INFINITY, f64::min);
+        let best = offers.iter().map(|(_, value)| value - price).fold(f64::INFINITY, f64::min);
         let sign = if best < 0.0 { "-" } else { "+" };
         notes.push((format!("asking price {}; yours {sign}{}", cents(price), cents(best.abs())), Role::Text));
     }

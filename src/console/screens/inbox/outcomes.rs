@@ -85,25 +85,25 @@ fn columns() -> Vec<TableColumn> {
     columns
 }
 
-fn row_of(own: &FirstOfferOutcome) -> Vec<TableCell> {
+fn row_of(offer_outcome: &FirstOfferOutcome) -> Vec<TableCell> {
     let count = |value: f64| TableCell::from_number(value, grouped_number(value, 0));
-    let prices = format!("{}–{}", grouped_number(own.price_from, 0), grouped_number(own.price_below - 0.01, 2));
+    let prices = format!("{}–{}", grouped_number(offer_outcome.price_from, 0), grouped_number(offer_outcome.price_below - 0.01, 2));
     vec![
-        count(own.week),
-        TableCell::from_text(&own.group).with_role(Role::Strong),
-        TableCell::from_text(&own.plan),
-        TableCell::from_number(own.price_from, prices),
-        count(own.threads),
-        count(own.deals),
-        TableCell::from_number(own.deal_percent, format!("{} %", grouped_number(own.deal_percent, 1))),
-        count(own.lost),
-        count(own.waiting),
+        count(offer_outcome.week),
+        TableCell::from_text(&offer_outcome.group).with_role(Role::Strong),
+        TableCell::from_text(&offer_outcome.plan),
+        TableCell::from_number(offer_outcome.price_from, prices),
+        count(offer_outcome.threads),
+        count(offer_outcome.deals),
+        TableCell::from_number(offer_outcome.deal_percent, format!("{} %", grouped_number(offer_outcome.deal_percent, 1))),
+        count(offer_outcome.lost),
+        count(offer_outcome.waiting),
     ]
 }
 
 /// Selects the threads of a row, oldest first.
-fn statement(own: &FirstOfferOutcome) -> String {
-    let FirstOfferOutcome { group, plan, price_from, price_below, week, .. } = own;
+fn statement(offer_outcome: &FirstOfferOutcome) -> String {
+    let FirstOfferOutcome { group, plan, price_from, price_below, week, .. } = offer_outcome;
     format!(
         "SELECT t.thread_id, t.customer_id, t.day, t.offer_json, s.status,\n    EXISTS (\n        SELECT 1 FROM \
          enterprise_turns e WHERE e.thread_id = t.thread_id AND e.close_reason = 'accepted'\n    ) AS is_signed\n\
@@ -152,11 +152,11 @@ pub struct OutcomesPane;
 
 impl Pane<Inbox> for OutcomesPane {
     fn table<'a>(&self, inbox: &'a Inbox) -> Option<&'a Table> {
-        inbox.outcomes.as_ref().map(|own| &own.table)
+        inbox.outcomes.as_ref().map(|offer_outcomes| &offer_outcomes.table)
     }
 
     fn table_mut<'a>(&self, inbox: &'a mut Inbox) -> Option<&'a mut Table> {
-        inbox.outcomes.as_mut().map(|own| &mut own.table)
+        inbox.outcomes.as_mut().map(|offer_outcomes| &mut offer_outcomes.table)
     }
 
     fn scopes(&self, inbox: &Inbox) -> Vec<Scope> {
@@ -174,10 +174,10 @@ impl Pane<Inbox> for OutcomesPane {
     }
 
     fn figure(&self, inbox: &Inbox, _: &ScreenContext<'_>) -> Option<Figure> {
-        let own = inbox.outcomes.as_ref()?.selected()?;
+        let offer_outcome = inbox.outcomes.as_ref()?.selected()?;
         let title =
-            format!("threads of {} with a first offer of {} in week {}", own.group, own.plan, own.week);
-        Some(Figure { title, term: "offer", sql: Some(statement(own)), week_quantity: None })
+            format!("threads of {} with a first offer of {} in week {}", offer_outcome.group, offer_outcome.plan, offer_outcome.week);
+        Some(Figure { title, term: "offer", sql: Some(statement(offer_outcome)), week_quantity: None })
     }
 
     fn handle_action(&self, inbox: &mut Inbox, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
@@ -196,7 +196,7 @@ impl Pane<Inbox> for OutcomesPane {
             ..72 => "By first offer and week",
             _ => "Outcome by first offer and week",
         };
-        let note = match inbox.outcomes.as_ref().map(|own| own.table.summary()) {
+        let note = match inbox.outcomes.as_ref().map(|offer_outcomes| offer_outcomes.table.summary()) {
             Some(note) if !note.is_empty() => note,
             _ => "new leads".to_owned(),
         };
@@ -205,8 +205,8 @@ impl Pane<Inbox> for OutcomesPane {
     }
 
     fn draw(&self, inbox: &Inbox, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
-        let Some(own) = &inbox.outcomes else { return };
-        let text = match own.rows.as_deref() {
+        let Some(offer_outcomes) = &inbox.outcomes else { return };
+        let text = match offer_outcomes.rows.as_deref() {
             None => "reading …".to_owned(),
             Some([]) => {
                 let send = look.keys.label(Action::SendOffer).unwrap_or_default();
@@ -214,7 +214,7 @@ impl Pane<Inbox> for OutcomesPane {
                     "No new lead has been sent an offer yet. Send one with {send} in the list of threads."
                 )
             }
-            Some(_) => return own.table.draw(canvas, seat.area, seat.focused, seat.index),
+            Some(_) => return offer_outcomes.table.draw(canvas, seat.area, seat.focused, seat.index),
         };
         let lines = wrap(&text, seat.area.width as usize);
         for (row, line) in novamind_tui::canvas::row_rects(seat.area).zip(lines) {

@@ -190,15 +190,15 @@ impl Inbox {
 }
 
 fn draw_rule_match(canvas: &mut Canvas<'_>, row: Rect, ruled: &RuleOutcome, look: &ScreenContext<'_>) {
-    let own = &ruled.thread.waiting;
+    let waiting_thread = &ruled.thread.waiting;
     let rule = ruled.rule_index.map_or(0, |at| at + 1);
-    let asked = own.asked.map_or("–".to_owned(), cents);
+    let asked = waiting_thread.asked.map_or("–".to_owned(), cents);
     let words = format!(
         "{rule}  #{} {}  {asked} → {}  {}",
-        own.customer,
-        own.group,
+        waiting_thread.customer,
+        waiting_thread.group,
         ruled.describe_reply(),
-        look.company.company_names.name(own.customer)
+        look.company.company_names.name(waiting_thread.customer)
     );
     let role = if ruled.reply.is_ok() { Role::Text } else { Role::Warning };
     canvas.draw_text(row, &words, role);

@@ -323,8 +323,8 @@ fn answered_enterprise_stays_in_the_list() {
     assert_eq!((thread.customer, thread.state), (first.customer, ThreadState::WaitingForCustomer));
     assert_eq!(thread.last_offer(), [(Plan::B, 32.0)]);
     assert_eq!(thread.seats, first.seats);
-    let again = handle_action(&mut screen, Action::SendOffer, &after);
-    assert!(matches!(&again[..], [Effect::ConfirmCall { text, .. }] if text.contains("uses another turn")));
+    let effects = handle_action(&mut screen, Action::SendOffer, &after);
+    assert!(matches!(&effects[..], [Effect::ConfirmCall { text, .. }] if text.contains("uses another turn")));
 }
 
 #[test]
@@ -378,8 +378,8 @@ fn first_offer_outcomes_agree_with_turns_and_subscriptions() {
     let mut session = run_with_first_offers();
     let company = DisplayedCompany::from_session(&session);
     let mut screen: Inbox = loaded_screen(&mut session, &company);
-    let asked = handle_action(&mut screen, Action::InboxOutcomes, &company);
-    assert!(matches!(&asked[..], [Effect::Read(Reading::FirstOffers)]), "{asked:?}");
+    let effects = handle_action(&mut screen, Action::InboxOutcomes, &company);
+    assert!(matches!(&effects[..], [Effect::Read(Reading::FirstOffers)]), "{effects:?}");
     assert!(screen_text(&screen, &company, 80, 21).contains("reading …"));
     let keys = KeyBindings::bundled();
     let look = ScreenContext { company: &company, keys: &keys, page_rows: 20 };

@@ -130,7 +130,7 @@ fn empty_text(inbox: &Inbox, look: &ScreenContext<'_>) -> String {
         return format!("No threads here. {} shows others.", key(Action::NextThreadView));
     }
     let funnels: Vec<String> =
-        look.company.funnels.iter().map(|own| format!("· {}", own.describe())).collect();
+        look.company.funnels.iter().map(|funnel| format!("· {}", funnel.describe())).collect();
     format!(
         "No enterprise has asked for an offer yet. Advertise to enterprise groups ({} set_targeted_ad_spend). A higher \
          model tier, development for their group and a quota for all seats make a plan more attractive.\n\n{}",
@@ -176,7 +176,7 @@ pub(super) fn row_of(thread: &Thread, marked: bool) -> Vec<TableCell> {
         (_, Some(turn)) => TableCell::from_number(f64::from(turn.day), format!("day {}", turn.day)).with_role(Role::Dim),
         (_, None) => TableCell::from_text("–").with_role(Role::Dim),
     };
-    let asked = match (thread.asked_price(), thread.asked_plan()) {
+    let table_cell = match (thread.asked_price(), thread.asked_plan()) {
         (Some((_, price)), plan) => {
             let plan = plan.map_or(String::new(), |plan| format!("{plan} "));
             TableCell::from_number(price, format!("{plan}${}", grouped_number(price, 2)))
@@ -199,10 +199,10 @@ pub(super) fn row_of(thread: &Thread, marked: bool) -> Vec<TableCell> {
         TableCell::from_number(f64::from(thread.customer), format!("#{}", thread.customer)),
         TableCell::from_text(&thread.group).with_role(Role::Strong),
         TableCell::from_number(thread.seats, grouped_number(thread.seats, 0)),
-        asked,
+        table_cell,
         TableCell::from_text(thread.kind_label()),
         end,
-        number_cell(thread.waiting_thread.as_ref().map(|own| f64::from(own.waiting.offers_so_far))),
-        number_cell(thread.waiting_thread.as_ref().and_then(|own| own.required_quota)),
+        number_cell(thread.waiting_thread.as_ref().map(|thread_context| f64::from(thread_context.waiting.offers_so_far))),
+        number_cell(thread.waiting_thread.as_ref().and_then(|context| context.required_quota)),
     ]
 }

@@ -37,13 +37,13 @@ pub fn empty_table() -> Table {
 }
 
 /// Returns the rows of a tree, with the current run marked.
-pub fn rows(tree: &[RelatedRun], own: &str) -> Vec<Vec<TableCell>> {
-    tree.iter().map(|kin| row(kin, own)).collect()
+pub fn rows(tree: &[RelatedRun], text: &str) -> Vec<Vec<TableCell>> {
+    tree.iter().map(|kin| row(kin, text)).collect()
 }
 
-fn row(kin: &RelatedRun, own: &str) -> Vec<TableCell> {
+fn row(kin: &RelatedRun, text: &str) -> Vec<TableCell> {
     let run = &kin.run;
-    let (mark, role) = if run.id == own { (" ◂", Role::Strong) } else { ("", Role::Text) };
+    let (mark, role) = if run.id == text { (" ◂", Role::Strong) } else { ("", Role::Text) };
     let left = match kin.branched_in_week {
         Some(week) => TableCell::from_number(week.into(), format!("week {week}")),
         None => TableCell::from_text(""),
@@ -83,8 +83,8 @@ impl Journal {
         let is_first = self.tree.is_empty();
         (self.tree, self.is_tree_read) = (tree, true);
         self.branches.set_rows(rows(&self.tree, run));
-        if is_first && let Some(own) = self.tree.iter().position(|kin| kin.run.id == *run) {
-            self.branches.select(own);
+        if is_first && let Some(number) = self.tree.iter().position(|kin| kin.run.id == *run) {
+            self.branches.select(number);
         }
         if self.focus == JournalPane::Branches && !self.has_tree() {
             self.focus = JournalPane::List;
@@ -154,19 +154,19 @@ impl Pane<Journal> for BranchesPane {
     }
 
     fn draw(&self, journal: &Journal, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
-        let told = match journal.selected_run() {
+        let texts = match journal.selected_run() {
             Some(kin) => wrap(related_run_line(kin, &look.company.observation.run).trim_start(), seat.area.width.into()),
             None => Vec::new(),
         };
         let rows = journal.branches.visible_rows().len() as u16 + 1;
         let below = match seat.area.height >= MIN_HEIGHT_FOR_DETAILS {
-            true => (told.len() as u16 + 1).min(seat.area.height / 2),
-            false => seat.area.height.saturating_sub(rows + 1).min(told.len() as u16 + 1),
+            true => (texts.len() as u16 + 1).min(seat.area.height / 2),
+            false => seat.area.height.saturating_sub(rows + 1).min(texts.len() as u16 + 1),
         };
         let area = Rect { height: seat.area.height - below, ..seat.area };
         journal.branches.draw(canvas, area, seat.focused, seat.index);
         let below = Rect { y: area.bottom(), height: below, ..seat.area };
-        for (row, line) in row_rects(below).skip(1).zip(&told) {
+        for (row, line) in row_rects(below).skip(1).zip(&texts) {
             canvas.draw_text(row, line, Role::Dim);
         }
     }

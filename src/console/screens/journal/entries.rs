@@ -107,9 +107,9 @@ impl JournalWeek<'_> {
             let why = line(filed.day, format!("  why  {}", words.join(" ")), Role::Text);
             lines.push(JournalLine { term: "rationale", ..why });
             if !filed.forecasts.is_empty() {
-                let said = line(filed.day, format!("  filed {}", filed.summary(company)), Role::Dim);
+                let journal_line = line(filed.day, format!("  filed {}", filed.summary(company)), Role::Dim);
                 let sql = format!("SELECT * FROM predictions WHERE submit_day = {}", filed.day);
-                lines.push(JournalLine { term: "forecast", sql: Some(sql), ..said });
+                lines.push(JournalLine { term: "forecast", sql: Some(sql), ..journal_line });
             }
         }
         lines.extend(self.calls.iter().cloned());
@@ -323,7 +323,7 @@ pub fn format_arguments(value: &Value) -> String {
     match value {
         Value::Null => "–".to_owned(),
         Value::Bool(truth) => truth.to_string(),
-        Value::Number(own) => own.as_f64().map_or_else(|| own.to_string(), format_plain),
+        Value::Number(number) => number.as_f64().map_or_else(|| number.to_string(), format_plain),
         Value::String(text) => text.split_whitespace().collect::<Vec<_>>().join(" "),
         Value::Array(values) => {
             // Whole numbers in a list are customer and thread numbers.

@@ -152,7 +152,7 @@ fn draw_curve(
     let indent = if lanes > 0 { 2.min(area.width) } else { 0 };
     let upper = Rect { x: area.x + indent, width: area.width - indent, height: area.height - lanes, ..area };
     let today = company.observation.day.max(2);
-    let points = view.economy.iter().map(|own| (f64::from(own.day), own.value)).collect();
+    let points = view.economy.iter().map(|economy_measurement| (f64::from(economy_measurement.day), economy_measurement.value)).collect();
     let selected = vec![(f64::from(here.day), here.value)];
     let lines = [
         Curve::from_points(points, Role::Series(0)),
@@ -176,10 +176,10 @@ fn draw_curve(
     let names = Rect { width: plot.x - area.x, ..told };
     canvas.draw_text(names, "publ", Role::Dim);
     canvas.draw_text(Rect { y: rivals.y, ..names }, "news", Role::Dim);
-    for own in view.economy {
-        let (from, to) = (column(own.day), column(own.day + company.tool_limits.economy_lag_days));
-        let role = if own.day == here.day { Role::Strong } else { Role::Series(0) };
-        if own.day == here.day && to > from {
+    for measurement in view.economy {
+        let (from, to) = (column(measurement.day), column(measurement.day + company.tool_limits.economy_lag_days));
+        let role = if measurement.day == here.day { Role::Strong } else { Role::Series(0) };
+        if measurement.day == here.day && to > from {
             canvas.draw_text(
                 Rect { x: from, width: to - from, ..told },
                 &"─".repeat((to - from) as usize),

@@ -68,12 +68,12 @@ const MARKET_LABEL: &str = "market cap";
 
 /// Returns the true value on the shown day, if the x-ray is open.
 fn true_value_text(words: &str, group: Group, company: &DisplayedCompany) -> Option<String> {
-    let own = &company.hidden_values.as_ref()?.groups[group];
+    let group_values = &company.hidden_values.as_ref()?.groups[group];
     Some(match words {
-        BUDGET_LABEL => format_figure(own.budget),
-        REQUIRED_QUALITY_LABEL => format_exact(own.quality_floor),
-        MARKET_LABEL if own.market_cap <= 0.0 => "no limit".to_owned(),
-        MARKET_LABEL => grouped_number(own.market_cap, 0),
+        BUDGET_LABEL => format_figure(group_values.budget),
+        REQUIRED_QUALITY_LABEL => format_exact(group_values.quality_floor),
+        MARKET_LABEL if group_values.market_cap <= 0.0 => "no limit".to_owned(),
+        MARKET_LABEL => grouped_number(group_values.market_cap, 0),
         _ => return None,
     })
 }

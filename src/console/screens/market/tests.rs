@@ -44,11 +44,11 @@ fn study_is_confirmed_ordered_and_shown_while_running() {
     assert!(text.contains("to level 3: $175,000, 5 days, then ±25%"), "{text}");
     handle_action(&mut screen, Action::LevelDown, &company);
     handle_action(&mut screen, Action::LevelDown, &company);
-    let (question, said) = confirm_and_call(&mut screen, &mut session, Action::StudyGroup);
+    let (question, effects) = confirm_and_call(&mut screen, &mut session, Action::StudyGroup);
     for part in ["A study of S1 to level 2.", "$60,000", "day 10", "cannot be undone"] {
         assert!(question.contains(part), "{part} in {question}");
     }
-    assert!(matches!(&said[..], [Effect::Say(text)] if text.contains("day 10")), "{said:?}");
+    assert!(matches!(&effects[..], [Effect::Say(text)] if text.contains("day 10")), "{effects:?}");
     let company = DisplayedCompany::from_session(&session);
     let text = screen_text(&screen, &company, 120, 37);
     assert!(text.contains("→2 due day 10") && text.contains("study to level 2 due on day 10"), "{text}");
@@ -65,12 +65,12 @@ fn research_attempts_are_listed() {
     assert!(screen_text(&screen, &company, 120, 37).contains("No attempts yet. Pay for one with m."));
     let mut found = None;
     for _ in 0..25 {
-        let (question, said) = confirm_and_call(&mut screen, &mut session, Action::FindGroup);
+        let (question, effects) = confirm_and_call(&mut screen, &mut session, Action::FindGroup);
         assert!(
             question.contains("30 % chance to find") && question.contains("$25,000 at once"),
             "{question}"
         );
-        let [Effect::Say(text)] = &said[..] else { panic!("{said:?}") };
+        let [Effect::Say(text)] = &effects[..] else { panic!("{effects:?}") };
         if text.contains("Found ") {
             found = screen.group();
             break;

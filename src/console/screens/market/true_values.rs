@@ -53,9 +53,9 @@ pub fn economy_lines(hidden: &HiddenValues) -> Vec<String> {
 }
 
 /// Draws the lines in at most the upper half of an area; returns the rest.
-pub fn draw_lines_above(canvas: &mut Canvas<'_>, area: Rect, told: &[String]) -> Rect {
+pub fn draw_lines_above(canvas: &mut Canvas<'_>, area: Rect, texts: &[String]) -> Rect {
     let lines: Vec<String> =
-        told.iter().flat_map(|line| wrap(line, usize::from(area.width.max(1)))).collect();
+        texts.iter().flat_map(|line| wrap(line, usize::from(area.width.max(1)))).collect();
     let height = (lines.len() as u16).min(area.height / 2);
     for (row, line) in row_rects(Rect { height, ..area }).zip(&lines) {
         canvas.draw_text(row, line, Role::Changed);

@@ -43,7 +43,7 @@ impl LessonList {
     }
 
     pub(super) fn start_lesson(&self, selected: usize) -> Vec<Effect> {
-        match self.lessons.get(selected).map(|own| &own.lesson) {
+        match self.lessons.get(selected).map(|listed_lesson| &listed_lesson.lesson) {
             Some(Ok(lesson)) => {
                 let entry = LessonEntry { lesson: lesson.clone(), part: 0, is_judged: true };
                 let new = NewRun { mode: Mode::Lesson, lesson: Some(entry), ..NewRun::default() };
@@ -68,14 +68,14 @@ impl LessonList {
         let inside =
             canvas.draw_pane_frame(above, "Lessons", &pluralize(self.lessons.len() as u32, "lesson"), true);
         let from = first_visible_row(selected, inside.height as usize, self.lessons.len());
-        for (row, (at, own)) in row_rects(inside).zip(self.lessons.iter().enumerate().skip(from)) {
+        for (row, (at, listed_lesson)) in row_rects(inside).zip(self.lessons.iter().enumerate().skip(from)) {
             let here = at == selected;
             if here {
                 canvas.clear(row, Role::Selection);
             }
-            let (minutes, title) = match &own.lesson {
+            let (minutes, title) = match &listed_lesson.lesson {
                 Ok(lesson) => (format!("{:>2} min", lesson.plan.minutes), lesson.plan.title.as_str()),
-                Err(_) => ("  –".to_owned(), own.name.as_str()),
+                Err(_) => ("  –".to_owned(), listed_lesson.name.as_str()),
             };
             let mark = if here { "›" } else { " " };
             canvas.draw_text(
@@ -91,13 +91,13 @@ impl LessonList {
     }
 }
 
-fn draw_lesson(canvas: &mut Canvas<'_>, area: Rect, own: &ListedLesson) {
+fn draw_lesson(canvas: &mut Canvas<'_>, area: Rect, listed_lesson: &ListedLesson) {
     if area.height < 3 {
         return;
     }
-    let inside = canvas.draw_pane_frame(area, &own.name, "", false);
+    let inside = canvas.draw_pane_frame(area, &listed_lesson.name, "", false);
     let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
-    let (text, role) = match &own.lesson {
+    let (text, role) = match &listed_lesson.lesson {
         Ok(lesson) => {
             let plan = &lesson.plan;
             let parts = match plan.parts.len() {

@@ -110,7 +110,7 @@ impl StartMenu {
         self.runs = Some(runs);
         if self.page == MenuPage::Home {
             // Select the same choice at its new position.
-            let same = self.entries().iter().position(|(own, ..)| Some(*own) == choice);
+            let same = self.entries().iter().position(|(home_entry, ..)| Some(*home_entry) == choice);
             self.selected = same.unwrap_or(0);
         }
         let known: Vec<String> = self.runs().iter().map(|run| run.id.clone()).collect();
@@ -156,9 +156,9 @@ impl StartMenu {
     }
 
     /// Shows the results of a class.
-    pub fn show_class(&mut self, class: CollectedClass, shown: ClassDisplayOptions) {
+    pub fn show_class(&mut self, class: CollectedClass, display_options: ClassDisplayOptions) {
         self.deferred_actions.clear();
-        self.class = Some(Box::new(ClassPage::new(class, shown)));
+        self.class = Some(Box::new(ClassPage::new(class, display_options)));
         self.page = MenuPage::Class;
     }
 

@@ -38,14 +38,16 @@ pub(super) fn ranked(runs: &[RunSummary]) -> Vec<RankedResult> {
         note: format!("{} of {} bankrupt", agent.bankruptcies, agent.runs),
         is_own: false,
     }));
-    results.extend(runs.iter().filter(|run| obstacles(run).is_some_and(|own| own.is_empty())).map(|run| {
-        RankedResult {
-            name: format!("You · {}", run.id),
-            cash: if run.ended == Some(RunEndReason::Bankruptcy) { 0.0 } else { run.cash },
-            note: format!("{} · seed {}", run.mode.map_or("", Mode::id), run.seed),
-            is_own: true,
-        }
-    }));
+    results.extend(
+        runs.iter()
+            .filter(|run| obstacles(run).is_some_and(|ranking_obstacles| ranking_obstacles.is_empty()))
+            .map(|run| RankedResult {
+                name: format!("You · {}", run.id),
+                cash: if run.ended == Some(RunEndReason::Bankruptcy) { 0.0 } else { run.cash },
+                note: format!("{} · seed {}", run.mode.map_or("", Mode::id), run.seed),
+                is_own: true,
+            }),
+    );
     results.sort_by(|left, right| right.cash.total_cmp(&left.cash).then_with(|| left.name.cmp(&right.name)));
     results
 }
@@ -60,12 +62,12 @@ fn obstacles(run: &RunSummary) -> Option<Vec<RankingObstacle>> {
 impl StartMenu {
     pub(super) fn draw_published_results(&self, canvas: &mut Canvas<'_>, area: Rect) {
         let results = ranked(self.runs());
-        let own = results.iter().filter(|result| result.is_own).count();
-        let note = if own > 0 { format!("{own} of yours") } else { String::new() };
+        let number = results.iter().filter(|result| result.is_own).count();
+        let note = if number > 0 { format!("{number} of yours") } else { String::new() };
         let inside = canvas.draw_pane_frame(area, "Published results and yours", &note, true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         let lines =
-            wrap(&format!("{}\n{}", self.own_results_text(own), source_text()), inside.width as usize);
+            wrap(&format!("{}\n{}", self.own_results_text(number), source_text()), inside.width as usize);
         let list = Rect { height: inside.height.saturating_sub(lines.len() as u16 + 1), ..inside };
         let most = results.first().map_or(1.0, |result| result.cash.max(1.0));
         let from = first_visible_row(self.selected, list.height as usize, results.len());
@@ -141,7 +143,8 @@ mod tests {
             finished("ruin", -5.0, 500, Some(RunEndReason::Bankruptcy)),
         ];
         let results = ranked(&runs);
-        let why: Vec<Option<usize>> = runs.iter().map(|run| obstacles(run).map(|own| own.len())).collect();
+        let why: Vec<Option<usize>> =
+            runs.iter().map(|run| obstacles(run).map(|ranking_obstacles| ranking_obstacles.len())).collect();
         assert_eq!(why, [Some(0), Some(1), Some(1), Some(1), None, Some(0)]);
         assert_eq!((results[0].name.as_str(), results[0].is_own), ("You · rich", true));
         assert_eq!(results.iter().filter(|result| result.is_own).count(), 2);

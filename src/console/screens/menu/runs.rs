@@ -133,7 +133,7 @@ impl StartMenu {
     fn toggle_mark(&mut self) -> Vec<Effect> {
         let Some(run) = self.selected_run().filter(|run| run.problem.is_none()) else { return Vec::new() };
         let id = run.id.clone();
-        match self.marked.iter().position(|own| *own == id) {
+        match self.marked.iter().position(|text| *text == id) {
             Some(at) => {
                 self.marked.remove(at);
             }
@@ -188,9 +188,9 @@ impl StartMenu {
                 vec![Effect::Request(Request::Recover(id))]
             }
             (Action::Agree, Some(MenuQuestion::Consent(new, text))) => match text.consent() {
-                Some(given) => {
+                Some(consent_given) => {
                     vec![Effect::Request(Request::Create(Box::new(NewRun {
-                        agreed: Some(given.given_now()),
+                        agreed: Some(consent_given.given_now()),
                         ..*new
                     })))]
                 }
@@ -208,8 +208,8 @@ impl StartMenu {
                 Vec::new()
             }
             (Action::Cancel, _) => Vec::new(),
-            (_, asked) => {
-                self.question = asked;
+            (_, menu_question) => {
+                self.question = menu_question;
                 Vec::new()
             }
         }

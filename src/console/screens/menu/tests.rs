@@ -259,12 +259,12 @@ fn form_shows_the_selected_scenario() {
         let screen = menu_text(&menu, 120, 39);
         let scenario = configuration.load_scenario(&name).expect("a scenario");
         let (days, cash) = configuration.days_and_cash(&scenario, true).expect("its terms");
-        let told = scenario.description.split(' ').take(6).collect::<Vec<_>>().join(" ");
+        let text = scenario.description.split(' ').take(6).collect::<Vec<_>>().join(" ");
         for part in [
             format!("‹ {name} ›"),
             format!("scenario default: {days}"),
             format!("scenario default: {}", novamind_base::formatting::dollars(cash)),
-            told,
+            text,
         ] {
             assert!(screen.contains(&part), "{part} is missing in\n{screen}");
         }

@@ -177,10 +177,10 @@ impl Overview {
         let left = 48.min(area.width * 3 / 5);
         let [week, side] = Layout::horizontal([Constraint::Length(left), Constraint::Min(0)]).areas(below);
         draw_pane(self, OverviewPane::Week, canvas, week, look);
-        let beside = match self.focus {
+        let overview_pane = match self.focus {
             OverviewPane::Quality | OverviewPane::News => self.focus,
             _ => OverviewPane::Cash,
         };
-        draw_pane(self, beside, canvas, side, look);
+        draw_pane(self, overview_pane, canvas, side, look);
     }
 }

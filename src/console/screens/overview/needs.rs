@@ -57,7 +57,7 @@ impl Pane<Overview> for NeedsPane {
                 Some(_) => "The run is over. You can still read and query it.",
                 // Items whose tool is locked are hidden, so an empty list does not mean that nothing needs
                 // action.
-                None if look.company.running_lesson().is_some_and(|own| own.tools.is_some()) => {
+                None if look.company.running_lesson().is_some_and(|lesson_status| lesson_status.tools.is_some()) => {
                     "Nothing is listed here. Your task says what to do."
                 }
                 None => "Nothing needs action. Start the next week with n.",

@@ -139,11 +139,11 @@ pub fn research_items(projects: &[Project], day: u32) -> Vec<NewsItem> {
 pub fn post_items(company: &DisplayedCompany) -> Vec<NewsItem> {
     let day = company.observation.day;
     // Posts of the last week and of the four weeks before, newest first.
-    let (mut own, mut before, mut press) = (0u32, 0u32, 0u32);
+    let (mut number, mut before, mut press) = (0u32, 0u32, 0u32);
     for post in company.posts.iter().take_while(|post| post.day + 35 > day) {
         let weeks = day.saturating_sub(post.day) / 7;
         match (post.kind, weeks) {
-            (Author::Customers | Author::Comments, 0) => own += 1,
+            (Author::Customers | Author::Comments, 0) => number += 1,
             (Author::Customers | Author::Comments, 1..=4) => before += 1,
             (Author::Press, 0) => press += 1,
             _ => {}
@@ -159,9 +159,9 @@ pub fn post_items(company: &DisplayedCompany) -> Vec<NewsItem> {
         weeks => format!(" ({usual} on average in the {weeks} weeks before)"),
     };
     let mut items = Vec::new();
-    if own > 0 {
-        let noun = if own == 1 { "post" } else { "posts" };
-        items.push(NewsItem { kind: NewsKind::Posts, text: format!("{own} new {noun} about you{compared}") });
+    if number > 0 {
+        let noun = if number == 1 { "post" } else { "posts" };
+        items.push(NewsItem { kind: NewsKind::Posts, text: format!("{number} new {noun} about you{compared}") });
     }
     if press > 0 {
         let noun = if press == 1 { "news item" } else { "news items" };

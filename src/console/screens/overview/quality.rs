@@ -57,7 +57,7 @@ impl Pane<Overview> for QualityPane {
     fn handle_action(&self, overview: &mut Overview, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
         if action == Action::Open {
             let row = overview.quality.selected().and_then(|row| look.company.quality.get(row));
-            return row.map(|own| Effect::ShowGroup(ScreenId::Customers, own.group)).into_iter().collect();
+            return row.map(|delivered_quality| Effect::ShowGroup(ScreenId::Customers, delivered_quality.group)).into_iter().collect();
         }
         overview.quality.handle_action(action, look.page_rows);
         Vec::new()

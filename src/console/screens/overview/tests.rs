@@ -94,7 +94,7 @@ fn every_need_opens_its_object_and_has_source_rows() {
     for need in &company.action_items {
         let effects = handle_action(&mut screen, Action::Open, &company);
         match (&need.target, &effects[..]) {
-            (ActionTarget::Call(tool, _), [Effect::Prefill { tool: shown, .. }]) => assert_eq!(tool, shown),
+            (ActionTarget::Call(tool, _), [Effect::Prefill { tool: tool_id, .. }]) => assert_eq!(tool, tool_id),
             (ActionTarget::Thread(number), [Effect::ShowThread(shown)]) => assert_eq!(number, shown),
             (ActionTarget::Group(group), [Effect::ShowGroup(ScreenId::Customers, shown)]) => {
                 assert_eq!(group, shown)
@@ -195,14 +195,14 @@ fn post_counts_are_compared_with_existing_weeks() {
         let before: Vec<f64> = (last.saturating_sub(4).max(1)..last).map(|week| of(week) as f64).collect();
         let usual =
             novamind_base::formatting::grouped_number(before.iter().sum::<f64>() / before.len().max(1) as f64, 0);
-        let told =
+        let news_item =
             news::post_items(&company).into_iter().find(|item| item.kind == NewsKind::Posts).expect("posts");
-        assert!(told.text.starts_with(&format!("{} new post", of(last))), "{}", told.text);
-        let compared = told.text.split_once('(').map_or("", |(_, compared)| compared);
+        assert!(news_item.text.starts_with(&format!("{} new post", of(last))), "{}", news_item.text);
+        let compared = news_item.text.split_once('(').map_or("", |(_, compared)| compared);
         assert!(
             compared.contains(words) && (before.is_empty() || compared.contains(&usual)),
             "{}: {usual}",
-            told.text
+            news_item.text
         );
     }
 }

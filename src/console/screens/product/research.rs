@@ -169,13 +169,13 @@ fn draw_timeline(product: &Product, canvas: &mut Canvas<'_>, seat: PanePlacement
             continue;
         }
         let (from, to) = (place(project.started_day), place(project.expected_day));
-        let (now, own) = (place(today), (to - from).max(1));
-        let done = if project.done { own } else { now.clamp(from, from + own) - from };
-        let bar = "█".repeat(done as usize) + &"░".repeat((own - done) as usize);
+        let (now, number) = (place(today), (to - from).max(1));
+        let done = if project.done { number } else { now.clamp(from, from + number) - from };
+        let bar = "█".repeat(done as usize) + &"░".repeat((number - done) as usize);
         let x = row.x + names + from;
         let role = if project.done { Role::Good } else { Role::Series(1) };
-        canvas.draw_text(Rect { x, width: own.min(area.right().saturating_sub(x)), ..row }, &bar, role);
-        if now < from || now >= from + own {
+        canvas.draw_text(Rect { x, width: number.min(area.right().saturating_sub(x)), ..row }, &bar, role);
+        if now < from || now >= from + number {
             canvas.draw_text(Rect { x: row.x + names + now, width: 1, ..row }, "│", Role::Border);
         }
     }

@@ -55,7 +55,7 @@ impl PostFilter {
     pub fn next_kind(&mut self) {
         self.kind = match self.kind {
             None => PostKind::ALL.first().copied(),
-            Some(kind) => PostKind::ALL.iter().copied().find(|own| *own > kind),
+            Some(kind) => PostKind::ALL.iter().copied().find(|post_kind| *post_kind > kind),
         };
     }
 
@@ -73,24 +73,24 @@ impl PostFilter {
     pub fn label(&self) -> String {
         let kind = self.kind.map(|kind| kind.name().to_owned());
         let week = self.week.map(|week| format!("week {week}"));
-        let thread = self.thread.map(|(own, _)| format!("thread of your post {own}"));
+        let thread = self.thread.map(|(number, _)| format!("thread of your post {number}"));
         let text = (!self.text.is_empty()).then(|| format!("\"{}\"", self.text));
         [thread, kind, week, text].into_iter().flatten().collect::<Vec<_>>().join(" · ")
     }
 }
 
 /// Returns whether a post belongs to the thread of one of the player's posts.
-fn is_in_thread(post: &Post, (own, answered): (u32, Option<u32>)) -> bool {
+fn is_in_thread(post: &Post, (number, answered): (u32, Option<u32>)) -> bool {
     match post.kind {
-        PostKind::Own => post.number == own,
-        PostKind::Comments => post.answered_post == Some(own),
+        PostKind::Own => post.number == number,
+        PostKind::Comments => post.answered_post == Some(number),
         PostKind::Customers | PostKind::Press => Some(post.number) == answered,
     }
 }
 
 /// Returns all posts, newest first; comments follow the player's post that they answer, oldest first.
-pub fn threads(others: &[Arc<Post>], own: &[Arc<Post>]) -> Vec<Arc<Post>> {
-    let days: BTreeMap<u32, u32> = own.iter().map(|post| (post.number, post.day)).collect();
+pub fn threads(others: &[Arc<Post>], posts: &[Arc<Post>]) -> Vec<Arc<Post>> {
+    let days: BTreeMap<u32, u32> = posts.iter().map(|post| (post.number, post.day)).collect();
     let place = |post: &Arc<Post>| {
         let thread = match post.kind {
             PostKind::Own => Some(post.number),
@@ -106,7 +106,7 @@ pub fn threads(others: &[Arc<Post>], own: &[Arc<Post>]) -> Vec<Arc<Post>> {
         };
         (Reverse(day), within)
     };
-    let mut all: Vec<Arc<Post>> = others.iter().chain(own).cloned().collect();
+    let mut all: Vec<Arc<Post>> = others.iter().chain(posts).cloned().collect();
     all.sort_by_key(place);
     all
 }
@@ -135,16 +135,16 @@ mod tests {
             post(PostKind::Customers, 6, 21, None),
             post(PostKind::Comments, 5, 8, Some(99)),
         ];
-        let own = [post(PostKind::Own, 2, 21, None), post(PostKind::Own, 1, 14, Some(3))];
+        let posts = [post(PostKind::Own, 2, 21, None), post(PostKind::Own, 1, 14, Some(3))];
         let order: Vec<(PostKind, u32)> =
-            threads(&others, &own).iter().map(|post| (post.kind, post.number)).collect();
-        let (own, comment) = (PostKind::Own, PostKind::Comments);
+            threads(&others, &posts).iter().map(|post| (post.kind, post.number)).collect();
+        let (post_kind, comment) = (PostKind::Own, PostKind::Comments);
         assert_eq!(
             order,
             [
-                (own, 2),
+                (post_kind, 2),
                 (PostKind::Customers, 6),
-                (own, 1),
+                (post_kind, 1),
                 (comment, 8),
                 (comment, 9),
                 (PostKind::Press, 7),

@@ -54,20 +54,20 @@ fn rows_around_selection(posts: &[&Post], selected: usize, width: usize, height:
     let mut next = selected + 1;
     let mut rest = Vec::new();
     while below < height && next <= last {
-        let own = rows_of_post(posts, next, width);
-        below += own.len();
-        rest.push(own);
+        let feed_rows = rows_of_post(posts, next, width);
+        below += feed_rows.len();
+        rest.push(feed_rows);
         next += 1;
     }
     let room = (height / 2).max(height.saturating_sub(below));
     let (mut above, mut first) = (0, selected);
     while first > 0 {
-        let own = rows_of_post(posts, first - 1, width);
-        if above + own.len() > room {
+        let rows = rows_of_post(posts, first - 1, width);
+        if above + rows.len() > room {
             break;
         }
-        above += own.len();
-        blocks.insert(0, own);
+        above += rows.len();
+        blocks.insert(0, rows);
         first -= 1;
     }
     blocks.into_iter().chain(rest).flatten().take(height).collect()

@@ -140,7 +140,7 @@ impl Social {
     fn thread_of_post(&self, post: &Post) -> Option<u32> {
         match post.kind {
             PostKind::Own => Some(post.number),
-            PostKind::Comments => post.answered_post.filter(|own| self.own_posts.iter().any(|post| post.number == *own)),
+            PostKind::Comments => post.answered_post.filter(|number| self.own_posts.iter().any(|post| post.number == *number)),
             _ => self.own_posts.iter().find(|own| own.answered_post == Some(post.number)).map(|own| own.number),
         }
     }
@@ -149,9 +149,9 @@ impl Social {
     fn open_post(&mut self, post: Option<Post>, company: &DisplayedCompany) -> Vec<Effect> {
         let Some(post) = post else { return Vec::new() };
         match self.thread_of_post(&post).filter(|_| self.filter.thread.is_none()) {
-            Some(own) => {
-                let answered = self.own_posts.iter().find(|post| post.number == own).and_then(|post| post.answered_post);
-                self.filter = PostFilter { thread: Some((own, answered)), ..PostFilter::default() };
+            Some(number) => {
+                let answered = self.own_posts.iter().find(|post| post.number == number).and_then(|post| post.answered_post);
+                self.filter = PostFilter { thread: Some((number, answered)), ..PostFilter::default() };
                 self.focus = SocialPane::Feed;
                 self.apply_filter();
                 Vec::new()
@@ -294,7 +294,7 @@ impl ScreenState for Social {
     }
 
     fn open_object(&self, _: &ScreenContext<'_>) -> Option<(&'static str, String)> {
-        self.filter.thread.map(|(own, _)| ("post", own.to_string()))
+        self.filter.thread.map(|(number, _)| ("post", number.to_string()))
     }
 
     fn edited_text(&self) -> Option<(String, String)> {

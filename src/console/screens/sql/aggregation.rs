@@ -132,15 +132,15 @@ pub fn count_statement(sql: &str, columns: &[String], at: usize, meant: &RowFilt
 }
 
 /// Returns a statement that pivots the covered rows of another one; `held` are its loaded rows.
-pub fn pivot_statement(sql: &str, held: &QueryResult, shape: PivotShape, meant: &RowFilter) -> Option<String> {
-    let source = Subquery::from_statement(sql, &held.columns, meant)?;
+pub fn pivot_statement(sql: &str, query_result: &QueryResult, shape: PivotShape, meant: &RowFilter) -> Option<String> {
+    let source = Subquery::from_statement(sql, &query_result.columns, meant)?;
     let PivotShape { row_column: rows, header_column: across, value_column: values, aggregate } = shape;
     let name = |at: usize| source.names.get(at).map(String::as_str);
     let aggregated = aggregate.sql(values.and_then(name));
     let mut cells = vec![name(rows)?.to_owned()];
     if let Some(across) = across {
         let column = name(across)?;
-        let DistinctValues { values, complete } = DistinctValues::from_rows(held, across);
+        let DistinctValues { values, complete } = DistinctValues::from_rows(query_result, across);
         let mut listed = Vec::new();
         for value in &values {
             let (condition, label) = match value {
@@ -159,12 +159,12 @@ pub fn pivot_statement(sql: &str, held: &QueryResult, shape: PivotShape, meant: 
         cells.push(format!("{aggregated} AS \"all\""));
     } else {
         let alias =
-            values.map_or("count".to_owned(), |at| format!("{}_{}", aggregate.label(), held.columns[at]));
+            values.map_or("count".to_owned(), |at| format!("{}_{}", aggregate.label(), query_result.columns[at]));
         cells.push(format!("{aggregated} AS {}", quote_identifier(&alias)));
     }
     Some(format!(
         "-- title: {}{}\n{}SELECT {}\nFROM {}\nGROUP BY 1\nORDER BY 1",
-        pivot_title(held, shape),
+        pivot_title(query_result, shape),
         meant.label(),
         source.with,
         cells.join(",\n    "),
@@ -173,8 +173,8 @@ pub fn pivot_statement(sql: &str, held: &QueryResult, shape: PivotShape, meant: 
 }
 
 /// Returns a title such as `sum of amount by category and day`.
-fn pivot_title(held: &QueryResult, shape: PivotShape) -> String {
-    let name = |at: usize| single_line(&held.columns[at]);
+fn pivot_title(query_result: &QueryResult, shape: PivotShape) -> String {
+    let name = |at: usize| single_line(&query_result.columns[at]);
     let what = match shape.value_column {
         Some(at) => format!("{} of {}", shape.aggregate.label(), name(at)),
         None => "rows".to_owned(),
@@ -193,9 +193,9 @@ pub struct DistinctValues {
 
 impl DistinctValues {
     /// Returns the most frequent values of a column among the loaded rows.
-    pub fn from_rows(held: &QueryResult, at: usize) -> DistinctValues {
+    pub fn from_rows(query_result: &QueryResult, at: usize) -> DistinctValues {
         let mut counted: Vec<(Cell, usize)> = Vec::new();
-        let mut cells: Vec<&Cell> = held.rows.iter().filter_map(|row| row.get(at)).collect();
+        let mut cells: Vec<&Cell> = query_result.rows.iter().filter_map(|row| row.get(at)).collect();
         cells.sort_by(|one, other| compare_cells(one, other));
         for cell in cells {
             match counted.last_mut().filter(|(known, _)| known == cell) {
@@ -211,7 +211,7 @@ impl DistinctValues {
         counted.sort_by(|(one, _), (other, _)| compare_cells(one, other));
         // The printed form of a real number may not parse to the same number.
         let exact = counted.iter().all(|(cell, _)| !matches!(cell, Cell::Real(_)));
-        let complete = exact && !held.truncated && counted.len() == all;
+        let complete = exact && !query_result.truncated && counted.len() == all;
         DistinctValues { values: counted.into_iter().map(|(cell, _)| cell).collect(), complete }
     }
 }
@@ -271,13 +271,13 @@ mod tests {
     fn counts_include_rows_that_are_not_loaded() {
         let mut session = new_session();
         let sql = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n WHERE x < 9000) SELECT x % 2 AS odd FROM n;";
-        let held = query(&mut session, sql);
-        assert!(held.truncated);
+        let query_result = query(&mut session, sql);
+        assert!(query_result.truncated);
         let counted =
-            query(&mut session, &count_statement(sql, &held.columns, 0, &RowFilter::All).expect("a statement"));
+            query(&mut session, &count_statement(sql, &query_result.columns, 0, &RowFilter::All).expect("a statement"));
         assert_eq!(counted.rows[0][1], Cell::Integer(4500));
         let shape = PivotShape { row_column: 0, header_column: Some(0), value_column: None, aggregate: Aggregate::Count };
-        let pivoted = query(&mut session, &pivot_statement(sql, &held, shape, &RowFilter::All).expect("a statement"));
+        let pivoted = query(&mut session, &pivot_statement(sql, &query_result, shape, &RowFilter::All).expect("a statement"));
         assert_eq!(pivoted.columns, ["odd", "0", "1", "other", "all"], "other values cannot be excluded");
         assert_eq!(pivoted.rows[1][2..], [4500, 0, 4500].map(Cell::Integer));
     }
@@ -285,9 +285,9 @@ mod tests {
     #[test]
     fn pivot_has_a_row_and_column_per_value() {
         let mut session = new_session();
-        let held = query(&mut session, SQL);
+        let query_result = query(&mut session, SQL);
         let shape = PivotShape { row_column: 1, header_column: Some(0), value_column: Some(2), aggregate: Aggregate::Sum };
-        let rows = query(&mut session, &pivot_statement(SQL, &held, shape, &RowFilter::All).expect("a statement"));
+        let rows = query(&mut session, &pivot_statement(SQL, &query_result, shape, &RowFilter::All).expect("a statement"));
         assert_eq!(rows.columns, ["n", "b", "it's", "NULL", "all"]);
         let real = Cell::Real;
         assert_eq!(rows.rows[0], [Cell::Integer(1), real(1.5), real(2.5), real(4.0), real(8.0)]);
@@ -295,12 +295,12 @@ mod tests {
         for (aggregate, all) in [(Aggregate::Mean, 8.0 / 3.0), (Aggregate::Min, 1.5), (Aggregate::Max, 4.0)] {
             let rows = query(
                 &mut session,
-                &pivot_statement(SQL, &held, PivotShape { aggregate, ..shape }, &RowFilter::All).expect("one"),
+                &pivot_statement(SQL, &query_result, PivotShape { aggregate, ..shape }, &RowFilter::All).expect("one"),
             );
             assert_eq!(rows.rows[0][4], real(all), "{aggregate:?}");
         }
         let flat = PivotShape { header_column: None, value_column: None, aggregate: Aggregate::Count, ..shape };
-        let rows = query(&mut session, &pivot_statement(SQL, &held, flat, &RowFilter::All).expect("a statement"));
+        let rows = query(&mut session, &pivot_statement(SQL, &query_result, flat, &RowFilter::All).expect("a statement"));
         assert_eq!((rows.columns[1].as_str(), &rows.rows[0][1]), ("count", &Cell::Integer(3)));
     }
 
@@ -309,9 +309,9 @@ mod tests {
         let mut session = new_session();
         let sql = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n WHERE x < 40)
                    SELECT 'a' AS k, nullif(x, 40) AS x FROM n";
-        let held = query(&mut session, sql);
+        let query_result = query(&mut session, sql);
         let shape = PivotShape { row_column: 0, header_column: Some(1), value_column: None, aggregate: Aggregate::Count };
-        let rows = query(&mut session, &pivot_statement(sql, &held, shape, &RowFilter::All).expect("a statement"));
+        let rows = query(&mut session, &pivot_statement(sql, &query_result, shape, &RowFilter::All).expect("a statement"));
         assert_eq!(rows.columns.len(), 1 + MAX_PIVOT_COLUMNS + 2);
         assert_eq!(rows.rows[0][1 + MAX_PIVOT_COLUMNS..], [40 - MAX_PIVOT_COLUMNS as i64, 40].map(Cell::Integer));
     }

@@ -62,7 +62,7 @@ impl TableBrowser {
         let count = tables().len() + if self.shows_hidden { hidden_tables().len() } else { 0 };
         for (at, table) in (0..count).map(|at| (at, table_at(at))) {
             let found = |column: usize| !wanted.is_empty() && holds(&table.columns[column].name);
-            let columns = (0..table.columns.len()).filter(|own| self.open.contains(&at) || found(*own));
+            let columns = (0..table.columns.len()).filter(|number| self.open.contains(&at) || found(*number));
             let columns: Vec<usize> = columns.collect();
             if holds(&table.name) || !columns.is_empty() {
                 entries.push(BrowserRow { table: at, column: None });
@@ -122,7 +122,7 @@ impl TableBrowser {
         } else {
             self.open.remove(&entry.table);
             let head = BrowserRow { table: entry.table, column: None };
-            self.selected = self.visible_rows().iter().position(|own| *own == head).unwrap_or(0);
+            self.selected = self.visible_rows().iter().position(|browser_row| *browser_row == head).unwrap_or(0);
         }
     }
 

@@ -288,7 +288,7 @@ mod tests {
         let offered = editor.completion.as_ref().expect("LIMIT, LIKE").candidates.len();
         assert!(offered > 1);
         editor.handle_key(&KeyEvent::new(KeyCode::Up, KeyModifiers::NONE));
-        assert_eq!(editor.completion.as_ref().map(|own| own.selected), Some(offered - 1));
+        assert_eq!(editor.completion.as_ref().map(|completion| completion.selected), Some(offered - 1));
         assert!(editor.hide_completion() && !editor.hide_completion());
         editor.handle_key(&KeyEvent::new(KeyCode::Up, KeyModifiers::NONE));
         assert_eq!(editor.cursor_offset(), 2, "now the cursor moves");

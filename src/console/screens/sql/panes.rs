@@ -217,17 +217,17 @@ impl Sql {
     /// Counts the values of the focused column, or opens the setup of a pivot.
     fn handle_aggregate_action(&mut self, action: Action) -> Vec<Effect> {
         let complain = |text: &str| vec![Effect::Complain(text.to_owned())];
-        let shown = self.results.current();
-        let (Some(sql), Some((rows, at))) = (self.results.statement(), shown.focused_column()) else {
-            return complain(if shown.is_rejected() { REJECTED_ERROR } else { NO_RESULT_ERROR });
+        let result_view = self.results.current();
+        let (Some(sql), Some((rows, at))) = (self.results.statement(), result_view.focused_column()) else {
+            return complain(if result_view.is_rejected() { REJECTED_ERROR } else { NO_RESULT_ERROR });
         };
-        let meant = shown.row_filter();
+        let meant = result_view.row_filter();
         let warning = meant.warning().map(Effect::Say);
         if self.is_running() {
             return complain("A query is running. Cancel it with esc.");
         }
         if action == Action::Pivot {
-            match PivotForm::new(sql, shown.filtered_rows(&meant), at, meant) {
+            match PivotForm::new(sql, result_view.filtered_rows(&meant), at, meant) {
                 Some(choice) => self.overlay = Some(SqlOverlay::Pivot(choice)),
                 None => return complain(NOT_A_TABLE_ERROR),
             }

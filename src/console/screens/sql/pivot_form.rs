@@ -41,22 +41,22 @@ pub enum PivotResult {
 impl PivotForm {
     /// Returns the setup of a pivot by a column of a result. Returns `None` if the statement cannot be
     /// pivoted.
-    pub fn new(sql: &str, held: QueryResult, rows: usize, meant: RowFilter) -> Option<PivotForm> {
+    pub fn new(sql: &str, query_result: QueryResult, rows: usize, meant: RowFilter) -> Option<PivotForm> {
         let numeric: Vec<usize> =
-            (0..held.columns.len()).filter(|at| *at != rows && is_numeric(&held, *at)).collect();
+            (0..query_result.columns.len()).filter(|at| *at != rows && is_numeric(&query_result, *at)).collect();
         let few = |at: &usize| {
-            let DistinctValues { values, .. } = DistinctValues::from_rows(&held, *at);
-            *at != rows && (2..MAX_PIVOT_COLUMNS).contains(&values.len()) && values.len() < held.rows.len()
+            let DistinctValues { values, .. } = DistinctValues::from_rows(&query_result, *at);
+            *at != rows && (2..MAX_PIVOT_COLUMNS).contains(&values.len()) && values.len() < query_result.rows.len()
         };
-        let is_real = |at: usize| held.rows.iter().any(|row| matches!(row.get(at), Some(Cell::Real(_))));
-        let across = (0..held.columns.len()).filter(|at| !is_real(*at)).find(few);
+        let is_real = |at: usize| query_result.rows.iter().any(|row| matches!(row.get(at), Some(Cell::Real(_))));
+        let across = (0..query_result.columns.len()).filter(|at| !is_real(*at)).find(few);
         let values =
-            numeric.iter().copied().find(|at| Some(*at) != across && !is_identifier_column(&held.columns[*at]));
+            numeric.iter().copied().find(|at| Some(*at) != across && !is_identifier_column(&query_result.columns[*at]));
         let aggregate = if values.is_some() { Aggregate::Sum } else { Aggregate::Count };
         let shape = PivotShape { row_column: rows, header_column: across, value_column: values, aggregate };
         // Do not open the setup if no statement can be derived.
-        pivot_statement(sql, &held, shape, &meant)?;
-        Some(PivotForm { sql: sql.to_owned(), filter: meant, rows: held, shape, numeric, line: 0 })
+        pivot_statement(sql, &query_result, shape, &meant)?;
+        Some(PivotForm { sql: sql.to_owned(), filter: meant, rows: query_result, shape, numeric, line: 0 })
     }
 
     pub fn handle_action(&mut self, action: Action) -> PivotResult {

@@ -205,13 +205,13 @@ impl ResultChart {
     pub fn draw(&self, canvas: &mut Canvas<'_>, seat: PanePlacement, rows: &QueryResult, table: &Table) {
         let area = seat.area;
         // The chart needs a minimum of rows below the summary.
-        let said = self.y_columns.len().min(usize::from(area.height.saturating_sub(5)));
-        for (row, (series, column)) in row_rects(area).zip(self.y_columns.iter().enumerate().take(said)) {
+        let number = self.y_columns.len().min(usize::from(area.height.saturating_sub(5)));
+        for (row, (series, column)) in row_rects(area).zip(self.y_columns.iter().enumerate().take(number)) {
             canvas.draw_text(row, self.series_symbol(series), Role::Series(series));
             let text = Rect { x: row.x + 2, width: row.width.saturating_sub(2), ..row };
             canvas.draw_text(text, &self.summary(rows, table, *column), Role::Text);
         }
-        let below = Rect { y: area.y + said as u16, height: area.height - said as u16, ..area };
+        let below = Rect { y: area.y + number as u16, height: area.height - number as u16, ..area };
         match self.kind {
             ChartKind::Line => self.draw_lines(canvas, below, rows, table),
             ChartKind::Bar => self.draw_bars(canvas, PanePlacement { area: below, ..seat }, rows, table),
@@ -276,7 +276,7 @@ impl ResultChart {
         if focused {
             canvas.page_rows = fit as u16;
         }
-        let place = selected.and_then(|row| shown.iter().position(|own| *own == row)).unwrap_or(0);
+        let place = selected.and_then(|row| shown.iter().position(|number| *number == row)).unwrap_or(0);
         let from = first_visible_row(place, fit, shown.len());
         for (row, (place, series)) in row_rects(area).zip(all.skip(from * each)) {
             scale.draw(canvas, row, &bar(place, series));

@@ -121,7 +121,7 @@ impl ResultView {
     pub fn filtered_rows(&self, meant: &RowFilter) -> QueryResult {
         let Some(all) = self.rows() else { return QueryResult::default() };
         match (meant, self.visible_rows()) {
-            (RowFilter::Containing { .. }, Some(shown)) => QueryResult { truncated: all.truncated, ..shown },
+            (RowFilter::Containing { .. }, Some(query_result)) => QueryResult { truncated: all.truncated, ..query_result },
             _ => all.clone(),
         }
     }

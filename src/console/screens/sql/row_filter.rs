@@ -20,26 +20,26 @@ pub enum RowFilter {
 
 impl RowFilter {
     /// Returns the rows that a filter selects; `shown` are the indexes of the rows that it shows.
-    pub fn from_filter(filter: &str, held: &QueryResult, shown: &[usize]) -> RowFilter {
+    pub fn from_filter(filter: &str, query_result: &QueryResult, shown: &[usize]) -> RowFilter {
         if filter.is_empty() {
             return RowFilter::All;
         }
         let text = filter.to_lowercase();
-        let all: Vec<usize> = (0..held.columns.len()).filter(|at| is_exact_in_sql(held, *at)).collect();
+        let all: Vec<usize> = (0..query_result.columns.len()).filter(|at| is_exact_in_sql(query_result, *at)).collect();
         let chosen = |columns: &[usize]| -> Vec<usize> {
             let holds = |row: &Vec<Cell>| {
                 columns.iter().any(|at| row.get(*at).is_some_and(|cell| cell_contains(cell, &text)))
             };
-            (0..held.rows.len()).filter(|at| holds(&held.rows[*at])).collect()
+            (0..query_result.rows.len()).filter(|at| holds(&query_result.rows[*at])).collect()
         };
         let mut expected = shown.to_vec();
         expected.sort_unstable();
         // Rows beyond the limit are unknown, and a text without letters could match any of their numbers.
-        let is_certain = !held.truncated || text.chars().any(char::is_alphabetic);
+        let is_certain = !query_result.truncated || text.chars().any(char::is_alphabetic);
         if !is_certain || chosen(&all) != expected {
             return RowFilter::AllDespiteFilter(filter.to_owned());
         }
-        let one = all.iter().copied().find(|at| !held.truncated && chosen(&[*at]) == expected);
+        let one = all.iter().copied().find(|at| !query_result.truncated && chosen(&[*at]) == expected);
         RowFilter::Containing { text, columns: one.map_or(all, |at| vec![at]) }
     }
 
@@ -68,8 +68,8 @@ impl RowFilter {
 }
 
 /// Returns whether SQL sees the values of a column as displayed; decimals are rounded on the screen.
-fn is_exact_in_sql(held: &QueryResult, at: usize) -> bool {
-    held.rows.iter().all(|row| !matches!(row.get(at), Some(Cell::Real(_))))
+fn is_exact_in_sql(query_result: &QueryResult, at: usize) -> bool {
+    query_result.rows.iter().all(|row| !matches!(row.get(at), Some(Cell::Real(_))))
 }
 
 /// Equivalent to `instr(lower(cell), text) > 0`; SQLite's `lower` changes ASCII letters only.
@@ -90,12 +90,12 @@ mod tests {
     use novamind_tui::widgets::Table;
 
     /// Returns the rows that a filter selects, and the number of shown rows.
-    fn filter_and_row_count(held: &QueryResult, filter: &str) -> (RowFilter, usize) {
-        let mut table = Table::new(values::columns(held));
-        table.set_rows(values::cells(held));
+    fn filter_and_row_count(query_result: &QueryResult, filter: &str) -> (RowFilter, usize) {
+        let mut table = Table::new(values::columns(query_result));
+        table.set_rows(values::cells(query_result));
         table.handle_action(crate::action::Action::Filter, 5);
         table.edit_filter(|field| field.insert(filter));
-        (RowFilter::from_filter(filter, held, table.visible_rows()), table.visible_rows().len())
+        (RowFilter::from_filter(filter, query_result, table.visible_rows()), table.visible_rows().len())
     }
 
     #[test]
@@ -103,7 +103,7 @@ mod tests {
         let mut session = new_session();
         let sql = "WITH t(name, units, price) AS (VALUES ('Ada''s', 1234, 2.5), ('GRÜN', 7, 12.0), ('grün 12', 12, NULL))
                    SELECT * FROM t";
-        let held = session.query(sql).expect("rows");
+        let query_result = session.query(sql).expect("rows");
         for (filter, shown, told) in [
             ("ada's", 1, true),
             ("12", 2, false),  // in 12.0, and not in 1,234
@@ -114,16 +114,16 @@ mod tests {
             ("null", 1, false),
             ("nothing", 0, true),
         ] {
-            let (meant, rows) = filter_and_row_count(&held, filter);
+            let (meant, rows) = filter_and_row_count(&query_result, filter);
             assert_eq!(rows, shown, "{filter}");
             assert_eq!(matches!(meant, RowFilter::Containing { .. }), told, "{filter}: {meant:?}");
             assert_eq!(meant.warning().is_some(), !told, "{filter}");
-            let counting = count_statement(sql, &held.columns, 0, &meant).expect("a statement");
+            let counting = count_statement(sql, &query_result.columns, 0, &meant).expect("a statement");
             let counted = session.query(&counting).unwrap_or_else(|refusal| panic!("{refusal}\n{counting}"));
             assert_eq!(counted.rows.len(), if told { shown } else { 3 }, "{counting}");
             assert!(counting.contains(if told { ", rows with" } else { ", all rows" }), "{counting}");
         }
-        assert_eq!(RowFilter::from_filter("", &held, &[0, 1, 2]), RowFilter::All);
+        assert_eq!(RowFilter::from_filter("", &query_result, &[0, 1, 2]), RowFilter::All);
     }
 
     #[test]
@@ -131,11 +131,11 @@ mod tests {
         let mut session = new_session();
         let sql = "WITH RECURSIVE n(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM n WHERE x < 9000)
                    SELECT x % 2 AS odd, iif(x % 3, 'some', 'third') AS word FROM n";
-        let held = session.query(sql).expect("rows");
-        assert!(held.truncated);
-        assert!(matches!(filter_and_row_count(&held, "1").0, RowFilter::AllDespiteFilter(_)));
-        let (words, _) = filter_and_row_count(&held, "thi");
-        let counting = count_statement(sql, &held.columns, 1, &words).expect("a statement");
+        let query_result = session.query(sql).expect("rows");
+        assert!(query_result.truncated);
+        assert!(matches!(filter_and_row_count(&query_result, "1").0, RowFilter::AllDespiteFilter(_)));
+        let (words, _) = filter_and_row_count(&query_result, "thi");
+        let counting = count_statement(sql, &query_result.columns, 1, &words).expect("a statement");
         let counted = session.query(&counting).expect("a count");
         assert_eq!(counted.rows, [[Cell::Text("third".to_owned()), Cell::Integer(3000), Cell::Real(100.0)]]);
     }

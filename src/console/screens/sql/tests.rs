@@ -68,8 +68,8 @@ fn statement_runs_once_and_rows_are_shown() {
     let empty = handle_action(&mut screen, &company, Action::RunQuery);
     assert!(matches!(&empty[..], [Effect::Complain(_)]));
     type_statement(&mut screen, &company, "SELECT 1; \nSELECT 2");
-    let asked = handle_action(&mut screen, &company, Action::RunQuery);
-    assert_eq!(sql(&asked), "SELECT 2");
+    let effects = handle_action(&mut screen, &company, Action::RunQuery);
+    assert_eq!(sql(&effects), "SELECT 2");
     assert!(matches!(&handle_action(&mut screen, &company, Action::RunQuery)[..], [Effect::Complain(_)]));
     assert!(contains(&screen_rows(&screen, &company, 120, 37), "running … esc cancels"));
     assert!(matches!(&handle_action(&mut screen, &company, Action::LeaveEditor)[..], [Effect::CancelQuery]));
@@ -104,8 +104,8 @@ fn results_are_copied_and_exported_in_full() {
     handle_action(&mut screen, &company, Action::First);
     let copied = one(handle_action(&mut screen, &company, Action::CopyCell));
     assert!(matches!(copied, Some(Effect::Copy(text)) if text == "28114"));
-    let whole = one(handle_action(&mut screen, &company, Action::ShowCell));
-    assert!(matches!(whole, Some(Effect::ShowText(title, text)) if title == "subs" && text == "28114"));
+    let effect = one(handle_action(&mut screen, &company, Action::ShowCell));
+    assert!(matches!(effect, Some(Effect::ShowText(title, text)) if title == "subs" && text == "28114"));
     handle_action(&mut screen, &company, Action::Export);
     assert_eq!(screen.scopes(), [Scope::Export, Scope::List]);
     let lines = screen_rows(&screen, &company, 80, 21);
@@ -191,8 +191,8 @@ fn named_query_is_inserted_and_run() {
     let lines = screen_rows(&screen, &company, 120, 37);
     assert!(contains(&lines, "› revplan") && contains(&lines, "What each plan brings in a month"), "{lines:#?}");
     assert!(contains(&lines, "FROM subscriptions"), "the statement is shown: {lines:#?}");
-    let asked = handle_action(&mut screen, &company, Action::Commit);
-    assert!(sql(&asked).starts_with("-- title: Revenue by plan"), "{asked:?}");
+    let effects = handle_action(&mut screen, &company, Action::Commit);
+    assert!(sql(&effects).starts_with("-- title: Revenue by plan"), "{effects:?}");
     assert!(contains(&screen_rows(&screen, &company, 120, 37), "Query · Revenue by plan"));
 }
 
@@ -317,7 +317,7 @@ fn highlighting_follows_the_scroll_position() {
     with_context(&company, |look| screen.draw(&mut canvas, area, look));
     let row = (0..21).find(|y| buffer[(1, *y)].symbol() == "S").expect("the line is shown");
     for (x, role) in [(1, Role::Keyword), (6, Role::Keyword), (8, Role::SqlString), (12, Role::Comment)] {
-        let colour = buffer[(x, row)].style().fg.filter(|own| *own != ratatui::style::Color::Reset);
+        let colour = buffer[(x, row)].style().fg.filter(|color| *color != ratatui::style::Color::Reset);
         assert_eq!(colour, theme.style(role).fg, "{x}");
     }
 }
@@ -376,8 +376,8 @@ fn column_count_uses_an_editable_statement() {
     let company = new_company();
     let mut screen = screen_with_result(&company, "SELECT * FROM ad_channel_leads", three_rows());
     handle_action(&mut screen, &company, Action::Right);
-    let asked = handle_action(&mut screen, &company, Action::CountColumn);
-    assert!(sql(&asked).contains("SELECT subs, count(*)"), "{asked:?}");
+    let effects = handle_action(&mut screen, &company, Action::CountColumn);
+    assert!(sql(&effects).contains("SELECT subs, count(*)"), "{effects:?}");
     assert!(screen.editor.text().starts_with("-- title: subs counted"));
     assert!(matches!(&handle_action(&mut screen, &company, Action::Pivot)[..], [Effect::Complain(_)]), "one at a time");
     receive_answer(&mut screen, &company, Ok(three_rows()));
@@ -461,8 +461,8 @@ fn pivot_takes_two_keys_at_every_size() {
     assert!(screen.overlay.is_none());
     screen.set_focused_pane(SqlPane::Results);
     handle_action(&mut screen, &company, Action::Pivot);
-    let asked = handle_action(&mut screen, &company, Action::Open);
-    assert!(sql(&asked).contains("sum(subs)"), "{asked:?}");
+    let effects = handle_action(&mut screen, &company, Action::Open);
+    assert!(sql(&effects).contains("sum(subs)"), "{effects:?}");
     receive_answer(&mut screen, &company, Ok(three_rows()));
     draw_at_all_sizes(&mut screen, &company);
     screen.set_focused_pane(SqlPane::Results);

@@ -13,7 +13,7 @@ pub const MAX_EARLIER_CALLS: usize = 10;
 /// Calls of a tool, newest first: decision day and arguments, without consecutive duplicates.
 pub fn earlier_calls(tool: ToolId, company: &DisplayedCompany, most: usize) -> Vec<(u32, String)> {
     let calls = company.journal.iter().rev().filter_map(|entry| match entry {
-        JournalEntry::Call { day, tool: own, args, .. } if *own == tool => Some((*day, args)),
+        JournalEntry::Call { day, tool: tool_id, args, .. } if *tool_id == tool => Some((*day, args)),
         _ => None,
     });
     let mut told: Vec<(u32, &Value)> = Vec::new();

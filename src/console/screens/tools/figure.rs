@@ -17,7 +17,7 @@ fn term_of(tool: ToolId, argument: &str) -> Option<&'static str> {
     ARGUMENT_TERMS
         .iter()
         .map(String::as_str)
-        .find(|name| name.split_once('.').is_some_and(|(own, rest)| own == tool.name() && rest == argument))
+        .find(|name| name.split_once('.').is_some_and(|(text, rest)| text == tool.name() && rest == argument))
 }
 
 pub(super) fn tool_figure(spec: &'static ToolSpec) -> Figure {

@@ -171,9 +171,9 @@ fn draw_row(form: &ToolForm, at: usize, index: usize, canvas: &mut Canvas<'_>, r
     let shown = visible_columns(form, at, row.width);
     let many = block.columns.len() > 1;
     for (place, column) in shown.clone().enumerate() {
-        let own = CellPosition { block: at, row: index, column };
+        let cell_position = CellPosition { block: at, row: index, column };
         let area = cell_area(block, row, if many { place } else { 1 });
-        draw_cell(form, own, canvas, area, here && column == form.focus.column);
+        draw_cell(form, cell_position, canvas, area, here && column == form.focus.column);
     }
     if many {
         let after = cell_area(block, row, shown.len());
@@ -203,7 +203,7 @@ fn draw_row(form: &ToolForm, at: usize, index: usize, canvas: &mut Canvas<'_>, r
 fn draw_text(form: &ToolForm, at: usize, canvas: &mut Canvas<'_>, row: Rect, here: bool) {
     let place = CellPosition { block: at, row: 0, column: 0 };
     let Some(slot) = form.sheet.cell(place) else { return };
-    if let Some(count) = form.sheet.positions().position(|own| own == place) {
+    if let Some(count) = form.sheet.positions().position(|cell_position| cell_position == place) {
         canvas.register_click(row, Click::Row(1, count));
     }
     if let Some(field) = slot.draft.as_ref().filter(|_| here && form.draft_before_edit.is_some()) {
@@ -230,7 +230,7 @@ fn first_line_label(text: &str) -> String {
 fn draw_cell(form: &ToolForm, place: CellPosition, canvas: &mut Canvas<'_>, area: Rect, here: bool) {
     let Some(slot) = form.sheet.cell(place) else { return };
     let block = &form.sheet.blocks[place.block];
-    if let Some(count) = form.sheet.positions().position(|own| own == place) {
+    if let Some(count) = form.sheet.positions().position(|cell_position| cell_position == place) {
         canvas.register_click(area, Click::Row(1, count));
     }
     if here

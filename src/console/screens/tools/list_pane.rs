@@ -138,14 +138,14 @@ enum ListLine {
 }
 
 fn lines_of(tools: &Tools) -> Vec<ListLine> {
-    let shown = tools.visible_tools();
+    let tool_specs = tools.visible_tools();
     let mut lines = Vec::new();
     for module in ToolModule::ALL {
-        let own = shown.iter().enumerate().filter(|(_, spec)| spec.module == module);
-        let own: Vec<ListLine> = own.map(|(at, spec)| ListLine::Tool(at, spec)).collect();
-        if !own.is_empty() {
+        let own = tool_specs.iter().enumerate().filter(|(_, spec)| spec.module == module);
+        let list_lines: Vec<ListLine> = own.map(|(at, spec)| ListLine::Tool(at, spec)).collect();
+        if !list_lines.is_empty() {
             lines.push(ListLine::Module(module));
-            lines.extend(own);
+            lines.extend(list_lines);
         }
     }
     lines

@@ -174,7 +174,7 @@ impl Tools {
     fn calls_text(&self, company: &DisplayedCompany) -> String {
         let day = company.observation.day;
         let done = company.journal.iter().filter_map(|entry| match entry {
-            JournalEntry::Call { day: own, tool, args, .. } if *own == day => {
+            JournalEntry::Call { day: number, tool, args, .. } if *number == day => {
                 let module = tool.spec().module.id();
                 Some(format!("{module}.{tool}({})", format_json(args)))
             }
@@ -276,14 +276,14 @@ impl ScreenState for Tools {
 /// Returns an answer as users see it: estimates as ranges with their day, and the minimum for means of
 /// projects.
 fn display_value(answer: &Answer, company: &DisplayedCompany) -> Value {
-    let told = normalize_json_numbers(answer.to_json());
+    let value = normalize_json_numbers(answer.to_json());
     match answer {
         Answer::GetGroupInsights(insights) => {
-            company.fit(insights.group_id).map_or_else(|| told.clone(), |fit| insights_as_ranges(&told, fit))
+            company.fit(insights.group_id).map_or_else(|| value.clone(), |fit| insights_as_ranges(&value, fit))
         }
-        Answer::GetMarketOverview(_) => overview_with_ages(&told, &company.fits),
-        Answer::ListResearchProjects(_) => projects_with_means(&told, &company.research_means),
-        _ => told,
+        Answer::GetMarketOverview(_) => overview_with_ages(&value, &company.fits),
+        Answer::ListResearchProjects(_) => projects_with_means(&value, &company.research_means),
+        _ => value,
     }
 }
 

@@ -42,7 +42,7 @@ impl ChannelLeads {
         let mut rates: Vec<(&str, f64)> = self
             .0
             .iter()
-            .filter(|((own, _), (_, spend))| own == channel && *spend > 0.0)
+            .filter(|((text, _), (_, spend))| text == channel && *spend > 0.0)
             .map(|((_, group), (leads, spend))| (group.as_str(), leads / spend * 1000.0))
             .collect();
         rates.sort_by(|left, right| right.1.total_cmp(&left.1).then(left.0.cmp(right.0)));
@@ -194,9 +194,9 @@ fn answer_lines(answer: &Result<Value, novamind_tools::Rejection>, paragraph: &m
     match answer {
         Ok(value) => {
             paragraph("✓ answered", Role::Good);
-            if let (Some(said), Some(remarks)) = (value["stdout"].as_str(), value["stderr"].as_str()) {
+            if let (Some(text), Some(remarks)) = (value["stdout"].as_str(), value["stderr"].as_str()) {
                 // Keep the line breaks of a script's output.
-                said.lines().for_each(|line| paragraph(line, Role::Text));
+                text.lines().for_each(|line| paragraph(line, Role::Text));
                 return remarks.lines().for_each(|line| paragraph(line, Role::Dim));
             }
             for line in format_answer(value, 0) {

@@ -261,7 +261,7 @@ impl ToolSheet {
                     let place = block
                         .rows
                         .iter()
-                        .position(|own| own == name)
+                        .position(|text| text == name)
                         .zip(block.columns.iter().position(|own| own == key));
                     if let (Some((at, across)), Some(draft)) = (place, &old.cells[row][column].draft) {
                         block.cells[at][across].draft = Some(draft.clone());
@@ -343,15 +343,15 @@ impl ToolSheet {
     /// Returns the first cell with this name in its path.
     pub fn position_of_name(&self, name: &str) -> Option<CellPosition> {
         let is_for = |place: &CellPosition| {
-            self.blocks[place.block].path(place.row, place.column).split('.').any(|own| own == name)
+            self.blocks[place.block].path(place.row, place.column).split('.').any(|text| text == name)
         };
         self.positions().find(is_for)
     }
 
     pub fn positions(&self) -> impl Iterator<Item = CellPosition> + '_ {
-        self.blocks.iter().enumerate().flat_map(|(block, own)| {
-            (0..own.rows.len()).flat_map(move |row| {
-                (0..own.columns.len()).map(move |column| CellPosition { block, row, column })
+        self.blocks.iter().enumerate().flat_map(|(block, argument_block)| {
+            (0..argument_block.rows.len()).flat_map(move |row| {
+                (0..argument_block.columns.len()).map(move |column| CellPosition { block, row, column })
             })
         })
     }

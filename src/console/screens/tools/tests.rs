@@ -66,8 +66,8 @@ fn second_reset_restores_the_draft() {
 
 #[test]
 fn copying_an_empty_cell_shows_an_error() {
-    let (_, said) = form_after_keys(ToolId::SetTargetedAdSpend, &["="]);
-    assert!(matches!(&said[..], [Effect::Complain(text)] if text.contains("empty")), "{said:?}");
+    let (_, effects) = form_after_keys(ToolId::SetTargetedAdSpend, &["="]);
+    assert!(matches!(&effects[..], [Effect::Complain(text)] if text.contains("empty")), "{effects:?}");
 }
 
 #[test]
@@ -187,8 +187,8 @@ fn copy_down_fills_the_column() {
         assert_eq!(matrix.len(), 5);
         assert!(matrix.values().all(|groups| groups == &json!({"S2": 40})), "{matrix:?}");
     }
-    let (_, said) = form_after_keys(ToolId::SetTargetedAdSpend, &["right", "4", "0", "enter", "down", "="]);
-    assert!(matches!(&said[..], [Effect::Complain(text)] if text.contains("empty")), "{said:?}");
+    let (_, effects) = form_after_keys(ToolId::SetTargetedAdSpend, &["right", "4", "0", "enter", "down", "="]);
+    assert!(matches!(&effects[..], [Effect::Complain(text)] if text.contains("empty")), "{effects:?}");
 }
 
 #[test]
@@ -307,9 +307,9 @@ fn a_field_names_its_term_and_its_history() {
         for place in places {
             tools.form(&company).expect("a form").focus = place;
             let figure = tools.figure(&look).expect("a figure");
-            let (own, argument) = figure.term.split_once('.').expect("tool.argument");
+            let (text, argument) = figure.term.split_once('.').expect("tool.argument");
             assert!(
-                own == spec.name() && spec.arguments.iter().any(|it| it.name == argument),
+                text == spec.name() && spec.arguments.iter().any(|it| it.name == argument),
                 "{}",
                 figure.term
             );
@@ -426,8 +426,8 @@ fn code_keeps_its_lines_when_pasted() {
     assert!(text.contains("# p … 2 lines"), "{text}");
     let look = ScreenContext { company: &company, keys: &bindings, page_rows: 10 };
     // The output is shown below the code until the code changes.
-    let said = json!({"returncode": 0, "stdout": "first\nsecond\n", "stderr": ""});
-    tools.forms.get_mut(&ToolId::PythonExec).expect("a form").answer = Some(Ok(said));
+    let value = json!({"returncode": 0, "stdout": "first\nsecond\n", "stderr": ""});
+    tools.forms.get_mut(&ToolId::PythonExec).expect("a form").answer = Some(Ok(value));
     let text = screen_text(&tools, &company, 80, 21);
     assert!(text.contains("answered") && text.contains("first") && text.contains("second"), "{text}");
     assert_eq!(tools.tools_with_drafts(), [ToolId::PythonExec]);

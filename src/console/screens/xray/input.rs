@@ -122,7 +122,7 @@ impl InputKind {
                 }
             },
             InputKind::Command => {
-                let read = InspectionCommand::parse(text).map(|asked| ParsedInput::Command(text.to_owned(), asked));
+                let read = InspectionCommand::parse(text).map(|inspection_command| ParsedInput::Command(text.to_owned(), inspection_command));
                 read.map_err(|problem| problem.text)
             }
             InputKind::Days => {

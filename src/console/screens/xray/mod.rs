@@ -211,7 +211,7 @@ impl Xray {
     }
 
     fn fill_breakpoints(&mut self) {
-        let row = |own: &Breakpoint| vec![TableCell::from_text(format!("{} {}", own.number, own.condition))];
+        let row = |breakpoint: &Breakpoint| vec![TableCell::from_text(format!("{} {}", breakpoint.number, breakpoint.condition))];
         self.breakpoint_table.set_rows(self.breakpoints.iter().map(row).collect());
     }
 
@@ -241,7 +241,7 @@ impl Xray {
             return vec![Effect::Complain("Only factors of the leads can be fixed".to_owned())];
         }
         let factor = LeadFactor::ALL[self.selected_factor.min(LeadFactor::ALL.len() - 1)];
-        match self.held_factors.iter().position(|(own, _)| *own == factor) {
+        match self.held_factors.iter().position(|(lead_factor, _)| *lead_factor == factor) {
             Some(at) => drop(self.held_factors.remove(at)),
             None => return self.start_input(Some(InputKind::HeldValue(factor))),
         }
@@ -277,7 +277,7 @@ impl Xray {
             }
             ParsedInput::Day(day) => self.set_day(Some(day)),
             ParsedInput::Part(part) => {
-                select_row(&mut self.parts, RandomPart::ALL.iter().position(|own| *own == part));
+                select_row(&mut self.parts, RandomPart::ALL.iter().position(|random_part| *random_part == part));
             }
             ParsedInput::Customer(customer, day) => {
                 self.customer = Some(customer);
@@ -285,29 +285,29 @@ impl Xray {
             }
             ParsedInput::Condition(condition) => return self.send_breakpoint_work(BreakpointCommand::Set(condition)),
             ParsedInput::HeldValue(factor, value) => self.held_factors.push((factor, value)),
-            ParsedInput::Command(words, asked) => return self.submit_command(words, asked),
+            ParsedInput::Command(words, inspection_command) => return self.submit_command(words, inspection_command),
             ParsedInput::Days(days) => return vec![Effect::Request(Request::RunDays(days))],
         }
         self.request_inspection()
     }
 
     /// Sends a command; commands that change the run need confirmation.
-    fn submit_command(&mut self, words: String, asked: InspectionCommand) -> Vec<Effect> {
-        match asked.changes_run() {
+    fn submit_command(&mut self, words: String, inspection_command: InspectionCommand) -> Vec<Effect> {
+        match inspection_command.changes_run() {
             true => vec![Effect::ConfirmWords(words)],
-            false => self.enqueue_command(words, asked),
+            false => self.enqueue_command(words, inspection_command),
         }
     }
 
-    fn enqueue_command(&mut self, words: String, asked: InspectionCommand) -> Vec<Effect> {
+    fn enqueue_command(&mut self, words: String, inspection_command: InspectionCommand) -> Vec<Effect> {
         self.scroll = ScrollState::default();
-        self.enqueue_question(InspectionQuestion::Command(words, asked))
+        self.enqueue_question(InspectionQuestion::Command(words, inspection_command))
     }
 
     /// Sends a confirmed command.
     pub fn send_confirmed_command(&mut self, words: &str) -> Vec<Effect> {
         match InspectionCommand::parse(words) {
-            Ok(asked) if self.can_inspect => self.enqueue_command(words.to_owned(), asked),
+            Ok(inspection_command) if self.can_inspect => self.enqueue_command(words.to_owned(), inspection_command),
             _ => Vec::new(),
         }
     }

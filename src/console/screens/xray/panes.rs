@@ -235,7 +235,7 @@ impl Pane<Xray> for InspectionPane {
         let view = xray.view();
         let title = match (view, view.choices()) {
             (XrayView::Customer, _) => xray.customer.map_or(String::new(), |own| format!(" {own}")),
-            (XrayView::Commands, _) => match (xray.pending_command(), xray.command_output.as_ref().map(|said| &said.question)) {
+            (XrayView::Commands, _) => match (xray.pending_command(), xray.command_output.as_ref().map(|inspection_result| &inspection_result.question)) {
                 (Some(words), _) => format!(": {words}"),
                 (None, Some(InspectionQuestion::Command(words, _))) => format!(": {words}"),
                 _ => String::new(),

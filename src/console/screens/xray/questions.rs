@@ -15,7 +15,7 @@ impl Xray {
         if !self.asked.is_waiting() {
             return self.send_question(question);
         }
-        self.queued.retain(|own| !is_read_only(own));
+        self.queued.retain(|inspection_question| !is_read_only(inspection_question));
         self.queued.push_back(question);
         Vec::new()
     }
@@ -44,8 +44,8 @@ impl Xray {
     /// Stores an answer; returns true if the current view shows it.
     fn store_answer(&mut self, mut question: InspectionQuestion, found: Result<InspectionAnswer, Rejection>) -> bool {
         let found = found.map_err(|refusal| refusal.message);
-        if let InspectionQuestion::Command(_, asked) = &question {
-            if asked.changes_run() {
+        if let InspectionQuestion::Command(_, inspection_command) = &question {
+            if inspection_command.changes_run() {
                 self.inspection = None;
             }
             self.command_output = Some(InspectionResult { question, found });
@@ -70,7 +70,7 @@ impl Xray {
 /// Returns whether a question changes nothing.
 fn is_read_only(question: &InspectionQuestion) -> bool {
     match question {
-        InspectionQuestion::Command(_, asked) => !asked.changes_run(),
+        InspectionQuestion::Command(_, inspection_command) => !inspection_command.changes_run(),
         InspectionQuestion::Breakpoints(work) => matches!(work, BreakpointCommand::List | BreakpointCommand::History),
         _ => true,
     }

@@ -21,17 +21,17 @@ pub fn rows(map: &SpilloverMap, width: usize) -> Vec<StyledRow> {
     let plain = |text: &str, role| wrap(text, width).into_iter().map(move |part| vec![(part, role)]);
     let mut rows: Vec<StyledRow> = plain(&map.heading, Role::Header).collect();
     if !map.rows.is_empty() {
-        let own = map.rows.iter().map(|row| row.own_change.width()).chain([OWN_CHANGE_LABEL.width()]).max().unwrap_or(0) + 2;
-        let room = width.saturating_sub(NAME_WIDTH + own);
+        let number = map.rows.iter().map(|row| row.own_change.width()).chain([OWN_CHANGE_LABEL.width()]).max().unwrap_or(0) + 2;
+        let room = width.saturating_sub(NAME_WIDTH + number);
         let is_wide = map.targets.len() * WIDE_CELL_WIDTH <= room;
         let cell = if is_wide { WIDE_CELL_WIDTH } else { NARROW_CELL_WIDTH };
         let in_block = (room / cell).max(1);
         for from in (0..map.targets.len().max(1)).step_by(in_block) {
             let block = from..(from + in_block).min(map.targets.len());
-            let mut head = format!("{:<NAME_WIDTH$}{OWN_CHANGE_LABEL:<own$}", "from");
+            let mut head = format!("{:<NAME_WIDTH$}{OWN_CHANGE_LABEL:<number$}", "from");
             map.targets[block.clone()].iter().for_each(|group| head += &format!("{:<cell$}", group.id()));
             rows.push(vec![(head, Role::Header)]);
-            rows.extend(map.rows.iter().map(|row| row_of(row, block.clone(), own, is_wide)));
+            rows.extend(map.rows.iter().map(|row| row_of(row, block.clone(), number, is_wide)));
         }
         rows.extend(plain(LEGEND, Role::Dim));
         if !is_wide {
@@ -47,9 +47,9 @@ const OWN_CHANGE_LABEL: &str = "own change";
 const LEGEND: &str =
     "░ ▒ ▓ █ share of the largest spillover · + raises, - lowers · x dropped · dot: no weight";
 
-fn row_of(row: &SpilloverRow, block: Range<usize>, own: usize, is_wide: bool) -> StyledRow {
+fn row_of(row: &SpilloverRow, block: Range<usize>, number: usize, is_wide: bool) -> StyledRow {
     let mut pieces =
-        vec![(format!("{:<NAME_WIDTH$}", row.from.id()), Role::Header), (format!("{:<own$}", row.own_change), Role::Text)];
+        vec![(format!("{:<NAME_WIDTH$}", row.from.id()), Role::Header), (format!("{:<number$}", row.own_change), Role::Text)];
     pieces.extend(row.cells[block].iter().map(|cell| {
         let (text, role) = match *cell {
             SpilloverCell::NoWeight => ("·".to_owned(), Role::Dim),
@@ -77,8 +77,8 @@ fn row_numbers(row: &SpilloverRow, map: &SpilloverMap) -> Option<String> {
         SpilloverCell::Applied(change, _) => Some(format!("{to} {change:+.6}")),
         SpilloverCell::NoWeight | SpilloverCell::Dropped => None,
     });
-    let heard: Vec<String> = heard.collect();
-    (!heard.is_empty()).then(|| format!("  {}→ {}", row.from, heard.join(", ")))
+    let texts: Vec<String> = heard.collect();
+    (!texts.is_empty()).then(|| format!("  {}→ {}", row.from, texts.join(", ")))
 }
 
 #[cfg(test)]
@@ -115,9 +115,9 @@ mod tests {
                 .map(|row| row.iter().map(|(text, _)| text.as_str()).collect())
                 .collect();
             let text = rows.join("\n");
-            let heard = map.rows[0].cells.iter().filter(|cell| matches!(cell, SpilloverCell::Applied(..))).count();
+            let number = map.rows[0].cells.iter().filter(|cell| matches!(cell, SpilloverCell::Applied(..))).count();
             let words: String = text.split_whitespace().collect();
-            assert_eq!(words.matches("0.0002").count() + words.matches("0.0003").count(), heard, "{text}");
+            assert_eq!(words.matches("0.0002").count() + words.matches("0.0003").count(), number, "{text}");
             let wide = |row: &&String| row.trim_end().width() > width;
             assert!(width < 40 || !rows.iter().any(|row| wide(&row)), "{width}:\n{text}");
         }

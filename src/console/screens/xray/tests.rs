@@ -88,8 +88,8 @@ fn queued_commands_run_next_and_confirmed_ones_are_kept() {
     let read = |words: &str| (words.to_owned(), InspectionCommand::parse(words).expect(words));
     handle_action(&mut screen, Action::TypeCommand, &company);
     for words in ["who cash", "set group.S1.c_max_mean 300", "diff 6 7", "find leads >= 1"] {
-        let (words, asked) = read(words);
-        assert!(screen.enqueue_command(words, asked).is_empty(), "a question is being answered");
+        let (words, inspection_command) = read(words);
+        assert!(screen.enqueue_command(words, inspection_command).is_empty(), "a question is being answered");
     }
     let text = screen_text(&screen, &company, 80, 21);
     assert!(text.contains("find leads >= 1") && text.contains("re-simulating"), "{text}");
@@ -118,8 +118,8 @@ fn input_accepts_existing_days_with_or_without_a_target() {
         let problem = screen.problem.take();
         (effects.first().map(|_| asked::<InspectionQuestion>(&effects).clone()), problem, screen.day())
     };
-    let (asked, _, day) = typed(XrayView::Leads, Action::TypeTarget, "s2 9");
-    assert!(matches!(asked, Some(InspectionQuestion::Leads(group, 9, _)) if group.id() == "S2"));
+    let (inspection_question, _, day) = typed(XrayView::Leads, Action::TypeTarget, "s2 9");
+    assert!(matches!(inspection_question, Some(InspectionQuestion::Leads(group, 9, _)) if group.id() == "S2"));
     assert_eq!(day, 9);
     let (asked, ..) = typed(XrayView::Customer, Action::TypeTarget, "7 12");
     assert!(matches!(asked, Some(InspectionQuestion::Customer(7, 12))));
@@ -221,8 +221,8 @@ fn requests_that_bypass_the_screen_are_rejected() {
         console.open("latest").expect("it opens");
         let group = Group::all().next().expect("a group");
         let words = |text: &str| {
-            let asked = InspectionCommand::parse(text).expect(text);
-            Effect::Ask(Pending::default().ask(InspectionQuestion::Command(text.to_owned(), asked)))
+            let inspection_command = InspectionCommand::parse(text).expect(text);
+            Effect::Ask(Pending::default().ask(InspectionQuestion::Command(text.to_owned(), inspection_command)))
         };
         let query = Query { sql: "SELECT * FROM hidden.groups".to_owned(), tables: QueriedTables::Hidden };
         for effect in [

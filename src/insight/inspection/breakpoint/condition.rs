@@ -143,8 +143,8 @@ impl Condition {
                 })
             }
             Condition::Event(event) => {
-                let own = day.checked_sub(1).and_then(|at| days.get(at as usize));
-                own.is_some_and(|own| event.happens_on(own))
+                let measured_day = day.checked_sub(1).and_then(|at| days.get(at as usize));
+                measured_day.is_some_and(|own| event.happens_on(own))
             }
         }
     }

@@ -33,7 +33,9 @@ impl Inspector<'_> {
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `unreadable_record`, `not_saved`.
     pub fn condition_history(&mut self, condition: Condition) -> Result<ConditionHistory, Rejection> {
         let all = self.evaluate_days("back", condition)?;
-        let last = |is_true: bool| all.iter().rev().find(|own| own.is_true == is_true).copied();
+        let last = |is_true: bool| {
+            all.iter().rev().find(|condition_state| condition_state.is_true == is_true).copied()
+        };
         let today =
             *all.last().ok_or_else(|| Rejection::new("not_readable", "no day could be re-simulated"))?;
         Ok(ConditionHistory { condition, today, last_true: last(true), last_false: last(false) })
@@ -47,7 +49,7 @@ impl Inspector<'_> {
         let set = self.breakpoints()?;
         let chosen: Vec<Condition> = set
             .iter()
-            .filter(|own| number.is_none_or(|number| own.number == number))
+            .filter(|breakpoint| number.is_none_or(|number| breakpoint.number == number))
             .map(|own| own.condition)
             .collect();
         if let Some(number) = number.filter(|_| chosen.is_empty()) {
@@ -63,7 +65,10 @@ impl Inspector<'_> {
     /// As [`Inspector::condition_history`].
     pub fn find_condition_days(&mut self, condition: Condition) -> Result<Vec<ConditionState>, Rejection> {
         let all = self.evaluate_days("find", condition)?;
-        Ok(all.into_iter().filter(|own| own.is_true && !own.was_true).collect())
+        Ok(all
+            .into_iter()
+            .filter(|condition_state| condition_state.is_true && !condition_state.was_true)
+            .collect())
     }
 
     fn evaluate_days(&mut self, what: &str, condition: Condition) -> Result<Vec<ConditionState>, Rejection> {

@@ -41,7 +41,7 @@ impl Breakpoints {
 
     /// Removes the breakpoint with a number. Returns `None` if it does not exist.
     pub(crate) fn clear(&mut self, number: u32) -> Option<Breakpoint> {
-        let at = self.set.iter().position(|own| own.number == number)?;
+        let at = self.set.iter().position(|breakpoint| breakpoint.number == number)?;
         Some(self.set.remove(at))
     }
 

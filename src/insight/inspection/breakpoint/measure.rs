@@ -60,10 +60,10 @@ measures! {
     Payments = "payments", MeasureKind::Flow, Some(|day| day.figures.payments_received), None;
     RunningCosts = "running_costs", MeasureKind::Flow, Some(|day| day.figures.total_costs), None;
     Subscribers = "subscribers", MeasureKind::State,
-        Some(|day| day.figures.individual_subscribers.into()), Some(|own| Some(own.subscribers.into()));
+        Some(|day| day.figures.individual_subscribers.into()), Some(|group_figures| Some(group_figures.subscribers.into()));
     Seats = "seats", MeasureKind::State, Some(|day| day.figures.enterprise_seats.into()), None;
     Leads = "leads", MeasureKind::Flow,
-        Some(|day| day.figures.new_leads.into()), Some(|own| Some(own.leads.into()));
+        Some(|day| day.figures.new_leads.into()), Some(|figures| Some(figures.leads.into()));
     IndividualLeads = "individual_leads", MeasureKind::Flow,
         Some(|day| day.figures.new_individual_leads.into()), None;
     NewSubscribers = "new_subscribers", MeasureKind::Flow,
@@ -184,10 +184,10 @@ impl Quantity {
     }
 
     fn value_on_day(&self, measure: Measure, days: &[MeasuredDay], day: u32) -> Option<f64> {
-        let own = days.get(day.checked_sub(1)? as usize)?;
+        let measured_day = days.get(day.checked_sub(1)? as usize)?;
         match self.group {
-            Some(group) => measure.group_figure()?(&own.groups[group]),
-            None => Some(measure.company_figure()?(own)),
+            Some(group) => measure.group_figure()?(&measured_day.groups[group]),
+            None => Some(measure.company_figure()?(measured_day)),
         }
     }
 }

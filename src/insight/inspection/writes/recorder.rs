@@ -144,13 +144,14 @@ fn add_cash_writes(pages: &mut RecordedWrites, params: &Params, facts: &Facts) {
 
 /// Adds cancellations by reason and new subscribers by source.
 fn add_subscriber_writes(pages: &mut RecordedWrites, group: Group, world: &World, facts: &Facts) {
-    let has_left =
-        |own: &&SubscriptionEnded| own.group == group && own.status == SubscriptionStatus::Cancelled;
+    let has_left = |subscription_ended: &&SubscriptionEnded| {
+        subscription_ended.group == group && subscription_ended.status == SubscriptionStatus::Cancelled
+    };
     let mut left: Vec<_> = facts.endings.iter().filter(has_left).collect();
-    left.sort_by_key(|own| own.cause as u8);
+    left.sort_by_key(|ended| ended.cause as u8);
     left.into_iter().for_each(|own| pages.add_amount(WriteSource::Cancellations(own.cause), -1.0));
     for source in Source::ALL {
-        let came = facts.arrivals.iter().filter(|own| own.group == group && own.source == source);
+        let came = facts.arrivals.iter().filter(|arrival| arrival.group == group && arrival.source == source);
         let signed = |customer: u32| {
             let mut own = facts.openings.iter().filter(|opening| opening.customer == customer);
             own.any(|opening| opening.status == SubscriptionStatus::Subscribed)
@@ -158,7 +159,8 @@ fn add_subscriber_writes(pages: &mut RecordedWrites, group: Group, world: &World
         let count = came.filter(|own| signed(own.customer)).count();
         (0..count).for_each(|_| pages.add_amount(WriteSource::Signups(source), 1.0));
     }
-    let of_group = |customer: u32| world.enterprise.company(customer).is_some_and(|own| own.group == group);
+    let of_group =
+        |customer: u32| world.enterprise.company(customer).is_some_and(|company| company.group == group);
     let deals = facts.deals.iter().filter(|deal| deal.activated && of_group(deal.customer));
     deals.for_each(|_| pages.add_amount(WriteSource::FirstDeals, 1.0));
 }

@@ -20,36 +20,38 @@ fn by_plan<T>(plans: &ByPlan<T>) -> [PlanEntry<'_, T>; 3] {
     Plan::ALL.map(|plan| PlanEntry { plan, own: &plans[plan] })
 }
 
-pub(super) fn leads_to_json(own: &LeadEquation, held: &[(LeadFactor, f64)]) -> Value {
-    let factors = LeadFactor::ALL.map(|factor| (factor.letter().to_owned(), json!(own.factor(factor))));
-    let channels = own.channels().map(|(channel, leads)| (channel.id().to_owned(), json!(leads)));
-    let word_of_mouth = own.word_of_mouth.iter().map(|(group, leads)| (group.id().to_owned(), json!(leads)));
+pub(super) fn leads_to_json(lead_equation: &LeadEquation, held: &[(LeadFactor, f64)]) -> Value {
+    let factors =
+        LeadFactor::ALL.map(|factor| (factor.letter().to_owned(), json!(lead_equation.factor(factor))));
+    let channels = lead_equation.channels().map(|(channel, leads)| (channel.id().to_owned(), json!(leads)));
+    let word_of_mouth =
+        lead_equation.word_of_mouth.iter().map(|(group, leads)| (group.id().to_owned(), json!(leads)));
     json!({
-        "group": own.group.id(),
-        "day": own.day,
-        "known": own.is_known,
+        "group": lead_equation.group.id(),
+        "day": lead_equation.day,
+        "known": lead_equation.is_known,
         "factors": Value::Object(factors.into_iter().collect()),
         "channels": Value::Object(channels.collect()),
         "word_of_mouth": Value::Object(word_of_mouth.collect()),
-        "expected": own.expected_leads(),
-        "came": own.actual_leads,
-        "p": own.p_value(),
-        "held": (!held.is_empty()).then(|| own.expected_with(held)),
+        "expected": lead_equation.expected_leads(),
+        "came": lead_equation.actual_leads,
+        "p": lead_equation.p_value(),
+        "held": (!held.is_empty()).then(|| lead_equation.expected_with(held)),
     })
 }
 
 pub(super) fn customer_to_json(lens: &IndividualView, headline: &str) -> Value {
-    let day = |own: &IndividualDay| {
+    let day = |individual_day: &IndividualDay| {
         json!({
-            "day": own.day,
-            "plan": own.plan.id(),
-            "price": own.price,
-            "billing_day": own.is_due,
-            "satisfaction": own.satisfaction,
-            "relationship": own.relationship,
-            "open_issue_days": own.open_issue_days,
-            "choice": own.weighed_decision.choice.map(Plan::id),
-            "plans": by_plan(&own.weighed_decision.plans),
+            "day": individual_day.day,
+            "plan": individual_day.plan.id(),
+            "price": individual_day.price,
+            "billing_day": individual_day.is_due,
+            "satisfaction": individual_day.satisfaction,
+            "relationship": individual_day.relationship,
+            "open_issue_days": individual_day.open_issue_days,
+            "choice": individual_day.weighed_decision.choice.map(Plan::id),
+            "plans": by_plan(&individual_day.weighed_decision.plans),
         })
     };
     json!({
@@ -64,16 +66,16 @@ pub(super) fn customer_to_json(lens: &IndividualView, headline: &str) -> Value {
 }
 
 pub(super) fn enterprise_to_json(lens: &EnterpriseView) -> Value {
-    let thread = |own: &EnterpriseThreadDay| {
+    let thread = |thread_day: &EnterpriseThreadDay| {
         json!({
-            "thread": own.thread,
-            "kind": own.kind.id(),
-            "budget": own.budget,
-            "turns_left": own.remaining_turns,
-            "relationship": own.relationship,
-            "late_penalty": own.late_penalty,
-            "reply_day": own.reply_day,
-            "plans": by_plan(&own.plans),
+            "thread": thread_day.thread,
+            "kind": thread_day.kind.id(),
+            "budget": thread_day.budget,
+            "turns_left": thread_day.remaining_turns,
+            "relationship": thread_day.relationship,
+            "late_penalty": thread_day.late_penalty,
+            "reply_day": thread_day.reply_day,
+            "plans": by_plan(&thread_day.plans),
         })
     };
     json!({

@@ -10,69 +10,69 @@ use novamind_insight::{
 use novamind_session::RivalEvent;
 use novamind_session::identifiers::{Group, Plan};
 
-pub(super) fn quality_to_json(own: &QualityEquation) -> Value {
+pub(super) fn quality_to_json(quality_equation: &QualityEquation) -> Value {
     let plan = |plan: Plan| {
-        let DeliveredPlanQuality { tier, multiplier, delivered } = own.plans[plan];
+        let DeliveredPlanQuality { tier, multiplier, delivered } = quality_equation.plans[plan];
         json!({
             "plan": plan.id(), "tier": tier, "multiplier": multiplier, "delivered": delivered,
-            "felt": delivered - own.service_penalty,
+            "felt": delivered - quality_equation.service_penalty,
         })
     };
     json!({
-        "group": own.group.id(),
-        "day": own.day,
-        "base": own.base,
-        "shared": own.shared,
-        "own": own.group_gain,
+        "group": quality_equation.group.id(),
+        "day": quality_equation.day,
+        "base": quality_equation.base,
+        "shared": quality_equation.shared,
+        "own": quality_equation.group_gain,
         "plans": Plan::ALL.map(plan),
-        "service_penalty": own.service_penalty,
-        "gains": own.gains,
-        "banks": {"shared": own.shared_bank, "own": own.group_bank},
+        "service_penalty": quality_equation.service_penalty,
+        "gains": quality_equation.gains,
+        "banks": {"shared": quality_equation.shared_bank, "own": quality_equation.group_bank},
         "expectation": {
-            "everyone": own.common_expectation, "quality": own.expectation.quality, "budget": own.expectation.c_max,
+            "everyone": quality_equation.common_expectation, "quality": quality_equation.expectation.quality, "budget": quality_equation.expectation.c_max,
         },
     })
 }
 
-pub(super) fn satisfaction_to_json(own: &SatisfactionEquation) -> Value {
+pub(super) fn satisfaction_to_json(satisfaction_equation: &SatisfactionEquation) -> Value {
     let terms = |of: &dyn Fn(SatisfactionTerm) -> Option<f64>| {
         let named = SatisfactionTerm::ALL.map(|term| (term.id().to_owned(), json!(of(term))));
         Value::Object(named.into_iter().collect())
     };
     json!({
-        "group": own.group.id(),
-        "day": own.day,
-        "weight": own.weight,
-        "felt_by": own.included_subscribers(),
-        "before": own.before(),
-        "terms": terms(&|term| own.term(term)),
-        "terms_yesterday": terms(&|term| own.term_yesterday(term)),
-        "felt": own.instant(),
-        "after": own.after(),
-        "left": own.departed,
-        "came": own.joined,
-        "subscribers": own.subscribers,
-        "evening": own.end_of_day,
+        "group": satisfaction_equation.group.id(),
+        "day": satisfaction_equation.day,
+        "weight": satisfaction_equation.weight,
+        "felt_by": satisfaction_equation.included_subscribers(),
+        "before": satisfaction_equation.before(),
+        "terms": terms(&|term| satisfaction_equation.term(term)),
+        "terms_yesterday": terms(&|term| satisfaction_equation.term_yesterday(term)),
+        "felt": satisfaction_equation.instant(),
+        "after": satisfaction_equation.after(),
+        "left": satisfaction_equation.departed,
+        "came": satisfaction_equation.joined,
+        "subscribers": satisfaction_equation.subscribers,
+        "evening": satisfaction_equation.end_of_day,
     })
 }
 
-fn contribution_to_json(own: &SubscriberContribution) -> Value {
-    json!({"subscribers": own.subscribers, "called": own.requested_change, "counts": own.is_applied, "change": own.applied_change()})
+fn contribution_to_json(subscriber_contribution: &SubscriberContribution) -> Value {
+    json!({"subscribers": subscriber_contribution.subscribers, "called": subscriber_contribution.requested_change, "counts": subscriber_contribution.is_applied, "change": subscriber_contribution.applied_change()})
 }
 
-pub(super) fn reputation_to_json(own: &ReputationEquation) -> Value {
+pub(super) fn reputation_to_json(reputation_equation: &ReputationEquation) -> Value {
     json!({
-        "group": own.group.id(),
-        "day": own.day,
-        "before": own.before,
-        "cancellations": own.individual_departures,
-        "lost_companies": own.enterprise_departures,
-        "own": contribution_to_json(&own.contribution),
-        "spills": own.spillovers,
-        "bounds": own.bounds,
-        "after": own.after,
-        "least_own_change": own.thresholds.subscriber_contribution,
-        "least_spill": own.thresholds.spillover,
+        "group": reputation_equation.group.id(),
+        "day": reputation_equation.day,
+        "before": reputation_equation.before,
+        "cancellations": reputation_equation.individual_departures,
+        "lost_companies": reputation_equation.enterprise_departures,
+        "own": contribution_to_json(&reputation_equation.contribution),
+        "spills": reputation_equation.spillovers,
+        "bounds": reputation_equation.bounds,
+        "after": reputation_equation.after,
+        "least_own_change": reputation_equation.thresholds.subscriber_contribution,
+        "least_spill": reputation_equation.thresholds.spillover,
     })
 }
 
@@ -87,75 +87,75 @@ pub(super) fn spillover_to_json(own: &Spillover) -> Value {
     })
 }
 
-fn competitor_event_to_json(own: &RivalEvent) -> Value {
-    let RivalEvent { day, boost, sampled, u, by_feedback } = own;
+fn competitor_event_to_json(event: &RivalEvent) -> Value {
+    let RivalEvent { day, boost, sampled, u, by_feedback } = event;
     json!({"day": day, "raised_by": boost, "drawn_size": sampled, "share": u, "copied": by_feedback})
 }
 
-pub(super) fn competitors_to_json(own: &CompetitorState) -> Value {
+pub(super) fn competitors_to_json(competitor_state: &CompetitorState) -> Value {
     let bank = |(group, bonus, bank): &(Group, f64, f64)| {
         (group.id().to_owned(), json!({"improvements": bonus, "bank": bank}))
     };
     let next = |next: &NextCompetitorMove| {
         let shares = next.group_shares.iter().map(|(group, share)| (group.id().to_owned(), json!(share)));
         json!({
-            "day": next.day, "drawn_size": next.sampled_size, "share": next.copied_share, "copied": next.copied_quality(own.shared_bank),
+            "day": next.day, "drawn_size": next.sampled_size, "share": next.copied_share, "copied": next.copied_quality(competitor_state.shared_bank),
             "copies_above": next.copy_threshold(), "shares": Value::Object(shares.collect()),
             "made": next.outcome.as_ref().map(competitor_event_to_json),
         })
     };
     json!({
-        "day": own.day,
-        "shared_improvements": own.shared_bonus,
-        "shared_bank": own.shared_bank,
-        "own": Value::Object(own.group_banks.iter().map(bank).collect()),
-        "everyone": own.common_expectation,
-        "moves": own.moves.iter().map(|(event, _)| competitor_event_to_json(event)).collect::<Vec<_>>(),
-        "next": own.next_move.as_ref().map(next),
+        "day": competitor_state.day,
+        "shared_improvements": competitor_state.shared_bonus,
+        "shared_bank": competitor_state.shared_bank,
+        "own": Value::Object(competitor_state.group_banks.iter().map(bank).collect()),
+        "everyone": competitor_state.common_expectation,
+        "moves": competitor_state.moves.iter().map(|(event, _)| competitor_event_to_json(event)).collect::<Vec<_>>(),
+        "next": competitor_state.next_move.as_ref().map(next),
     })
 }
 
-pub(super) fn drift_to_json(own: &DriftState) -> Value {
-    let group = |own: &GroupDriftState| {
+pub(super) fn drift_to_json(drift_state: &DriftState) -> Value {
+    let group = |state: &GroupDriftState| {
         json!({
-            "group": own.group.id(), "known": own.is_known, "own": own.group_expectation,
-            "quality": own.expectation.quality, "budget": own.expectation.c_max,
-            "next_own": own.next_step.quality, "next_budget": own.next_step.c_max,
+            "group": state.group.id(), "known": state.is_known, "own": state.group_expectation,
+            "quality": state.expectation.quality, "budget": state.expectation.c_max,
+            "next_own": state.next_step.quality, "next_budget": state.next_step.c_max,
         })
     };
     json!({
-        "day": own.day,
-        "everyone": own.common_expectation,
-        "next_day": own.next_day,
-        "next_everyone": own.next_common_step,
-        "groups": own.groups.iter().map(group).collect::<Vec<_>>(),
+        "day": drift_state.day,
+        "everyone": drift_state.common_expectation,
+        "next_day": drift_state.next_day,
+        "next_everyone": drift_state.next_common_step,
+        "groups": drift_state.groups.iter().map(group).collect::<Vec<_>>(),
     })
 }
 
-pub(super) fn streams_to_json(own: &NextDraws) -> Value {
-    let stream = |own: &KeyedDraws| {
+pub(super) fn streams_to_json(next_draws: &NextDraws) -> Value {
+    let stream = |keyed_draws: &KeyedDraws| {
         let key: Map<String, Value> =
-            own.key.iter().map(|(name, value)| ((*name).to_owned(), json!(value))).collect();
+            keyed_draws.key.iter().map(|(name, value)| ((*name).to_owned(), json!(value))).collect();
         json!({
-            "stream": own.stream,
+            "stream": keyed_draws.stream,
             "key": key,
-            "group": own.group.map(Group::id),
-            "uniform": own.draws.iter().map(|draw| draw.uniform).collect::<Vec<_>>(),
-            "normal": own.draws.iter().map(|draw| draw.normal).collect::<Vec<_>>(),
-            "follows": follows_to_json(&own.effect),
+            "group": keyed_draws.group.map(Group::id),
+            "uniform": keyed_draws.draws.iter().map(|draw| draw.uniform).collect::<Vec<_>>(),
+            "normal": keyed_draws.draws.iter().map(|draw| draw.normal).collect::<Vec<_>>(),
+            "follows": follows_to_json(&keyed_draws.effect),
         })
     };
     json!({
-        "part": own.part.id(),
-        "day": own.day,
-        "run_is_over": own.is_over,
-        "replayed": own.is_replayed,
-        "streams": own.streams.iter().map(stream).collect::<Vec<_>>(),
+        "part": next_draws.part.id(),
+        "day": next_draws.day,
+        "run_is_over": next_draws.is_over,
+        "replayed": next_draws.is_replayed,
+        "streams": next_draws.streams.iter().map(stream).collect::<Vec<_>>(),
     })
 }
 
-fn follows_to_json(own: &DrawEffect) -> Value {
-    match own {
+fn follows_to_json(draw_effect: &DrawEffect) -> Value {
+    match draw_effect {
         DrawEffect::Leads { expected, number } => json!({"expected": expected, "leads": number}),
         DrawEffect::FailedPayments { rate, customers } => json!({"rate": rate, "customers": customers}),
         DrawEffect::OutageAbove(chance) => json!({"outage_above": chance}),

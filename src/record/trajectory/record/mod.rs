@@ -122,7 +122,7 @@ impl Record {
             Record::Memo(memo) => serde_json::to_value(memo),
             Record::Note(note) => serde_json::to_value(note),
             Record::Advance(advance) => serde_json::to_value(advance),
-            Record::Voice(said) => serde_json::to_value(said),
+            Record::Voice(voice_answer) => serde_json::to_value(voice_answer),
             Record::Week(closing) | Record::Step(closing) => serde_json::to_value(closing),
             Record::Override(change) => serde_json::to_value(change),
             Record::Branch(branch) => serde_json::to_value(branch),

@@ -64,14 +64,15 @@ impl Session {
     pub(super) fn lacks_rule_evaluator(&self, standing: &LessonProgress, step: usize) -> bool {
         let is_relative = |goal: &LessonGoal| goal.bound.is_relative();
         self.rule_evaluator.is_none()
-            && standing.step(step).is_some_and(|own| own.goals.iter().any(is_relative))
+            && standing.step(step).is_some_and(|lesson_step| lesson_step.goals.iter().any(is_relative))
             && uses_rules(&standing.lesson.plan.good.plays)
     }
 
     /// Records the pitfalls that occurred in the last week for the first time.
     pub(super) fn record_pitfalls(&mut self, standing: &LessonProgress, step: usize, weeks: u32) {
-        let met = standing.met_pitfalls();
-        let own = |pitfall: &&Pitfall| pitfall.part == standing.part && !met.contains(&pitfall.name.as_str());
+        let texts = standing.met_pitfalls();
+        let own =
+            |pitfall: &&Pitfall| pitfall.part == standing.part && !texts.contains(&pitfall.name.as_str());
         let from = weeks.saturating_sub(1) * self.params().run.days_per_week;
         for pitfall in standing.lesson.plan.pitfalls.iter().filter(own) {
             let value = measure(&pitfall.measurement, self, from).ok().flatten();
@@ -87,8 +88,10 @@ impl Session {
     pub(super) fn judge_guesses(&mut self, standing: &LessonProgress, step: usize, is_over: bool) {
         let part = standing.current_part();
         let is_last = is_over || step + 1 == part.steps.len();
-        for (at, own) in part.steps.iter().enumerate().take(step + 1) {
-            let Some(guess) = own.guess.as_ref().filter(|_| standing.outcome(at).is_none()) else { continue };
+        for (at, lesson_step) in part.steps.iter().enumerate().take(step + 1) {
+            let Some(guess) = lesson_step.guess.as_ref().filter(|_| standing.outcome(at).is_none()) else {
+                continue;
+            };
             let is_due = if guess.told == OutcomeTiming::Part { is_last } else { at == step };
             if is_due {
                 let from = part.step_weeks(at).0 * self.params().run.days_per_week;
@@ -119,11 +122,11 @@ impl Session {
     }
 
     pub(super) fn judge_goals(&mut self, standing: &LessonProgress, step: usize, begin: u32) {
-        let Some(own) = standing.step(step) else { return };
+        let Some(lesson_step) = standing.step(step) else { return };
         let from = begin * self.params().run.days_per_week;
         let judged = standing.goal_results(step).len();
         let mut good = self.reference_play(standing, step);
-        for (number, goal) in own.goals.iter().enumerate().skip(judged) {
+        for (number, goal) in lesson_step.goals.iter().enumerate().skip(judged) {
             let value = measure(&goal.measurement, self, from).ok().flatten();
             let good = good.as_mut().filter(|_| goal.bound.is_relative());
             let good = good.and_then(|play| measure(&goal.measurement, play, from).ok().flatten());

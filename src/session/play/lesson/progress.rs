@@ -49,7 +49,11 @@ impl Session {
     }
 
     pub(crate) fn prepare_lesson_week(&mut self) -> Result<(), Rejection> {
-        if !self.lesson.as_deref().is_some_and(|own| own.current_part().has_automatic_capacity()) {
+        if !self
+            .lesson
+            .as_deref()
+            .is_some_and(|lesson_progress| lesson_progress.current_part().has_automatic_capacity())
+        {
             return Ok(());
         }
         let (now, next) = (self.settings().core.capacity_tier, self.company().capacity_step_toward_usage());

@@ -90,8 +90,8 @@ fn play_week(
     answers: RuleEvaluator,
     before_week: &mut dyn FnMut(&Session),
 ) -> Result<(), Rejection> {
-    let due = play.scheduled_calls.iter().filter(|own| own.are_due(play.part, week));
-    for call in due.flat_map(|own| &own.calls) {
+    let due = play.scheduled_calls.iter().filter(|scheduled_calls| scheduled_calls.are_due(play.part, week));
+    for call in due.flat_map(|calls| &calls.calls) {
         match call {
             LessonCall::Tool(tool, args) => {
                 session.call(tool, args, Via::Script)?;
@@ -104,7 +104,8 @@ fn play_week(
         }
     }
     before_week(session);
-    let awaits = |step: &usize| session.lesson().is_some_and(|own| own.awaits_guess(*step));
+    let awaits =
+        |step: &usize| session.lesson().is_some_and(|lesson_progress| lesson_progress.awaits_guess(*step));
     if let Some(step) = lesson_step(session).filter(awaits) {
         let about = LessonNote::new(LessonEvent::Guess, step as u32 + 1);
         session.record_lesson_event(LessonNote { value: Some(1.0), ..about })?;

@@ -40,7 +40,11 @@ impl Session {
         let start = &lesson.plan.parts[part];
         let first = weeks_passed(self);
         for week in first..=start.start_weeks {
-            let due = start.start.iter().filter(|own| own.week == week).flat_map(|own| &own.calls);
+            let due = start
+                .start
+                .iter()
+                .filter(|scheduled_calls| scheduled_calls.week == week)
+                .flat_map(|calls| &calls.calls);
             for call in due.skip(if week == first { made } else { 0 }) {
                 self.make_start_call(call).map_err(|refusal| {
                     RunError::InvalidRequest(format!("lesson {} cannot start: {refusal}", lesson.name))
@@ -66,10 +70,11 @@ impl Session {
     }
 
     pub(super) fn start_step(&mut self, step: usize, number: u32) -> Result<(), Rejection> {
-        let Some(own) = self.lesson.as_deref().and_then(|standing| standing.step(step)).cloned() else {
+        let Some(lesson_step) = self.lesson.as_deref().and_then(|standing| standing.step(step)).cloned()
+        else {
             return Ok(());
         };
-        for (key, value) in &own.parameters {
+        for (key, value) in &lesson_step.parameters {
             let value = serde_json::to_value(value).unwrap_or_default();
             self.set_lesson_parameter(key, &value)?;
         }
@@ -141,10 +146,11 @@ impl Session {
         let read = parent.and_then(|(parent, runs)| {
             Trajectory::read(&runs.join(&parent.run).join("trajectory.jsonl")).ok()
         });
-        let own = read.zip(self.lesson.as_deref()).map(|(parent, own)| {
-            LessonProgress::from_lines(own.lesson.clone(), own.part, &parent.lines).attempt(step)
+        let number = read.zip(self.lesson.as_deref()).map(|(parent, lesson_progress)| {
+            LessonProgress::from_lines(lesson_progress.lesson.clone(), lesson_progress.part, &parent.lines)
+                .attempt(step)
         });
-        own.unwrap_or(1).max(1)
+        number.unwrap_or(1).max(1)
     }
 }
 

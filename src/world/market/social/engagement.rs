@@ -114,8 +114,8 @@ mod tests {
             let draws = 20_000;
             let (mut sum, mut shared) = (0.0, 0.0);
             for _ in 0..draws {
-                let own = draw_engagement(sentiment, id, &params, &mut stream);
-                (sum, shared) = (sum + f64::from(own.likes), shared + f64::from(own.shares));
+                let engagement = draw_engagement(sentiment, id, &params, &mut stream);
+                (sum, shared) = (sum + f64::from(engagement.likes), shared + f64::from(engagement.shares));
             }
             let (mean, mean_shares) = (sum / f64::from(draws), shared / f64::from(draws));
             assert!((mean / likes - 1.0).abs() < 0.03, "{id} {sentiment:?}: {mean} likes");

@@ -82,8 +82,8 @@ mod tests {
             (&[(0, -1.0), (7, -1.0)], 7, 0.75),
             (&[(0, 1.0), (7, 1.0)], 9, 1.188740131237),
         ] {
-            let own = multiplier(posts, day);
-            assert!((own - expected).abs() < 1e-11, "{posts:?} on {day}: got {own}, expected {expected}");
+            let value = multiplier(posts, day);
+            assert!((value - expected).abs() < 1e-11, "{posts:?} on {day}: got {value}, expected {expected}");
         }
     }
 

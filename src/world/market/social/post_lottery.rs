@@ -80,7 +80,7 @@ pub fn from_subscribers(
     let mut picked: Vec<(usize, usize)> = Vec::new();
     let (mut candidates, mut time) = (Vec::new(), 0.0);
     while candidates.len() < places {
-        let total: f64 = voices.iter().map(|own| own.weight).sum();
+        let total: f64 = voices.iter().map(|block_weights| block_weights.weight).sum();
         if total <= 0.0 {
             break;
         }
@@ -90,9 +90,9 @@ pub fn from_subscribers(
         let Some((number, at)) = find_row(&blocks, &voices, target, scene, taken) else { break };
         picked.push((number, at));
         let (group, block) = blocks[number];
-        let own = &mut voices[number];
-        let mood = own.before[at];
-        own.weight = (own.weight - row_weight(scene, group, block, at, mood)).max(0.0);
+        let weights = &mut voices[number];
+        let mood = weights.before[at];
+        weights.weight = (weights.weight - row_weight(scene, group, block, at, mood)).max(0.0);
         candidates.push(Candidate {
             time,
             customer: block.customer[at],
@@ -120,19 +120,19 @@ fn find_row(
     taken: impl Fn(usize, usize) -> bool,
 ) -> Option<(usize, usize)> {
     let mut last = None;
-    for (number, ((group, block), own)) in blocks.iter().zip(voices).enumerate() {
-        if own.weight <= 0.0 {
+    for (number, ((group, block), block_weights)) in blocks.iter().zip(voices).enumerate() {
+        if block_weights.weight <= 0.0 {
             continue;
         }
         let mut rows = (0..block.len()).filter(|at| !taken(number, *at));
-        if target >= own.weight {
-            target -= own.weight;
+        if target >= block_weights.weight {
+            target -= block_weights.weight;
             last = rows.next_back().map(|at| (number, at)).or(last);
             continue;
         }
         for at in rows {
             last = Some((number, at));
-            target -= row_weight(scene, *group, block, at, own.before[at]);
+            target -= row_weight(scene, *group, block, at, block_weights.before[at]);
             if target < 0.0 {
                 return last;
             }
@@ -150,39 +150,53 @@ impl PostLottery {
         params: &Params,
     ) {
         let law = &params.social;
-        for own in gave_up {
-            let weight = cancelled_weight(own.satisfaction, 1.0, law);
-            let theme = if own.satisfaction < 0.0 { Theme::Quality } else { Theme::Price };
+        for cancelled_individual in gave_up {
+            let weight = cancelled_weight(cancelled_individual.satisfaction, 1.0, law);
+            let theme = if cancelled_individual.satisfaction < 0.0 { Theme::Quality } else { Theme::Price };
             let opinion = Opinion {
                 cause: PostCause::Cancelled,
                 troubles: Troubles::default(),
                 theme,
-                days_subscribed: own.days_subscribed,
-                plan: Some(own.plan),
-                price: own.price,
+                days_subscribed: cancelled_individual.days_subscribed,
+                plan: Some(cancelled_individual.plan),
+                price: cancelled_individual.price,
                 seats: 1,
                 waiting_days: 0,
                 downtime_minutes: 0,
             };
-            self.add_candidate(weight, own.customer, own.group, own.n, opinion);
+            self.add_candidate(
+                weight,
+                cancelled_individual.customer,
+                cancelled_individual.group,
+                cancelled_individual.n,
+                opinion,
+            );
         }
-        for own in lost {
-            let weight = lost_company_weight(f64::from(own.seats), law);
+        for lost_enterprise in lost {
+            let weight = lost_company_weight(f64::from(lost_enterprise.seats), law);
             let opinion = Opinion {
                 cause: PostCause::Lost {
-                    thread: own.kind,
-                    unanswered: own.failure == ThreadFailure::Timeout,
+                    thread: lost_enterprise.kind,
+                    unanswered: lost_enterprise.failure == ThreadFailure::Timeout,
                 },
                 troubles: Troubles::default(),
                 theme: Theme::Support,
-                days_subscribed: own.days_subscribed.unwrap_or(law.enterprise_churn_event_fallback_days),
+                days_subscribed: lost_enterprise
+                    .days_subscribed
+                    .unwrap_or(law.enterprise_churn_event_fallback_days),
                 plan: None,
                 price: 0.0,
-                seats: own.seats,
+                seats: lost_enterprise.seats,
                 waiting_days: 0,
                 downtime_minutes: 0,
             };
-            self.add_candidate(weight, own.customer, own.group, own.n, opinion);
+            self.add_candidate(
+                weight,
+                lost_enterprise.customer,
+                lost_enterprise.group,
+                lost_enterprise.n,
+                opinion,
+            );
         }
     }
 
@@ -195,14 +209,21 @@ impl PostLottery {
     pub fn publish(mut self, social: &mut Social, params: &Params, streams: &Streams, facts: &mut Facts) {
         self.candidates.sort_by(|one, other| one.time.total_cmp(&other.time));
         self.candidates.truncate(self.remaining_posts);
-        for own in self.candidates {
+        for candidate in self.candidates {
             let u = self.stream.uniform();
             // Departed customers always complain.
             let tone =
-                own.satisfaction.map_or(Sentiment::Negative, |mood| sentiment(mood, u, &params.social));
-            let engagement = draw_engagement(tone, own.group.id(), params, &mut self.stream);
-            let author = post_author(own.customer, own.group, own.n, own.opinion.seats, params, streams);
-            social.publish(Some(author), tone, engagement, PostSubject::Opinion(own.opinion), facts);
+                candidate.satisfaction.map_or(Sentiment::Negative, |mood| sentiment(mood, u, &params.social));
+            let engagement = draw_engagement(tone, candidate.group.id(), params, &mut self.stream);
+            let author = post_author(
+                candidate.customer,
+                candidate.group,
+                candidate.n,
+                candidate.opinion.seats,
+                params,
+                streams,
+            );
+            social.publish(Some(author), tone, engagement, PostSubject::Opinion(candidate.opinion), facts);
         }
     }
 }
@@ -298,8 +319,11 @@ mod tests {
     #[test]
     fn at_most_five_different_subscribers_post() {
         let rows: Vec<Subscriber> = (1..=40).map(|n| content(n, 0.1)).collect();
-        let mut authors: Vec<u32> =
-            posts(&rows, &[], &[], 1).iter().filter_map(|post| post.author).map(|own| own.customer).collect();
+        let mut authors: Vec<u32> = posts(&rows, &[], &[], 1)
+            .iter()
+            .filter_map(|post| post.author)
+            .map(|post_author| post_author.customer)
+            .collect();
         authors.sort_unstable();
         authors.dedup();
         assert_eq!(authors.len(), 5);

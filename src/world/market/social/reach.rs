@@ -95,13 +95,13 @@ fn pick_author(
     streams: &Streams,
     stream: &mut Stream,
 ) -> Option<PostAuthor> {
-    let own = &customers.groups[group];
-    let active = own.active_count() as usize;
+    let group_customers = &customers.groups[group];
+    let active = group_customers.active_count() as usize;
     if active == 0 {
         return None;
     }
     let mut at = stream.index(active);
-    for block in &own.blocks {
+    for block in &group_customers.blocks {
         if at < block.len() {
             let seats = block.seats[at] as u32;
             return Some(post_author(block.customer[at], group, block.n[at], seats, params, streams));
@@ -171,9 +171,9 @@ mod tests {
         assert!(facts.posts.iter().all(|post| post.author.is_none()), "there are no subscribers yet");
         let seen = &facts.own_posts_seen[0];
         assert_eq!((seen.post, seen.comments.as_slice()), (1, &[1, 2][..]));
-        let own = &world.market.social.own[0];
-        assert_eq!((own.views, own.comments.clone()), (seen.views, seen.comments.clone()));
-        assert_eq!(own.effects.as_ref().map(|effects| effects[group("S2")]), Some(-0.7));
+        let own_post = &world.market.social.own[0];
+        assert_eq!((own_post.views, own_post.comments.clone()), (seen.views, seen.comments.clone()));
+        assert_eq!(own_post.effects.as_ref().map(|effects| effects[group("S2")]), Some(-0.7));
         let [Notice::OwnPostSeen(reaction)] = facts.notices.as_slice() else { panic!("one notice") };
         let named = reaction.strongest.map(|one| one.map(|(group, effect)| (group.id(), effect)));
         assert_eq!(named, [Some(("S2", -0.7)), Some(("S3", 0.6)), Some(("S1", 0.2))]);

@@ -143,9 +143,9 @@ impl ClassPage {
         let all = student_curves(view, ranking, self.part);
         let mut lines: Vec<(u8, Curve)> = all
             .iter()
-            .map(|own| {
-                let line = |role| Curve::from_points(own.points.clone(), role);
-                match own.label {
+            .map(|student_points| {
+                let line = |role| Curve::from_points(student_points.points.clone(), role);
+                match student_points.label {
                     None => (1, line(Role::Series(1)).with_name("reference")),
                     label if label == self.shown.highlighted_student.as_deref() => {
                         (2, line(Role::Series(0)).with_name("selected"))
@@ -180,7 +180,9 @@ impl ClassPage {
         units: (&dyn Fn(f64) -> String, AxisUnit),
         diagonal: Option<[(f64, f64); 2]>,
     ) {
-        let lit = |own: &&StudentPoints<'_>| own.label == self.shown.highlighted_student.as_deref();
+        let lit = |student_points: &&StudentPoints<'_>| {
+            student_points.label == self.shown.highlighted_student.as_deref()
+        };
         let others = points.iter().filter(|own| !lit(own)).flat_map(|own| own.points.clone()).collect();
         let mine: Vec<(f64, f64)> = points.iter().filter(lit).flat_map(|own| own.points.clone()).collect();
         let scattered = |points, role| Curve { is_scatter: true, ..Curve::from_points(points, role) };
@@ -230,7 +232,7 @@ impl ClassPage {
     ) {
         let all: Vec<ClassQuestion<'_>> = class_questions(view)
             .into_iter()
-            .filter(|own| own.part == self.part && !own.answers.is_empty())
+            .filter(|class_question| class_question.part == self.part && !class_question.answers.is_empty())
             .collect();
         let inside = canvas.draw_pane_frame(
             area,
@@ -260,9 +262,9 @@ impl ClassPage {
     }
 
     /// Draws guesses on the x axis and outcomes on the y axis.
-    fn draw_numeric_guesses(&self, canvas: &mut Canvas<'_>, area: Rect, own: &ClassQuestion<'_>) {
-        let points = own.points();
-        let both = || own.answers.iter().flat_map(|answer| [answer.1, answer.2]);
+    fn draw_numeric_guesses(&self, canvas: &mut Canvas<'_>, area: Rect, class_question: &ClassQuestion<'_>) {
+        let points = class_question.points();
+        let both = || class_question.answers.iter().flat_map(|answer| [answer.1, answer.2]);
         let (least, most) = both().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| {
             (least.min(value), most.max(value))
         });
@@ -290,11 +292,11 @@ fn draw_cells(canvas: &mut Canvas<'_>, row: Rect, cells: [&str; 6], is_wide: boo
     }
 }
 
-fn draw_choice_counts(canvas: &mut Canvas<'_>, area: Rect, own: &ClassQuestion<'_>) {
+fn draw_choice_counts(canvas: &mut Canvas<'_>, area: Rect, class_question: &ClassQuestion<'_>) {
     let mut rows = row_rects(area);
-    for (number, choice) in (1..).zip(own.choices) {
-        let taken = own.answers.iter().filter(|answer| answer.1 == f64::from(number)).count();
-        let is_right = own.answers.iter().any(|answer| answer.2 == f64::from(number));
+    for (number, choice) in (1..).zip(class_question.choices) {
+        let taken = class_question.answers.iter().filter(|answer| answer.1 == f64::from(number)).count();
+        let is_right = class_question.answers.iter().any(|answer| answer.2 == f64::from(number));
         let (sign, role) = if is_right { (" ✓", Role::Good) } else { ("", Role::Text) };
         let lines = wrap(&format!("{choice}{sign}"), area.width.saturating_sub(5) as usize);
         for (at, line) in lines.iter().enumerate() {
@@ -314,16 +316,20 @@ fn draw_choice_counts(canvas: &mut Canvas<'_>, area: Rect, own: &ClassQuestion<'
 
 /// Draws the most common pitfall, and the number of students by pitfall.
 fn draw_pitfalls(canvas: &mut Canvas<'_>, area: Rect, view: &ClassView<'_>) {
-    let met = pitfall_counts(view);
+    let counts = pitfall_counts(view);
     let inside = canvas.draw_pane_frame(area, "Most common pitfall", "", false);
     let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
-    let Some((most, others)) = met.split_first() else {
+    let Some((most, others)) = counts.split_first() else {
         return canvas.draw_text(inside, "No pitfalls", Role::Dim);
     };
     let head = format!("{}, by {}", most.name, pluralize(most.students as u32, "student"));
     let mut lines = vec![(head, Role::Strong)];
     lines.extend(wrap(&most.explanation, inside.width as usize).into_iter().map(|line| (line, Role::Text)));
-    lines.extend(others.iter().map(|own| (format!("{:>3}  {}", own.students, own.name), Role::Dim)));
+    lines.extend(
+        others.iter().map(|pitfall_count| {
+            (format!("{:>3}  {}", pitfall_count.students, pitfall_count.name), Role::Dim)
+        }),
+    );
     for (row, (line, role)) in row_rects(inside).zip(&lines) {
         canvas.draw_text(row, line, *role);
     }

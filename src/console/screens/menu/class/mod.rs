@@ -32,8 +32,9 @@ pub(super) struct ClassPage {
 }
 
 impl ClassPage {
-    pub(super) fn new(class: CollectedClass, shown: ClassDisplayOptions) -> ClassPage {
-        let mut page = ClassPage { class, shown, part: 1, question: 0, lower_pane: LowerPane::Scatter };
+    pub(super) fn new(class: CollectedClass, display_options: ClassDisplayOptions) -> ClassPage {
+        let mut page =
+            ClassPage { class, shown: display_options, part: 1, question: 0, lower_pane: LowerPane::Scatter };
         if page.shown.highlighted_student.is_none() {
             page.highlight(0);
         }
@@ -69,7 +70,10 @@ impl ClassPage {
     /// Returns the number of answered questions of the part.
     fn question_count(&self) -> usize {
         let view = self.view();
-        class_questions(&view).iter().filter(|own| own.part == self.part && !own.answers.is_empty()).count()
+        class_questions(&view)
+            .iter()
+            .filter(|class_question| class_question.part == self.part && !class_question.answers.is_empty())
+            .count()
     }
 
     pub(super) fn handle_action(&mut self, action: Action) {
@@ -124,6 +128,6 @@ impl ClassPage {
 
 /// Returns the next name, cyclically; `None` if there are no names.
 fn next_name(all: &[String], now: Option<&String>) -> Option<String> {
-    let at = all.iter().position(|own| Some(own) == now);
+    let at = all.iter().position(|text| Some(text) == now);
     all.get(at.map_or(0, |at| (at + 1) % all.len())).cloned()
 }

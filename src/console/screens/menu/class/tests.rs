@@ -48,10 +48,10 @@ fn evidence(lesson: &Lesson, at: usize) -> Evidence {
     let worth = 1e6 - 3e4 * at as f64;
     let goal =
         || serde_json::from_value(serde_json::json!({ "value": worth, "met": at < 3 })).expect("a goal");
-    let step = |own: &novamind_course::LessonStep| StepEvidence {
-        guess: own.guess.as_ref().map(|_| 1.0 + (at % 2) as f64),
-        outcome: own.guess.as_ref().map(|_| 1.0),
-        goals: own.goals.iter().map(|_| goal()).collect(),
+    let step = |lesson_step: &novamind_course::LessonStep| StepEvidence {
+        guess: lesson_step.guess.as_ref().map(|_| 1.0 + (at % 2) as f64),
+        outcome: lesson_step.guess.as_ref().map(|_| 1.0),
+        goals: lesson_step.goals.iter().map(|_| goal()).collect(),
     };
     Evidence {
         part: 1,
@@ -60,7 +60,13 @@ fn evidence(lesson: &Lesson, at: usize) -> Evidence {
         is_over: true,
         tries: 1 + (at % 3) as u32,
         steps: lesson.plan.parts[0].steps.iter().map(step).collect(),
-        pitfalls: lesson.plan.pitfalls.iter().filter(|_| at % 2 == 1).map(|own| own.name.clone()).collect(),
+        pitfalls: lesson
+            .plan
+            .pitfalls
+            .iter()
+            .filter(|_| at % 2 == 1)
+            .map(|pitfall| pitfall.name.clone())
+            .collect(),
         cash: vec![(0, 1e6), (7, 1e6 - 1e4 * at as f64), (14, worth), (21, worth)],
         decisions: BTreeMap::from([
             ("price A".to_owned(), 10.0 + at as f64),

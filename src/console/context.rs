@@ -95,7 +95,7 @@ impl ScreenContext<'_> {
 pub struct Figure {
     /// Its title: `cancellations of S1`.
     pub title: String,
-    /// Term that explains it: a glossary entry (`churn`), a tool or an argument (`set_prices_validates_and_updates`, `set_prices_validates_and_updates.A`), or a
+    /// Term that explains it: a glossary entry (`churn`), a tool or an argument (`set_prices`, `set_prices.A`), or a
     /// column (`ledger.amount`).
     pub term: &'static str,
     /// Query for the source rows, if it has any.

@@ -183,7 +183,7 @@ pub(super) enum NoticeSlot {
 /// Texts that differ in their numbers: each is a pattern of the day with its numbers.
 #[derive(Debug, Clone, PartialEq, Default)]
 struct PatternTexts {
-    /// Texts with a [`NUMBER_PLACEHOLDER`] for each of their numbers.
+    /// Texts with a [`NUMBER`] for each of their numbers.
     patterns: Vec<String>,
     /// Offset of each text.
     starts: Vec<u32>,

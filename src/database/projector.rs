@@ -38,7 +38,7 @@ impl ProjectionPosition {
     }
 }
 
-/// An error of writing the database. The run is safe, because the trajectory is complete.
+/// An error that occurred while writing the database. The run is safe, because the trajectory is complete.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ProjectionError(pub String);
 
@@ -172,7 +172,7 @@ impl Projector {
         answer.recv().unwrap_or_else(|_| Err(ProjectionError("the writer has stopped".to_owned())))
     }
 
-    /// Returns the error of writing the database, if one has occurred so far.
+    /// Returns the error that stopped writing the database, if one has occurred so far.
     pub fn failure(&self) -> Option<ProjectionError> {
         self.failed.get()
     }

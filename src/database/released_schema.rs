@@ -250,7 +250,7 @@ fn has_right_join(sql: &str) -> bool {
     })
 }
 
-/// Returns a statement without a leading `EXPLAIN FIGURE_NAME_PREFIX LESSON_TOML`.
+/// Returns a statement without a leading `EXPLAIN QUERY PLAN`.
 pub(super) fn strip_explain_query_plan(sql: &str) -> &str {
     let tokens = tokenize(sql);
     let head = ["EXPLAIN", "QUERY", "PLAN"];

@@ -52,7 +52,7 @@ impl Subject {
     }
 }
 
-/// Looks up an exact name: a term (`churn`), a tool or argument (`set_prices_validates_and_updates`, `set_prices_validates_and_updates.A`), a table or column
+/// Looks up an exact name: a term (`churn`), a tool or argument (`set_prices`, `set_prices.A`), a table or column
 /// (`ledger`, `ledger.amount`). Parts of a tool that are not arguments resolve to the tool.
 pub fn subject_by_name(name: &str) -> Option<Subject> {
     if let Some(term) = term(name) {

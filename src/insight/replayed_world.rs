@@ -26,7 +26,7 @@ impl ReplayedWorld {
     ///
     /// # Errors
     /// `not_in_this_mode` if the run is unfinished and not a debug run, or if its study shows no results; `not_possible` if
-    /// parameters were changed during the run, or if its lesson starts with preset decisions; `unreadable_record`.
+    /// parameters were changed during the run, or if its lesson starts with preset decisions; `not_readable`.
     pub fn from_run(folder: &Path) -> Result<ReplayedWorld, Rejection> {
         let past = RecordedRun::open(folder).map_err(|error| unreadable_record(&error))?;
         if input_visibility(&past.manifest, past.is_ended)? != InputVisibility::EveryInput {
@@ -78,7 +78,7 @@ impl ReplayedWorld {
     }
 }
 
-/// Whether a lesson starts with simulated weeks or preset decisions.
+/// Returns whether a lesson starts with simulated weeks or preset decisions.
 fn has_preset_decisions(folder: &Path, manifest: &Manifest) -> Result<bool, RunError> {
     let Some(stamp) = &manifest.lesson else { return Ok(false) };
     let lesson = Lesson::from_run(folder, &stamp.name)?;

@@ -1,4 +1,4 @@
-//! Answers of a policy to enterprises: the section `[enterprise]` (docs/interfaces/policies.md#answers-to-companies).
+//! Answers of a policy to enterprises: the section `[enterprise]` (docs/interfaces/policies.md#answers-to-enterprises).
 
 use serde::Deserialize;
 use serde_json::{Value, json};

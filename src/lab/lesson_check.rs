@@ -47,7 +47,7 @@ pub struct FigureResult {
 }
 
 impl FigureResult {
-    /// Whether the stated value is correct.
+    /// Returns whether the stated value is correct.
     pub fn is_within_tolerance(&self) -> bool {
         (self.mean - self.stated.value).abs() <= TOLERANCE * self.stated.value.abs()
     }

@@ -432,7 +432,7 @@ impl Interpreter {
     }
 }
 
-/// Returns the tool of a name, with or without its module. `handle_next_week` and `query` are separate commands.
+/// Returns the tool of a name, with or without its module. `next_week` and `query` are separate commands.
 fn find_tool(word: &str) -> Option<&'static dyn AnyTool> {
     let (module, name) = match word.split_once('.') {
         Some((module, name)) => (Some(module), name),

@@ -193,7 +193,7 @@ impl SessionHost<'_> {
         question: &str,
         words: [&'static str; 2],
     ) -> Result<Option<&'static str>, SessionStop> {
-        let question = format!("{question} (quit leaves, withdraw erases what you did):");
+        let question = format!("{question} (quit leaves, withdraw erases your runs of this study):");
         loop {
             let typed = self.ask_line(event, &question)?.trim().to_lowercase();
             if let Some(word) = words.into_iter().find(|word| *word == typed) {

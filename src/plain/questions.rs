@@ -112,7 +112,7 @@ fn show_question(due: &DueQuestion, style: OutputStyle) -> io::Result<()> {
         }
         let pass = if question.required { "" } else { ", or an empty line to skip" };
         println!(
-            "type {}{pass}; quit leaves, withdraw erases what you did",
+            "type {}{pass}; quit leaves, withdraw erases your runs of this study",
             describe_expected_answer(&question.form)
         );
     }

@@ -9,7 +9,7 @@ use crate::consent::ConsentText;
 use novamind_database::ProjectionError;
 use novamind_world::params::ParameterError;
 
-/// An error of creating, opening or reading a run.
+/// An error that occurred while creating, opening or reading a run.
 #[derive(Debug, Error)]
 pub enum RunError {
     /// A file cannot be read or written.
@@ -123,6 +123,12 @@ pub enum RunError {
         folder: PathBuf,
         /// Error of the operating system.
         error: std::io::Error,
+    },
+    /// The folder has no runs, so there is no latest one.
+    #[error("no runs yet in {folder}; `novamind play` starts one", folder = .folder.display())]
+    NoRuns {
+        /// Folder that was searched.
+        folder: PathBuf,
     },
     /// The run does not exist.
     #[error("there is no run {id} in {folder}; `novamind runs` lists the runs", folder = .folder.display())]

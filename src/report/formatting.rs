@@ -21,7 +21,7 @@ pub fn describe_cash_change(seen: &Observation) -> String {
     format!("{} over the last {span}", signed_dollars(seen.cash_change))
 }
 
-/// Describes the origin of a branch: `branch of 1a2b3c4d from week 5, first change set_prices_validates_and_updates on day 28`.
+/// Describes the origin of a branch: `branch of 1a2b3c4d from week 5, first change set_prices on day 28`.
 pub fn describe_origin(origin: &BranchOrigin) -> String {
     let BranchOrigin { run, week, first_change } = origin;
     let change = first_change
@@ -30,7 +30,7 @@ pub fn describe_origin(origin: &BranchOrigin) -> String {
     format!("branch of {run} from week {week}{change}")
 }
 
-/// Describes the first decision that differs from the parent: `set_prices_validates_and_updates on day 28`, `no set_prices_validates_and_updates on day 28`.
+/// Describes the first decision that differs from the parent: `set_prices on day 28`, `no set_prices on day 28`.
 pub fn describe_first_change(change: &FirstChange) -> String {
     let FirstChange { day, what, is_left_out } = change;
     format!("{}{what} on day {day}", if *is_left_out { "no " } else { "" })

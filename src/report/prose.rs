@@ -190,7 +190,7 @@ fn emphasized_span(rest: &[char], before: Option<char>) -> Option<(&[char], usiz
     let mark = MARKS.into_iter().find(|mark| rest.starts_with(mark))?;
     let inner = &rest[mark.len()..];
     let opens = inner.first().is_some_and(|letter| !letter.is_whitespace());
-    // Underscores within a name like `naive_forecast_weeks` are not marks.
+    // Underscores within a name like `filled_naively` are not marks.
     let in_word = mark[0] == '_' && before.is_some_and(char::is_alphanumeric);
     if !opens || in_word {
         return None;

@@ -100,7 +100,7 @@ fn group_equal_differences(differences: &[CallDifference]) -> Vec<Vec<&CallDiffe
     all
 }
 
-/// Describes calls that differ in the same way: `weeks 20 to 72: set_prices_validates_and_updates {…} → {…} (53 calls)`.
+/// Describes calls that differ in the same way: `weeks 20 to 72: set_prices {…} → {…} (53 calls)`.
 fn describe_call_differences(calls: &[&CallDifference], week: impl Fn(u32) -> u32) -> String {
     let [first, .., last] = calls else {
         return calls.first().map_or(String::new(), |only| {

@@ -7,7 +7,7 @@ use novamind_database::Interrupt;
 /// A request being executed.
 struct RunningRequest {
     number: u64,
-    /// Whether it only runs code, whose result nobody needs after the client has gone.
+    /// Whether it only runs code, whose result is not needed after the client has disconnected.
     is_code: bool,
     interrupt: Interrupt,
 }

@@ -15,7 +15,7 @@ pub const INSPECTION_REJECTED: &str = "the x-ray works in debug runs and in runs
 const INSPECTION_REJECTED_IN_LESSON: &str =
     "hidden state of a lesson is shown after its last part: the next part can have the same random draws";
 
-/// Whether hidden state of a run may be shown: in debug runs, and in runs that have ended. Not if the study withholds
+/// Returns whether hidden state of a run may be shown: in debug runs, and in runs that have ended. Not if the study withholds
 /// results, as every study does for practice runs. Not before the last part of a lesson has ended, which the folder
 /// of the run records.
 pub fn can_inspect(manifest: &Manifest, ended: Option<RunEndReason>, folder: Option<&Path>) -> bool {

@@ -102,7 +102,7 @@ pub enum CollectNote {
 }
 
 impl CollectNote {
-    /// Whether the experimenter has to act on it.
+    /// Returns whether the experimenter has to act on it.
     pub fn needs_attention(&self) -> bool {
         !matches!(self, CollectNote::Superseded { .. } | CollectNote::Relabelled { .. })
     }
@@ -180,7 +180,7 @@ impl FoundRun {
         Ok(FoundRun { manifest, folder: folder.to_owned(), source: source.to_owned(), hashes })
     }
 
-    /// Whether this record is an earlier state or a copy of `other`.
+    /// Returns whether this record is an earlier state or a copy of `other`.
     fn is_prefix_of(&self, other: &FoundRun) -> bool {
         other.hashes.starts_with(&self.hashes)
     }

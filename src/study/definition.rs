@@ -263,7 +263,7 @@ impl CodeDigest {
         CodeDigest(format!("{salt}:{digits}"))
     }
 
-    /// Whether a code matches the digest.
+    /// Returns whether a code matches the digest.
     pub fn matches(&self, code: &str) -> bool {
         self.0.split_once(':').is_some_and(|(salt, _)| CodeDigest::from_code(code, salt) == *self)
     }
@@ -358,7 +358,7 @@ impl Protocol {
         .collect()
     }
 
-    /// Whether a code gives the experimenter's access. Returns `false` if the protocol has no code.
+    /// Returns whether a code gives the experimenter's access. Returns `false` if the protocol has no code.
     pub fn accepts_code(&self, code: Option<&str>) -> bool {
         matches!((&self.access.code, code), (Some(digest), Some(code)) if digest.matches(code))
     }

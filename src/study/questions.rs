@@ -178,12 +178,12 @@ impl AnswerFormat {
         }
     }
 
-    /// Whether the answer is free text.
+    /// Returns whether the answer is free text.
     pub fn is_free_text(&self) -> bool {
         matches!(self, AnswerFormat::Text { .. })
     }
 
-    /// Whether an attention check was answered as expected; `None` for other forms.
+    /// Returns whether an attention check was answered as expected; `None` for other forms.
     pub fn matches_expected(&self, value: &Value) -> Option<bool> {
         match self {
             AnswerFormat::Attention { expected, .. } => Some(value.as_str() == Some(expected)),
@@ -289,7 +289,7 @@ impl Questionnaire {
         Ok(questionnaire)
     }
 
-    /// Whether the questionnaire is asked after a week, counted from 1.
+    /// Returns whether the questionnaire is asked after a week, counted from 1.
     pub fn is_due_after(&self, week: u32) -> bool {
         self.when == Occasion::Weeks && self.weeks.contains(&week)
     }

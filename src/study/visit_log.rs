@@ -76,14 +76,14 @@ impl VisitLog {
             .and_then(|()| append_synced(&self.path, text.as_bytes()));
     }
 
-    /// Whether the list has an event of a participant of this study.
+    /// Returns whether the list has an event of a participant of this study.
     pub(super) fn contains(&self, label: &str, event: VisitEvent) -> bool {
         let lines = read_visits(&self.path);
         lines.iter().any(|line| line.study == self.study && line.label == label && line.event == event)
     }
 }
 
-/// Whether a participant with a label has visited a study, by the list in a folder of runs.
+/// Returns whether a participant with a label has visited a study, by the list in a folder of runs.
 pub fn has_visited(study: &Study, runs: &Path, label: &str) -> bool {
     VisitLog::new(runs, study).contains(label, VisitEvent::Came)
 }

@@ -28,7 +28,7 @@ impl WithdrawalRecord {
         WithdrawalRecord { run: runs.join(" "), study: study.to_owned(), at: now() }
     }
 
-    /// Whether a folder of runs has the file. Its contents are not read.
+    /// Returns whether a folder of runs has the file. Its contents are not read.
     pub(crate) fn exists_in(folder: &Path) -> bool {
         folder.join(WITHDRAWAL_FILE).exists()
     }

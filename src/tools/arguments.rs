@@ -23,7 +23,7 @@ impl Arguments {
     /// Checks the names of the arguments of a call. `numbers` fills the placeholders of error messages.
     ///
     /// # Errors
-    /// `wrong_type_rejection` if they are not an object, `unknown_argument`, `argument_missing`.
+    /// `wrong_type` if they are not an object, `unknown_argument`, `argument_missing`.
     pub fn parse(
         spec: &ToolSpec,
         given: &Value,
@@ -184,7 +184,7 @@ impl Serialize for SentNumber {
     }
 }
 
-/// Returns the rejection `wrong_type_rejection` for an argument.
+/// Returns the rejection `wrong_type` for an argument.
 pub fn wrong_type_rejection(field: &str, expected: &str) -> Rejection {
     Rejection::for_field(field, "wrong_type", format!("{field} has the wrong type: expected {expected}"))
 }

@@ -108,7 +108,7 @@ impl Answer {
     }
 }
 
-/// Returns the tool with a case-sensitive name, optionally with its module: `pricing.set_prices_validates_and_updates`.
+/// Returns the tool with a case-sensitive name, optionally with its module: `pricing.set_prices`.
 pub fn find(name: &str) -> Option<&'static dyn AnyTool> {
     CATALOGUE.into_iter().find(|tool| {
         let spec = tool.spec();

@@ -38,7 +38,7 @@ pub enum NotebookChange {
         /// Statements.
         code: String,
     },
-    /// Remove a name.
+    /// Remove the statements stored under a name.
     Remove {
         /// Section.
         section: NotebookSection,

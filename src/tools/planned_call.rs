@@ -12,7 +12,7 @@ use novamind_world::settings::SettingsChange;
 pub struct PlannedCall<A> {
     /// Command for the simulator.
     pub command: Command,
-    /// Change of the notebook.
+    /// Change to the notebook.
     pub notebook_change: Option<NotebookChange>,
     /// Row of the settings in the database, if it differs from the settings.
     pub settings_row: Option<Value>,

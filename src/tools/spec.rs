@@ -65,7 +65,7 @@ pub enum ToolModule {
 }
 
 impl ToolSpec {
-    /// Returns the name, for example `set_prices_validates_and_updates`.
+    /// Returns the name, for example `set_prices`.
     pub fn name(&self) -> &'static str {
         self.id.name()
     }

@@ -50,7 +50,7 @@ pub(super) use with_all_tools;
 
 macro_rules! identifiers {
     ($($tool:ident),* $(,)?) => {
-        /// A tool. Its serialized form is its name, for example `set_prices_validates_and_updates`.
+        /// A tool. Its serialized form is its name, for example `set_prices`.
         #[derive(
             Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, AsRefStr, Display,
             EnumString, IntoStaticStr,

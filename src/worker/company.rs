@@ -79,7 +79,7 @@ pub struct DisplayedCompany {
     pub projects: ResearchProjects,
     /// Mean duration and gain of each R&D tier, the first tier first.
     pub research_means: Vec<ResearchMeans>,
-    /// Posts of others, as returned by `get_social_posts_returns_newest_first`.
+    /// Posts of others, as returned by `get_social_posts`.
     pub posts: Posts,
     /// The known groups and the economy.
     pub market: MarketOverview,

@@ -2,7 +2,7 @@
 //!
 //! Integers are little-endian, floats are stored as their bits, fields follow declaration order and lists are
 //! preceded by their length (`docs/formats/snapshot.md`). Two worlds with equal bytes evolve identically, and
-//! a world can be restored from its bytes ([`RestoreDraftsDialog`]).
+//! a world can be restored from its bytes ([`Restore`]).
 
 mod restore;
 mod segments;
@@ -252,7 +252,7 @@ impl<T: Canonical> Canonical for ByChannel<T> {
     }
 }
 
-/// Implements [`Canonical`] and [`RestoreDraftsDialog`] for a struct from the list of all its fields. A missing field is
+/// Implements [`Canonical`] and [`Restore`] for a struct from the list of all its fields. A missing field is
 /// a compile error.
 #[macro_export]
 macro_rules! canonical {
@@ -274,7 +274,7 @@ macro_rules! canonical {
 }
 pub use canonical;
 
-/// Implements [`Canonical`] and [`RestoreDraftsDialog`] for a fieldless enum by its discriminant. A missing variant is a
+/// Implements [`Canonical`] and [`Restore`] for a fieldless enum by its discriminant. A missing variant is a
 /// compile error.
 macro_rules! canonical_codes {
     ($($name:ident { $($value:ident),* $(,)? })*) => {$(

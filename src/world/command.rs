@@ -2,7 +2,7 @@
 //! it cannot fail.
 //!
 //! The steps are separate so that a call can be validated without side effects ([`CommandId`]), recorded with
-//! its result ([`World::resolve`] changes nothing), and only then applied ([`World::apply_drift`]).
+//! its result ([`World::resolve`] changes nothing), and only then applied ([`World::apply`]).
 
 use super::enterprise::messages::{OfferDraft, OfferMessage};
 use super::events::{Attempt, Project, Study};

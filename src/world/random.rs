@@ -228,19 +228,19 @@ impl StreamKey {
 pub struct Word(u64);
 
 impl Word {
-    /// Uniform in [0, 1), with 53 random bits.
+    /// Draws a uniform number in [0, 1), with 53 random bits.
     #[inline]
     pub fn uniform(self) -> f64 {
         (self.0 >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
     }
 
-    /// Uniform in [low, high).
+    /// Draws a uniform number in [low, high).
     #[inline]
     pub fn between(self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.uniform()
     }
 
-    /// Standard normal number.
+    /// Draws a standard normal variate.
     #[inline]
     pub fn standard_normal(self) -> f64 {
         let middle = (self.0 >> 11) as f64 + 0.5;
@@ -263,53 +263,53 @@ impl Stream {
         Word(self.0.next_u64())
     }
 
-    /// Uniform in [0, 1), with 53 random bits.
+    /// Draws a uniform number in [0, 1), with 53 random bits.
     pub fn uniform(&mut self) -> f64 {
         self.word().uniform()
     }
 
-    /// Uniform in [low, high).
+    /// Draws a uniform number in [low, high).
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
         self.word().between(low, high)
     }
 
-    /// Uniform integer in low..=high. The bias of the multiplication is below 2^-32.
+    /// Draws a uniform integer in low..=high. The bias of the multiplication is below 2^-32.
     pub fn integer(&mut self, low: u32, high: u32) -> u32 {
         let span = u64::from(high - low) + 1;
         low + ((u128::from(self.0.next_u64()) * u128::from(span)) >> 64) as u32
     }
 
-    /// Uniform index below `length`, which must not be 0.
+    /// Draws a uniform index below `length`, which must not be 0.
     pub fn index(&mut self, length: usize) -> usize {
         ((u128::from(self.0.next_u64()) * length as u128) >> 64) as usize
     }
 
-    /// True with probability `p`.
+    /// Returns true with probability `p`.
     pub fn bernoulli(&mut self, p: f64) -> bool {
         self.uniform() < p
     }
 
-    /// Standard normal number.
+    /// Draws a standard normal variate.
     pub fn standard_normal(&mut self) -> f64 {
         self.word().standard_normal()
     }
 
-    /// Normal number with this mean and standard deviation.
+    /// Draws a normal variate with this mean and standard deviation.
     pub fn normal(&mut self, mean: f64, std: f64) -> f64 {
         mean + std * self.standard_normal()
     }
 
-    /// Exponential number with this mean.
+    /// Draws an exponential variate with this mean.
     pub fn exponential(&mut self, mean: f64) -> f64 {
         -mean * libm::log1p(-self.uniform())
     }
 
-    /// Log-normal number: exp of a normal one.
+    /// Draws a log-normal variate: exp of a normal one.
     pub fn log_normal(&mut self, mu: f64, sigma: f64) -> f64 {
         libm::exp(self.normal(mu, sigma))
     }
 
-    /// Poisson number; 0 if the mean is not positive.
+    /// Draws a Poisson variate; 0 if the mean is not positive.
     pub fn poisson(&mut self, mean: f64) -> u64 {
         if mean < 10.0 {
             poisson_by_inversion(mean, self.uniform())

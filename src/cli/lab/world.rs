@@ -30,7 +30,7 @@ impl WorldOptions {
     /// Returns the last day of a run and the parameters.
     ///
     /// # Errors
-    /// As [`WorldOptions::load_params`].
+    /// As [`WorldOptions::params`].
     pub fn days_and_params(&self, context: &Context) -> Result<(u32, Params), Failure> {
         let scenario = context.configuration.load_scenario(&self.scenario)?;
         let params = context.configuration.load_parameters(&scenario, &self.set, true)?;

@@ -228,7 +228,7 @@ impl App {
                 self.show_status(format!("{task} shows the task, {week} runs a week"));
             }
             None if company.observation.day == 0 => {
-                self.show_status("a new company: 8 shows the forms, n runs a week, ? explains the keys")
+                self.show_status("a new company: 8 shows the tools, n runs a week, ? explains the keys")
             }
             None => self.show_status(format!("day {}: welcome back", company.observation.day)),
         }

@@ -131,7 +131,7 @@ pub trait ScreenState {
     }
 }
 
-/// A screen's behavior and appearance. Screens made of panes implement it through [`pane_count::PaneScreen`].
+/// A screen's behavior and appearance. Screens made of panes implement it through [`panes::PaneScreen`].
 pub trait Screen: ScreenState {
     /// Returns the scopes of the focused pane, innermost first; the caller adds the global scope. If the
     /// first is a text scope, keys type characters.

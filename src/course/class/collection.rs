@@ -158,7 +158,7 @@ impl CollectionBuilder<'_> {
         found.manifest.participant.clone().or_else(|| self.label_from_path(&found.source))
     }
 
-    /// Whether a record started from a handout of the class, or without a handout from its lesson.
+    /// Returns whether a record started from a handout of the class, or without a handout from its lesson.
     fn belongs_to_class(&self, manifest: &Manifest) -> bool {
         let class = self.sources.class;
         let own = manifest.handout.as_ref().is_some_and(|stamp| stamp.class == class.class);
@@ -258,7 +258,7 @@ impl CollectionBuilder<'_> {
         None
     }
 
-    /// Whether a run continues the past that was handed out. Returns `true` if the handout is no longer in the folder.
+    /// Returns whether a run continues the past that was handed out. Returns `true` if the handout is no longer in the folder.
     fn starts_with_handout(&self, student: &ClassStudent, found: &FoundRun) -> bool {
         let path = self.sources.folder.join(format!("{}{HANDOUT_EXTENSION}", student.label));
         let Ok(Handout { content: HandoutContent::Run(past), .. }) = Handout::read(&path) else {

@@ -9,7 +9,7 @@ use novamind_tools::Rejection;
 ///
 /// # Errors
 /// `no_question` if no question is open, `guess_not_possible` if `value` is not finite or not the number of a choice, `run_over`,
-/// `not_saved_rejection`.
+/// `not_saved`.
 pub fn submit_guess(session: &mut Session, value: f64) -> Result<(), Rejection> {
     let awaits = |step: &usize| session.lesson().is_some_and(|standing| standing.awaits_guess(*step));
     let Some(step) = lesson_step(session).filter(awaits) else {
@@ -31,7 +31,7 @@ pub fn submit_guess(session: &mut Session, value: f64) -> Result<(), Rejection> 
 /// Returns the next hint of the step and records that it was taken.
 ///
 /// # Errors
-/// `no_hint` if the step has no further hint, `not_saved_rejection`.
+/// `no_hint` if the step has no further hint, `not_saved`.
 pub fn take_hint(session: &mut Session) -> Result<String, Rejection> {
     let Some((step, given, text)) = next_hint(session) else {
         return Err(Rejection::new("no_hint", "this step has no further hint"));

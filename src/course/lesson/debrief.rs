@@ -356,7 +356,7 @@ impl PlayedPart {
         DecisionComparison::Different(FirstDifference { week: before + 1, day, decisions, effect })
     }
 
-    /// Whether calls of later weeks name customers, whose numbers depend on earlier decisions.
+    /// Returns whether calls of later weeks name customers, whose numbers depend on earlier decisions.
     fn names_customers_after(&self, week: u32) -> bool {
         let later = self
             .calls

@@ -125,7 +125,7 @@ pub(super) fn different_decisions(
     settings.chain(deeds).collect()
 }
 
-/// Whether two values are equal: 12 equals 12.0, and null equals zero.
+/// Returns whether two values are equal: 12 equals 12.0, and null equals zero.
 fn is_same_value(one: &Value, other: &Value) -> bool {
     let number = |value: &Value| if value.is_null() { Some(0.0) } else { value.as_f64() };
     match (number(one), number(other)) {

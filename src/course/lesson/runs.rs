@@ -12,7 +12,7 @@ use novamind_tools::Rejection;
 /// Retries a step, counted from 0, from its beginning. Returns a separate run that counts the tries.
 ///
 /// # Errors
-/// `not_in_a_lesson`, `step_unknown` for a step that has not started, `not_saved_rejection`.
+/// `not_in_a_lesson`, `step_unknown` for a step that has not started, `not_saved`.
 pub fn retry_step(session: &Session, step: usize) -> Result<Session, Rejection> {
     let Some(standing) = session.lesson() else {
         return Err(Rejection::new("not_in_a_lesson", "this run does not belong to a lesson"));
@@ -38,7 +38,7 @@ pub fn retry_step(session: &Session, step: usize) -> Result<Session, Rejection> 
 /// Starts another part of the run's lesson, counted from 0, in the same folder of runs.
 ///
 /// # Errors
-/// `not_in_a_lesson`, `part_unknown`, `not_saved_rejection`.
+/// `not_in_a_lesson`, `part_unknown`, `not_saved`.
 pub fn start_part(session: &Session, part: usize) -> Result<Session, Rejection> {
     let Some(standing) = session.lesson() else {
         return Err(Rejection::new("not_in_a_lesson", "this run does not belong to a lesson"));

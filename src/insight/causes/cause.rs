@@ -54,7 +54,7 @@ impl Cause {
         }
     }
 
-    /// Whether the cause is a decision of the player.
+    /// Returns whether the cause is a decision of the player.
     pub fn is_player_decision(self) -> bool {
         matches!(self, Cause::Calls(_) | Cause::Parameters | Cause::OtherCalls | Cause::EarlierPurchases)
     }

@@ -51,7 +51,7 @@ pub struct CauseAnalysis {
 
 impl RecordAnalysis for CauseAnalysis {
     /// # Errors
-    /// `not_in_this_mode` for an unfinished baseline run, `unreadable_record`.
+    /// `not_in_this_mode` for an unfinished baseline run, `not_readable`.
     fn open(folder: &Path) -> Result<CauseAnalysis, Rejection> {
         let past = RecordedRun::open(folder).map_err(|error| unreadable_record(&error))?;
         let sight = input_visibility(&past.manifest, past.is_ended)?;
@@ -72,8 +72,8 @@ impl CauseAnalysis {
     /// Explains why a figure changed in a week, by default the last completed one. Returns `None` if stopped.
     ///
     /// # Errors
-    /// `not_in_this_mode` for a figure that the player may not see; `unknown_group_rejection` for a group that the player did not know;
-    /// `week_unknown` for a week that has not run, the first week, and an incomplete week; `unreadable_record`; `no_value` if the figure
+    /// `not_in_this_mode` for a figure that the player may not see; `unknown_group` for a group that the player did not know;
+    /// `week_unknown` for a week that has not run, the first week, and an incomplete week; `not_readable`; `no_value` if the figure
     /// has no value in one of the two weeks.
     pub fn explain(
         &mut self,

@@ -58,7 +58,7 @@ impl WeekQuantity {
         self.figure.unit()
     }
 
-    /// Whether the figure is hidden in unfinished runs, except debug runs.
+    /// Returns whether the figure is hidden in unfinished runs, except debug runs.
     pub fn is_hidden(&self) -> bool {
         self.figure.is_hidden()
     }

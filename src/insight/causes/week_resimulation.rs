@@ -116,7 +116,7 @@ impl WeekResimulation {
         &self.week_before
     }
 
-    /// Whether a group was discovered at the end of the week.
+    /// Returns whether a group was discovered at the end of the week.
     pub(super) fn is_group_known(&self, group: Group) -> bool {
         self.after.final_state.world.market.is_known(group)
     }

@@ -82,7 +82,7 @@ impl RecordedRun {
         self.snapshots[&0].params.run.days_per_week
     }
 
-    /// Whether recorded days end on a day.
+    /// Returns whether recorded days end on a day.
     pub(crate) fn has_boundary_on(&self, day: u32) -> bool {
         day == 0
             || self.steps.iter().any(|step| matches!(step, RecordedStep::Days(days) if days.until == day))

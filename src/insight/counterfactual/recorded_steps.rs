@@ -187,7 +187,7 @@ pub(crate) fn steps_between(moves: &[RecordedStep], from: u32, until: u32) -> &[
     &moves[first..last.max(first)]
 }
 
-/// Whether an accepted call replies to another author's post, so that the texts of posts are needed.
+/// Returns whether an accepted call replies to another author's post, so that the texts of posts are needed.
 pub(crate) fn has_replies(moves: &[RecordedStep]) -> bool {
     moves.iter().any(|step| match step {
         RecordedStep::Call(call) => {

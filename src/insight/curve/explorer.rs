@@ -182,7 +182,7 @@ impl CurveExplorer {
         }
     }
 
-    /// Whether the curve shows true traits, so that figures have no range.
+    /// Returns whether the curve shows true traits, so that figures have no range.
     pub fn shows_true_values(&self) -> bool {
         matches!(self.basis, CurveBasis::Truth { .. })
     }

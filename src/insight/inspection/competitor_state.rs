@@ -58,7 +58,7 @@ impl Inspector<'_> {
     /// Returns the competitors at the end of a day, by default the last one. Records the inspection.
     ///
     /// # Errors
-    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `unreadable_record`, `not_saved`.
+    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
     pub fn competitor_state(&mut self, day: Option<u32>) -> Result<CompetitorState, Rejection> {
         let look = InspectionPermit::start(self.run, "rivals", "", day)?;
         let day = look.day();

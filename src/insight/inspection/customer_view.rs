@@ -19,7 +19,7 @@ impl Inspector<'_> {
     /// Returns a customer on a day, by default the last one. Records the inspection.
     ///
     /// # Errors
-    /// `not_in_this_mode`, `day_unknown`, `customer_not_found`, `not_possible`, `unreadable_record`, `not_saved`.
+    /// `not_in_this_mode`, `day_unknown`, `customer_not_found`, `not_possible`, `not_readable`, `not_saved`.
     pub fn customer_view(&mut self, customer: u32, day: Option<u32>) -> Result<CustomerView, Rejection> {
         let (look, found, arrival) = InspectionPermit::start_for_customer(self.run, customer, day)?;
         match found.0.is_enterprise() {

@@ -15,7 +15,7 @@ use novamind_world::day::observer::NoObserver;
 /// Opens a debug run or a finished run for inspection. Only inspections are recorded.
 ///
 /// # Errors
-/// `InvalidRequest` for other runs, which are not opened; as [`Session::apply_initial_calls`].
+/// `InvalidRequest` for other runs, which are not opened; as [`Session::open`].
 pub fn open_for_inspection(folder: &Path, key: SealKey) -> Result<Session, RunError> {
     let mode = read_manifest(folder)?.mode;
     if mode != Mode::Debug && Trajectory::read(&folder.join("trajectory.jsonl"))?.end_line().is_none() {
@@ -32,7 +32,7 @@ impl Inspector<'_> {
     /// Re-simulates every day of the run for an observer. Records the inspection.
     ///
     /// # Errors
-    /// `not_in_this_mode`, `not_possible`, `unreadable_record`, `not_saved`.
+    /// `not_in_this_mode`, `not_possible`, `not_readable`, `not_saved`.
     pub fn replay_days(&mut self, tell: &mut dyn FnMut(&DayReport<'_>)) -> Result<(), Rejection> {
         let look = InspectionPermit::start_at_current_state(self.run, "metrics", "days", self.run.day())?;
         look.replay(self.run, Arc::new(NoObserver))?.advance(self.run, |_| true, tell)

@@ -96,7 +96,7 @@ impl DayDifference {
         }
     }
 
-    /// Whether there is no difference.
+    /// Returns whether there is no difference.
     pub fn is_empty(&self) -> bool {
         self.differing_parts.is_empty() && self.parameters.is_empty()
     }
@@ -128,7 +128,7 @@ impl Inspector<'_> {
     /// Compares the ends of two days. Records the inspection.
     ///
     /// # Errors
-    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `unreadable_record`, `not_saved`.
+    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
     pub fn compare_days(&mut self, one: u32, other: u32) -> Result<DayDifference, Rejection> {
         self.run.check_inspection()?;
         let (one, other) = (

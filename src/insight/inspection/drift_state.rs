@@ -17,7 +17,7 @@ pub struct GroupDriftState {
     pub group_expectation: f64,
     /// Addition to its curves: quality including the common one, and dollars a month for budgets.
     pub expectation: Expectation,
-    /// Next addition beyond the common one.
+    /// Next change of the group's addition beyond the common one.
     pub next_step: Expectation,
 }
 
@@ -28,7 +28,7 @@ pub struct DriftState {
     pub day: u32,
     /// Common addition to expectations, by drift and by competitors.
     pub common_expectation: f64,
-    /// Next common addition.
+    /// Next change of the common addition.
     pub next_common_step: f64,
     /// Day of the next application; `None` if there is none before the end of the run.
     pub next_day: Option<u32>,
@@ -40,7 +40,7 @@ impl Inspector<'_> {
     /// Returns expectations and budgets at the end of a day, by default the last one. Records the inspection.
     ///
     /// # Errors
-    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `unreadable_record`, `not_saved`.
+    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
     pub fn drift_state(&mut self, day: Option<u32>) -> Result<DriftState, Rejection> {
         let look = InspectionPermit::start(self.run, "drift", "", day)?;
         let day = look.day();

@@ -14,7 +14,7 @@ impl Inspector<'_> {
     /// Returns the quality equation of a group on a day, by default the last one. Records the inspection.
     ///
     /// # Errors
-    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `unreadable_record`, `not_saved`.
+    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
     pub fn quality_equation(&mut self, group: Group, day: Option<u32>) -> Result<QualityEquation, Rejection> {
         let look = InspectionPermit::start(self.run, "quality", group.id(), day)?;
         let day = look.day();
@@ -24,7 +24,7 @@ impl Inspector<'_> {
     /// Returns the satisfaction equation of a group on a day, by default the last one. Records the inspection.
     ///
     /// # Errors
-    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `unreadable_record`, `not_saved`.
+    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
     pub fn satisfaction_equation(
         &mut self,
         group: Group,
@@ -48,7 +48,7 @@ impl Inspector<'_> {
     /// Returns the reputation equation of a group on a day, by default the last one. Records the inspection.
     ///
     /// # Errors
-    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `unreadable_record`, `not_saved`.
+    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
     pub fn reputation_equation(
         &mut self,
         group: Group,
@@ -78,7 +78,7 @@ impl Inspector<'_> {
     /// Returns the spillover of reputation between groups on a day, by default the last one. Records the inspection.
     ///
     /// # Errors
-    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `unreadable_record`, `not_saved`.
+    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
     pub fn spillover(&mut self, day: Option<u32>) -> Result<Spillover, Rejection> {
         let look = InspectionPermit::start(self.run, "spillover", "", day)?;
         let day = look.day();

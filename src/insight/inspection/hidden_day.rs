@@ -122,7 +122,7 @@ impl HiddenDayRecorder {
         HiddenDayRecorder { keeps_threads: true, ..HiddenDayRecorder::default() }
     }
 
-    /// Whether threads are recorded.
+    /// Returns whether threads are recorded.
     pub(crate) fn keeps_threads(&self) -> bool {
         self.keeps_threads
     }
@@ -230,7 +230,7 @@ impl DayObserver for HiddenDayRecorder {
     }
 }
 
-/// Whether a thread can still change: it is open, or it is dead and an answer of the enterprise is pending. A dead thread that only
+/// Returns whether a thread can still change: it is open, or it is dead and an answer of the enterprise is pending. A dead thread that only
 /// repeats its loss cannot change.
 fn is_reply_pending(thread: &Thread, reappearing: bool) -> bool {
     thread.is_open() || thread.active_turn(reappearing).is_some_and(|turn| turn.sender == Sender::Agent)

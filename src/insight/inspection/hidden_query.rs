@@ -11,7 +11,7 @@ impl Inspector<'_> {
     /// contain every day. Records the inspection.
     ///
     /// # Errors
-    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `unreadable_record`, `not_saved`, the `sql_` codes.
+    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`, the `sql_` codes.
     pub fn query_hidden_tables(&mut self, sql: &str, day: Option<u32>) -> Result<QueryResult, Rejection> {
         let ticket = self.hidden_query_interrupt()?.ticket();
         self.query_hidden_tables_with_ticket(ticket, sql, day)

@@ -62,7 +62,7 @@ impl HiddenTables {
         &self.connection
     }
 
-    /// Whether a table that contains every day lacks one.
+    /// Returns whether a table that contains every day lacks one.
     pub(crate) fn is_missing_day(&self, table: &Table, day: u32) -> bool {
         self.last_filled_day(table) < day
     }
@@ -71,7 +71,7 @@ impl HiddenTables {
         self.filled_days.get(table.name.as_str()).copied().unwrap_or(0)
     }
 
-    /// Whether the customer table already has this content.
+    /// Returns whether the customer table already has this content.
     pub(crate) fn shows_customers(&self, wanted: CustomersSnapshot) -> bool {
         self.shown == Some(wanted)
     }

@@ -52,7 +52,7 @@ impl Inspector<'_> {
     /// Returns the true values at the end of a day, by default the last one. Records the inspection.
     ///
     /// # Errors
-    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `unreadable_record`, `not_saved`.
+    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
     pub fn hidden_values(&mut self, day: Option<u32>) -> Result<HiddenValues, Rejection> {
         let look = InspectionPermit::start(self.run, "values", "", day)?;
         let day = look.day();

@@ -47,7 +47,7 @@ impl Inspector<'_> {
     /// Returns the hidden state of completed days, in ascending order.
     ///
     /// # Errors
-    /// `not_possible`, `unreadable_record`.
+    /// `not_possible`, `not_readable`.
     pub(super) fn hidden_days(
         &mut self,
         look: &InspectionPermit,
@@ -60,7 +60,7 @@ impl Inspector<'_> {
     /// Returns the hidden state of a completed day.
     ///
     /// # Errors
-    /// `not_possible`, `unreadable_record`.
+    /// `not_possible`, `not_readable`.
     pub(super) fn hidden_day(&mut self, look: &InspectionPermit, day: u32) -> Result<HiddenDay, Rejection> {
         let seen = self.hidden_days(look, [day])?.pop();
         seen.ok_or_else(|| Rejection::new("not_readable", format!("day {day} could not be re-simulated")))
@@ -70,7 +70,7 @@ impl Inspector<'_> {
     /// threads yet.
     ///
     /// # Errors
-    /// `not_possible`, `unreadable_record`.
+    /// `not_possible`, `not_readable`.
     pub(super) fn all_hidden_days(
         &mut self,
         look: &InspectionPermit,

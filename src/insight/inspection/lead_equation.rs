@@ -147,7 +147,7 @@ impl Inspector<'_> {
     /// Returns the lead equations of a group on up to 27 previous days and a day, by default the last one. Records the inspection.
     ///
     /// # Errors
-    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `unreadable_record`, `not_saved`.
+    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
     pub fn lead_equations(&mut self, group: Group, day: Option<u32>) -> Result<Vec<LeadEquation>, Rejection> {
         let look = InspectionPermit::start(self.run, "leads", group.id(), day)?;
         let day = look.day();

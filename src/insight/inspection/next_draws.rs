@@ -51,13 +51,13 @@ impl RandomPart {
         RandomPart::Competitors,
     ];
 
-    /// Returns the name.
+    /// Returns the id, as used in commands and texts.
     pub fn id(self) -> &'static str {
         ["leads", "renewals", "service", "quality", "research", "discovery", "surge", "economy", "rivals"]
             [self as usize]
     }
 
-    /// Returns the part with a name.
+    /// Returns the part with an id.
     pub fn parse(id: &str) -> Option<RandomPart> {
         RandomPart::ALL.into_iter().find(|part| part.id() == id)
     }
@@ -77,7 +77,7 @@ impl RandomPart {
         }
     }
 
-    /// Whether a recorded series can be replayed in place of its draws.
+    /// Returns whether a recorded series can be replayed in place of its draws.
     fn is_replayable(self) -> bool {
         use RandomPart::{Competitors, Discovery, Economy, Renewals, Surge};
         matches!(self, Renewals | Discovery | Surge | Economy | Competitors)

@@ -17,7 +17,7 @@ use novamind_world::state::World;
 pub struct SharedQualityGains {
     /// Initial quality.
     pub opening: f64,
-    /// Finished R&D projects.
+    /// Gain from finished R&D projects.
     pub research: f64,
     /// Sum of the daily gains of development.
     pub development: f64,

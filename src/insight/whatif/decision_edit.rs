@@ -246,7 +246,7 @@ fn round_to_12_digits(value: f64) -> f64 {
     format!("{value:.11e}").parse().unwrap_or(value)
 }
 
-/// Whether the arguments of a tool are amounts that can be multiplied by a factor.
+/// Returns whether the arguments of a tool are amounts that can be multiplied by a factor.
 pub fn is_scalable(tool: ToolId) -> bool {
     let spec = tool.spec();
     let is_amount = |kind: &ArgumentKind| {
@@ -318,7 +318,7 @@ impl FromStr for DecisionEdit {
     }
 }
 
-/// Parses `set_prices_validates_and_updates * 0.9`, or a call.
+/// Parses `set_prices * 0.9`, or a call.
 fn parse_scale_or_call(text: &str) -> Result<DecisionEdit, String> {
     let name = text.split(|letter: char| letter.is_whitespace() || letter == '*').next().unwrap_or_default();
     let Some(factor) = text[name.len()..].trim_start().strip_prefix('*') else {

@@ -76,7 +76,7 @@ impl BranchFigure {
         }
     }
 
-    /// Whether the figure is hidden in unfinished runs, except debug runs.
+    /// Returns whether the figure is hidden in unfinished runs, except debug runs.
     pub(super) fn is_hidden(self) -> bool {
         self == BranchFigure::Satisfaction
     }

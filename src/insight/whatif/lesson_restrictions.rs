@@ -13,7 +13,7 @@ use novamind_tools::{Rejection, ToolId};
 /// Returns the student's standing in an unfinished lesson, and whether the lesson of the run changes the capacity automatically.
 ///
 /// # Errors
-/// `unreadable_record`.
+/// `not_readable`.
 pub(super) fn lesson_state(
     folder: &Path,
     past: &RecordedRun,

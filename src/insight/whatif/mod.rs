@@ -77,7 +77,7 @@ struct BranchPoint {
 
 impl RecordAnalysis for WhatIf {
     /// # Errors
-    /// `not_in_this_mode` for an unfinished baseline run, `unreadable_record`.
+    /// `not_in_this_mode` for an unfinished baseline run, `not_readable`.
     fn open(folder: &Path) -> Result<WhatIf, Rejection> {
         let past = RecordedRun::open(folder).map_err(|error| unreadable_record(&error))?;
         let sight = input_visibility(&past.manifest, past.is_ended)?;
@@ -206,7 +206,7 @@ impl WhatIf {
     /// week is the last recorded one, but at least twelve weeks are simulated. Returns `None` if stopped.
     ///
     /// # Errors
-    /// `week_unknown`, `line_unknown`, `too_many_alternatives`, `too_many_leads`, `unreadable_record`; in an unfinished lesson
+    /// `week_unknown`, `line_unknown`, `too_many_alternatives`, `too_many_leads`, `not_readable`; in an unfinished lesson
     /// `guess_first` while its question is open, and `not_in_this_lesson` for an unavailable tool.
     pub fn compare(
         &mut self,

@@ -151,7 +151,7 @@ impl Interpreter {
         self.run_debug_command("find", || InspectionCommand::parse_find(rest, column))
     }
 
-    /// `who FIGURE [EXAMPLE_DAY]`
+    /// `who FIGURE [DAY]`
     pub(super) fn find_writers(&mut self, rest: &str, column: usize) -> Result<CommandResponse, ParseError> {
         self.run_debug_command("who", || InspectionCommand::parse_who(rest, column))
     }

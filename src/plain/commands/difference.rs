@@ -1,4 +1,4 @@
-//! `diff EXAMPLE_DAY EXAMPLE_DAY`: the differences between the ends of two days of the run (docs/debugging.md#two-days-and-two-runs).
+//! `diff DAY DAY`: the differences between the ends of two days of the run (docs/debugging.md#two-days-and-two-runs).
 
 use super::super::grammar::{Argument, ParseError};
 use super::super::response::CommandResponse;

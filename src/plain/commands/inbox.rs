@@ -38,7 +38,7 @@ struct ThreadSelection {
 }
 
 impl Interpreter {
-    /// `inbox`, `inbox all`, `inbox NUMBER_PLACEHOLDER`.
+    /// `inbox`, `inbox all`, `inbox NUMBER`.
     pub(super) fn inbox(&mut self, arguments: &[Argument]) -> Result<CommandResponse, ParseError> {
         match arguments {
             [] => Ok(self.list_threads(&ThreadSelection::default())),

@@ -13,7 +13,7 @@ set KEY VALUE from DAY    set it from that day on, for example set capacity_tier
 In debug runs only. The change is recorded; replays, branches and what-ifs repeat it. Such a run is not ranked.";
 
 impl Interpreter {
-    /// `set [KEY [VALUE [from EXAMPLE_DAY]]]`
+    /// `set [KEY [VALUE [from DAY]]]`
     pub(super) fn set_parameter(&mut self, arguments: &[Argument]) -> Result<CommandResponse, ParseError> {
         self.run_debug_command("set", || InspectionCommand::parse_set(arguments))
     }

@@ -21,7 +21,7 @@ const ENTERPRISE_SQL: &str = "SELECT c.group_id, c.persona_industry, c.company_s
                        FROM customers c CROSS JOIN subscriptions s WHERE s.customer_id = c.customer_id";
 
 impl Interpreter {
-    /// `thread NUMBER_PLACEHOLDER`.
+    /// `thread NUMBER`.
     pub(super) fn thread_command(&mut self, arguments: &[Argument]) -> Result<CommandResponse, ParseError> {
         let Some(thread) = optional_count(arguments)? else {
             return Err(argument_error(

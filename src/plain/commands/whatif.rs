@@ -40,7 +40,7 @@ struct WhatIfQuestion {
 }
 
 impl Interpreter {
-    /// `whatif NEXT_WEEK_KEYS`, `whatif [adopt] from NEXT_WEEK_KEYS [until NEXT_WEEK_KEYS] [futures [N]]: EDIT; EDIT | EDIT`, `whatif file PATH`.
+    /// `whatif WEEK`, `whatif [adopt] from WEEK [until WEEK] [futures [N]]: EDIT; EDIT | EDIT`, `whatif file PATH`.
     pub(super) fn what_if(&mut self, words: &str, column: usize) -> Result<CommandResponse, ParseError> {
         // Check the permission before parsing anything.
         if let Err(refusal) = cause_analysis_folder(&self.session) {
@@ -163,7 +163,7 @@ impl Interpreter {
         Ok(self.branch_keeping_decisions(question.from, &decided))
     }
 
-    /// `branch NEXT_WEEK_KEYS [keep]`
+    /// `branch WEEK [keep]`
     pub(super) fn branch(&mut self, arguments: &[Argument]) -> Result<CommandResponse, ParseError> {
         let (last, first) =
             arguments.split_last().map_or((None, arguments), |(last, first)| (Some(last), first));

@@ -1,4 +1,4 @@
-//! `why FIGURE [NEXT_WEEK_KEYS]`: the change of a figure in a week, and the contribution of each cause.
+//! `why FIGURE [WEEK]`: the change of a figure in a week, and the contribution of each cause.
 
 use serde_json::{Value, json};
 

@@ -59,7 +59,7 @@ impl Interpreter {
         Ok(shown.unwrap_or_else(|refusal| CommandResponse::rejected("xray", refusal)))
     }
 
-    /// `xray sql [EXAMPLE_DAY] STATEMENT`
+    /// `xray sql [DAY] STATEMENT`
     pub(super) fn query_hidden_tables(&mut self, rest: &str, column: usize) -> CommandResponse {
         let interrupt = self.session.inspect().hidden_query_interrupt();
         let asked = interrupt.and_then(|interrupt| {
@@ -96,7 +96,7 @@ impl Interpreter {
         }))
     }
 
-    /// `lens CUSTOMER [EXAMPLE_DAY]`
+    /// `lens CUSTOMER [DAY]`
     pub(super) fn show_customer(&mut self, arguments: &[Argument]) -> Result<CommandResponse, ParseError> {
         if let Err(refusal) = self.session.check_inspection() {
             return Ok(CommandResponse::rejected("lens", refusal));

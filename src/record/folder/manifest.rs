@@ -194,7 +194,7 @@ impl Manifest {
         toml::to_string(self).expect("a manifest holds plain values")
     }
 
-    /// Returns the session rules. A practice run never shows results: they would reveal what the study measures before the
+    /// Returns the session rules. A practice run never shows results: they would reveal the measures of the study before the
     /// session.
     pub fn session_rules(&self) -> SessionRules {
         let rules = self.recorded_rules();

@@ -285,6 +285,9 @@ fn find_matching_run(
     // For equal moments, the common folder wins.
     list.sort_by(|(_, one), (_, other)| other.played.cmp(&one.played));
     if id == "latest" {
+        if list.is_empty() {
+            return Err(RunError::NoRuns { folder: runs.to_owned() });
+        }
         let newest = list.into_iter().find(|(_, run)| run.problem.is_none() && wanted(run));
         return newest.map(|(folder, _)| folder).ok_or_else(missing);
     }

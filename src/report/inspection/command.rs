@@ -22,15 +22,15 @@ const SET_USAGE: &str =
 pub enum InspectionCommand {
     /// `find CONDITION`: the days on which a condition became true.
     Find(Condition),
-    /// `who FIGURE [EXAMPLE_DAY]`: the writes to a figure on a day, the last day by default.
+    /// `who FIGURE [DAY]`: the writes to a figure on a day, the last day by default.
     Who(WriteTarget, Option<u32>),
-    /// `diff EXAMPLE_DAY EXAMPLE_DAY`: the differences between the ends of two days.
+    /// `diff DAY DAY`: the differences between the ends of two days.
     Diff(u32, u32),
     /// `set`: lists the changed parameters.
     Parameters,
     /// `set KEY`: shows a parameter.
     Parameter(String),
-    /// `set KEY VALUE [from EXAMPLE_DAY]`: changes a parameter.
+    /// `set KEY VALUE [from DAY]`: changes a parameter.
     Set(String, Value, Option<u32>),
 }
 

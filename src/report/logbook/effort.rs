@@ -48,7 +48,7 @@ pub struct PlayerEffort {
     pub deleted: u64,
     /// Characters pasted into texts.
     pub pasted: u64,
-    /// Changes of the notes.
+    /// Changes to the notes.
     pub memos: u32,
 }
 

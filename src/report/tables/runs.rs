@@ -86,10 +86,10 @@ pub(super) fn columns() -> Vec<Column<Logbook>> {
         "queries", "count", "SQL queries" => run.total.queries;
         "queries_failed", "count", "queries that were rejected or failed" => run.total.queries_failed;
         "views", "count", "views of screens (console only)" => recorded_screens_only(run, run.total.views);
-        "memos", "count", "changes of the notes" => run.total.memos;
+        "memos", "count", "changes to the notes" => run.total.memos;
         "sittings", "count", "number of times the program opened the run; 0 if not recorded (format 1, policies)"
             => run.sittings.opened;
-        "sittings_not_closed", "count", "of them, those without a closing line: killed or still open" => run.sittings.not_closed;
+        "sittings_not_closed", "count", "sessions without a closing line: killed or still open" => run.sittings.not_closed;
         "machines", "count", "machines on which the run was played, if recorded" => run.sittings.machines;
         "elapsed_seconds", "seconds", "sum of active, answering, idle and away: from the first line to the last, without \
          simulation time" => run.total.time.elapsed_seconds();
@@ -99,7 +99,7 @@ pub(super) fn columns() -> Vec<Column<Logbook>> {
             => run.total.time.idle_seconds();
         "away_seconds", "seconds", "time in which the run was closed, suspended, in the background, or its clock stopped; in \
          format 1 gaps of more than ten minutes between two lines" => run.total.time.away_seconds();
-        "paused_seconds", "seconds", "of it, time with the clock stopped" => run.total.time.paused_seconds();
+        "paused_seconds", "seconds", "part of away_seconds: time with the clock stopped" => run.total.time.paused_seconds();
         "active_seconds_after_end", "seconds", "active time from the end to the last line after it, \
          not included in the other columns; empty before the end" => run.after_end.as_ref().map(TimeSpent::active_seconds);
         "clock_stopped", "count", "number of times the player stopped the clock" => run.sittings.clock_stopped;
@@ -143,7 +143,7 @@ pub(super) fn columns() -> Vec<Column<Logbook>> {
         "first_forecast_error_182", "share", FIRST_ERROR_MEANING => first_weeks_error(run, 182);
         "weeks_filled_naively", "count", "weeks with at least one naive forecast"
             => run.measures.filled_naively.0;
-        "weeks_filed_at_limit", "count", "of them, weeks filed by a time limit; their rationale is not the player's and counts no \
+        "weeks_filed_at_limit", "count", "weeks submitted by a time limit; their rationale is not the player's and counts no \
          words" => run.weeks.iter().filter(|week| week.filed_at_limit).count();
         "acting_calls", "count", "accepted calls that changed something; excludes read-only calls" => run.measures.tools.calls;
         "acting_calls_per_week", "per week", "acting calls per simulated week" => rounded(run.measures.tools.per_week);

@@ -63,7 +63,7 @@ pub(super) fn columns<'a>() -> Vec<Column<WeekRow<'a>>> {
         "idle_seconds", "seconds", "time without a key while the program is in front" => row.week.effort.time.idle_seconds();
         "away_seconds", "seconds", "time in which the run was closed, suspended, in the background, or its clock stopped"
             => row.week.effort.time.away_seconds();
-        "paused_seconds", "seconds", "of it, time with the clock stopped" => row.week.effort.time.paused_seconds();
+        "paused_seconds", "seconds", "part of away_seconds: time with the clock stopped" => row.week.effort.time.paused_seconds();
         "breaks", "count", "breaks: more than ten minutes without play" => row.week.effort.breaks;
         "implausibly_fast", "0 or 1", "1: decided in less than ten active seconds" => row.week.implausibly_fast;
         "calls", "count", "accepted tool calls" => row.week.effort.calls;
@@ -87,7 +87,7 @@ pub(super) fn columns<'a>() -> Vec<Column<WeekRow<'a>>> {
             => console_only(row.run, row.week.effort.deleted);
         "pasted_characters", "count", "characters of them that came from the clipboard (console only)"
             => console_only(row.run, row.week.effort.pasted);
-        "memos", "count", "changes of the notes" => row.week.effort.memos;
+        "memos", "count", "changes to the notes" => row.week.effort.memos;
         "decisions", "count", "settings that differ from the week before, purchases, offers and posts"
             => row.week.decisions.len();
         "rationale_words", "count", "words of the rationale" => row.week.wording.words;

@@ -348,7 +348,7 @@ fn describe_line(line: &Line) -> String {
     format!("{what} on day {}, written {}", line.day, line.at)
 }
 
-/// Whether a folder of runs can contain a run with this name.
+/// Returns whether a folder of runs can contain a run with this name.
 fn is_valid_run_name(name: &str) -> bool {
     let fits = |letter: u8| letter.is_ascii_alphanumeric() || matches!(letter, b'-' | b'_');
     (1..=40).contains(&name.len()) && name.bytes().all(fits) && name != PARTICIPANTS_FOLDER

@@ -61,12 +61,12 @@ fn is_compressed(archive: &Path) -> bool {
     ending.is_some_and(|ending| ending == "gz" || ending == "tgz")
 }
 
-/// Whether the name is that of an archive.
+/// Returns whether the name is that of an archive.
 pub fn is_archive_name(name: &str) -> bool {
     [".tar", ".tar.gz", ".tgz"].iter().any(|ending| name.ends_with(ending))
 }
 
-/// Whether the name is a run identifier: eight hexadecimal digits.
+/// Returns whether the name is a run identifier: eight hexadecimal digits.
 pub fn is_run_id(name: &str) -> bool {
     name.len() == 8 && name.bytes().all(|digit| matches!(digit, b'0'..=b'9' | b'a'..=b'f'))
 }

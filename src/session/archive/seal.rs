@@ -65,7 +65,7 @@ impl Seal {
         Seal { checksum: self.compute_checksum(), ..self }
     }
 
-    /// Whether the checksum is correct.
+    /// Returns whether the checksum is correct.
     pub fn is_intact(&self) -> bool {
         self.checksum == self.compute_checksum()
     }

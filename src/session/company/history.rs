@@ -18,7 +18,7 @@ pub(crate) struct History {
     pub(crate) cash_by_day: Vec<f64>,
     /// Figures of every completed week, including a shortened last one.
     pub(crate) weeks: Vec<WeekFigures>,
-    /// Figures of a week that was started with single days.
+    /// Figures of the incomplete current week, whose days were simulated one by one.
     pub(crate) current_week: WeekFigures,
     /// Group figures of every completed week.
     pub(crate) group_weeks: Vec<ByGroup<GroupWeek>>,

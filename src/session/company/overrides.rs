@@ -69,7 +69,7 @@ pub struct ParameterConflict {
 }
 
 impl Overrides {
-    /// Whether any parameter was changed since the start of the run.
+    /// Returns whether any parameter was changed since the start of the run.
     pub(crate) fn has_changes(&self) -> bool {
         self.has_changes
     }
@@ -201,7 +201,7 @@ impl DerivedValues {
         self.numbers.get_or_init(|| ParameterNumbers::for_params(&simulation.params).into()).clone()
     }
 
-    /// Whether the parameters differ, or differed at some time, from those of the bundled scenario.
+    /// Returns whether the parameters differ, or differed at some time, from those of the bundled scenario.
     pub(crate) fn has_custom_parameters(&self, simulation: &Simulation, manifest: &Manifest) -> bool {
         let is_other = || simulation.overrides.has_changes() || manifest.has_changed_parameters();
         *self.has_custom_parameters.get_or_init(is_other)

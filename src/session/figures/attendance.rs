@@ -361,7 +361,7 @@ fn presence_event(record: &Record) -> Option<PresenceEvent> {
     }
 }
 
-/// Whether only a present user can cause this line. Weeks do not count, because a time limit can submit them.
+/// Returns whether only a present user can cause this line. Weeks do not count, because a time limit can submit them.
 fn is_user_action(record: &Record) -> bool {
     match record {
         Record::Call(_) | Record::Query(_) | Record::Note(_) | Record::Memo(_) => true,
@@ -392,7 +392,7 @@ pub struct AttendedWeek {
 }
 
 impl AttendedWeek {
-    /// Whether it was decided in this run, in less than [`FAST_WEEK_SECONDS`] active seconds.
+    /// Returns whether it was decided in this run, in less than [`FAST_WEEK_SECONDS`] active seconds.
     pub fn is_implausibly_fast(&self, time: &TimeSpent) -> bool {
         !self.is_inherited && time.active_seconds() < FAST_WEEK_SECONDS
     }

@@ -65,7 +65,7 @@ impl ScoredForecast {
         })
     }
 
-    /// Whether the interval contains the outcome; false before the due day.
+    /// Returns whether the interval contains the outcome; false before the due day.
     pub fn is_covered(&self) -> bool {
         self.interval_position() == Some(IntervalPosition::Inside)
     }

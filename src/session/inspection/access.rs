@@ -145,7 +145,7 @@ impl InspectionPermit {
     /// Returns a copy of the run before its first line. It passes its days to `watch`.
     ///
     /// # Errors
-    /// `not_possible`: the run has no folder; `unreadable_record`.
+    /// `not_possible`: the run has no folder; `not_readable`.
     pub fn replay(&self, run: &Session, watch: Arc<dyn DayObserver>) -> Result<RunReplay, Rejection> {
         self.assert_belongs_to(run);
         RunReplay::new(run, watch)
@@ -162,7 +162,7 @@ impl InspectionPermit {
     /// Simulates the days of the run again up to `day`, at most to the end of its week, and passes them to `watch`.
     ///
     /// # Errors
-    /// `not_possible`, `unreadable_record`.
+    /// `not_possible`, `not_readable`.
     pub fn replay_until(
         &self,
         run: &Session,
@@ -176,7 +176,7 @@ impl InspectionPermit {
     /// Returns the world at the end of a past day.
     ///
     /// # Errors
-    /// `not_possible`, `unreadable_record`.
+    /// `not_possible`, `not_readable`.
     pub fn world_at_end_of(&self, run: &Session, day: u32) -> Result<World, Rejection> {
         let evening = Arc::new(WorldCapture { day, world: Mutex::default() });
         self.replay_until(run, day, evening.clone())?;
@@ -209,7 +209,7 @@ impl WatchedDays<'_> {
     /// nothing.
     ///
     /// # Errors
-    /// `not_in_this_mode`, `run_over`, `not_possible`, `unreadable_record`; `not_saved`: days may have run.
+    /// `not_in_this_mode`, `run_over`, `not_possible`, `not_readable`; `not_saved`: days may have run.
     pub fn simulate(
         self,
         run: &mut Session,

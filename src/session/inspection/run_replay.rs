@@ -16,7 +16,7 @@ impl RunReplay {
     /// Creates a copy of a run before its first line.
     ///
     /// # Errors
-    /// `not_possible`: the run has no folder; `unreadable_record`.
+    /// `not_possible`: the run has no folder; `not_readable`.
     pub(super) fn new(run: &Session, watch: Arc<dyn DayObserver>) -> Result<RunReplay, Rejection> {
         if run.folder().is_none() {
             let message = "a run in memory has no record, so its past days cannot be simulated again";
@@ -30,7 +30,7 @@ impl RunReplay {
     /// for the day reached. Each line must lead to the state that it records. Calls `tell` for each day.
     ///
     /// # Errors
-    /// `unreadable_record`.
+    /// `not_readable`.
     pub fn advance(
         &mut self,
         run: &Session,

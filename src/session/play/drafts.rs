@@ -45,7 +45,7 @@ fn are_all_empty(forecasts: &[[String; 3]; 4]) -> bool {
 }
 
 impl DraftTexts {
-    /// Whether there are no texts.
+    /// Returns whether there are no texts.
     pub fn is_empty(&self) -> bool {
         *self == DraftTexts::default()
     }

@@ -105,10 +105,10 @@ impl Session {
         Ok(preview)
     }
 
-    /// Calls a tool. `handle_next_week` and `query` have their own functions.
+    /// Calls a tool. `next_week` and `query` have their own functions.
     ///
     /// # Errors
-    /// The rejections of the tool; `record_unknown_tool`; `run_over`; `not_saved_rejection` if the disk fails. Nothing has changed
+    /// The rejections of the tool; `unknown_tool`; `run_over`; `not_saved` if the disk fails. Nothing has changed
     /// then.
     pub fn call(&mut self, tool: impl AsRef<str>, arguments: &Value, via: Via) -> Result<Answer, Rejection> {
         self.call_with_metadata(tool.as_ref(), arguments, via, CallMetadata::default())

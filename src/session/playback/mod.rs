@@ -74,7 +74,7 @@ impl Playback {
         self.is_following = !self.has_end_record();
     }
 
-    /// Whether the playback waits for new lines.
+    /// Returns whether the playback waits for new lines.
     pub fn is_following(&self) -> bool {
         self.is_following
     }
@@ -215,7 +215,7 @@ impl Playback {
         Ok(self.valid_lines > before)
     }
 
-    /// Whether the playback is after the last line.
+    /// Returns whether the playback is after the last line.
     pub fn is_at_end(&self) -> bool {
         self.applied == self.valid_lines
     }
@@ -224,7 +224,7 @@ impl Playback {
         self.trajectory.lines.last().is_some_and(|line| matches!(line.record, Record::End(_)))
     }
 
-    /// Whether hidden state of the recorded run may be shown. The end of the record counts, not the position.
+    /// Returns whether hidden state of the recorded run may be shown. The end of the record counts, not the position.
     pub fn can_inspect(&self) -> bool {
         let Origin { manifest, folder, .. } = &self.origin;
         let is_over = || self.has_end_record() && is_lesson_over(folder.as_deref(), manifest);

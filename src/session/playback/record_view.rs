@@ -35,7 +35,7 @@ impl RecordView {
         RecordView { seq, day, at, record, forecasts, today }
     }
 
-    /// Whether the outcome of a forecast was unknown on the current day.
+    /// Returns whether the outcome of a forecast was unknown on the current day.
     pub fn is_future(&self, forecast: &ScoredForecast) -> bool {
         forecast.due_day() > self.today
     }

@@ -88,7 +88,7 @@ impl<'a> ActivityLog<'a> {
     /// Stops the clock: from now on, time does not count.
     ///
     /// # Errors
-    /// `is_clock_stopped`, and `reason_needed` if the rules require a reason and none is given.
+    /// `clock_stands`, and `reason_needed` if the rules require a reason and none is given.
     pub fn stop_clock(&mut self, reason: Option<&str>) -> Result<(), Rejection> {
         let reason = reason.map(str::trim).filter(|reason| !reason.is_empty());
         if self.log.is_clock_stopped() {

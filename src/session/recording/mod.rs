@@ -64,12 +64,12 @@ impl RunLog {
         self.answers = AnsweredQuestions::from_lines(lines);
     }
 
-    /// Whether the user has stopped the clock.
+    /// Returns whether the user has stopped the clock.
     pub fn is_clock_stopped(&self) -> bool {
         self.clock.stopped_at.is_some()
     }
 
-    /// Whether a time limit has stopped the clock and it was not started since. Closing the run does not start it.
+    /// Returns whether a time limit has stopped the clock and it was not started since. Closing the run does not start it.
     pub fn is_stopped_by_limit(&self) -> bool {
         self.clock.is_stopped_by_limit
     }
@@ -106,7 +106,7 @@ impl RunLog {
         &self.last_views
     }
 
-    /// Whether all events are in the trajectory: false if the run is open read-only, or if its file accepts no more
+    /// Returns whether all events are in the trajectory: false if the run is open read-only, or if its file accepts no more
     /// lines.
     pub fn is_complete(&self) -> bool {
         self.recorder.as_ref().is_some_and(Recorder::is_complete)
@@ -117,12 +117,12 @@ impl RunLog {
         self.recorder.as_ref()?.loss_reason()
     }
 
-    /// Whether lines are written: false if the run is open read-only or replayed.
+    /// Returns whether lines are written: false if the run is open read-only or replayed.
     pub fn is_written(&self) -> bool {
         self.recorder.is_some()
     }
 
-    /// Whether the lines are in a file.
+    /// Returns whether the lines are in a file.
     pub(crate) fn is_on_disk(&self) -> bool {
         self.recorder.as_ref().is_some_and(Recorder::is_on_disk)
     }

@@ -84,7 +84,7 @@ impl Recorder {
         self.call_durability
     }
 
-    /// Whether every call is synced before it is confirmed.
+    /// Returns whether every call is synced before it is confirmed.
     pub(crate) fn syncs_calls(&self) -> bool {
         self.call_durability == Durability::Synced
     }
@@ -156,7 +156,7 @@ impl Recorder {
         self.trajectory.loss_reason()
     }
 
-    /// Whether the file is still in its place and no line is pending.
+    /// Returns whether the file is still in its place and no line is pending.
     pub(crate) fn is_complete(&self) -> bool {
         self.trajectory.is_complete()
     }

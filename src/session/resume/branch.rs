@@ -22,7 +22,7 @@ impl Session {
     /// # Errors
     /// `not_in_this_mode` for an unfinished baseline run, for a baseline branch, and for a branch in another mode
     /// than debug if the shared lines change parameters or the run has a seeded fault; `guess_first` while the
-    /// question of a lesson has no answer; `week_unknown`, `not_saved_error`.
+    /// question of a lesson has no answer; `week_unknown`, `not_saved`.
     pub fn branch(&self, week: u32, mode: Mode) -> Result<Session, Rejection> {
         StagedBranch::stage(self, week, mode)?.publish().map_err(not_saved_error)
     }
@@ -67,7 +67,7 @@ pub fn not_saved_error(error: RunError) -> Rejection {
 ///
 /// # Errors
 /// `not_in_this_mode` for a baseline branch, and for a branch in another mode than debug if the shared lines change
-/// parameters or the run has a seeded fault; `not_saved_error`.
+/// parameters or the run has a seeded fault; `not_saved`.
 pub(crate) fn create_branch(
     folder: &Path,
     parent: &Manifest,
@@ -117,7 +117,7 @@ fn stage_branch(
 /// Creates another attempt at a lesson from a day on, and opens it.
 ///
 /// # Errors
-/// `not_saved_error`.
+/// `not_saved`.
 pub fn create_lesson_branch(
     folder: &Path,
     parent: &Manifest,
@@ -164,7 +164,7 @@ fn lines_before(trajectory: &Trajectory, day: u32) -> &[Line] {
     &trajectory.lines[..after.unwrap_or(trajectory.lines.len())]
 }
 
-/// Whether a language model produced the line. Such lines are written before the decisions of their day.
+/// Returns whether a language model produced the line. Such lines are written before the decisions of their day.
 fn is_voice_line(line: &Line) -> bool {
     matches!(line.record, Record::Voice(_))
 }

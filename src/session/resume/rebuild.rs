@@ -54,7 +54,7 @@ pub fn rebuild_database(
     Ok(session.database().wait_until_written()?)
 }
 
-/// Whether a reading command may write the snapshot of a run's end: the run has ended, its hidden state may be shown,
+/// Returns whether a reading command may write the snapshot of a run's end: the run has ended, its hidden state may be shown,
 /// and the existing snapshot is not sealed with the secret of a study.
 fn may_store_end(folder: &Path, manifest: &Manifest, trajectory: &Trajectory, key: &SealKey) -> bool {
     let ended = trajectory.end_line().and_then(|line| match &line.record {

@@ -157,7 +157,7 @@ impl Snapshot {
         self.header.run == run
     }
 
-    /// Whether it was written by this version with these parameters.
+    /// Returns whether it was written by this version with these parameters.
     pub(crate) fn is_compatible(&self, manifest: &Manifest) -> bool {
         self.header.version == env!("CARGO_PKG_VERSION")
             && self.header.parameters_digest == manifest.parameters_digest
@@ -337,7 +337,7 @@ impl SnapshotTarget {
         SnapshotTarget { path: folder.join(SNAPSHOT_FILE), key_mark: of, keys }
     }
 
-    /// Whether a program with this key may replace the snapshot in a folder. A snapshot sealed with the secret of a
+    /// Returns whether a program with this key may replace the snapshot in a folder. A snapshot sealed with the secret of a
     /// study is replaced only with that secret.
     pub(crate) fn may_write(folder: &Path, key: &SealKey) -> bool {
         let mut begin = [0; TITLE.len() + 1];

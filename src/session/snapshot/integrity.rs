@@ -67,13 +67,13 @@ impl Integrity {
         })
     }
 
-    /// Whether the database has lines that the trajectory lacks.
+    /// Returns whether the database has lines that the trajectory lacks.
     pub(crate) fn is_database_ahead_of(&self, trajectory: &Trajectory) -> bool {
         let last = trajectory.lines.last().map(|line| line.seq);
         self.database.as_ref().is_some_and(|position| Some(position.seq) > last)
     }
 
-    /// Whether the database file is the one that was left when the run was closed; `None` if this is unknown.
+    /// Returns whether the database file is the one that was left when the run was closed; `None` if this is unknown.
     fn matches_closing_digest(&self, folder: &Path) -> Option<bool> {
         let position = self.database.as_ref()?;
         let closed = self.snapshot.as_ref().filter(|snapshot| snapshot.position() == *position)?;
@@ -109,7 +109,7 @@ impl Integrity {
         (line.hash == position.line_hash && complete).then_some(snapshot)
     }
 
-    /// Whether the database can be continued. Compares the digest of the file if the run was closed properly,
+    /// Returns whether the database can be continued. Compares the digest of the file if the run was closed properly,
     /// otherwise checks its structure.
     pub(crate) fn check_database(&mut self, folder: &Path) -> bool {
         let file = folder.join("world.db");
@@ -137,7 +137,7 @@ fn database_location(folder: &Path) -> DatabaseLocation {
     DatabaseLocation::File(folder.join("world.db"))
 }
 
-/// Whether the database file is unchanged since the run was closed.
+/// Returns whether the database file is unchanged since the run was closed.
 pub(crate) fn is_database_unchanged(folder: &Path, key: &SealKey) -> bool {
     let Ok(ManifestCheck { manifest, .. }) = ManifestCheck::read(folder) else { return false };
     Integrity::read(folder, &manifest, key).matches_closing_digest(folder).unwrap_or(true)

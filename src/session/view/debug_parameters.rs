@@ -58,7 +58,7 @@ impl DebugParameters<'_> {
     /// Returns the parameters that differ from the scenario, and scheduled changes.
     ///
     /// # Errors
-    /// `unreadable_record`: the parameters at the start of the run cannot be read.
+    /// `not_readable`: the parameters at the start of the run cannot be read.
     pub fn changes(&self) -> Result<ChangedParameters, Rejection> {
         let CompanyView { manifest, simulation, .. } = self.0;
         let shipped = Configuration::bundled();

@@ -110,7 +110,7 @@ pub struct WaitingThread {
     pub last_offer: Vec<(Plan, f64)>,
     /// Last price that the enterprise named, dollars a month and seat.
     pub asked: Option<f64>,
-    /// Days left before it is lost.
+    /// Days left before the deadline of the thread.
     pub days_left: u32,
 }
 

@@ -44,12 +44,12 @@ impl RunRecord {
         self.manifest.as_ref()?.study.as_ref()
     }
 
-    /// Whether the run belongs to the study with this digest.
+    /// Returns whether the run belongs to the study with this digest.
     pub(super) fn belongs_to_study(&self, study: &str) -> bool {
         self.stamp().is_some_and(|stamp| stamp.digest == study)
     }
 
-    /// Whether the run belongs to a study with another name.
+    /// Returns whether the run belongs to a study with another name.
     pub(super) fn belongs_to_another_study(&self, study: &Study) -> bool {
         self.stamp().is_some_and(|stamp| stamp.digest != study.digest && stamp.name != study.protocol.name)
     }

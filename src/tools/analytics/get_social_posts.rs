@@ -9,7 +9,7 @@ use super::super::{
 };
 use novamind_world::identifiers::Group;
 
-/// The tool `get_social_posts_returns_newest_first`.
+/// The tool `get_social_posts`.
 pub struct GetSocialPosts;
 
 const ANY_INTEGER: ArgumentKind =

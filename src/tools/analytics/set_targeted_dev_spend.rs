@@ -11,7 +11,7 @@ use super::super::{
 use novamind_world::identifiers::Group;
 use novamind_world::settings::{PerGroup, Settings, SettingsChange, TargetedDevelopment};
 
-/// The tool `set_targeted_dev_spend_validates_and_updates`.
+/// The tool `set_targeted_dev_spend`.
 pub struct SetTargetedDevSpend;
 
 static SPEC: ToolSpec = ToolSpec {

@@ -14,7 +14,7 @@ use super::super::{
 use novamind_world::identifiers::Group;
 use novamind_world::settings::{PerCustomer, PerGroup, PerPlan, Settings, SettingsChange};
 
-/// The tool `set_targeted_ops_spend_keeps_other_scopes`.
+/// The tool `set_targeted_ops_spend`.
 pub struct SetTargetedOpsSpend;
 
 const fn scope_argument(

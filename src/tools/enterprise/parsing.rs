@@ -26,7 +26,7 @@ pub(super) fn parse_elements(given: Option<&Value>, example: &str) -> Result<Vec
     }
 }
 
-/// An error of parsing an element.
+/// An error that occurred while parsing an element.
 pub(super) enum ElementError {
     /// An invalid number, which rejects the whole call.
     Call(Rejection),
@@ -56,7 +56,7 @@ impl From<ElementFailure> for ElementError {
 /// Parses a customer number: an integer, also as text.
 ///
 /// # Errors
-/// `customer_missing`, `wrong_type_rejection`.
+/// `customer_missing`, `wrong_type`.
 pub(super) fn parse_deal_customer(given: Option<&Value>, path: &str) -> Result<i64, ElementError> {
     let field = format!("{path}.customer_id");
     match given {
@@ -82,7 +82,7 @@ pub(super) fn malformed_element(path: &str, expected: &str) -> ElementError {
 /// Parses all offerings of a deal and returns the first `most`.
 ///
 /// # Errors
-/// `offerings_missing`, `offering_short`, `offering_no_price`, `offering_malformed`, `wrong_type_rejection`.
+/// `offerings_missing`, `offering_short`, `offering_no_price`, `offering_malformed`, `wrong_type`.
 pub(super) fn parse_offerings(
     given: Option<&Value>,
     customer: i64,

@@ -8,7 +8,7 @@ use super::super::{
 };
 use novamind_world::settings::{CoreSettings, Settings, SettingsChange};
 
-/// The tool `set_capacity_tier_validates_and_updates`.
+/// The tool `set_capacity_tier`.
 pub struct SetCapacityTier;
 
 const TIERS: NumberRange = NumberRange::between(0.0, 7.0);

@@ -11,7 +11,7 @@ use novamind_world::command::{Command, ResolvedCommand};
 use novamind_world::identifiers::Group;
 use novamind_world::market::insights::Insights;
 
-/// The tool `get_group_insights_returns_known_groups_only`.
+/// The tool `get_group_insights`.
 pub struct GetGroupInsights;
 
 static SPEC: ToolSpec = ToolSpec {

@@ -9,7 +9,7 @@ use super::{noise_label, segment_label};
 use novamind_world::events::{Phase, Reading, Trend};
 use novamind_world::identifiers::Group;
 
-/// The tool `get_market_overview_lists_known_groups_and_economy`.
+/// The tool `get_market_overview`.
 pub struct GetMarketOverview;
 
 static SPEC: ToolSpec = ToolSpec {

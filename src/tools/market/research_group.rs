@@ -11,7 +11,7 @@ use novamind_world::command::{Command, ResolvedCommand};
 use novamind_world::identifiers::Group;
 use novamind_world::market::studies::default_target;
 
-/// The tool `research_group_validates_levels`.
+/// The tool `research_group`.
 pub struct ResearchGroup;
 
 static SPEC: ToolSpec = ToolSpec {

@@ -9,7 +9,7 @@ use super::super::{
 use novamind_world::command::{Command, ResolvedCommand};
 use novamind_world::identifiers::Group;
 
-/// The tool `research_market_discovers_every_group`.
+/// The tool `research_market`.
 pub struct ResearchMarket;
 
 static SPEC: ToolSpec = ToolSpec {

@@ -8,7 +8,7 @@ use super::super::{
 };
 use novamind_world::command::{Command, PostDraft, ResolvedCommand};
 
-/// The tool `post_social_media_allows_one_post_per_day`.
+/// The tool `post_social_media`.
 pub struct PostSocialMedia;
 
 static SPEC: ToolSpec = ToolSpec {

@@ -10,7 +10,7 @@ use super::super::{
 use novamind_base::formatting::json_number;
 use novamind_world::settings::{AdsStrength, PerCustomer, PerGroup, Settings, SettingsChange};
 
-/// The tool `set_ads_strength_applies_nothing_after_an_error`.
+/// The tool `set_ads_strength`.
 pub struct SetAdsStrength;
 
 const STRENGTH: AmountRule = AmountRule {

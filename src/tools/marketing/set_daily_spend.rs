@@ -11,7 +11,7 @@ use super::super::{
 use novamind_base::formatting::json_number;
 use novamind_world::settings::{Settings, SettingsChange};
 
-/// The tool `set_daily_spend_validates_and_updates`.
+/// The tool `set_daily_spend`.
 pub struct SetDailySpend;
 
 const fn budget_argument(name: &'static str, doc: &'static str) -> Argument {

@@ -13,7 +13,7 @@ use novamind_base::formatting::json_number;
 use novamind_world::identifiers::Channel;
 use novamind_world::settings::{LeadPromotion, PerGroup, Settings, SettingsChange};
 
-/// The tool `set_lead_promotion_validates_and_updates`.
+/// The tool `set_lead_promotion`.
 pub struct SetLeadPromotion;
 
 const fn scope_argument(name: &'static str, kind: ArgumentKind, doc: &'static str) -> Argument {

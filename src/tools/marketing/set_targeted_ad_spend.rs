@@ -13,7 +13,7 @@ use super::BUDGET;
 use novamind_world::identifiers::{Channel, Group};
 use novamind_world::settings::{PerGroup, Settings, SettingsChange, TargetedAds};
 
-/// The tool `set_targeted_ad_spend_validates_and_transposes`.
+/// The tool `set_targeted_ad_spend`.
 pub struct SetTargetedAdSpend;
 
 static SPEC: ToolSpec = ToolSpec {

@@ -10,7 +10,7 @@ use super::{PlanUpdate, map_plans, parse_per_plan_arguments, plan_values_json};
 use novamind_world::identifiers::Plan;
 use novamind_world::settings::{Settings, SettingsChange};
 
-/// The tool `set_model_tiers_validates_and_updates`.
+/// The tool `set_model_tiers`.
 pub struct SetModelTiers;
 
 const TIERS: NumberRange = NumberRange::between(1.0, 5.0);

@@ -11,7 +11,7 @@ use novamind_base::formatting::json_number;
 use novamind_world::identifiers::Plan;
 use novamind_world::settings::{Settings, SettingsChange};
 
-/// The tool `set_prices_validates_and_updates`.
+/// The tool `set_prices`.
 pub struct SetPrices;
 
 const fn price_argument(name: &'static str, doc: &'static str) -> Argument {

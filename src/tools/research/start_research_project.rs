@@ -11,7 +11,7 @@ use novamind_base::formatting::round_to;
 use novamind_world::command::{Command, ResolvedCommand};
 use novamind_world::events::Project;
 
-/// The tool `start_research_project_charges_the_price_once`.
+/// The tool `start_research_project`.
 pub struct StartResearchProject;
 
 const TIERS: NumberRange = NumberRange::between(1.0, 20.0);

@@ -5,7 +5,7 @@ use super::super::{
 };
 use super::{CODE_DESCRIPTION, MAX_SCRIPT_SECONDS};
 
-/// The tool `python_exec_validates_code_and_timeout`.
+/// The tool `python_exec`.
 pub struct PythonExec;
 
 static SPEC: ToolSpec = ToolSpec {

@@ -8,7 +8,7 @@ use super::super::{
     ToolKind, ToolModule, ToolSpec,
 };
 
-/// The tool `handle_next_week`. The session implements it; this entry documents it and checks rationale and forecasts.
+/// The tool `next_week`. The session implements it; this entry documents it and checks rationale and forecasts.
 pub struct NextWeek;
 
 static SPEC: ToolSpec = ToolSpec {

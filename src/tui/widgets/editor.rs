@@ -20,7 +20,7 @@ pub const EDITING_KEYS: [(&str, &str, &str); 4] = [
     ("ctrl-u", "line start", "Remove the text to the start of the line."),
     ("ctrl-k", "line end", "Remove the text to the end of the line."),
     ("ctrl-w", "word", "Remove the word before the cursor."),
-    ("ctrl-z", "undo typing", "Undo the last change of the text."),
+    ("ctrl-z", "undo typing", "Undo the last change to the text."),
 ];
 
 /// Maximum length of the text, in bytes.

@@ -103,7 +103,7 @@ impl GroupJudge<'_> {
         self.profile.weight(self.case.lexicon.topic_name(topic))
     }
 
-    /// R: fit of the topics, -1..=1, with the topics behind it.
+    /// Returns R, the fit of the topics (-1..=1), and the topics that determine it.
     fn topic_fit(&self) -> (f64, Vec<String>) {
         let (lexicon, law) = (self.case.lexicon, &self.case.lexicon.terms);
         let mut best = self.weighted_topics(&self.case.features);

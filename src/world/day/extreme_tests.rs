@@ -23,7 +23,7 @@ fn company(params: &Params, streams: &Streams) -> World {
     world
 }
 
-/// Whether a similar key is tested instead: those of other groups, tiers and levels.
+/// Returns whether a similar key is tested instead: those of other groups, tiers and levels.
 fn is_redundant_key(key: &str) -> bool {
     let of_group = |part: &str| Group::parse(part).is_some_and(|group| !["S1", "E1"].contains(&group.id()));
     let of_step = |part: &str| part.parse::<u32>().is_ok_and(|number| number > 1);

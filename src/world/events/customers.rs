@@ -79,7 +79,7 @@ pub struct ChannelLeads {
     pub channel: Channel,
     /// Group.
     pub group: Group,
-    /// Leads that came through it.
+    /// Leads of the group that came through the channel.
     pub leads: u32,
     /// Dollars spent.
     pub spend: f64,

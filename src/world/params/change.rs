@@ -1,4 +1,4 @@
-//! Changes of parameters during a run.
+//! Changes to parameters during a run.
 
 use toml::{Table, Value};
 
@@ -45,7 +45,7 @@ impl Params {
     /// Returns a copy with another value of a parameter, or of a list or table of parameters.
     ///
     /// # Errors
-    /// As [`Params::load_factor`] for a single override, or if the parameter takes effect only at the start of a
+    /// As [`Params::load`] for a single override, or if the parameter takes effect only at the start of a
     /// run.
     pub fn with(&self, key: &str, value: Value) -> Result<Params, ParameterError> {
         self.value(key)?;

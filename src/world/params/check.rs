@@ -20,7 +20,7 @@ pub(super) type Range = RangeInclusive<f64>;
 pub(super) const POSITIVE: f64 = f64::MIN_POSITIVE;
 pub(super) const ANY: Range = f64::NEG_INFINITY..=f64::INFINITY;
 
-/// Defines tables of parameters. `where MIN_HEIGHT_FOR_MARGIN..=HIGH` after the type of a field is the range of its numbers,
+/// Defines tables of parameters. `where LOW..=HIGH` after the type of a field is the range of its numbers,
 /// including those in lists. `as "key"` after its name is its key if it differs from the name.
 macro_rules! parameters {
     ($($(#[$meta:meta])* pub struct $name:ident {

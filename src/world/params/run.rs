@@ -11,7 +11,7 @@ parameters! {
         pub seed: u64,
         /// Default length in days; the size of competitor events grows towards it.
         pub total_days: u32 where 7.0..=100_000.0,
-        /// Days per `handle_next_week`; the last week of a run can be shorter.
+        /// Days per `next_week`; the last week of a run can be shorter.
         pub days_per_week: u32 where 7.0..=7.0,
         /// The run ends when cash is below this at the end of a day, in dollars.
         pub bankruptcy_cash_threshold: f64,
@@ -204,7 +204,7 @@ pub struct SeriesChoice {
     pub replayed: Replayed,
 }
 
-/// A record of series that do not depend on the company.
+/// Recorded series that replace the draws that do not depend on the company.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Replayed {

@@ -494,7 +494,7 @@ fn unknown_runs_are_named_with_the_way_to_the_list() {
     }
     assert_eq!(home.run(&["play", "--plain", "--run", "latest"]).exit_code, 0);
     let empty = Home::new();
-    empty.run(&["play", "--plain", "--run", "latest"]).assert_fails(3, &["there is no run latest"]);
+    empty.run(&["play", "--plain", "--run", "latest"]).assert_fails(3, &["no runs yet", "`novamind play`"]);
 }
 
 #[test]

@@ -157,7 +157,7 @@ impl Terminal {
         self.master.tty_name().expect("a terminal has a name")
     }
 
-    /// Returns the exit code. A program that does not end fails with its screen instead of blocking the test.
+    /// Returns the exit code. If the program does not end in time, the test fails and prints the screen.
     fn exit_code(&mut self) -> u32 {
         let deadline = Instant::now() + Duration::from_secs(60);
         loop {

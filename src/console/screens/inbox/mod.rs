@@ -430,7 +430,7 @@ impl PaneScreen for Inbox {
             Action::MatchAskedPrice => {
                 let targets = self.targets();
                 if !targets.is_empty() && targets.iter().all(|thread| thread.asked_price().is_none()) {
-                    return Some(vec![Effect::Complain("No asking price yet. Type a price.".to_owned())]);
+                    return Some(vec![Effect::Complain("No asked price yet. Type a price.".to_owned())]);
                 }
                 self.set_offer(OfferDraft::at_asked_price());
             }

@@ -61,7 +61,7 @@ pub struct Thread {
     pub customer: u32,
     pub name: String,
     pub group: String,
-    /// Kind as in the table.
+    /// Kind of the thread, as stored in the table of threads.
     pub kind: String,
     pub seats: f64,
     pub state: ThreadState,

@@ -24,7 +24,7 @@ pub enum PriceBasis {
     Dollars,
     /// Percent of the plan's list price.
     ListPrice,
-    /// Percent of the asking price.
+    /// Percent of the asked price.
     AskedPrice,
 }
 
@@ -109,12 +109,12 @@ impl OfferDraft {
         OfferDraft([OfferTerm { plan: PlanChoice::Fixed(Plan::B), ..UNUSED_TERM }, UNUSED_TERM, UNUSED_TERM])
     }
 
-    /// Returns the asking price, for the plan that the enterprise named.
+    /// Returns an offer of the plan that the enterprise named, at its asked price.
     pub fn at_asked_price() -> OfferDraft {
         OfferDraft([OfferTerm { plan: PlanChoice::NamedByCustomer, basis: PriceBasis::AskedPrice, value: 100.0 }, UNUSED_TERM, UNUSED_TERM])
     }
 
-    /// Returns the initial offer to an enterprise: its asking price, otherwise the list price of the plan
+    /// Returns the initial offer to an enterprise: its asked price, otherwise the list price of the plan
     /// that it asks about.
     pub fn initial_for(thread: &Thread) -> OfferDraft {
         match (thread.asked_plan(), thread.asked_price()) {

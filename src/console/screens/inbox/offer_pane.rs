@@ -23,7 +23,7 @@ use novamind_tui::widgets::field::NUMBER_HINT;
 /// Width at which a line of the offer has all its columns.
 pub const MIN_FULL_WIDTH: u16 = 59;
 
-/// Additional width for the comparison with the asking price.
+/// Additional width for the comparison with the asked price.
 const COMPARISON_WIDTH: u16 = 10;
 
 pub struct OfferPane;
@@ -165,7 +165,7 @@ fn offer_pane_notes(inbox: &Inbox, width: u16, look: &ScreenContext<'_>) -> Vec<
     notes
 }
 
-/// Returns the notes on an offer, most important first: quota shortfalls, the asking price, and the basis of
+/// Returns the notes on an offer, most important first: quota shortfalls, the asked price, and the basis of
 /// the compute estimate, or the estimate itself if its columns do not fit.
 fn offer_notes(
     inbox: &Inbox,
@@ -191,7 +191,7 @@ fn offer_notes(
     if let Some((_, price)) = thread.asked_price() {
         let best = offers.iter().map(|(_, value)| value - price).fold(f64::INFINITY, f64::min);
         let sign = if best < 0.0 { "-" } else { "+" };
-        notes.push((format!("asking price {}; yours {sign}{}", cents(price), cents(best.abs())), Role::Text));
+        notes.push((format!("asked price {}; yours {sign}{}", cents(price), cents(best.abs())), Role::Text));
     }
     let Some((units, source)) = usage_per_seat(&inbox.usage, look.company, &thread.group) else {
         notes.push(("compute unknown: the group has no usage yet".to_owned(), Role::Dim));

@@ -271,7 +271,7 @@ fn screen_shows_list_thread_offer_and_preview() {
     press(&mut screen, &company, "a / '1003' enter");
     let text = screen_text(&screen, &company, 120, 37);
     for words in
-        ["#1003", "offered B $30.00", "At $20.00 for plan B", "formal", "asking price $20.00", "theirs"]
+        ["#1003", "offered B $30.00", "At $20.00 for plan B", "formal", "asked price $20.00", "theirs"]
     {
         assert!(text.contains(words), "{words} in\n{text}");
     }

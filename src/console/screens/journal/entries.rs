@@ -304,7 +304,7 @@ impl KnownSettings {
     }
 }
 
-/// Returns the numbers of a call with their paths: `targeted_spend linkedin E1`.
+/// Collects the numbers of a call with their paths: `targeted_spend linkedin E1`.
 fn collect_numbers(value: &Value, path: &str, leaves: &mut Vec<(String, f64)>) {
     match value {
         Value::Object(fields) => {

@@ -1,5 +1,5 @@
 //! The published index of the economy: days of measurement, days of publication, and the unpublished period.
-//! News of competitors are marked by day.
+//! News of competitors is marked by day.
 
 use ratatui::layout::Rect;
 

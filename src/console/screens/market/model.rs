@@ -121,7 +121,7 @@ pub fn name_of(company: &DisplayedCompany, group: Group) -> &str {
     company.insights.get(&group).map_or("", |insights| &insights.group_name)
 }
 
-/// Returns the number of groups that have not been found, as in `get_market_overview_lists_known_groups_and_economy`.
+/// Returns the number of groups that have not been found, as in `get_market_overview`.
 pub fn undiscovered_count(company: &DisplayedCompany) -> usize {
     company.market.undiscovered_count
 }

@@ -1,4 +1,4 @@
-//! The selected tool, or the selected value of its form with a query for its history.
+//! The figure selected on the Tools screen: a tool, or a value of its form with a query for the history of that value.
 
 use std::sync::LazyLock;
 
@@ -6,7 +6,7 @@ use super::form::ToolForm;
 use crate::context::Figure;
 use novamind_tools::{ArgumentKind, CATALOGUE, MapKey, ToolSpec, ToolId};
 
-/// Names of all arguments with their tools: `set_prices_validates_and_updates.A`.
+/// Names of all arguments with their tools: `set_prices.A`.
 static ARGUMENT_TERMS: LazyLock<Vec<String>> = LazyLock::new(|| {
     let of =
         |spec: &'static ToolSpec| spec.arguments.iter().map(move |own| format!("{}.{}", spec.name(), own.name));

@@ -29,7 +29,7 @@ impl Relation {
         }
     }
 
-    /// Whether the comparison is true.
+    /// Returns whether the comparison is true.
     pub fn is_satisfied(self, value: f64, threshold: f64) -> bool {
         match self {
             Relation::Above => value > threshold,
@@ -128,7 +128,7 @@ impl Condition {
         }
     }
 
-    /// Whether the condition is true on a day. It is false if the figure has no value, and on day 0.
+    /// Returns whether the condition is true on a day. It is false if the figure has no value, and on day 0.
     fn is_true_on(&self, days: &[MeasuredDay], day: u32) -> bool {
         let at = |quantity: &Quantity, day: u32| quantity.value(days, day);
         match self {
@@ -188,7 +188,7 @@ pub struct ConditionState {
 }
 
 impl ConditionState {
-    /// Whether the condition became true on the day. The first value of a figure over several days is not a change, because its
+    /// Returns whether the condition became true on the day. The first value of a figure over several days is not a change, because its
     /// days were incomplete before.
     pub fn becomes_true(&self) -> bool {
         self.is_true && !self.was_true && !self.is_first_value

@@ -30,7 +30,7 @@ impl Inspector<'_> {
     /// Returns since when a condition is true or false. Records the inspection.
     ///
     /// # Errors
-    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `unreadable_record`, `not_saved`.
+    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
     pub fn condition_history(&mut self, condition: Condition) -> Result<ConditionHistory, Rejection> {
         let all = self.evaluate_days("back", condition)?;
         let last = |is_true: bool| {

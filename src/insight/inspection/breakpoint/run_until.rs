@@ -89,7 +89,7 @@ impl Inspector<'_> {
     /// last day for each breakpoint, because a run without a stop reveals hidden state, too.
     ///
     /// # Errors
-    /// `not_in_this_mode`, `run_over`, `not_possible`, `unreadable_record`; after `not_saved`, days may have been simulated.
+    /// `not_in_this_mode`, `run_over`, `not_possible`, `not_readable`; after `not_saved`, days may have been simulated.
     pub fn run_until_breakpoint(
         &mut self,
         days: u32,
@@ -121,7 +121,7 @@ impl Inspector<'_> {
     /// Returns the figures of all days up to the inspected one. Re-simulates days without recorded figures.
     ///
     /// # Errors
-    /// `not_possible`, `unreadable_record`.
+    /// `not_possible`, `not_readable`.
     pub(super) fn measured_days(&mut self, look: &InspectionPermit) -> Result<Arc<MeasuredDays>, Rejection> {
         if self.cache.breakpoints.measured_days.last_day() < look.day() {
             let series = Arc::new(MeasuredDays::default());

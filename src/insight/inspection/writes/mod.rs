@@ -53,7 +53,7 @@ impl FigureWrite {
         self.changes.iter().sum()
     }
 
-    /// Whether a limit changed the result by more than rounding errors.
+    /// Returns whether a limit changed the result by more than rounding errors.
     pub fn is_limited(&self) -> bool {
         (self.amount() - self.requested_change()).abs() > 1e-12 * self.before.abs().max(1.0)
     }
@@ -78,7 +78,7 @@ impl Inspector<'_> {
     /// Returns the changes of a figure on a day, by default the last one. Records the inspection.
     ///
     /// # Errors
-    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `unreadable_record`, `not_saved`.
+    /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
     pub fn figure_writes(
         &mut self,
         target: WriteTarget,

@@ -48,7 +48,7 @@ impl Session {
         }
     }
 
-    /// Whether the weeks of a step have passed and the next step has not started.
+    /// Returns whether the weeks of a step have passed and the next step has not started.
     fn awaits_judgement(&self) -> bool {
         let Some(standing) = self.lesson.as_deref().filter(|_| self.ended().is_none()) else {
             return false;
@@ -60,7 +60,7 @@ impl Session {
         })
     }
 
-    /// Whether judging a step needs a function that evaluates rules, and none is set.
+    /// Returns whether judging a step needs a function that evaluates rules, and none is set.
     pub(super) fn lacks_rule_evaluator(&self, standing: &LessonProgress, step: usize) -> bool {
         let is_relative = |goal: &LessonGoal| goal.bound.is_relative();
         self.rule_evaluator.is_none()

@@ -96,7 +96,7 @@ impl OpinionContext<'_> {
         ]
     }
 
-    /// Returns what a row values, with the quality that each adds.
+    /// Returns the aspects that a row values, with the quality that each adds.
     fn praise_weights(&self, group: Group, block: &Block, at: usize) -> Vec<(Theme, f64)> {
         let quality = &self.day.params.quality;
         let delivered = self.day.morning.delivered(group, block.plan[at]);

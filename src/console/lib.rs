@@ -126,7 +126,7 @@ impl Console {
 
     fn handle_message(&mut self, message: Message) -> io::Result<()> {
         #[cfg(debug_assertions)]
-        fail_on_purpose(&message);
+        inject_panic(&message);
         match message {
             #[cfg(unix)]
             Message::Signal(signal_hook::consts::SIGTSTP) => {
@@ -184,7 +184,7 @@ impl Console {
 
 /// Panics at f12 if the environment requests it, to test recovery. Not in release builds.
 #[cfg(debug_assertions)]
-fn fail_on_purpose(message: &Message) {
+fn inject_panic(message: &Message) {
     use crossterm::event::{Event, KeyCode};
     let pressed = matches!(message, Message::Input(Event::Key(key)) if key.code == KeyCode::F(12));
     if pressed && std::env::var("NOVAMIND_FAULT").is_ok_and(|fault| fault == "panic") {

@@ -25,9 +25,9 @@ pub struct StudyStamp {
     pub refused_labels: u32,
 }
 
-#[cfg(any(test, feature = "test-kit"))]
 impl StudyStamp {
     /// Returns the stamp of a pilot study without conditions.
+    #[cfg(any(test, feature = "test-kit"))]
     pub fn pilot_study(practice: bool) -> StudyStamp {
         StudyStamp {
             name: "pilot".to_owned(),

@@ -77,7 +77,7 @@ fn lesson_is_played_to_its_end_with_the_task_pane() {
     console.press("n");
     console.assert_shows("What share of the leads will buy?");
     console.press("enter");
-    console.assert_shows("a share is a number from 0 to 1");
+    console.assert_shows("enter a share from 0 to 1");
     console.press("'0.5' enter");
     console.assert_shows("You guessed 50%");
     console.press("; l h");

@@ -375,13 +375,13 @@ fn writers_sum_to_the_change_exactly() {
     let targets = [group_targets(&["S1", "S3", "E1"]), vec![WriteTarget::Cash]].concat();
     let causes = check_writers(&mut session, &targets, &[1, 2, 40, 71, 86, 101, 126], &recorded);
     let expected = [
-        "Reputation(Departures)",
-        "Reputation(Mood(Mood",
-        "Reputation(SpillOver(SpillOver",
-        "Booked(GroupResearch)",
-        "Booked(Compute)",
-        "Left(Quality)",
-        "SignedUp(ContentMarketing)",
+        "Reputation(Cancellations)",
+        "Reputation(Contributions(ReputationContribution",
+        "Reputation(Spillover(Spillover",
+        "LedgerEntries(GroupResearch)",
+        "LedgerEntries(Compute)",
+        "Cancellations(Quality)",
+        "Signups(ContentMarketing)",
     ];
     assert_seen(&causes, &expected);
 }
@@ -403,7 +403,7 @@ fn writers_cover_signed_and_lost_enterprises() {
     let ended = query_column(&mut session, &sql("end_day"));
     let days: Vec<u32> = began.iter().take(2).chain(ended.iter().take(3)).map(|day| *day as u32).collect();
     let causes = check_writers(&mut session, &group_targets(&["E1", "E2", "E3"]), &days, &|_, _| None);
-    assert_seen(&causes, &["Reputation(LostCompany)", "FirstDeals"]);
+    assert_seen(&causes, &["Reputation(LostEnterprise)", "FirstDeals"]);
 }
 
 fn record_days_up_to(session: &mut Session, day: u32) -> Vec<DayRecord> {

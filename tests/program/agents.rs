@@ -280,7 +280,7 @@ fn a_batch_starts_a_command_that_stops_early_again_and_selects_a_run() {
         ["try", "end", "day", "attempts", "exit_code", "selected"].map(|name| rows[at][name].clone())
     };
     assert_eq!(row(0), [json!(1), json!("last day"), json!(14), json!(2), json!(0), json!("yes")]);
-    assert_eq!(row(1), [json!(2), json!("not over"), json!(0), json!(3), json!(4), json!("")]);
+    assert_eq!(row(1), [json!(2), json!("unfinished"), json!(0), json!(3), json!(4), json!("")]);
     assert!(rows[0]["cash"].as_f64().is_some_and(|cash| cash > 0.0), "{value}");
     let log = std::fs::read_to_string(out.join("try-1/output.txt")).expect("a file");
     assert!(log.starts_with("1/1\n") && log.contains("1/2\n"), "{log}");

@@ -149,7 +149,7 @@ const INSTRUCTION_EXAMPLES: [Example; 6] = [
         stage.term_says("operations", &["for each dollar"]);
     }),
     ("the effect of development", |stage| {
-        stage.manual_says("set_daily_spend", &["Development raises the quality", "ln(1 + spend"]);
+        stage.manual_says("set_daily_spend", &["Development permanently raises the quality", "ln(1 + spend"]);
         stage.manual_says("set_targeted_dev_spend", &["ln(1 + spend"]);
         stage.term_says("development", &["ln(1 + spend"]);
     }),

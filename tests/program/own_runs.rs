@@ -110,7 +110,8 @@ fn consistency_command_accepts_user_policies() {
     assert_eq!(verdict("index of the economy"), ("holds".to_owned(), "0".to_owned()));
     assert_eq!(verdict("same company"), ("holds".to_owned(), "0".to_owned()));
     assert_eq!(verdict("R&D tier").0, "not tried", "neither policy starts a project");
-    home.run(&["lab", "consistency", "--policy", "P0"]).assert_fails(2, &["both policies are the same"]);
+    home.run(&["lab", "consistency", "--policy", "P0"])
+        .assert_fails(2, &["give --policy twice or not at all"]);
 }
 
 #[test]

@@ -107,6 +107,6 @@ fn export_context(run: &Transcript) -> AgentContext {
 
 /// Returns only the list of tools, because the page is part of the server.
 #[cfg(not(feature = "server"))]
-fn surroundings(_: &Transcript) -> AgentContext {
-    AgentContext { page: crate::tools::catalogue::list_by_module(), tools: Vec::new() }
+fn export_context(_: &Transcript) -> AgentContext {
+    AgentContext { instructions: crate::tools::catalogue::list_by_module(), tools: Vec::new() }
 }

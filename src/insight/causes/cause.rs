@@ -55,7 +55,8 @@ impl Cause {
     }
 
     /// Returns whether the cause is a decision of the player.
-    pub fn is_player_decision(self) -> bool {
+    #[cfg(test)]
+    pub(crate) fn is_player_decision(self) -> bool {
         matches!(self, Cause::Calls(_) | Cause::Parameters | Cause::OtherCalls | Cause::EarlierPurchases)
     }
 }

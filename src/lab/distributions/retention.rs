@@ -11,7 +11,7 @@ use novamind_world::retention::issues::issue_probability;
 use novamind_world::retention::renewal::{involuntary_rate, payment_rolls};
 
 const RENEWAL_FILE: &str = "retention/renewal.rs";
-const SUPPORT_FILE: &str = "retention/support_budget.rs";
+const SUPPORT_FILE: &str = "retention/support_pools.rs";
 
 /// Mean issues that the example pool resolves a day, and its backlog.
 const EXAMPLE_SOLVED_ISSUES: f64 = 3.0;
@@ -143,7 +143,7 @@ pub const RETENTION_DRAWS: &[WorldDraw] = &[
         part: Part::NegotiationNoise,
         family: DrawFamily::Single,
         parameters: &["quality.initial_decision_noise_min", "quality.initial_decision_noise_max"],
-        source_files: &[("enterprise/company.rs", 1)],
+        source_files: &[("enterprise/enterprise_customer.rs", 1)],
         distribution: |params, _| DrawDistribution::Uniform {
             low: params.quality.initial_decision_noise_min,
             high: params.quality.initial_decision_noise_max,
@@ -161,7 +161,7 @@ pub const RETENTION_DRAWS: &[WorldDraw] = &[
         part: Part::ReplyDelay,
         family: DrawFamily::Enterprises,
         parameters: &["group.reply_delay_mean", "group.reply_delay_std", "enterprise.reply_delay_min_days"],
-        source_files: &[("enterprise/letters.rs", 1)],
+        source_files: &[("enterprise/messages.rs", 1)],
         distribution: |params, member| {
             let own = params.group(group_at(member));
             DrawDistribution::RoundedNormal {

@@ -71,7 +71,7 @@ fn count_links(file: &Metadata) -> u64 {
 }
 
 #[cfg(not(unix))]
-fn names_of(_file: &Metadata) -> u64 {
+fn count_links(_file: &Metadata) -> u64 {
     1
 }
 
@@ -83,6 +83,6 @@ fn is_same_file(one: &Metadata, other: &Metadata) -> bool {
 
 /// On other systems an open file can neither be moved nor removed.
 #[cfg(not(unix))]
-fn is_same(one: &Metadata, other: &Metadata) -> bool {
+fn is_same_file(one: &Metadata, other: &Metadata) -> bool {
     one.len() == other.len()
 }

@@ -53,7 +53,7 @@ impl Shutdown {
 
     /// Completes when the server is asked to stop.
     #[cfg(not(unix))]
-    pub async fn asked(&mut self) {
+    pub async fn wait(&mut self) {
         tokio::select! {
             _ = tokio::signal::ctrl_c() => {}
             () = self.request.notified() => {}

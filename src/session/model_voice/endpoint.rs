@@ -109,7 +109,7 @@ mod without {
         ///
         /// # Errors
         /// Always.
-        pub(crate) fn open(_: &ModelSettings) -> Result<Endpoint, String> {
+        pub(crate) fn new(_: &ModelSettings) -> Result<Endpoint, String> {
             Err("this program was built without the feature server and cannot use a language model"
                 .to_owned())
         }
@@ -118,7 +118,7 @@ mod without {
         ///
         /// # Errors
         /// Always.
-        pub(crate) fn ask(&self, _: &ModelPrompt, _: Duration) -> Result<String, String> {
+        pub(crate) fn request(&self, _: &ModelPrompt, _: Duration) -> Result<String, String> {
             Err("this program cannot send requests".to_owned())
         }
     }

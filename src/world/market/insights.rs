@@ -150,7 +150,7 @@ pub fn insights(group: Group, market: &Market, params: &Params, streams: &Stream
         }
         InsightNoise::Release => {
             let mut sequence = NumpyStream::new(release_seed(group));
-            insights_with(group, market, params, &mut |_| 2.0 * sequence.uniform() - 1.0)
+            insights_with(group, market, params, &mut |_| 2.0 * sequence.next_f64() - 1.0)
         }
     }
 }

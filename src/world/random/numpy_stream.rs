@@ -28,7 +28,7 @@ impl NumpyStream {
     }
 
     /// Returns the next number, uniform in [0, 1).
-    pub fn uniform(&mut self) -> f64 {
+    pub fn next_f64(&mut self) -> f64 {
         self.step();
         let (high, low) = ((self.state >> 64) as u64, self.state as u64);
         let word = (high ^ low).rotate_right((self.state >> 122) as u32);
@@ -74,7 +74,7 @@ mod tests {
             let letters: [u8; 4] = name.as_bytes().try_into().expect("four letters");
             let mut stream = NumpyStream::new(u32::from_le_bytes(letters) & 0x7fff_ffff);
             for number in numbers.split(',') {
-                assert_eq!(stream.uniform(), number.parse::<f64>().expect("a number"), "{name}");
+                assert_eq!(stream.next_f64(), number.parse::<f64>().expect("a number"), "{name}");
             }
         }
     }

@@ -178,8 +178,9 @@ fn describe_lesson(lesson: &Lesson) -> String {
         }
     }
     text += &format!("\nReference play: {}\nPitfall play: {}\n", plan.good.text, plan.bad.text);
-    for (heading, own) in [("Debrief", &lesson.debrief), ("For the instructor", &lesson.instructor_notes)] {
-        text += &format!("\n{heading}\n\n{}\n", lesson.fill_figures(own));
+    for (heading, section) in [("Debrief", &lesson.debrief), ("For the instructor", &lesson.instructor_notes)]
+    {
+        text += &format!("\n{heading}\n\n{}\n", lesson.fill_figures(section));
     }
     text
 }

@@ -101,9 +101,9 @@ impl Options {
 pub fn run(options: Options, context: &Context) -> Result<(), Failure> {
     if let Some(path) = &options.handout {
         let handout = Handout::read(path)?;
-        let own = context.for_student(&handout.label)?;
+        let student_context = context.for_student(&handout.label)?;
         let run = Some(handout.ensure_run(&context.runs_root()?)?);
-        return self::run(Options { run, handout: None, ..options }, &own);
+        return self::run(Options { run, handout: None, ..options }, &student_context);
     }
     let context = &context.with_voice(options.voice.as_deref())?;
     if let Some(id) = &options.run {

@@ -66,12 +66,12 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
 
 /// Returns the report on the run in a folder. Does not modify the run.
 fn render_report(folder: &Path, format: ReportFormat) -> Result<String, Failure> {
-    let told = |write: fn(&RunReport) -> String| -> Result<String, Failure> {
+    let render = |write: fn(&RunReport) -> String| -> Result<String, Failure> {
         Ok(write(&RunReport::from_session(&Session::open_to_read(folder, true)?)))
     };
     match format {
-        ReportFormat::Markdown => told(report_to_markdown),
-        ReportFormat::Html => told(report_to_html),
+        ReportFormat::Markdown => render(report_to_markdown),
+        ReportFormat::Html => render(report_to_html),
         ReportFormat::Json => Err(Failure::usage(
             "a report is markdown or html; json needs --session. For figures, use `novamind query`",
         )),

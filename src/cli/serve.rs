@@ -38,13 +38,13 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let bound_port = BoundPort::bind(options.port)?;
     let session = options.which.open(context)?;
     let http = HttpOptions { token: options.token.clone() };
-    let mut told = Ok(());
+    let mut printed = Ok(());
     serve_http(
         session,
         bound_port,
         &http,
-        |ready| told = print(&format!("{}\n", json!(ready))),
+        |ready| printed = print(&format!("{}\n", json!(ready))),
         |words| eprintln!("{words}"),
     )?;
-    told
+    printed
 }

@@ -68,7 +68,9 @@ fn next_name(path: &Path) -> PathBuf {
     let numbered = stem.rsplit_once('-').and_then(|(name, number)| Some((name, number.parse::<u32>().ok()?)));
     let (name, number) = numbered.unwrap_or((stem.as_str(), 1));
     let next = format!("{name}-{:04}", number.saturating_add(1));
-    let extension = path.extension().map_or(String::new(), |own| format!(".{}", own.to_string_lossy()));
+    let extension = path
+        .extension()
+        .map_or(String::new(), |extension_text| format!(".{}", extension_text.to_string_lossy()));
     path.with_file_name(next + &extension)
 }
 

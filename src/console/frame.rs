@@ -86,17 +86,17 @@ fn draw_pending_keys(app: &App, canvas: &mut Canvas<'_>, area: Rect) {
     let titles = following.iter().map(|(_, action)| action.entry().title.width()).max().unwrap_or(0) as u16;
     let (width, height) = ((keys + titles + 7).max(20), following.len() as u16 + 2);
     let (width, height) = (width.min(area.width), height.min(area.height));
-    let own = Rect { x: area.right() - width, y: area.bottom() - height, width, height };
-    canvas.clear(own, Role::Text);
+    let pane_area = Rect { x: area.right() - width, y: area.bottom() - height, width, height };
+    canvas.clear(pane_area, Role::Text);
     let inside =
-        canvas.draw_pane_frame(own, &format!("{} …", format_sequence(&app.pending_chords)), "", true);
+        canvas.draw_pane_frame(pane_area, &format!("{} …", format_sequence(&app.pending_chords)), "", true);
     for (row, (chords, action)) in row_rects(inside).zip(following) {
         canvas.draw_text(Rect { x: row.x + 1, width: keys, ..row }, &chords, Role::Key);
         let title = Rect { x: row.x + keys + 3, width: row.width.saturating_sub(keys + 3), ..row };
         canvas.draw_text(title, action.entry().title, Role::Text);
         canvas.register_click(row, Click::Command(action.into()));
     }
-    canvas.draw_pane_keys(own, "esc cancel");
+    canvas.draw_pane_keys(pane_area, "esc cancel");
 }
 
 fn draw_run(app: &App, run: &Run, canvas: &mut Canvas<'_>, area: Rect) {
@@ -121,24 +121,30 @@ fn draw_run(app: &App, run: &Run, canvas: &mut Canvas<'_>, area: Rect) {
     let body = Rect { height: body.height.saturating_sub(below), ..body };
     let look = ScreenContext { company: &run.company, keys: &app.keys, page_rows: app.page_rows };
     canvas.zoomed = run.zoomed;
-    let beside = run.playback.as_ref().filter(|_| !run.zoomed).map_or(0, |viewer| viewer.columns(body));
+    let decisions_width =
+        run.playback.as_ref().filter(|_| !run.zoomed).map_or(0, |viewer| viewer.columns(body));
     let lesson = run.side_task(area.width);
-    let beside = if lesson.is_some() { super::lesson::TASK_WIDTH } else { beside };
-    let screen = Rect { width: body.width - beside, ..body };
+    let decisions_width = if lesson.is_some() { super::lesson::TASK_WIDTH } else { decisions_width };
+    let screen = Rect { width: body.width - decisions_width, ..body };
     canvas.stale = is_stale(run);
     canvas.breadcrumbs = run.breadcrumb_titles(&look);
     run.screens.get(run.screen).draw(canvas, screen, &look);
     canvas.stale = false;
     canvas.breadcrumbs.clear();
     if let Some(page) = lesson {
-        super::lesson::draw_side_task(canvas, Rect { x: screen.right(), width: beside, ..body }, page, &look);
+        super::lesson::draw_side_task(
+            canvas,
+            Rect { x: screen.right(), width: decisions_width, ..body },
+            page,
+            &look,
+        );
     }
     if let Some(viewer) = &run.playback {
         // A list in the side pane does not determine the page size.
         let page = canvas.page_rows;
-        if beside > 0 {
-            let own = Rect { x: screen.right(), width: beside, ..body };
-            viewer.draw_decisions(canvas, own, &look, EntryFilter::All);
+        if decisions_width > 0 {
+            let decisions_area = Rect { x: screen.right(), width: decisions_width, ..body };
+            viewer.draw_decisions(canvas, decisions_area, &look, EntryFilter::All);
         }
         canvas.page_rows = page;
         viewer.draw_status_line(canvas, Rect { y: body.bottom(), height: 1, ..area });
@@ -408,8 +414,8 @@ fn footer_actions(app: &App) -> Vec<Action> {
         let of_end = [Action::Report, Action::Branches].into_iter().filter(|_| over && !replay);
         let always = always.into_iter().filter(|action| !left_out(action)).chain(of_end);
         if !typing {
-            let own = actions.clone();
-            actions.extend(always.filter(|action| !own.contains(action)));
+            let screen_actions = actions.clone();
+            actions.extend(always.filter(|action| !screen_actions.contains(action)));
         }
     }
     actions

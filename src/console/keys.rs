@@ -58,10 +58,11 @@ impl KeyBindings {
                 .find(|scope| scope.id() == name)
                 .ok_or_else(|| format!("there is no section {name}"))?;
             let actions = actions.as_table().ok_or_else(|| format!("[{name}] is not a table"))?;
-            for (own, chords) in actions {
-                let action =
-                    Action::by_name(scope, own).ok_or_else(|| format!("[{name}] has no action {own}"))?;
-                self.bind(scope, action, chords).map_err(|problem| format!("[{name}] {own}: {problem}"))?;
+            for (action_name, chords) in actions {
+                let action = Action::by_name(scope, action_name)
+                    .ok_or_else(|| format!("[{name}] has no action {action_name}"))?;
+                self.bind(scope, action, chords)
+                    .map_err(|problem| format!("[{name}] {action_name}: {problem}"))?;
             }
         }
         Ok(())
@@ -74,7 +75,7 @@ impl KeyBindings {
             .map(|chords| parse_sequence(chords.as_str().ok_or("expected a key as text, for example \"n\"")?))
             .collect();
         let bindings = self.0.entry(scope).or_default();
-        bindings.retain(|(_, own)| *own != action);
+        bindings.retain(|(_, bound_action)| *bound_action != action);
         for chords in parsed? {
             let clash = |bound: &[Chord]| bound.starts_with(&chords) || chords.starts_with(bound);
             if let Some((bound, other)) = bindings.iter().find(|(bound, _)| clash(bound)) {
@@ -126,7 +127,7 @@ impl KeyBindings {
     /// Returns all bindings of an action.
     pub fn chords(&self, action: Action) -> impl Iterator<Item = &[Chord]> + '_ {
         let bindings = self.0.get(&action.entry().scope).into_iter().flatten();
-        bindings.filter(move |(_, own)| *own == action).map(|(chords, _)| chords.as_slice())
+        bindings.filter(move |(_, bound_action)| *bound_action == action).map(|(chords, _)| chords.as_slice())
     }
 
     /// Returns the bindings of an action that work in these scopes, without those that an inner scope overrides.

@@ -37,7 +37,7 @@ pub fn closed_reason(screen: ScreenId, company: &DisplayedCompany) -> Option<Str
         return None;
     }
     let title = |id: ScreenId| id.action().entry().title;
-    let all: Vec<&str> = ScreenId::ALL.into_iter().filter(|own| open(*own)).map(title).collect();
+    let all: Vec<&str> = ScreenId::ALL.into_iter().filter(|id| open(*id)).map(title).collect();
     Some(format!("{} is closed in this lesson; open screens: {}", title(screen), all.join(", ")))
 }
 
@@ -161,7 +161,7 @@ pub fn retry_step(page: &LessonStatus) -> usize {
 /// Joins the wrapped lines of each paragraph.
 fn unwrap_paragraphs(text: &str) -> String {
     let paragraphs = text.trim().split("\n\n");
-    let joined = paragraphs.map(|own| own.split_whitespace().collect::<Vec<_>>().join(" "));
+    let joined = paragraphs.map(|paragraph| paragraph.split_whitespace().collect::<Vec<_>>().join(" "));
     joined.collect::<Vec<_>>().join("\n\n")
 }
 

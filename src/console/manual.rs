@@ -8,10 +8,10 @@ fn actions_by_scope(
     keys: &KeyBindings,
 ) -> impl Iterator<Item = (Scope, Vec<(&'static ActionEntry, Vec<String>)>)> + '_ {
     Scope::ALL.into_iter().filter_map(move |scope| {
-        let own = ACTIONS.iter().filter(|entry| entry.scope == scope);
+        let entries = ACTIONS.iter().filter(|entry| entry.scope == scope);
         let with_keys =
             |entry: &'static ActionEntry| (entry, keys.chords(entry.action).map(format_sequence).collect());
-        let rows: Vec<(&ActionEntry, Vec<String>)> = own.map(with_keys).collect();
+        let rows: Vec<(&ActionEntry, Vec<String>)> = entries.map(with_keys).collect();
         (!rows.is_empty()).then_some((scope, rows))
     })
 }

@@ -23,15 +23,15 @@ pub fn draw(canvas: &mut Canvas<'_>, area: Rect, viewer: &PlaybackViewer, look: 
         true => PointSize::Large,
         false => PointSize::Small,
     };
-    let beside = if area.width >= SINGLE_ROW_WIDTH * size.columns() - 36 { 4 } else { 2 };
+    let columns_per_row = if area.width >= SINGLE_ROW_WIDTH * size.columns() - 36 { 4 } else { 2 };
     // Label and digits.
     let tall = size.rows() + 1;
     let gap = u16::from(area.height >= 24);
     for (at, (label, figure, role)) in (0u16..).zip(headline_figures(look.company)) {
         let place = Rect {
-            x: area.x + at % beside * (area.width / beside),
-            y: area.y + at / beside * (tall + gap),
-            width: area.width / beside,
+            x: area.x + at % columns_per_row * (area.width / columns_per_row),
+            y: area.y + at / columns_per_row * (tall + gap),
+            width: area.width / columns_per_row,
             height: tall,
         };
         canvas.draw_text(
@@ -47,7 +47,7 @@ pub fn draw(canvas: &mut Canvas<'_>, area: Rect, viewer: &PlaybackViewer, look: 
         };
         draw_large_text(canvas, letters, &figure, role, size);
     }
-    let used = 4 / beside * (tall + gap);
+    let used = 4 / columns_per_row * (tall + gap);
     let below = Rect { y: area.y + used, height: area.height.saturating_sub(used), ..area };
     let left = Rect { width: below.width * 3 / 5, ..below };
     draw_cash(canvas, left, look.company);

@@ -67,16 +67,17 @@ fn section(name: &'static str, text: impl Into<String>) -> Section {
     Section { name, text: text.into() }
 }
 
-fn term_parts(own: &'static Term) -> ExplanationParts {
+fn term_parts(glossary_term: &'static Term) -> ExplanationParts {
     let sections = vec![
-        section("", own.text.clone()),
-        section("more", own.more.clone()),
-        section("also called", own.aka.join(", ")),
+        section("", glossary_term.text.clone()),
+        section("more", glossary_term.more.clone()),
+        section("also called", glossary_term.aka.join(", ")),
     ];
-    let terms = own.see.iter().filter_map(|id| term(id)).map(Subject::Term);
-    let tools = own.tools.iter().filter_map(|name| subject_by_name(name));
-    let tables = own.tables.iter().filter_map(|name| novamind_database::table(name)).map(Subject::Table);
-    (own.topic.clone(), sections, terms.chain(tools).chain(tables).collect(), &own.places)
+    let terms = glossary_term.see.iter().filter_map(|id| term(id)).map(Subject::Term);
+    let tools = glossary_term.tools.iter().filter_map(|name| subject_by_name(name));
+    let tables =
+        glossary_term.tables.iter().filter_map(|name| novamind_database::table(name)).map(Subject::Table);
+    (glossary_term.topic.clone(), sections, terms.chain(tools).chain(tables).collect(), &glossary_term.places)
 }
 
 fn tool_parts(spec: &'static ToolSpec) -> ExplanationParts {

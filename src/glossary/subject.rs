@@ -70,7 +70,8 @@ pub fn subject_by_name(name: &str) -> Option<Subject> {
         return Some(Subject::Column(table, column));
     }
     let spec = novamind_tools::find(whole)?.spec();
-    let argument = spec.arguments.iter().find(|own| own.name == part || own.alias == Some(part));
+    let argument =
+        spec.arguments.iter().find(|argument| argument.name == part || argument.alias == Some(part));
     Some(argument.map_or(Subject::Tool(spec), |argument| Subject::Argument(spec, argument)))
 }
 

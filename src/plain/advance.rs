@@ -70,11 +70,11 @@ pub fn parse_filing(
         }
         named if named.iter().all(|argument| argument.key.is_some()) => {
             let field = |name: &str| {
-                let own = named.iter().find(|argument| argument.key.as_deref() == Some(name));
-                own.map_or(Value::Null, |argument| argument.value.clone())
+                let found = named.iter().find(|argument| argument.key.as_deref() == Some(name));
+                found.map_or(Value::Null, |argument| argument.value.clone())
             };
-            named.iter().try_for_each(|own| {
-                check_argument_name(own.key.as_deref().unwrap_or_default(), own.column)
+            named.iter().try_for_each(|argument| {
+                check_argument_name(argument.key.as_deref().unwrap_or_default(), argument.column)
             })?;
             Ok(fill_predictions(field("rationale"), field("predictions"), left_out))
         }

@@ -80,12 +80,12 @@ fn run_dialogue(
         // The run was erased, so nothing claims that it was saved.
         return Ok((end, interpreter.session));
     }
-    let told =
+    let farewell =
         writeln!(out, "{}", farewell_text(&interpreter.session, style, end)).and_then(|()| out.flush());
     match end {
         // The terminal may have gone.
         EndReason::Signal(_) => {}
-        _ => told?,
+        _ => farewell?,
     }
     Ok((end, interpreter.session))
 }

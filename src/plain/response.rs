@@ -237,19 +237,19 @@ mod tests {
 
     #[test]
     fn syntax_error_text_names_the_word() {
-        let told = |problem: &str, column, line: &str| {
+        let format_error = |problem: &str, column, line: &str| {
             CommandResponse::syntax_error(problem, column).with_word_from(line).to_text()
         };
         assert_eq!(
-            told("a value is expected", 14, "set_prices A=) B=3"),
+            format_error("a value is expected", 14, "set_prices A=) B=3"),
             "error usage: at ): a value is expected"
         );
         assert_eq!(
-            told("a value is missing", 14, "set_prices A="),
+            format_error("a value is missing", 14, "set_prices A="),
             "error usage: at the end of the line: a value is missing"
         );
-        assert_eq!(told("foo is not a command", 1, "foo 3"), "error usage: foo is not a command");
-        assert_eq!(told("größe", 9, "größe x ö"), "error usage: at ö: größe");
+        assert_eq!(format_error("foo is not a command", 1, "foo 3"), "error usage: foo is not a command");
+        assert_eq!(format_error("größe", 9, "größe x ö"), "error usage: at ö: größe");
         assert_eq!(CommandResponse::syntax_error("x", 7).with_word_from("a b").to_json(1, 0)["column"], 7);
     }
 

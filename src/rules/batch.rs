@@ -231,7 +231,14 @@ fn price_offer(
 ) -> Result<RuleReply, &'static str> {
     let line = |line: &OfferLine| {
         let plan = line.plan.or(thread.asked_plan).ok_or("skipped: no plan asked for")?;
-        let last = || thread.waiting.last_offer.iter().find(|(own, _)| *own == plan).map(|(_, price)| *price);
+        let last = || {
+            thread
+                .waiting
+                .last_offer
+                .iter()
+                .find(|(offered_plan, _)| *offered_plan == plan)
+                .map(|(_, price)| *price)
+        };
         let price = match line.price {
             Price::Dollars(price) => price,
             Price::Asked(factor) => factor * thread.waiting.asked.ok_or("skipped: no price asked for")?,
@@ -303,34 +310,34 @@ mod tests {
 
     #[test]
     fn first_matching_rule_answers_a_thread() {
-        let own = |rule: Option<usize>, words: &str| (rule, words.to_owned());
+        let expected_answer = |rule: Option<usize>, words: &str| (rule, words.to_owned());
         assert_eq!(
             described_outcomes(
                 "offer where group = E2 and asked is null: B 85; accept asked >= 18; reject rest"
             ),
             [
-                own(Some(2), "end the thread"),
-                own(Some(0), "B $85.00"),
-                own(Some(1), "B $20.00"),
-                own(Some(2), "end the thread"),
+                expected_answer(Some(2), "end the thread"),
+                expected_answer(Some(0), "B $85.00"),
+                expected_answer(Some(1), "B $20.00"),
+                expected_answer(Some(2), "end the thread"),
             ]
         );
         assert_eq!(
             described_outcomes("offer where asked is not null: asked_plan asked*1.1, A list*0.5"),
             [
-                own(None, "no rule matches"),
-                own(None, "no rule matches"),
-                own(Some(0), "B $22.00 or A $7.00"),
-                own(Some(0), "C $11.00 or A $7.00"),
+                expected_answer(None, "no rule matches"),
+                expected_answer(None, "no rule matches"),
+                expected_answer(Some(0), "B $22.00 or A $7.00"),
+                expected_answer(Some(0), "C $11.00 or A $7.00"),
             ]
         );
         assert_eq!(
             described_outcomes("offer where customer in (3, 1): B last_offer*0.5; accept rest"),
             [
-                own(Some(0), "skipped: the last offer did not include that plan"),
-                own(Some(1), "skipped: no plan asked for"),
-                own(Some(0), "B $15.00"),
-                own(Some(1), "C $10.00"),
+                expected_answer(Some(0), "skipped: the last offer did not include that plan"),
+                expected_answer(Some(1), "skipped: no plan asked for"),
+                expected_answer(Some(0), "B $15.00"),
+                expected_answer(Some(1), "C $10.00"),
             ]
         );
     }

@@ -111,11 +111,11 @@ impl Condition {
     pub(super) fn is_satisfied(&self, thread: &ThreadContext) -> bool {
         match self {
             Condition::Compared(field, comparison, value) => {
-                field.value_of(thread).is_some_and(|own| comparison.is_satisfied(&own, value))
+                field.value_of(thread).is_some_and(|actual| comparison.is_satisfied(&actual, value))
             }
             Condition::OneOf(field, values) => {
                 let is_one =
-                    |own: Value| values.iter().any(|value| Comparison::Equal.is_satisfied(&own, value));
+                    |actual: Value| values.iter().any(|value| Comparison::Equal.is_satisfied(&actual, value));
                 field.value_of(thread).is_some_and(is_one)
             }
             Condition::IsNull(field) => field.value_of(thread).is_none(),

@@ -138,9 +138,9 @@ fn tokenize(text: &str) -> Result<Vec<Token>, RuleError> {
                 }
             }
         };
-        let own = &rest[..length];
-        let said = if own == "\n" { ";" } else { own.trim_matches(['"', '\'']) };
-        tokens.push(Token { text: said.to_owned(), start: at, end: at + length });
+        let word = &rest[..length];
+        let token_text = if word == "\n" { ";" } else { word.trim_matches(['"', '\'']) };
+        tokens.push(Token { text: token_text.to_owned(), start: at, end: at + length });
         at += length;
     }
     Ok(tokens)

@@ -18,8 +18,8 @@ impl SeatUsage {
         let mut groups: BTreeMap<String, (f64, f64)> = BTreeMap::new();
         for row in &rows.rows {
             if Group::parse(text_at(row, 0)).is_some_and(Group::is_enterprise) {
-                let own = groups.entry(text_at(row, 0).to_owned()).or_default();
-                *own = (own.0 + number_at(row, 3), own.1 + number_at(row, 4));
+                let usage = groups.entry(text_at(row, 0).to_owned()).or_default();
+                *usage = (usage.0 + number_at(row, 3), usage.1 + number_at(row, 4));
             }
         }
         SeatUsage(groups)

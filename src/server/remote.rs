@@ -45,7 +45,7 @@ impl RemoteServer {
     ///
     /// A leftover announcement of a killed server is detected without a request, because nothing holds the lock of the run.
     pub fn find(folder: &Path, run: &str) -> Option<RemoteServer> {
-        let announcement = Announcement::read(folder).filter(|own| own.run == run)?;
+        let announcement = Announcement::read(folder).filter(|announcement| announcement.run == run)?;
         if !is_locked(folder) {
             return None;
         }

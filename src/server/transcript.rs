@@ -96,8 +96,8 @@ impl ForeignTranscript {
             if is_not_run() {
                 played.not_run += 1;
             } else if call.accepted.is_some_and(|before| before != accepted) {
-                let told = api_response.body["error"].as_str().unwrap_or("it is accepted here").to_owned();
-                played.mismatches.push((call.position, call.tool.clone(), told));
+                let reason = api_response.body["error"].as_str().unwrap_or("it is accepted here").to_owned();
+                played.mismatches.push((call.position, call.tool.clone(), reason));
             }
             played.call_count += 1;
             progress(played.call_count);
@@ -260,8 +260,8 @@ mod tests {
             ("{\"args\": {}}", "has no tool"),
             ("{\"tool\": \"set_prices\", \"args\": [1]}", "no object"),
         ] {
-            let said = ForeignTranscript::read(text.as_bytes()).expect_err(text);
-            assert!(said.contains(words), "{text}: {said}");
+            let error = ForeignTranscript::read(text.as_bytes()).expect_err(text);
+            assert!(error.contains(words), "{text}: {error}");
         }
     }
 }

@@ -186,8 +186,8 @@ impl<'a> Canvas<'a> {
 /// Formats the breadcrumbs before a title in the available width: `Customers › S2 › `. Distant ones are dropped
 /// first, and one that the title names is omitted.
 fn breadcrumb_prefix(path: &[String], title: &str, room: usize) -> String {
-    let said = path.last().is_some_and(|last| title.split(' ').any(|word| word == last));
-    let path = &path[..path.len() - usize::from(said)];
+    let is_in_title = path.last().is_some_and(|last| title.split(' ').any(|word| word == last));
+    let path = &path[..path.len() - usize::from(is_in_title)];
     let words = |from: usize| {
         let cut = if from > 0 { "… › " } else { "" };
         path[from..].iter().fold(cut.to_owned(), |text, place| text + place + " › ")

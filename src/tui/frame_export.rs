@@ -86,7 +86,7 @@ fn draw_cell_run(out: &mut String, (x, y): (usize, u16), cells: &[&Cell], paper:
     }
     let mut shapes = String::new();
     let mut letters: Vec<(usize, String)> = Vec::new();
-    let mut beside = false;
+    let mut follows_letter = false;
     for (column, cell) in cells.iter().enumerate() {
         let drawn = cell.symbol().chars().next().is_some_and(|sign| {
             let path = symbols::symbol_path(sign, place(column), top, (CELL_WIDTH, CELL_HEIGHT));
@@ -95,11 +95,11 @@ fn draw_cell_run(out: &mut String, (x, y): (usize, u16), cells: &[&Cell], paper:
         // Spaces between words belong to neither.
         let written = !drawn && cell.symbol() != " ";
         match letters.last_mut() {
-            Some((_, word)) if written && beside => word.push_str(cell.symbol()),
+            Some((_, word)) if written && follows_letter => word.push_str(cell.symbol()),
             _ if written => letters.push((column, cell.symbol().to_owned())),
             _ => {}
         }
-        beside = written;
+        follows_letter = written;
     }
     if !shapes.is_empty() {
         let _ = writeln!(out, "<path d=\"{shapes}\" fill=\"{ink}\"/>");

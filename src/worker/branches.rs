@@ -109,10 +109,10 @@ fn answer_question(
     let instant = Mutex::new(Instant::now());
     let progress = |done, all| {
         // Every thread reports every day, which is more often than the screen needs.
-        if let Ok(mut told) = instant.try_lock()
-            && told.elapsed() >= DAY_REPORT_INTERVAL
+        if let Ok(mut last_report) = instant.try_lock()
+            && last_report.elapsed() >= DAY_REPORT_INTERVAL
         {
-            *told = Instant::now();
+            *last_report = Instant::now();
             reply.report_progress((done, all));
         }
         reply.check_still_awaited()

@@ -236,8 +236,8 @@ impl DisplayedCompany {
 /// These calls are free and not recorded.
 fn group_insights(session: &Session) -> BTreeMap<Group, GroupInsights> {
     let known = session.company().observe().known_groups;
-    let told = |group: Group| Some((group, session.company().read_tool(&GetGroupInsights, group)?));
-    known.into_iter().filter_map(told).collect()
+    let read_insights = |group: Group| Some((group, session.company().read_tool(&GetGroupInsights, group)?));
+    known.into_iter().filter_map(read_insights).collect()
 }
 
 #[cfg(test)]

@@ -107,7 +107,7 @@ impl SessionThread {
     pub(super) fn query_hidden_tables(&mut self, sql: &str) -> Result<(QueryResult, Duration), Rejection> {
         let started = Instant::now();
         let stop = self.interrupt.clone();
-        let hold = |own| *stop.lock().unwrap_or_else(PoisonError::into_inner) = own;
+        let hold = |handle| *stop.lock().unwrap_or_else(PoisonError::into_inner) = handle;
         let day = match &self.active_run {
             Some(ActiveRun::Playback(playback)) => Some(playback.session().day()).filter(|day| *day > 0),
             _ => None,
@@ -213,7 +213,7 @@ fn run_inspection(
             match session.inspect().customer_view(*customer, Some(*day))? {
                 CustomerView::Individual(lens) => {
                     let days = lens.days.iter().map(|individual_day| individual_day.satisfaction).collect();
-                    let day = lens.day_shown().map_or(lens.signup.day, |own| own.day);
+                    let day = lens.day_shown().map_or(lens.signup.day, |day_shown| day_shown.day);
                     let found = result_with_curve(describe_individual(&lens), SATISFACTION_PREFIX, days);
                     return Ok(InspectionAnswer { day: Some(day), ..found });
                 }
@@ -241,7 +241,7 @@ fn inspect_leads(
         line_index: factor_line_index(factor),
         values_by_day: days.iter().map(|equation| value(equation, factor)).collect(),
     };
-    let is_known = days.last().is_some_and(|own| own.is_known);
+    let is_known = days.last().is_some_and(|known_day| known_day.is_known);
     let curves = if is_known { LeadFactor::ALL.map(curve).to_vec() } else { Vec::new() };
     Ok(InspectionAnswer { lines, curves, ..InspectionAnswer::default() })
 }

@@ -74,8 +74,8 @@ impl Post {
                 format!("our post {}, reply to #{post} · {}", self.number, self.reactions())
             }
             (PostKind::Own, None) => format!("our post {} · {}", self.number, self.reactions()),
-            (PostKind::Comments, Some(own)) => {
-                format!("{} · #{} on our post {own}, day {}", self.author, self.number, self.day)
+            (PostKind::Comments, Some(answered_post)) => {
+                format!("{} · #{} on our post {answered_post}, day {}", self.author, self.number, self.day)
             }
             _ => format!("{} · #{}", self.author, self.number),
         }
@@ -142,7 +142,7 @@ mod tests {
 
     #[test]
     fn posts_of_discovered_groups_are_not_press() {
-        let told = |group: &str, name: Option<&'static str>| {
+        let make_post = |group: &str, name: Option<&'static str>| {
             to_post(&SocialPost {
                 post_id: 4,
                 day: 9,
@@ -157,9 +157,9 @@ mod tests {
             })
         };
         let who = |post: Post| (post.kind, post.author);
-        assert_eq!(who(told("D_S06", None)), (PostKind::Customers, "D_S06".to_owned()));
-        assert_eq!(who(told("S1", None)), (PostKind::Press, "press".to_owned()));
-        assert_eq!(who(told("S1", Some("Ada"))), (PostKind::Customers, "Ada · S1".to_owned()));
+        assert_eq!(who(make_post("D_S06", None)), (PostKind::Customers, "D_S06".to_owned()));
+        assert_eq!(who(make_post("S1", None)), (PostKind::Press, "press".to_owned()));
+        assert_eq!(who(make_post("S1", Some("Ada"))), (PostKind::Customers, "Ada · S1".to_owned()));
     }
     use crate::test_kit::played_session;
     use novamind_record::trajectory::record::Via;

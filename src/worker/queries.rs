@@ -192,7 +192,7 @@ fn answer(
     jobs: &Sender<Job>,
 ) {
     let started = Instant::now();
-    let rows = match connection.as_ref().map(|own| catch_defect(|| ask(own, &question))) {
+    let rows = match connection.as_ref().map(|reader| catch_defect(|| ask(reader, &question))) {
         None => Err(Rejection::new("sql_error", "no run is open")),
         Some(Ok(rows)) => rows,
         Some(Err(defect)) => {

@@ -35,8 +35,8 @@ impl Question for PreviewQuestion {
             .then(|| find_run_to_read(&thread.runs_folder, &self.id).ok())
             .flatten();
         let runs = found.as_deref().and_then(Path::parent).unwrap_or(&thread.runs_folder);
-        let told = |error: RunError| Rejection::new("not_readable", error.to_string());
-        reply.answer(read_preview(runs, &self.id).map_err(told));
+        let to_rejection = |error: RunError| Rejection::new("not_readable", error.to_string());
+        reply.answer(read_preview(runs, &self.id).map_err(to_rejection));
     }
 }
 

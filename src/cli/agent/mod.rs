@@ -124,9 +124,9 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
         }
         AgentCommand::Docs { out } => documents::print_or_write(named, out.as_deref(), context),
         AgentCommand::Stop => {
-            let own = AgentRun::find(named, context)?;
-            let stopped = own.stop_server()?;
-            print(&format!("{}\n", json!({ "run": own.id, "stopped": stopped })))
+            let run = AgentRun::find(named, context)?;
+            let stopped = run.stop_server()?;
+            print(&format!("{}\n", json!({ "run": run.id, "stopped": stopped })))
         }
         AgentCommand::Batch(batch) => batch::run(batch, context),
     }

@@ -174,9 +174,9 @@ impl AgentRun {
         if line.is_empty() {
             let status = child.wait().map_err(failed)?;
             let text = std::fs::read_to_string(&log).unwrap_or_default();
-            let said = text.trim().strip_prefix("novamind: ").unwrap_or(text.trim()).to_owned();
+            let message = text.trim().strip_prefix("novamind: ").unwrap_or(text.trim()).to_owned();
             let code = status.code().and_then(|code| u8::try_from(code).ok()).filter(|code| *code > 0);
-            return Err(Failure::with_code(code.unwrap_or(1), said));
+            return Err(Failure::with_code(code.unwrap_or(1), message));
         }
         RemoteServer::find(&self.folder, &self.id).ok_or_else(|| {
             Failure::failed(format!("the server does not respond; its output is in {}", log.display()))

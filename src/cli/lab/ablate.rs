@@ -43,8 +43,8 @@ fn parse_week_end(text: &str) -> Result<u32, String> {
 pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let (shared, targeted) = match &options.policy {
         Some(name) => {
-            let own = Policy::find(name, &context.configuration)?;
-            (own.clone(), own)
+            let policy = Policy::find(name, &context.configuration)?;
+            (policy.clone(), policy)
         }
         None => (shared_development_probe()?, targeted_development_probe()?),
     };

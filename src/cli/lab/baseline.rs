@@ -64,11 +64,11 @@ fn play_grid(grid: &PolicyGrid, options: &Options, context: &Context) -> Result<
     // Results that were just computed are used even with --fresh.
     let play = PlayOptions { fresh: false, ..options.play.clone() };
     run_experiment_with_known("baseline", &all, &play, context, |prepared: &mut PreparedExperiment<'_>| {
-        for (at, own) in points.iter().enumerate() {
+        for (at, point) in points.iter().enumerate() {
             let leader = &points[leaders[at]];
             let runs = leading.iter().position(|place| *place == leaders[at]);
             for run in runs.into_iter().flat_map(|place| &known.by_arm[place]) {
-                if is_shared_run(&leader.policy, &own.policy, starts[at], run) {
+                if is_shared_run(&leader.policy, &point.policy, starts[at], run) {
                     prepared.add_result(at, run);
                 }
             }

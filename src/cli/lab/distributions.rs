@@ -63,7 +63,7 @@ fn find_member(
     let is_wanted = |(number, name): &(usize, String)| {
         name == wanted || (name.starts_with("tier") && number.to_string() == wanted)
     };
-    members.iter().find(|own| is_wanted(own)).cloned().ok_or_else(|| {
+    members.iter().find(|member| is_wanted(member)).cloned().ok_or_else(|| {
         let names: Vec<&str> =
             members.iter().map(|(_, name)| name.as_str()).filter(|name| !name.is_empty()).collect();
         Failure::usage(match names.is_empty() {

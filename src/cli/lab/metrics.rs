@@ -21,8 +21,8 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     context.check_view_allowed(&folder)?;
     let mut session = open_for_inspection(&folder, context.seal_key()?)?;
     let mut collector = Collector::new(None);
-    let told = session.inspect().replay_days(&mut |day| collector.add_day(day));
-    told.map_err(|refusal| Failure::failed(refusal.message))?;
+    let replayed = session.inspect().replay_days(&mut |day| collector.add_day(day));
+    replayed.map_err(|refusal| Failure::failed(refusal.message))?;
     let manifest = session.manifest();
     // A participant of a study must not learn the seed.
     let seed = match manifest.study.is_none() || context.is_experimenter {

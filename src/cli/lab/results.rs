@@ -97,8 +97,8 @@ fn finished_runs(folders: &[PathBuf]) -> Result<Vec<(PathBuf, RunSummary)>, Fail
                     Some(RunEndReason::Horizon | RunEndReason::Bankruptcy | RunEndReason::Lesson)
                 )
         };
-        let own = list_runs(folder)?.into_iter().filter(is_over);
-        finished.extend(own.map(|run| (run_folder(folder, &run.id), run)));
+        let finished_here = list_runs(folder)?.into_iter().filter(is_over);
+        finished.extend(finished_here.map(|run| (run_folder(folder, &run.id), run)));
     }
     Ok(finished)
 }

@@ -130,7 +130,7 @@ fn results_file(
     digest: &str,
     shard: Option<Shard>,
 ) -> Result<PathBuf, Failure> {
-    let part = shard.map_or(String::new(), |own| format!(".{}-of-{}", own.shard, own.of));
+    let part = shard.map_or(String::new(), |shard| format!(".{}-of-{}", shard.shard, shard.of));
     Ok(context.laboratory_folder()?.join("studies").join(format!(
         "{}.{}{part}.jsonl",
         plan.name,

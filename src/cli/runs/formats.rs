@@ -88,7 +88,7 @@ pub fn write_export(
 }
 
 fn has_extension(file: &Path, ending: &str) -> bool {
-    file.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending))
+    file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(ending))
 }
 
 /// Returns the page that the player of the run received.

@@ -52,7 +52,7 @@ pub fn import_transcript(file: &Path, made_of: &NewRunOptions, context: &Context
         let scripts = pluralize(played.not_run as u32, "script");
         print(&format!("{scripts} in Python not run: scripts of a transcript are never executed\n"))?;
     }
-    let ends_otherwise = read.state_hash.as_ref().is_some_and(|own| *own != hash);
+    let ends_otherwise = read.state_hash.as_ref().is_some_and(|recorded_hash| *recorded_hash != hash);
     match played.mismatches.len() as u32 {
         0 if ends_otherwise => Err(Failure::failed(
             "every answer agrees with the transcript, but the final state differs: its program or its parameters \

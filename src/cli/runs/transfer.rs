@@ -86,19 +86,19 @@ impl Export {
     }
 
     fn export_one(&self, folder: &Path, (key, seal_key): &Keys, json: bool) -> Result<(), Failure> {
-        let beside = parent_folder(&self.out);
+        let parent = parent_folder(&self.out);
         if self.out.exists() {
             // Reported before the run is simulated again, not after it.
             let message = format!("{} already exists: choose another name, or remove it", self.out.display());
             return Err(Failure::failed(message));
         }
-        if !beside.is_dir() {
+        if !parent.is_dir() {
             return Err(Failure::failed(format!(
                 "{} is not a folder; nothing was written",
-                beside.display()
+                parent.display()
             )));
         }
-        let export = Sealing::prepare(folder, beside, seal_key)?;
+        let export = Sealing::prepare(folder, parent, seal_key)?;
         let seal = export.write(&self.out, false, key.as_ref())?;
         let remarks = export.session().remarks();
         if json {
@@ -329,7 +329,9 @@ impl Import {
 impl Import {
     /// Rejects files that need `--transcript`.
     fn reject_transcripts(&self) -> Result<(), Failure> {
-        let is_log = |file: &&PathBuf| file.extension().is_some_and(|own| own == "eval" || own == "json");
+        let is_log = |file: &&PathBuf| {
+            file.extension().is_some_and(|extension| extension == "eval" || extension == "json")
+        };
         let Some(log) = self.files.iter().find(is_log) else { return Ok(()) };
         Err(Failure::usage(format!(
             "{} is not an archive of a run. To play the calls of a log or trajectory in a new run, use `novamind runs import --transcript {}`. \

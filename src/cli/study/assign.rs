@@ -80,10 +80,10 @@ pub fn run(options: &Options) -> Result<(), Failure> {
 /// Returns the seed of the randomization. The option cannot override the protocol.
 fn randomization_seed(options: &Options, protocol: &Protocol) -> Result<u64, Failure> {
     match (options.draw, protocol.seeds.draw) {
-        (Some(asked), Some(own)) if asked != own => Err(Failure::usage(format!(
-            "{STUDY_FILE} sets draw = {own}: leave out --draw, or change it there"
+        (Some(asked), Some(protocol_seed)) if asked != protocol_seed => Err(Failure::usage(format!(
+            "{STUDY_FILE} sets draw = {protocol_seed}: leave out --draw, or change it there"
         ))),
-        (asked, own) => Ok(asked.or(own).unwrap_or(1)),
+        (asked, protocol_seed) => Ok(asked.or(protocol_seed).unwrap_or(1)),
     }
 }
 

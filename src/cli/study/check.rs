@@ -91,7 +91,9 @@ fn describe_keys(folder: &Path) -> &'static str {
 fn describe_study(study: &Study) -> String {
     let questions: usize =
         study.questionnaires.iter().map(|questionnaire| questionnaire.questions.len()).sum();
-    let asked = |moment: Occasion| study.questionnaires.iter().filter(|own| own.when == moment).count();
+    let asked = |moment: Occasion| {
+        study.questionnaires.iter().filter(|questionnaire| questionnaire.when == moment).count()
+    };
     let places = study
         .assignment
         .as_ref()
@@ -153,8 +155,8 @@ fn check_writable(folder: &Path) -> Result<(), String> {
 
 /// Checks the free space by writing, because quotas may allow less than the file system reports.
 fn check_free_space(folder: &Path) -> Result<String, String> {
-    let said = std::process::Command::new("df").args(["-Pk".as_ref(), folder.as_os_str()]).output().ok();
-    let text = said.map(|output| String::from_utf8_lossy(&output.stdout).into_owned()).unwrap_or_default();
+    let output = std::process::Command::new("df").args(["-Pk".as_ref(), folder.as_os_str()]).output().ok();
+    let text = output.map(|output| String::from_utf8_lossy(&output.stdout).into_owned()).unwrap_or_default();
     let free = text.lines().nth(1).and_then(|line| line.split_whitespace().nth(3)?.parse::<u64>().ok());
     match free.map(|kilobytes| kilobytes * 1024) {
         None => Ok("this system does not report free space".to_owned()),

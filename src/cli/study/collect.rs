@@ -64,10 +64,10 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
     let path = options.out.join("collect.log");
     std::fs::write(&path, &log).map_err(|error| Failure::failed(format!("{}: {error}", path.display())))?;
     if options.json {
-        let told = runs.iter().map(|(label, seal, archive)| {
+        let entries = runs.iter().map(|(label, seal, archive)| {
             json!({ "run": seal.run, "participant": label, "file": archive, "checksum": seal.checksum })
         });
-        let object = json!({ "runs": told.collect::<Vec<_>>(), "notes": notes, "visits": visits });
+        let object = json!({ "runs": entries.collect::<Vec<_>>(), "notes": notes, "visits": visits });
         print(&format!("{object}\n"))?;
     } else {
         let signed = lab_key

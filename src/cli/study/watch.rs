@@ -72,14 +72,14 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
 fn write_note(study: &Study, machines: &[PathBuf], label: &str, text: &str) -> Result<(), Failure> {
     participant_folder(Path::new(""), label).map_err(Failure::usage)?;
     let last_played = machines.iter().filter_map(|runs| {
-        let own = session_statuses(study, runs)
+        let statuses = session_statuses(study, runs)
             .into_iter()
             .filter(|session_status| session_status.participant == label);
-        own.map(|status| status.quiet_seconds).min_by(f64::total_cmp).map(|quiet| (quiet, runs))
+        statuses.map(|status| status.quiet_seconds).min_by(f64::total_cmp).map(|quiet| (quiet, runs))
     });
     let with_runs = last_played.min_by(|one, other| one.0.total_cmp(&other.0)).map(|(_, runs)| runs);
     let visited = |runs: &&PathBuf| has_visited(study, runs, label);
-    let is_assigned = study.assignment.as_ref().is_some_and(|own| own.row_for(label).is_some());
+    let is_assigned = study.assignment.as_ref().is_some_and(|assignment| assignment.row_for(label).is_some());
     let place = with_runs.or_else(|| machines.iter().find(visited));
     let place = place.or_else(|| machines.first().filter(|_| is_assigned)).ok_or_else(|| {
         Failure::usage(format!(

@@ -56,13 +56,14 @@ impl App {
         let action = if typing && chord.is_text_input() {
             // The bindings of the text field take precedence over those of the surrounding scopes.
             let texts: Vec<Scope> = scopes.iter().copied().filter(|scope| scope.is_text()).collect();
-            let own = self.keys.action(&texts, chord);
+            let text_action = self.keys.action(&texts, chord);
             let goes_on = |action: &Action| matches!(action, Action::Complete | Action::NextStep);
             let plain = chord.is_printable();
-            own.or_else(|| self.keys.action(&scopes, chord).filter(|action| goes_on(action) && !plain))
+            text_action
+                .or_else(|| self.keys.action(&scopes, chord).filter(|action| goes_on(action) && !plain))
         } else {
-            let own = self.priority_action(chord).or_else(|| self.keys.action(&scopes, chord));
-            own.or_else(|| self.always_available_action(chord))
+            let bound_action = self.priority_action(chord).or_else(|| self.keys.action(&scopes, chord));
+            bound_action.or_else(|| self.always_available_action(chord))
         };
         match action {
             Some(action) => self.handle_action(action),

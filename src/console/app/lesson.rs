@@ -150,11 +150,11 @@ impl App {
         let pitfalls = before.map_or(0, |before| before.pitfalls.len());
         let step_is_over = before.is_some_and(|before| before.step != page.step);
         let is_news = step_is_over || page.pitfalls.len() > pitfalls;
-        let beside = self.run().is_some_and(|run| run.side_task(self.window.0).is_some());
-        if is_news && !beside {
+        let has_side_task = self.run().is_some_and(|run| run.side_task(self.window.0).is_some());
+        if is_news && !has_side_task {
             self.open_dialog(LessonDialog::default());
         }
-        page.skips_forecasts || (is_news && !beside)
+        page.skips_forecasts || (is_news && !has_side_task)
     }
 
     pub(super) fn handle_lesson_response(

@@ -106,7 +106,7 @@ impl App {
     }
 
     pub(super) fn handle_playback_action(&mut self, action: Action) {
-        let beside = self.window.0 >= PlaybackViewer::MIN_WIDTH_FOR_DECISIONS;
+        let is_wide = self.window.0 >= PlaybackViewer::MIN_WIDTH_FOR_DECISIONS;
         let Some(viewer) = self.playback_mut() else { return };
         match action {
             Action::WeekBack => self.seek(SeekTarget::Weeks(-1)),
@@ -125,7 +125,7 @@ impl App {
                 let text = viewer.speed_label();
                 self.show_status(text);
             }
-            Action::Decisions if beside => viewer.shows_decisions = !viewer.shows_decisions,
+            Action::Decisions if is_wide => viewer.shows_decisions = !viewer.shows_decisions,
             Action::Decisions | Action::DecisionsInFull => self.open_decisions(),
             Action::DecisionsUp => viewer.scroll_by(-3),
             Action::DecisionsDown => viewer.scroll_by(3),

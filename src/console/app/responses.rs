@@ -106,7 +106,7 @@ impl App {
                 }
                 self.changed(company);
             }
-            Response::RunReportReady(story) => self.told(&story),
+            Response::RunReportReady(story) => self.set_run_report(&story),
             Response::ReportFilesReady(files) => {
                 self.write(files.into_iter().map(|(name, text)| (name, text.into_bytes())).collect());
             }
@@ -115,11 +115,11 @@ impl App {
             Response::FilesWritten(Ok(text)) => self.show_status(text),
             Response::FilesWritten(Err(problem)) => self.show_error(problem),
             Response::Study(news) => self.handle_study_response(news),
-            other => self.heard(other),
+            other => self.handle_run_response(other),
         }
     }
 
-    fn heard(&mut self, news: Response) {
+    fn handle_run_response(&mut self, news: Response) {
         if !matches!(self.stage, Stage::Run(_)) {
             return;
         }
@@ -282,7 +282,7 @@ impl App {
         self.push_layer(Layer::Dialog(Box::new(page)));
     }
 
-    fn told(&mut self, story: &Arc<RunReport>) {
+    fn set_run_report(&mut self, story: &Arc<RunReport>) {
         if let Stage::Run(run) = &mut self.stage {
             run.story = Some(story.clone());
         }

@@ -119,7 +119,8 @@ fn count_added_and_removed(before: &str, after: &str) -> (u64, u64) {
     let (old, new) = (chars_without_separators(before), chars_without_separators(after));
     let same = old.iter().zip(&new).take_while(|(character, other)| character == other).count();
     let (old, new) = (&old[same..], &new[same..]);
-    let tail = old.iter().rev().zip(new.iter().rev()).take_while(|(own, other)| own == other).count();
+    let tail =
+        old.iter().rev().zip(new.iter().rev()).take_while(|(old_char, other)| old_char == other).count();
     ((new.len() - tail) as u64, (old.len() - tail) as u64)
 }
 

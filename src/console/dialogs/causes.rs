@@ -90,7 +90,7 @@ impl CausesDialog {
         here: bool,
     ) -> Line<'a> {
         let [name, amount, bars] = widths;
-        let role = |own| if here { Role::Selection } else { own };
+        let role = |usual| if here { Role::Selection } else { usual };
         let share = if most > 0.0 { cause.amount.abs() / most } else { 0.0 };
         let left = (width as usize).saturating_sub(name + amount + bars + 5);
         let mark = if here { "›" } else { " " };
@@ -161,13 +161,13 @@ impl Dialog for CausesDialog {
         let room = area.height.saturating_sub(2) as usize;
         let gap = usize::from(!causes.is_empty() && text.len() + causes.len() < room);
         let height = (text.len() + gap + causes.len() + 2) as u16;
-        let own = centered_rect(area, width, height);
-        canvas.clear(own, Role::Text);
+        let dialog_area = centered_rect(area, width, height);
+        canvas.clear(dialog_area, Role::Text);
         let note = match self.causes() {
             Some(why) => format!("simulated {} times", why.simulation_count),
             None => String::new(),
         };
-        let inside = canvas.draw_pane_frame(own, &title, &note, true);
+        let inside = canvas.draw_pane_frame(dialog_area, &title, &note, true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         // The list scrolls, the text does not.
         let listed = causes.len().min(MIN_LISTED_CAUSES);
@@ -179,9 +179,12 @@ impl Dialog for CausesDialog {
         let list = Rect { y: inside.y + used, height: inside.height - used, ..inside };
         let longest = |of: fn(&CauseLine) -> usize| causes.iter().map(of).max().unwrap_or(0);
         let bars = if inner >= 90 { 16 } else { 8 };
-        let widths =
-            [longest(|cause_line| cause_line.name.len()), longest(|own| own.amount_text.len()), bars];
-        let most = causes.iter().map(|own| own.amount.abs()).fold(0.0, f64::max);
+        let widths = [
+            longest(|cause_line| cause_line.name.len()),
+            longest(|cause_line| cause_line.amount_text.len()),
+            bars,
+        ];
+        let most = causes.iter().map(|cause| cause.amount.abs()).fold(0.0, f64::max);
         let first = self.selected.saturating_sub((list.height as usize).saturating_sub(1));
         for (row, (at, cause)) in row_rects(list).zip(causes.iter().enumerate().skip(first)) {
             let here = at == self.selected;
@@ -198,7 +201,7 @@ impl Dialog for CausesDialog {
             Some(_) => format!("{} · {weeks} · {}", look.hint(Action::Open), look.hint(Action::Close)),
             None => format!("{weeks} · {}", look.hint(Action::Close)),
         };
-        canvas.draw_pane_keys(own, &keys);
+        canvas.draw_pane_keys(dialog_area, &keys);
     }
 }
 

@@ -71,9 +71,9 @@ impl Dialog for ConfirmDialog {
 
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
         let lines = wrap(&self.text, 56);
-        let own = centered_rect(area, 60, lines.len() as u16 + 4);
-        canvas.clear(own, Role::Text);
-        let inside = canvas.draw_pane_frame(own, &self.title, "", true);
+        let dialog_area = centered_rect(area, 60, lines.len() as u16 + 4);
+        canvas.clear(dialog_area, Role::Text);
+        let inside = canvas.draw_pane_frame(dialog_area, &self.title, "", true);
         let shown: Vec<Line<'_>> =
             lines.iter().map(|line| Line::from(canvas.span(line.as_str(), Role::Text))).collect();
         canvas.draw_lines(Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside }, &shown);

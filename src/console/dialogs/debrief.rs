@@ -117,19 +117,19 @@ impl Dialog for DebriefPage {
     }
 
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
-        let own = centered_rect(area, MAX_PAGE_WIDTH.min(area.width), 50.min(area.height));
-        canvas.clear(own, Role::Text);
-        let inside = canvas.draw_pane_frame(own, "Debrief", "", true);
+        let dialog_area = centered_rect(area, MAX_PAGE_WIDTH.min(area.width), 50.min(area.height));
+        canvas.clear(dialog_area, Role::Text);
+        let inside = canvas.draw_pane_frame(dialog_area, "Debrief", "", true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
-        canvas.draw_pane_keys(own, &look.hints(&self.hints_in_context(look)));
+        canvas.draw_pane_keys(dialog_area, &look.hints(&self.hints_in_context(look)));
         let debrief = match self.debrief.as_ref().map(|found| found.as_ref().as_ref()) {
             None => return canvas.draw_text(inside, "simulating the good and the bad play …", Role::Warning),
             Some(Err(refusal)) => return canvas.draw_text(inside, &refusal.message, Role::Bad),
             Some(Ok(debrief)) => debrief,
         };
-        let beside =
+        let is_wide =
             inside.width >= MIN_SIZE_FOR_SIDE_CURVES.0 && inside.height >= MIN_SIZE_FOR_SIDE_CURVES.1;
-        let (words, curves) = if beside {
+        let (words, curves) = if is_wide {
             let left = inside.width * 11 / 20;
             let right = Rect { x: inside.x + left + 2, width: inside.width - left - 2, ..inside };
             (Rect { width: left, ..inside }, right)
@@ -147,18 +147,23 @@ impl Dialog for DebriefPage {
         if from < last {
             let key = look.keys.label(Action::Down).unwrap_or_default();
             let more = format!(" {key}: {} more ", pluralize((last - from) as u32, "line"));
-            let above = Rect { x: own.x + 2, width: own.width.saturating_sub(4), height: 1, ..own };
+            let above = Rect {
+                x: dialog_area.x + 2,
+                width: dialog_area.width.saturating_sub(4),
+                height: 1,
+                ..dialog_area
+            };
             canvas.draw_aligned(above, &more, Role::Key, Align::Right);
         }
     }
 }
 
 fn lines_of(debrief: &Debrief, width: usize) -> Vec<(String, Role)> {
-    let said = headline(debrief);
+    let heading = headline(debrief);
     let paragraphs = debrief_paragraphs(debrief).into_iter().enumerate().flat_map(|(at, text)| {
         let role = match at {
             0 => Role::Title,
-            _ if text == said => Role::Strong,
+            _ if text == heading => Role::Strong,
             _ => Role::Text,
         };
         let lines = if text.is_empty() { vec![String::new()] } else { wrap(&text, width) };
@@ -176,8 +181,10 @@ fn draw_curves(canvas: &mut Canvas<'_>, area: Rect, debrief: &Debrief) {
             .with_name(name)
     };
     let mut lines = Vec::new();
-    lines.extend(judged.bad_play.as_ref().map(|own| curve(own, Role::Series(1), "bad play")));
-    lines.extend(judged.reference.as_ref().map(|own| curve(own, Role::Series(2), "good play")));
+    lines.extend(judged.bad_play.as_ref().map(|cash_by_day| curve(cash_by_day, Role::Series(1), "bad play")));
+    lines.extend(
+        judged.reference.as_ref().map(|cash_by_day| curve(cash_by_day, Role::Series(2), "good play")),
+    );
     lines.push(curve(&judged.actual, Role::Series(0), "you"));
     let unit = match judged.figure.unit() {
         FigureUnit::Dollars => AxisUnit::Dollars,
@@ -210,7 +217,12 @@ fn draw_cash_curves(canvas: &mut Canvas<'_>, area: Rect, debrief: &Debrief) {
             .as_ref()
             .map(|reference_curve| curve(&reference_curve.cash_by_day, Role::Series(1), "bad play")),
     );
-    lines.extend(debrief.reference.as_ref().map(|own| curve(&own.cash_by_day, Role::Series(2), "good play")));
+    lines.extend(
+        debrief
+            .reference
+            .as_ref()
+            .map(|reference| curve(&reference.cash_by_day, Role::Series(2), "good play")),
+    );
     lines.push(curve(&debrief.cash_by_day, Role::Series(0), "you"));
     draw_daily_curves(canvas, area, &lines, AxisUnit::Dollars);
 }

@@ -230,9 +230,9 @@ impl Dialog for ExplainDialog {
             rows if rows >= term_picture::MIN_ROWS && term_picture::has_picture(&page.term) => rows,
             _ => 0,
         };
-        let own = centered_rect(area, width, for_text + for_picture + for_links + 2);
-        canvas.clear(own, Role::Text);
-        let inside = canvas.draw_pane_frame(own, &page.title, &page.note, true);
+        let dialog_area = centered_rect(area, width, for_text + for_picture + for_links + 2);
+        canvas.clear(dialog_area, Role::Text);
+        let inside = canvas.draw_pane_frame(dialog_area, &page.title, &page.note, true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         let above = Rect { height: for_text.min(inside.height), ..inside };
         for (row, (heading, words)) in row_rects(above).zip(&text) {
@@ -247,7 +247,7 @@ impl Dialog for ExplainDialog {
         term_picture::draw(canvas, picture, &page.term, look.company);
         let below = Rect { y: picture.bottom(), height: inside.bottom() - picture.bottom(), ..inside };
         self.draw_links(canvas, below, look);
-        canvas.draw_pane_keys(own, &self.key_hints(look));
+        canvas.draw_pane_keys(dialog_area, &self.key_hints(look));
     }
 }
 

@@ -122,12 +122,12 @@ impl Dialog for FinalPage {
 
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
         let company = look.company;
-        let own = centered_rect(area, MAX_PAGE_WIDTH.min(area.width), 42.min(area.height));
-        canvas.clear(own, Role::Text);
+        let dialog_area = centered_rect(area, MAX_PAGE_WIDTH.min(area.width), 42.min(area.height));
+        canvas.clear(dialog_area, Role::Text);
         if hides_result(company) {
             return self.draw_without_result(canvas, area, look);
         }
-        let inside = canvas.draw_pane_frame(own, &headline(company), "", true);
+        let inside = canvas.draw_pane_frame(dialog_area, &headline(company), "", true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         if inside.width >= MIN_TWO_COLUMN_SIZE.0 && inside.height >= MIN_TWO_COLUMN_SIZE.1 {
             let [left, right] = Layout::horizontal([Constraint::Percentage(55), Constraint::Fill(1)])
@@ -143,23 +143,23 @@ impl Dialog for FinalPage {
             let below = Rect { y: inside.y + used, height: inside.height.saturating_sub(used), ..inside };
             draw_cash(canvas, below, company);
         }
-        canvas.draw_pane_keys(own, &look.hints(self.actions()));
+        canvas.draw_pane_keys(dialog_area, &look.hints(self.actions()));
     }
 }
 
 impl FinalPage {
     fn draw_without_result(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
         canvas.clear(area, Role::Text);
-        let own = centered_rect(area, 60, 6);
+        let dialog_area = centered_rect(area, 60, 6);
         let practice = look.company.study.as_ref().is_some_and(|study| study.practice);
         let (title, text) = match practice {
             true => ("The practice has ended", "It does not count. The session comes next."),
             false => ("The run has ended", "This study does not show the result."),
         };
-        let inside = canvas.draw_pane_frame(own, title, "", true);
+        let inside = canvas.draw_pane_frame(dialog_area, title, "", true);
         let row = Rect { x: inside.x + 1, y: inside.y + 1, width: inside.width.saturating_sub(2), height: 1 };
         canvas.draw_text(row.intersection(inside), text, Role::Text);
-        canvas.draw_pane_keys(own, &look.hints(self.actions()));
+        canvas.draw_pane_keys(dialog_area, &look.hints(self.actions()));
     }
 
     fn write_card(&self) -> DialogResponse {
@@ -304,20 +304,20 @@ fn ranking_lines<'a>(
         .map(|line| TextLine::from(canvas.span(line, Role::Header)))
         .collect();
     for place in standing.top_and_neighbors(best, 1) {
-        let own = place.owner == ResultOwner::ThisRun;
-        let role = if own { Role::Good } else { Role::Text };
+        let is_this_run = place.owner == ResultOwner::ThisRun;
+        let role = if is_this_run { Role::Good } else { Role::Text };
         let bar = "█".repeat(((place.cash.max(0.0) / most) * room as f64).round() as usize);
         lines.push(TextLine::from(vec![
-            canvas.span(if own { "▌ " } else { "  " }, role),
+            canvas.span(if is_this_run { "▌ " } else { "  " }, role),
             canvas.span(format!("{:<21}{:>12}  ", place.name, grouped_number(place.cash, 0)), role),
-            canvas.span(bar, if own { Role::Good } else { Role::Series(0) }),
+            canvas.span(bar, if is_this_run { Role::Good } else { Role::Series(0) }),
         ]));
     }
     if let Some(caveat) = &standing.caveat {
         match roomy {
             true => {
-                let told = wrap(caveat, width as usize).into_iter();
-                lines.extend(told.map(|line| TextLine::from(canvas.span(line, Role::Dim))));
+                let caveat_lines = wrap(caveat, width as usize).into_iter();
+                lines.extend(caveat_lines.map(|line| TextLine::from(canvas.span(line, Role::Dim))));
             }
             false if best > 0 => {
                 // The publication comes first; differences of this run are in the header.

@@ -121,13 +121,14 @@ impl Dialog for GlossaryDialog {
     }
 
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
-        let own = centered_rect(area, area.width.saturating_sub(4).min(130), area.height.saturating_sub(2));
-        canvas.clear(own, Role::Text);
+        let dialog_area =
+            centered_rect(area, area.width.saturating_sub(4).min(130), area.height.saturating_sub(2));
+        canvas.clear(dialog_area, Role::Text);
         let note = match self.table.summary() {
             note if note.is_empty() => format!("{} terms", terms().len()),
             note => note,
         };
-        let inside = canvas.draw_pane_frame(own, "Glossary", &note, true);
+        let inside = canvas.draw_pane_frame(dialog_area, "Glossary", &note, true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         let has_picture = self.selected().is_some_and(|term| term_picture::has_picture(&term.id));
         let for_text = match inside.height {
@@ -146,7 +147,7 @@ impl Dialog for GlossaryDialog {
         if let Some(term) = self.selected() {
             self.draw_term(canvas, below, term, look);
         }
-        canvas.draw_pane_keys(own, &look.hints(&self.hints()));
+        canvas.draw_pane_keys(dialog_area, &look.hints(&self.hints()));
     }
 }
 

@@ -126,13 +126,14 @@ fn screen_sections(panes: &[PaneKeys], replay: bool) -> Vec<HelpSection> {
             actions: hints.chain(scopes.flat_map(|scope| scope_actions(*scope))).collect(),
         });
     }
-    let own = panes.first().map_or(Vec::new(), |pane| with_global(&pane.scopes));
+    let pane_scopes = panes.first().map_or(Vec::new(), |pane| with_global(&pane.scopes));
     for (scope, name) in [(Scope::Playback, "replay"), (Scope::List, "lists"), (Scope::Global, "always")] {
-        if own.contains(&scope) {
+        if pane_scopes.contains(&scope) {
             // A form moves like a list but cannot be filtered or sorted.
-            let idle = |action: &Action| own.contains(&Scope::Form) && FILTER_ACTIONS.contains(action);
+            let idle =
+                |action: &Action| pane_scopes.contains(&Scope::Form) && FILTER_ACTIONS.contains(action);
             let actions = scope_actions(scope).filter(|action| !idle(action)).collect();
-            parts.push(HelpSection { name, scopes: own.clone(), actions });
+            parts.push(HelpSection { name, scopes: pane_scopes.clone(), actions });
         }
     }
     parts
@@ -178,16 +179,17 @@ impl Dialog for HelpDialog {
     }
 
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
-        let own = centered_rect(area, area.width.saturating_sub(4).min(110), area.height.saturating_sub(2));
-        canvas.clear(own, Role::Text);
-        let inside = canvas.draw_pane_frame(own, &self.title, &self.table.summary(), true);
+        let dialog_area =
+            centered_rect(area, area.width.saturating_sub(4).min(110), area.height.saturating_sub(2));
+        canvas.clear(dialog_area, Role::Text);
+        let inside = canvas.draw_pane_frame(dialog_area, &self.title, &self.table.summary(), true);
         self.table.draw(
             canvas,
             Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside },
             true,
             0,
         );
-        canvas.draw_pane_keys(own, &look.hints(&[Action::Filter, Action::Close]));
+        canvas.draw_pane_keys(dialog_area, &look.hints(&[Action::Filter, Action::Close]));
     }
 }
 

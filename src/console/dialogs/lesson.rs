@@ -138,9 +138,9 @@ impl LessonDialog {
             .map(|(at, choice)| (at, wrap(&format!("{} {choice}", at + 1), inner.saturating_sub(2))))
             .collect();
         let rows = choices.iter().map(|(_, lines)| lines.len()).sum::<usize>().max(1);
-        let own = centered_rect(area, width, (text.len() + rows + 5) as u16);
-        canvas.clear(own, Role::Text);
-        let inside = canvas.draw_pane_frame(own, "Your guess", "asked before the weeks run", true);
+        let dialog_area = centered_rect(area, width, (text.len() + rows + 5) as u16);
+        canvas.clear(dialog_area, Role::Text);
+        let inside = canvas.draw_pane_frame(dialog_area, "Your guess", "asked before the weeks run", true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         let mut rows = row_rects(inside);
         for (row, line) in rows.by_ref().zip(&text) {
@@ -164,13 +164,13 @@ impl LessonDialog {
         {
             let width = 20.min(row.width);
             answer.number.draw(canvas, Rect { width, ..row });
-            let beside = Rect { x: row.x + width + 1, width: row.width.saturating_sub(width + 1), ..row };
-            canvas.draw_text(beside, &question.unit, Role::Dim);
+            let unit_area = Rect { x: row.x + width + 1, width: row.width.saturating_sub(width + 1), ..row };
+            canvas.draw_text(unit_area, &question.unit, Role::Dim);
         }
         if let (Some(problem), Some(row)) = (&answer.problem, rows.next()) {
             canvas.draw_text(row, &format!("! {problem}"), Role::Bad);
         }
-        canvas.draw_pane_keys(own, &look.hints(&[Action::Commit, Action::Discard]));
+        canvas.draw_pane_keys(dialog_area, &look.hints(&[Action::Commit, Action::Discard]));
     }
 }
 
@@ -296,19 +296,19 @@ impl Dialog for LessonDialog {
         if let Some(question) = self.open_question(look).filter(|_| self.closes_after_answer) {
             return self.draw_answer(canvas, area, question, look);
         }
-        let own = centered_rect(area, MAX_PAGE_WIDTH.min(area.width), area.height);
-        let lines = lines_of(page, look, (own.width.saturating_sub(4) as usize, TaskPlace::FullPage));
-        let own = centered_rect(area, own.width, (lines.len() as u16).saturating_add(2));
-        canvas.clear(own, Role::Text);
+        let widest_area = centered_rect(area, MAX_PAGE_WIDTH.min(area.width), area.height);
+        let lines = lines_of(page, look, (widest_area.width.saturating_sub(4) as usize, TaskPlace::FullPage));
+        let dialog_area = centered_rect(area, widest_area.width, (lines.len() as u16).saturating_add(2));
+        canvas.clear(dialog_area, Role::Text);
         let note = format!("week {} of {}", (page.weeks.0 + 1).min(page.weeks.1), page.weeks.1);
-        let inside = canvas.draw_pane_frame(own, "Lesson", &note, true);
+        let inside = canvas.draw_pane_frame(dialog_area, "Lesson", &note, true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         canvas.page_rows = inside.height.max(1);
         let from = self.scroll.clamped_first_row(lines.len().saturating_sub(inside.height as usize));
         draw_lines(canvas, inside, &lines, from);
         let cut = lines.len() > inside.height as usize;
         let keys = self.actions(page).into_iter().filter(|action| cut || *action != Action::ScrollDown);
-        canvas.draw_pane_keys(own, &look.hints(&keys.collect::<Vec<_>>()));
+        canvas.draw_pane_keys(dialog_area, &look.hints(&keys.collect::<Vec<_>>()));
         if let Some(question) = self.open_question(look) {
             self.draw_answer(canvas, area, question, look);
         }

@@ -60,11 +60,11 @@ impl Dialog for OpponentsPage {
     }
 
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
-        let own = centered_rect(area, PAGE_SIZE.0.min(area.width), PAGE_SIZE.1.min(area.height));
-        canvas.clear(own, Role::Text);
-        let inside = canvas.draw_pane_frame(own, "Opponents", "", true);
+        let dialog_area = centered_rect(area, PAGE_SIZE.0.min(area.width), PAGE_SIZE.1.min(area.height));
+        canvas.clear(dialog_area, Role::Text);
+        let inside = canvas.draw_pane_frame(dialog_area, "Opponents", "", true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
-        canvas.draw_pane_keys(own, &look.hints(&self.hints()));
+        canvas.draw_pane_keys(dialog_area, &look.hints(&self.hints()));
         let width = inside.width as usize;
         let (role, text) = match &self.result {
             None => (Role::Warning, "simulating the strong policies from day 0 …".to_owned()),
@@ -89,26 +89,26 @@ fn ranked<'a>(
     width: usize,
 ) -> Vec<TextLine<'a>> {
     let seen = &company.observation;
-    let own = match seen.ended {
+    let player_result = match seen.ended {
         Some(RunEndReason::Bankruptcy) => Some((0.0, format!("bankrupt on day {}", seen.day))),
         Some(RunEndReason::Horizon | RunEndReason::Lesson) => Some((seen.cash, dollars(seen.cash))),
         Some(RunEndReason::Abandoned) | None => None,
     };
     let policy = |one: &OpponentResult| (one.policy.clone(), one.score(), one.describe(), false);
     let mut rows: Vec<_> = opponents.policies.iter().map(policy).collect();
-    if let Some((score, told)) = own {
-        rows.insert(opponents.count_ahead_of(score), ("You".to_owned(), score, told, true));
+    if let Some((score, result_text)) = player_result {
+        rows.insert(opponents.count_ahead_of(score), ("You".to_owned(), score, result_text, true));
     }
     let most = rows.iter().map(|row| row.1).fold(1.0, f64::max);
     let room = width.saturating_sub(NAME_COLUMNS) as f64;
-    let line = |(name, score, told, is_own): (String, f64, String, bool)| {
+    let line = |(name, score, result_text, is_own): (String, f64, String, bool)| {
         let role = if is_own { Role::Good } else { Role::Text };
         let bar = "█".repeat((score.max(0.0) / most * room).round() as usize);
         let mark = if is_own { "▌ " } else { "  " };
-        let told = first_fitting([told], width.saturating_sub(22));
+        let result_text = first_fitting([result_text], width.saturating_sub(22));
         TextLine::from(vec![
             canvas.span(format!("{mark}{name:<20}"), role),
-            canvas.span(format!("{told:>14}  "), role),
+            canvas.span(format!("{result_text:>14}  "), role),
             canvas.span(bar, if is_own { Role::Good } else { Role::Series(0) }),
         ])
     };

@@ -347,11 +347,11 @@ impl Dialog for CommandPalette {
     }
 
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, _: &ScreenContext<'_>) {
-        let own =
+        let dialog_area =
             centered_rect(area, 120.min(area.width.saturating_sub(2)), 24.min(area.height.saturating_sub(2)));
-        canvas.clear(own, Role::Text);
+        canvas.clear(dialog_area, Role::Text);
         let note = format!("{} of {}", self.matches.len(), self.entries.len());
-        let inside = canvas.draw_pane_frame(own, "Palette", &note, true);
+        let inside = canvas.draw_pane_frame(dialog_area, "Palette", &note, true);
         let line = Rect { height: 1.min(inside.height), ..inside };
         canvas.draw_text(line, "›", Role::Key);
         self.field.draw(canvas, Rect { x: line.x + 2, width: line.width.saturating_sub(2), ..line });
@@ -364,7 +364,7 @@ impl Dialog for CommandPalette {
             self.draw_entry(canvas, row, *at, letters, place == self.selected);
             canvas.register_click(row, Click::Row(0, place));
         }
-        canvas.draw_pane_keys(own, "type to search · up/down select · enter choose · esc close");
+        canvas.draw_pane_keys(dialog_area, "type to search · up/down select · enter choose · esc close");
     }
 }
 

@@ -58,15 +58,15 @@ impl Dialog for PauseReasonDialog {
     }
 
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
-        let own = centered_rect(area, 64, 6);
-        canvas.clear(own, Role::Text);
-        let inside = canvas.draw_pane_frame(own, "Stop the clock", "", true);
+        let dialog_area = centered_rect(area, 64, 6);
+        canvas.clear(dialog_area, Role::Text);
+        let inside = canvas.draw_pane_frame(dialog_area, "Stop the clock", "", true);
         let row = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), height: 1, ..inside };
         canvas.draw_text(row, "Why do you stop? The time counts until you answer.", Role::Text);
         self.reason.draw(canvas, Rect { y: row.y + 1, ..row });
         if self.is_rejected_empty {
             canvas.draw_text(Rect { y: row.y + 2, ..row }, "! a reason is required", Role::Bad);
         }
-        canvas.draw_pane_keys(own, &look.hints(&[Action::Commit, Action::Discard]));
+        canvas.draw_pane_keys(dialog_area, &look.hints(&[Action::Commit, Action::Discard]));
     }
 }

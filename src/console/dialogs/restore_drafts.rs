@@ -56,13 +56,13 @@ impl Dialog for RestoreDraftsDialog {
             let shown = last_lines(text, width.saturating_sub(2), each).into_iter();
             lines.extend(shown.map(|line| Line::from(canvas.span(format!("  {line}"), Role::Text))));
         }
-        let own = centered_rect(area, MAX_PAGE_WIDTH, lines.len() as u16 + 2);
-        canvas.clear(own, Role::Text);
-        let inside = canvas.draw_pane_frame(own, "Unsent text", "", true);
+        let dialog_area = centered_rect(area, MAX_PAGE_WIDTH, lines.len() as u16 + 2);
+        canvas.clear(dialog_area, Role::Text);
+        let inside = canvas.draw_pane_frame(dialog_area, "Unsent text", "", true);
         canvas.draw_lines(Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside }, &lines);
         let restore = look.keys.label(Action::RestoreDrafts).unwrap_or_default();
         let drop = look.keys.label(Action::DiscardDrafts).unwrap_or_default();
-        canvas.draw_pane_keys(own, &format!("{restore} restore · {drop} discard"));
+        canvas.draw_pane_keys(dialog_area, &format!("{restore} restore · {drop} discard"));
     }
 }
 

@@ -75,9 +75,9 @@ impl Dialog for RetryStepDialog {
         }
         lines.push(String::new());
         lines.push(look.hints(&[Action::Confirm, Action::Cancel]));
-        let own = centered_rect(area, 60, lines.len() as u16 + 2);
-        canvas.clear(own, Role::Text);
-        let inside = canvas.draw_pane_frame(own, "Try again", "", true);
+        let dialog_area = centered_rect(area, 60, lines.len() as u16 + 2);
+        canvas.clear(dialog_area, Role::Text);
+        let inside = canvas.draw_pane_frame(dialog_area, "Try again", "", true);
         let shown: Vec<Line<'_>> =
             lines.iter().map(|line| Line::from(canvas.span(line.as_str(), Role::Text))).collect();
         canvas.draw_lines(Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside }, &shown);

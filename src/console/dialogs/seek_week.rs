@@ -76,9 +76,9 @@ impl Dialog for SeekWeekDialog {
     }
 
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
-        let own = centered_rect(area, 56, 6);
-        canvas.clear(own, Role::Text);
-        let inside = canvas.draw_pane_frame(own, "Go to week", &format!("0 to {}", self.weeks), true);
+        let dialog_area = centered_rect(area, 56, 6);
+        canvas.clear(dialog_area, Role::Text);
+        let inside = canvas.draw_pane_frame(dialog_area, "Go to week", &format!("0 to {}", self.weeks), true);
         let row = Rect {
             x: inside.x + 1,
             width: inside.width.saturating_sub(2),
@@ -93,7 +93,7 @@ impl Dialog for SeekWeekDialog {
             Some(problem) => canvas.draw_text(below, problem, Role::Bad),
             None => canvas.draw_text(below, "shows the end of that week", Role::Dim),
         }
-        canvas.draw_pane_keys(own, &look.hints(&[Action::Commit, Action::Discard]));
+        canvas.draw_pane_keys(dialog_area, &look.hints(&[Action::Commit, Action::Discard]));
     }
 }
 

@@ -117,9 +117,10 @@ impl Dialog for SourceRowsDialog {
     }
 
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
-        let own = centered_rect(area, area.width.saturating_sub(4).min(140), area.height.saturating_sub(2));
-        canvas.clear(own, Role::Text);
-        let inside = canvas.draw_pane_frame(own, &self.title, &self.note(), true);
+        let dialog_area =
+            centered_rect(area, area.width.saturating_sub(4).min(140), area.height.saturating_sub(2));
+        canvas.clear(dialog_area, Role::Text);
+        let inside = canvas.draw_pane_frame(dialog_area, &self.title, &self.note(), true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         let query = wrap(&self.sql, inside.width as usize);
         let used = query.len().min(MAX_QUERY_LINES).min(inside.height as usize / 3);
@@ -137,6 +138,6 @@ impl Dialog for SourceRowsDialog {
             Some(Ok(_)) => self.table.draw(canvas, below, true, 0),
         }
         let keys = [Action::OpenInSql, Action::CopyQuery, Action::Sort, Action::Filter, Action::Close];
-        canvas.draw_pane_keys(own, &look.hints(&keys));
+        canvas.draw_pane_keys(dialog_area, &look.hints(&keys));
     }
 }

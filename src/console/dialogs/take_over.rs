@@ -69,9 +69,9 @@ impl Dialog for TakeOverDialog {
             self.day, self.week
         );
         let lines = wrap(&text, 72);
-        let own = centered_rect(area, 78, lines.len() as u16 + BRANCH_MODES.len() as u16 + 4);
-        canvas.clear(own, Role::Text);
-        let inside = canvas.draw_pane_frame(own, "Take over", "", true);
+        let dialog_area = centered_rect(area, 78, lines.len() as u16 + BRANCH_MODES.len() as u16 + 4);
+        canvas.clear(dialog_area, Role::Text);
+        let inside = canvas.draw_pane_frame(dialog_area, "Take over", "", true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         for (row, line) in row_rects(inside).zip(&lines) {
             canvas.draw_text(row, line, Role::Text);
@@ -89,7 +89,7 @@ impl Dialog for TakeOverDialog {
             canvas.register_click(row, Click::Row(0, at));
         }
         let key = look.keys.label(Action::Open).unwrap_or_default();
-        canvas.draw_pane_keys(own, &format!("{key} start · {}", look.hint(Action::Close)));
+        canvas.draw_pane_keys(dialog_area, &format!("{key} start · {}", look.hint(Action::Close)));
     }
 }
 

@@ -55,9 +55,9 @@ impl Dialog for TextDialog {
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
         let width = area.width.saturating_sub(6).clamp(1, 110);
         let lines = wrap(&self.text, width as usize);
-        let own = centered_rect(area, width + 4, (lines.len() as u16).saturating_add(2));
-        canvas.clear(own, Role::Text);
-        let inside = canvas.draw_pane_frame(own, &self.title, "", true);
+        let dialog_area = centered_rect(area, width + 4, (lines.len() as u16).saturating_add(2));
+        canvas.clear(dialog_area, Role::Text);
+        let inside = canvas.draw_pane_frame(dialog_area, &self.title, "", true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         let from = self.first_line.min(lines.len().saturating_sub(inside.height as usize));
         canvas.page_rows = inside.height.max(1);
@@ -67,7 +67,7 @@ impl Dialog for TextDialog {
         canvas.draw_lines(inside, &shown);
         let more = lines.len() > inside.height as usize;
         canvas.draw_pane_keys(
-            own,
+            dialog_area,
             &if more { look.hints(&[Action::ScrollDown, Action::Cancel]) } else { look.hint(Action::Cancel) },
         );
     }

@@ -102,12 +102,12 @@ impl Dialog for WeekReportDialog {
         let (lines, places) =
             self.lines(canvas, week_report, look, width.saturating_sub(4), area.height.saturating_sub(2));
         canvas.page_rows = places.len().max(1) as u16;
-        let own = centered_rect(area, width, lines.len() as u16 + 2);
-        canvas.clear(own, Role::Text);
+        let dialog_area = centered_rect(area, width, lines.len() as u16 + 2);
+        canvas.clear(dialog_area, Role::Text);
         let title = format!("Week {} · day {}", week_report.week.day.div_ceil(7), week_report.week.day);
-        let inside = canvas.draw_pane_frame(own, &title, "", true);
+        let inside = canvas.draw_pane_frame(dialog_area, &title, "", true);
         canvas.draw_lines(Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside }, &lines);
-        canvas.register_click(own, Click::Command(Action::Cancel.into()));
+        canvas.register_click(dialog_area, Click::Command(Action::Cancel.into()));
         for (at, place) in places.iter().enumerate().filter(|(_, place)| **place < usize::from(inside.height))
         {
             let row = Rect { y: inside.y + *place as u16, height: 1, ..inside };
@@ -121,7 +121,7 @@ impl Dialog for WeekReportDialog {
         };
         let again =
             look.keys.label(Action::Report).map_or(String::new(), |key| format!(" · {key} reopens it"));
-        canvas.draw_pane_keys(own, &format!("{close}{why}{again}"));
+        canvas.draw_pane_keys(dialog_area, &format!("{close}{why}{again}"));
     }
 }
 
@@ -200,8 +200,8 @@ impl WeekReportDialog {
         lines.extend(remark.map(|line| Line::from(canvas.span(line, Role::Warning))));
         if week_report.was_filed_at_limit() {
             let text = "The time for this week ran out: it was submitted with the projection.";
-            let said = wrap(text, width as usize).into_iter();
-            lines.extend(said.map(|line| Line::from(canvas.span(line, Role::Warning))));
+            let note_lines = wrap(text, width as usize).into_iter();
+            lines.extend(note_lines.map(|line| Line::from(canvas.span(line, Role::Warning))));
         }
         let due = week_report.due_forecasts.iter().take(forecasts);
         lines.extend(
@@ -267,7 +267,7 @@ fn forecast_line<'a>(canvas: &Canvas<'_>, due: &ScoredForecast, of_limit: bool, 
         (true, 90..) => "the projection submitted at the limit",
         (true, _) => "the projection at the limit",
     };
-    let said = |write: fn(f64) -> String| {
+    let format_forecast = |write: fn(f64) -> String| {
         let Forecast { point, lower, upper, .. } = due.forecast;
         format!("{ago} {who} forecast {}, {} to {}: ", write(point), write(lower), write(upper))
     };
@@ -280,9 +280,9 @@ fn forecast_line<'a>(canvas: &Canvas<'_>, due: &ScoredForecast, of_limit: bool, 
     };
     let miss = due.describe_error().map_or(String::new(), |miss| format!(", forecast {miss}"));
     // Rounded bounds could seem to contain the actual value: exact dollars are used if they fit.
-    let exact = said(dollars);
+    let exact = format_forecast(dollars);
     let fits = exact.width() + verdict.width() + miss.width() <= usize::from(width);
-    let text = if fits { exact } else { said(short_dollars) };
+    let text = if fits { exact } else { format_forecast(short_dollars) };
     Line::from(vec![canvas.span(text, Role::Dim), canvas.span(verdict, role), canvas.span(miss, Role::Dim)])
 }
 
@@ -331,21 +331,21 @@ fn move_lines<'a>(canvas: &Canvas<'_>, moved_figure: &MovedFigure, width: u16, n
         .category_changes
         .iter()
         .map(|(name, dollars)| format!("{name} {}", signed_dollars(*dollars)));
-    let said: Vec<String> = [moved_figure.change.describe_rarity()]
+    let parts: Vec<String> = [moved_figure.change.describe_rarity()]
         .into_iter()
         .filter(|text| !text.is_empty())
         .chain(split)
         .collect();
-    let said = said.join(" · ");
-    if said.is_empty() {
+    let summary = parts.join(" · ");
+    if summary.is_empty() {
         return vec![Line::from(line)];
     }
     let used: usize = line.iter().map(|span| span.content.width()).sum();
-    if width >= MIN_WIDTH_FOR_SIDE_TEXT && used + 2 + said.width() <= width as usize {
-        line.push(canvas.span(format!("  {said}"), Role::Dim));
+    if width >= MIN_WIDTH_FOR_SIDE_TEXT && used + 2 + summary.width() <= width as usize {
+        line.push(canvas.span(format!("  {summary}"), Role::Dim));
         return vec![Line::from(line)];
     }
-    let below = truncate_to_width(&said, (width as usize).saturating_sub(6));
+    let below = truncate_to_width(&summary, (width as usize).saturating_sub(6));
     vec![Line::from(line), Line::from(canvas.span(format!("      {below}"), Role::Dim))]
 }
 
@@ -405,11 +405,11 @@ fn notices_section<'a>(
     width: u16,
     room: usize,
 ) -> Section<'a> {
-    let mut told: Vec<(u32, String, u32)> = Vec::new();
+    let mut distinct_notices: Vec<(u32, String, u32)> = Vec::new();
     for (day, text) in company.notices.iter().rev() {
-        match told.iter().position(|(_, known, _)| known == text) {
-            Some(at) => told[at].2 += 1,
-            None if told.len() < room => told.push((*day, text.clone(), 1)),
+        match distinct_notices.iter().position(|(_, known, _)| known == text) {
+            Some(at) => distinct_notices[at].2 += 1,
+            None if distinct_notices.len() < room => distinct_notices.push((*day, text.clone(), 1)),
             None => {}
         }
     }
@@ -424,7 +424,7 @@ fn notices_section<'a>(
             canvas.span(times, Role::Dim),
         ])
     };
-    told.into_iter().rev().map(line).collect()
+    distinct_notices.into_iter().rev().map(line).collect()
 }
 
 /// Lists action items in at most two rows each, and the key that continues. Suggestions are included if there is

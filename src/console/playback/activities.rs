@@ -131,12 +131,12 @@ mod tests {
         let (screen, what) = ("plain".to_owned(), "command".to_owned());
         let select = ObjectSelection { screen, what, which: "fit S1".to_owned() };
         let clock = Clock { event: ClockEvent::Started, reason: None, stood_ms: Some(300_000) };
-        let told = |activity: Activity| activity_summary(&activity).0;
-        let words = told(Activity::Dialog(dialog));
+        let summarize = |activity: Activity| activity_summary(&activity).0;
+        let words = summarize(Activity::Dialog(dialog));
         assert!(words.starts_with("next week: confirmed after ") && words.contains("rationale "), "{words}");
-        assert_eq!(told(Activity::Draft(draft)), "notes: 20 characters left unsent, 12 pasted");
-        assert_eq!(told(Activity::Help(help)), "looked up churn in customers");
-        assert_eq!(told(Activity::Select(select)), "used command fit S1");
-        assert!(told(Activity::Clock(clock)).starts_with("started the clock after "));
+        assert_eq!(summarize(Activity::Draft(draft)), "notes: 20 characters left unsent, 12 pasted");
+        assert_eq!(summarize(Activity::Help(help)), "looked up churn in customers");
+        assert_eq!(summarize(Activity::Select(select)), "used command fit S1");
+        assert!(summarize(Activity::Clock(clock)).starts_with("started the clock after "));
     }
 }

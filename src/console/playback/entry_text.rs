@@ -176,8 +176,8 @@ fn entry_text(entry: &RecordView, names: &EnterpriseNames) -> String {
         }
         Record::Advance(filed) => {
             let naively = naive_note(filed).map_or(String::new(), |naively| format!(", filled {naively}"));
-            let told = |one: &ScoredForecast| forecast_text(one, entry.is_future(one));
-            let lines: Vec<String> = entry.forecasts.iter().map(told).collect();
+            let format_forecast = |one: &ScoredForecast| forecast_text(one, entry.is_future(one));
+            let lines: Vec<String> = entry.forecasts.iter().map(format_forecast).collect();
             let rationale = filed.rationale.trim();
             format!("next_week\n  “{rationale}”\n  forecasts of cash{naively}:\n{}", lines.join("\n"))
         }

@@ -59,8 +59,12 @@ impl PlaybackViewer {
             left = Rect { x: left.x + width, width: left.width - width, ..left };
         }
         if left.width > MIN_BAR_WIDTH + 2 {
-            let own = Rect { x: left.x + 1, width: left.width - 2, ..left };
-            canvas.draw_text(own, &position_bar(place.line, place.lines, own.width), Role::InactiveSelection);
+            let bar_area = Rect { x: left.x + 1, width: left.width - 2, ..left };
+            canvas.draw_text(
+                bar_area,
+                &position_bar(place.line, place.lines, bar_area.width),
+                Role::InactiveSelection,
+            );
         }
     }
 }

@@ -198,7 +198,7 @@ pub fn draw_pane<S: PaneScreen>(
 }
 
 fn pane_index<S: PaneScreen>(screen: &S, name: S::PaneId) -> usize {
-    screen.panes().iter().position(|own| *own == name).unwrap_or(0)
+    screen.panes().iter().position(|id| *id == name).unwrap_or(0)
 }
 
 fn active_pane<S: PaneScreen>(screen: &S) -> &'static dyn Pane<S> {
@@ -227,10 +227,10 @@ impl<S: PaneScreen> Screen for S {
         if let Some(over) = self.overlay() {
             return vec![keys(over)];
         }
-        let own = self.focused_pane();
+        let focused = self.focused_pane();
         let others =
-            PaneScreen::panes(self).iter().filter(|name| **name != own).map(|name| keys(S::pane(*name)));
-        std::iter::once(keys(S::pane(own))).chain(others).collect()
+            PaneScreen::panes(self).iter().filter(|name| **name != focused).map(|name| keys(S::pane(*name)));
+        std::iter::once(keys(S::pane(focused))).chain(others).collect()
     }
 
     fn pane_count(&self) -> usize {

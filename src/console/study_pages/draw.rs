@@ -24,10 +24,10 @@ impl StudyPage {
             let decline = format!("{} I do not agree", key(Action::Decline));
             return text.draw(canvas, body, "Consent", &agree, &decline);
         }
-        let (title, said) = self.title_and_text(&key);
+        let (title, paragraphs) = self.title_and_text(&key);
         let width = MAX_PAGE_WIDTH.min(body.width);
         let mut lines: Vec<(String, Role)> = Vec::new();
-        for (text, role) in said {
+        for (text, role) in paragraphs {
             if !lines.is_empty() {
                 lines.push((String::new(), Role::Text));
             }
@@ -38,8 +38,8 @@ impl StudyPage {
         if lines.len() + 2 > body.height as usize {
             lines.retain(|(line, _)| !line.is_empty());
         }
-        let own = centered_rect(body, width, (lines.len() as u16 + 6).max(9));
-        let inside = canvas.draw_pane_frame(own, title, "", true);
+        let page_area = centered_rect(body, width, (lines.len() as u16 + 6).max(9));
+        let inside = canvas.draw_pane_frame(page_area, title, "", true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         let text = Rect { y: inside.y + u16::from(inside.height > 10), ..inside }.intersection(inside);
         for (row, (line, role)) in row_rects(text).zip(&lines) {
@@ -82,16 +82,16 @@ impl StudyPage {
                     false => "First comes a practice company, to learn the controls. It does not count.",
                     true => "The practice continues where you left it. It does not count.",
                 };
-                let mut said = vec![text(first)];
-                said.push(text(
+                let mut paragraphs = vec![text(first)];
+                paragraphs.push(text(
                     "It ends automatically after its last day. The session then starts with a new company.",
                 ));
-                said.push(strong(format!("{go} starts the practice")));
+                paragraphs.push(strong(format!("{go} starts the practice")));
                 if *may_pass {
                     let pass = key(Action::SkipPractice);
-                    said.push(strong(format!("{pass} skips it and continues with the session")));
+                    paragraphs.push(strong(format!("{pass} skips it and continues with the session")));
                 }
-                ("Practice", said)
+                ("Practice", paragraphs)
             }
             StudyPageKind::Session { resumed } => {
                 let first = match resumed {

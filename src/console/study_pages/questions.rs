@@ -330,8 +330,8 @@ fn draw_scale(canvas: &mut Canvas<'_>, area: Rect, points: usize, chosen: Option
         .filter(|(_, words)| !words.is_empty())
         .map(|(point, words)| meant(point, words))
         .collect();
-    let beside = words.join("   ");
-    let texts = if beside.width() <= row.width as usize { vec![beside] } else { words };
+    let joined = words.join("   ");
+    let texts = if joined.width() <= row.width as usize { vec![joined] } else { words };
     for (row, line) in rows.zip(texts) {
         canvas.draw_text(row, &line, Role::Dim);
     }
@@ -349,12 +349,13 @@ fn option_lines(draft: &AnswerDraft, width: u16) -> Vec<(usize, String)> {
         let head = format!("{:>2} {} ", at + 1, sign(at));
         // Space for the sign that more options follow.
         let room = (width as usize).saturating_sub(head.width() + MORE_OPTIONS.width()).max(1);
-        let told = wrap(&option, room).into_iter().enumerate();
-        told.map(|(line, text)| {
-            let head = if line == 0 { head.clone() } else { " ".repeat(head.width()) };
-            (at, head + &text)
-        })
-        .collect::<Vec<_>>()
+        let option_text = wrap(&option, room).into_iter().enumerate();
+        option_text
+            .map(|(line, text)| {
+                let head = if line == 0 { head.clone() } else { " ".repeat(head.width()) };
+                (at, head + &text)
+            })
+            .collect::<Vec<_>>()
     };
     draft.question.question.form.options().into_iter().enumerate().flat_map(lines).collect()
 }

@@ -37,7 +37,7 @@ impl Interpreter {
                 removed.map(|removed| {
                     let lines: Vec<String> = removed
                         .iter()
-                        .map(|own| format!("removed {}  {}", own.number, own.condition))
+                        .map(|removed| format!("removed {}  {}", removed.number, removed.condition))
                         .collect();
                     let text =
                         if lines.is_empty() { "no breakpoint was set".to_owned() } else { lines.join("\n") };
@@ -50,13 +50,15 @@ impl Interpreter {
             }
             _ => {
                 let set = self.session.inspect().set_breakpoint(parse_condition(rest, column)?);
-                set.map(|own| {
+                set.map(|breakpoint| {
                     let next = match self.session.ended() {
                         None => "run DAYS stops there".to_owned(),
-                        Some(_) => format!("since {} shows since when it is true or false", own.number),
+                        Some(_) => {
+                            format!("since {} shows since when it is true or false", breakpoint.number)
+                        }
                     };
-                    let text = format!("breakpoint {}: {}; {next}", own.number, own.condition);
-                    CommandResponse::success("break", text, breakpoint_to_json(&own))
+                    let text = format!("breakpoint {}: {}; {next}", breakpoint.number, breakpoint.condition);
+                    CommandResponse::success("break", text, breakpoint_to_json(&breakpoint))
                 })
             }
         };
@@ -101,8 +103,8 @@ impl Interpreter {
                     )
                 });
                 data["stopped_by"] = hits.collect();
-                let told = super::advance::week_response("run", &self.session, &run.week).to_text();
-                let text = format!("{told}{}", describe_stop(&run, day, set).join("\n"));
+                let week_text = super::advance::week_response("run", &self.session, &run.week).to_text();
+                let text = format!("{week_text}{}", describe_stop(&run, day, set).join("\n"));
                 CommandResponse::success("run", text, data)
             }
             Err(refusal) => CommandResponse::rejected("run", refusal),

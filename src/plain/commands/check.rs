@@ -52,7 +52,7 @@ impl Interpreter {
     fn describe_capacity(&self, tool: ToolId, arguments: &Value) -> Option<String> {
         let tier = arguments.get("tier").filter(|_| tool == ToolId::SetCapacityTier)?.as_u64()?;
         let terms = self.session.company().tool_limits();
-        let capacity_tier = terms.capacities.iter().find(|own| u64::from(own.tier) == tier)?;
+        let capacity_tier = terms.capacities.iter().find(|candidate| u64::from(candidate.tier) == tier)?;
         Some(describe_peak_and_tier(self.session.weeks(), u32::from(capacity_tier.tier), capacity_tier.units))
     }
 
@@ -65,7 +65,7 @@ impl Interpreter {
             .company()
             .estimates()
             .into_iter()
-            .find(|own| own.group.id().eq_ignore_ascii_case(group))?;
+            .find(|estimate| estimate.group.id().eq_ignore_ascii_case(group))?;
         let given = arguments.get("target_level").and_then(Value::as_u64);
         let target = given.map_or(now.level.max(terms.targets.0), |target| target as u8);
         let level = terms.study_level(target)?;

@@ -132,7 +132,7 @@ fn fit_to_json(fit: &Fit) -> Value {
         "floor": fit.floor,
         "budget": fit.budget,
         "usage": fit.usage,
-        "plans": Plan::ALL.map(|own| plan(&fit.plans[own])),
+        "plans": Plan::ALL.map(|id| plan(&fit.plans[id])),
         "last_week": fit.last_week.map(flow_to_json),
         "last_4_weeks": flow_to_json(fit.recent),
     })

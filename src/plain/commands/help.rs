@@ -190,22 +190,24 @@ mod tests {
     #[test]
     fn commands_are_explained_with_an_example() {
         for name in ["inbox", "thread", "needs", "fit", "leads", "curve", "check", "pause", "rules", "next"] {
-            let told = help(Some(name), &[], &ParameterNumbers::bundled(), false).expect("help").to_text();
-            assert!(told.lines().count() > 1, "{name}: {told}");
+            let help_text =
+                help(Some(name), &[], &ParameterNumbers::bundled(), false).expect("help").to_text();
+            assert!(help_text.lines().count() > 1, "{name}: {help_text}");
         }
-        let told = help(Some("needs"), &[], &ParameterNumbers::bundled(), false).expect("help").to_text();
-        assert!(told.contains("Urgent ones come first"), "{told}");
+        let help_text =
+            help(Some("needs"), &[], &ParameterNumbers::bundled(), false).expect("help").to_text();
+        assert!(help_text.contains("Urgent ones come first"), "{help_text}");
     }
 
     #[test]
     fn unknown_names_point_to_the_list() {
         let numbers = ParameterNumbers::bundled();
-        for (told, list) in [
+        for (outcome, list) in [
             (help(Some("zzzzzzz"), &[], &numbers, false), "help lists the commands"),
             (overview::tools_command(Some("foo"), &[], &numbers), "tools lists them"),
             (overview::tables_command(Some("leger"), &[]), "did you mean ledger? tables lists them"),
         ] {
-            let problem = told.expect_err(list);
+            let problem = outcome.expect_err(list);
             assert!(problem.text.ends_with(list) || problem.text.contains(list), "{problem:?}");
         }
     }

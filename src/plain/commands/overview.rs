@@ -44,7 +44,7 @@ impl Interpreter {
             .capacities
             .iter()
             .find(|capacity_tier| capacity_tier.tier == tier)
-            .map(|own| own.units);
+            .map(|capacity| capacity.units);
         let next = PeakProjection::from_weeks(self.session.weeks()).zip(units);
         let capacity = next
             .map_or(String::new(), |(next, units)| format!("{}\n", next.describe(u32::from(tier), units)));

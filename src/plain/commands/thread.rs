@@ -65,9 +65,9 @@ impl Interpreter {
         let names = self.session.company().company_names();
         let kind = text_at(first, 2).replace('_', " ");
         // The rows of the player count one seat each, whatever the size of the company.
-        let theirs = turns.rows.iter().filter(|row| text_at(row, 4) != "agent");
+        let customer_rows = turns.rows.iter().filter(|row| text_at(row, 4) != "agent");
         let seats = waiting.as_ref().map_or_else(
-            || theirs.map(|row| number_at(row, 8) as u32).max().unwrap_or(1),
+            || customer_rows.map(|row| number_at(row, 8) as u32).max().unwrap_or(1),
             |context| context.waiting.seats,
         );
         let mut lines = vec![format!(
@@ -82,7 +82,7 @@ impl Interpreter {
             "thread": thread,
             "customer": customer,
             "company": names.name(customer),
-            "waiting": waiting.map(|own| own.to_json(names)),
+            "waiting": waiting.map(|context| context.to_json(names)),
             "turns": turns.rows.iter().map(|row| turn_to_json(row)).collect::<Vec<Value>>(),
         });
         Some(CommandResponse::success("thread", lines.join("\n"), data))

@@ -202,7 +202,7 @@ impl Interpreter {
             .iter()
             .map(|(day, what, refusal)| json!({ "day": day, "what": what, "error": refusal }))
             .collect();
-        let told = adopted
+        let rejection_lines = adopted
             .rejected
             .iter()
             .map(|(day, what, refusal)| format!("\nday {day}: {what} was rejected: {}", refusal.message));
@@ -213,7 +213,7 @@ impl Interpreter {
         let text = format!(
             "{stands}with the decisions of its parent · {mode} · {}{}",
             branch_name(decided),
-            told.collect::<String>()
+            rejection_lines.collect::<String>()
         );
         CommandResponse::success(
             "branch",
@@ -317,7 +317,7 @@ fn parse_question(words: &str, column: usize) -> Result<WhatIfQuestion, ParseErr
     if question.from == 0 {
         return Err(problem(format!("give the first week; {USAGE}"), 0));
     }
-    for alternative in rest.split('|').filter(|own| !own.trim().is_empty()) {
+    for alternative in rest.split('|').filter(|alternative| !alternative.trim().is_empty()) {
         let at = alternative.as_ptr() as usize - words.as_ptr() as usize;
         let edits = alternative.split(';').map(str::trim).filter(|edit| !edit.is_empty());
         let edits = edits.map(str::parse).collect::<Result<Vec<DecisionEdit>, String>>();
@@ -391,7 +391,7 @@ fn futures_to_json(comparison: &BranchComparison, futures: &Futures) -> Value {
                 .map(|(day, band)| json!({ "day": day, "low": band.low, "median": band.median, "high": band.high }))
                 .collect();
             let difference = futures.difference(at, *figure, comparison.until).map(|paired_difference| {
-                let interval = paired_difference.interval.map(|own| [own.low, own.high]);
+                let interval = paired_difference.interval.map(|bounds| [bounds.low, bounds.high]);
                 json!({ "mean": paired_difference.mean, "interval": interval, "more": paired_difference.first_greater, "of": paired_difference.pair_count })
             });
             (figure.id(), json!({ "bands": bands, "difference_at_the_end": difference }))
@@ -427,16 +427,16 @@ mod tests {
 
     #[test]
     fn parse_question_errors_name_the_column() {
-        let said = |words: &str| parse_question(words, 8).expect_err(words);
-        assert_eq!(said("").column, 8);
-        assert!(said("from: set_prices * 2").text.starts_with("from needs a week number"));
-        let wrong = said("from 20 to 30: drop 1");
+        let parse_error = |words: &str| parse_question(words, 8).expect_err(words);
+        assert_eq!(parse_error("").column, 8);
+        assert!(parse_error("from: set_prices * 2").text.starts_with("from needs a week number"));
+        let wrong = parse_error("from 20 to 30: drop 1");
         assert_eq!((wrong.column, wrong.text.starts_with("to is not understood")), (16, true));
-        assert!(said("adopt 5").text.starts_with("adopt needs from and a week"));
-        assert!(said("file").text.starts_with("file needs"));
+        assert!(parse_error("adopt 5").text.starts_with("adopt needs from and a week"));
+        assert!(parse_error("file").text.starts_with("file needs"));
         assert_eq!(parse_question("from week 3", 1).map(|if_question| if_question.from), Ok(3));
-        assert!(said("from 20 futures 1: drop 1").text.starts_with("the number of futures"));
-        let wrong = said("from 20: set_price * 2");
+        assert!(parse_error("from 20 futures 1: drop 1").text.starts_with("the number of futures"));
+        let wrong = parse_error("from 20: set_price * 2");
         assert_eq!((wrong.column, wrong.text.contains("did you mean set_prices")), (17, true));
     }
 }

@@ -88,7 +88,7 @@ impl Interpreter {
     ) -> Result<Result<CommandResponse, Rejection>, ParseError> {
         let held = arguments.iter().filter(|argument| argument.key.is_some()).map(parse_held_factor);
         let held: Vec<(LeadFactor, f64)> = held.collect::<Result<_, _>>()?;
-        let plain: Vec<&Argument> = arguments.iter().filter(|own| own.key.is_none()).collect();
+        let plain: Vec<&Argument> = arguments.iter().filter(|argument| argument.key.is_none()).collect();
         let (group, day) = parse_group_and_day("leads", &plain)?;
         Ok(self.session.inspect().lead_equations(group, day).map(|days| {
             let data = days.last().map_or(Value::Null, |equation| leads_to_json(equation, &held));

@@ -31,10 +31,10 @@ pub fn module_source(module: ToolModule, numbers: &ParameterNumbers) -> String {
     );
     // The package has separate functions for these.
     let elsewhere = [ToolId::NextWeek, ToolId::Query, ToolId::GetVars];
-    let own = || schema::specs().filter(|spec| spec.module == module && !elsewhere.contains(&spec.id));
-    own().for_each(|spec| text += &method_source(spec, numbers));
+    let own_specs = || schema::specs().filter(|spec| spec.module == module && !elsewhere.contains(&spec.id));
+    own_specs().for_each(|spec| text += &method_source(spec, numbers));
     let _ = writeln!(text, "\n\n_default = {class}(default)");
-    own().for_each(|spec| {
+    own_specs().for_each(|spec| {
         let _ = writeln!(text, "{0} = _default.{0}", spec.name());
     });
     text

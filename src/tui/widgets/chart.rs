@@ -278,11 +278,13 @@ impl Plot<'_> {
         };
         let of_band = |band: &Band| Some((band.name, band.bounds.last()?.2, Role::Text));
         let lines = self.curves.iter().rev().filter_map(of_line);
-        let mut names: Vec<(&str, f64, Role)> =
-            lines.chain(self.band.and_then(of_band)).filter(|own| !own.0.is_empty()).collect();
+        let mut names: Vec<(&str, f64, Role)> = lines
+            .chain(self.band.and_then(of_band))
+            .filter(|named_curve| !named_curve.0.is_empty())
+            .collect();
         names.truncate(usize::from(place.height));
         names.sort_by(|one, other| other.1.total_cmp(&one.1));
-        let wanted: Vec<u16> = names.iter().map(|own| frame.row(own.1)).collect();
+        let wanted: Vec<u16> = names.iter().map(|named_curve| frame.row(named_curve.1)).collect();
         for ((name, _, role), y) in names.into_iter().zip(spread_rows(&wanted, place)) {
             canvas.draw_text(Rect { y, height: 1, ..place }, name, role);
         }

@@ -362,10 +362,10 @@ impl Table {
     fn fit_widths(&self, width: u16) -> Vec<u16> {
         let all: usize = self.widths.iter().map(|number| usize::from(*number) + 2).sum();
         let mut missing = all.saturating_sub(usize::from(width) + 2).min(usize::from(u16::MAX)) as u16;
-        let fitted = |(own, column): (&u16, &TableColumn)| {
-            let given = own.saturating_sub(column.min_width).min(missing);
+        let fitted = |(natural_width, column): (&u16, &TableColumn)| {
+            let given = natural_width.saturating_sub(column.min_width).min(missing);
             missing -= given;
-            own - given
+            natural_width - given
         };
         self.widths.iter().zip(&self.columns).map(fitted).collect()
     }

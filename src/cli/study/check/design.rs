@@ -29,7 +29,9 @@ fn days_and_horizons(study: &Study, configuration: &Configuration) -> Result<(u3
 /// Reports questionnaires that are due after weeks that a session does not have.
 fn check_questionnaires(study: &Study, weeks: u32) -> Option<CheckItem> {
     let (mut never, mut words) = (false, Vec::new());
-    for questionnaire in study.questionnaires.iter().filter(|own| own.when == Occasion::Weeks) {
+    for questionnaire in
+        study.questionnaires.iter().filter(|questionnaire| questionnaire.when == Occasion::Weeks)
+    {
         let late: Vec<String> =
             questionnaire.weeks.iter().filter(|week| **week > weeks).map(u32::to_string).collect();
         if !late.is_empty() {

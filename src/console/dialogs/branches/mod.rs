@@ -85,7 +85,7 @@ impl BranchesPage {
                     _ => 0,
                 };
                 let days = self.decisions.days_per_week();
-                let figures = ComparisonView::new(*comparison, futures.map(|own| *own), days, figure);
+                let figures = ComparisonView::new(*comparison, futures.map(|boxed| *boxed), days, figure);
                 self.page = BranchesView::Comparison(Box::new(figures));
             }
             Err(refusal) => {
@@ -180,10 +180,12 @@ impl Dialog for BranchesPage {
     }
 
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
-        let own = centered_rect(area, area.width.saturating_sub(2).min(140), area.height.saturating_sub(2));
-        canvas.clear(own, Role::Text);
+        let dialog_area =
+            centered_rect(area, area.width.saturating_sub(2).min(140), area.height.saturating_sub(2));
+        canvas.clear(dialog_area, Role::Text);
         let week = self.decisions.week();
-        let inside = canvas.draw_pane_frame(own, &format!("What if, from week {week}"), &self.note(), true);
+        let inside =
+            canvas.draw_pane_frame(dialog_area, &format!("What if, from week {week}"), &self.note(), true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         let below = self.problem.as_ref().map_or(0, |_| 1).min(inside.height);
         let page = Rect { height: inside.height - below, ..inside };
@@ -200,7 +202,7 @@ impl Dialog for BranchesPage {
             let row = Rect { y: page.y + page.height, height: below, ..inside };
             canvas.draw_text(row, problem, Role::Bad);
         }
-        canvas.draw_pane_keys(own, &look.hints(&self.hints()));
+        canvas.draw_pane_keys(dialog_area, &look.hints(&self.hints()));
     }
 }
 

@@ -25,20 +25,20 @@ const MIN_ROWS_FOR_LEGEND: u16 = 14;
 
 impl CurveDialog {
     pub(super) fn draw_page(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
-        let own = centered_rect(
+        let dialog_area = centered_rect(
             area,
             area.width.saturating_sub(2).min(MAX_PAGE_WIDTH),
             area.height.saturating_sub(2),
         );
-        canvas.clear(own, Role::Text);
+        canvas.clear(dialog_area, Role::Text);
         let note = self
             .successful_exploration()
             .map_or(String::new(), |opened| describe_basis(&opened.explorer.basis));
-        let title = match own.width {
+        let title = match dialog_area.width {
             ..78 => format!("Curve of {}", self.group),
             _ => format!("Participation curve of {}", self.group),
         };
-        let inside = canvas.draw_pane_frame(own, &title, &note, true);
+        let inside = canvas.draw_pane_frame(dialog_area, &title, &note, true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         match &self.exploration {
             None => canvas.draw_text(inside, &format!("asking {LEAD_SAMPLE_SIZE} leads …"), Role::Warning),
@@ -49,7 +49,7 @@ impl CurveDialog {
             }
             Some(Ok(opened)) => self.draw_explorer(canvas, inside, opened),
         }
-        canvas.draw_pane_keys(own, &self.key_hints(look));
+        canvas.draw_pane_keys(dialog_area, &self.key_hints(look));
     }
 
     /// The drag keys come first.
@@ -101,7 +101,7 @@ impl CurveDialog {
 
     /// Returns the prefix of a dragged plan.
     fn selection_mark(&self, plan: Plan) -> &'static str {
-        if self.selected_plan.is_none_or(|own| own == plan) { "›" } else { " " }
+        if self.selected_plan.is_none_or(|selected| selected == plan) { "›" } else { " " }
     }
 
     fn draw_plans(&self, canvas: &mut Canvas<'_>, area: Rect, opened: &CurveExploration) {
@@ -148,10 +148,10 @@ impl CurveDialog {
         let y = YAxis { unit: AxisUnit::Number, required_values: &[0.0, top] };
         let promotion = opened.explorer.discount;
         let sign = |plan: Plan| {
-            let own: &PlanPoint = &opened.plans[plan];
+            let point: &PlanPoint = &opened.plans[plan];
             let here = self.selected_plan.is_none_or(|chosen| chosen == plan);
             let role = if here { Role::Selection } else { Role::Series(1) };
-            PointLabel { x: (own.list_price - promotion).max(0.0), y: own.quality, text: plan.id(), role }
+            PointLabel { x: (point.list_price - promotion).max(0.0), y: point.quality, text: plan.id(), role }
         };
         // The selected plan is drawn on top.
         let mut order = Plan::ALL;

@@ -64,7 +64,7 @@ impl CurveDialog {
     fn adjust_plans(&mut self, change: impl Fn(&mut PlanPoint)) {
         let chosen = self.selected_plan;
         let Some(Ok(opened)) = &mut self.exploration else { return };
-        for plan in Plan::ALL.into_iter().filter(|plan| chosen.is_none_or(|own| own == *plan)) {
+        for plan in Plan::ALL.into_iter().filter(|plan| chosen.is_none_or(|selected| selected == *plan)) {
             change(&mut opened.plans[plan]);
         }
         opened.outcome = opened.explorer.outcome(&opened.plans);
@@ -96,7 +96,7 @@ impl CurveDialog {
     fn select_next_plan(&mut self) {
         self.selected_plan = match self.selected_plan {
             None => Some(Plan::A),
-            Some(plan) => Plan::ALL.into_iter().skip_while(|own| *own != plan).nth(1),
+            Some(plan) => Plan::ALL.into_iter().skip_while(|skipped| *skipped != plan).nth(1),
         };
     }
 

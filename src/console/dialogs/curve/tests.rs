@@ -56,7 +56,7 @@ fn adjusted_prices_fill_the_form_without_a_call() {
     let response = dialog_action(&mut page, Action::Open, &company);
     assert!(
         matches!(&response.effects[..], [Effect::CloseDialogs, Effect::Prefill { tool: ToolId::SetPrices, arguments }]
-            if arguments.as_object().is_some_and(|own| own.len() == 1 && own.contains_key("A")))
+            if arguments.as_object().is_some_and(|prices| prices.len() == 1 && prices.contains_key("A")))
     );
     let next = dialog_action(&mut page, Action::NextCurve, &company);
     assert_eq!(asked::<CurveQuestion>(&next.effects).0.id(), "S2");

@@ -395,8 +395,8 @@ impl Dialog for NextWeekDialog {
     }
 
     fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
-        let own = centered_rect(area, 106.min(area.width), 26.min(area.height));
-        canvas.clear(own, Role::Text);
+        let dialog_area = centered_rect(area, 106.min(area.width), 26.min(area.height));
+        canvas.clear(dialog_area, Role::Text);
         let mark = |step: NextWeekStep, name: &str| match (self.step as u8).cmp(&(step as u8)) {
             std::cmp::Ordering::Greater => format!("{name} ✓"),
             std::cmp::Ordering::Equal => format!("[{name}]"),
@@ -410,7 +410,7 @@ impl Dialog for NextWeekDialog {
             mark(NextWeekStep::Forecasts, "3 forecasts")
         );
         let note = format!("{days} days, to day {}", look.company.next_decision_day);
-        let inside = canvas.draw_pane_frame(own, &title, &note, true);
+        let inside = canvas.draw_pane_frame(dialog_area, &title, &note, true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         let body = Rect { height: inside.height.saturating_sub(1), ..inside };
         match self.step {
@@ -422,7 +422,7 @@ impl Dialog for NextWeekDialog {
             let row = Rect { y: body.bottom(), height: 1, ..body };
             canvas.draw_text(row, &format!("! {problem}"), Role::Bad);
         }
-        canvas.draw_pane_keys(own, &look.hints(&self.hints()));
+        canvas.draw_pane_keys(dialog_area, &look.hints(&self.hints()));
     }
 }
 

@@ -174,8 +174,8 @@ type BarSegmentEnd = (usize, u32);
 /// Returns the categories on one side of a bar, from the line outwards.
 fn bar_segments(amounts: &Amounts, income: bool, scale: &BarScale, rows: u16) -> Vec<BarSegmentEnd> {
     let mut sum = 0.0;
-    let own = CATEGORIES.iter().enumerate().filter(|(_, category)| category.is_income == income);
-    let end = own.map(|(at, _)| {
+    let side_categories = CATEGORIES.iter().enumerate().filter(|(_, category)| category.is_income == income);
+    let end = side_categories.map(|(at, _)| {
         sum += amounts[at].abs();
         (at, ((sum / scale.dollars * 8.0).round() as u32).min(u32::from(rows) * 8))
     });

@@ -204,17 +204,17 @@ impl Cash {
         let halves = |area: Rect, left: u16| {
             Layout::horizontal([Constraint::Length(left), Constraint::Min(0)]).areas::<2>(area)
         };
-        let [table, beside] = halves(top, 82.min(area.width * 2 / 3));
+        let [table, right_area] = halves(top, 82.min(area.width * 2 / 3));
         let [weeks, forecasts] = halves(below, (area.width * 11 / 20).max(60));
         draw_pane(self, CashPane::Ledger, canvas, table, look);
         if area.width >= MIN_WIDE_WIDTH {
-            let [steps, curve] = halves(beside, beside.width / 2);
+            let [steps, curve] = halves(right_area, right_area.width / 2);
             draw_pane(self, CashPane::Waterfall, canvas, steps, look);
             draw_pane(self, CashPane::Curve, canvas, curve, look);
         } else {
             // The curve replaces the waterfall while it has the focus.
             let front = if self.focus == CashPane::Curve { CashPane::Curve } else { CashPane::Waterfall };
-            draw_pane(self, front, canvas, beside, look);
+            draw_pane(self, front, canvas, right_area, look);
         }
         draw_pane(self, CashPane::Weeks, canvas, weeks, look);
         draw_pane(self, CashPane::Forecasts, canvas, forecasts, look);

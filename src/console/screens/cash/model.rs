@@ -124,8 +124,8 @@ fn category_amounts(booked: &CategoryTotals) -> Amounts {
 
 /// Returns the sum of the income or of the costs.
 pub fn sum_side(amounts: &Amounts, income: bool) -> f64 {
-    let own = amounts.iter().zip(&CATEGORIES).filter(|(_, category)| category.is_income == income);
-    own.map(|(amount, _)| amount).sum()
+    let side_amounts = amounts.iter().zip(&CATEGORIES).filter(|(_, category)| category.is_income == income);
+    side_amounts.map(|(amount, _)| amount).sum()
 }
 
 /// Returns the first and last day of a week; week 0 is the day before the first.

@@ -94,8 +94,8 @@ fn draw(canvas: &mut Canvas<'_>, area: Rect, steps: &[CashStep], selected: Optio
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), level| (least.min(level), most.max(level)));
     let floor = if least > 0.0 && least < (most - least) * 0.5 { 0.0 } else { least };
     // A row states where bars start if that is not zero.
-    let told = floor != 0.0 && bars >= 24 && area.height > 1;
-    let area = Rect { height: area.height - u16::from(told), ..area };
+    let is_labelled = floor != 0.0 && bars >= 24 && area.height > 1;
+    let area = Rect { height: area.height - u16::from(is_labelled), ..area };
     let from = first_visible_row(selected.unwrap_or(0), area.height as usize, steps.len());
     let span = (most - floor).max(1e-9);
     let room = f64::from(bars.saturating_sub(2));
@@ -129,7 +129,7 @@ fn draw(canvas: &mut Canvas<'_>, area: Rect, steps: &[CashStep], selected: Optio
         let bar = Rect { x: x + from, width, height: 1, ..row }.intersection(area);
         canvas.draw_text(bar, &glyph.repeat(bar.width as usize), role);
     }
-    if told {
+    if is_labelled {
         let below = area.bottom().min(area.y.saturating_add((steps.len() - from) as u16));
         let row = Rect { x: area.x + names + figures + 1, y: below, width: bars - 1, height: 1 };
         canvas.draw_text(row, &format!("bars start at {}", short_dollars(floor)), Role::Dim);

@@ -99,8 +99,8 @@ impl Cohorts {
 
     /// Returns the sign-up weeks of a group, newest first.
     fn weeks(&self, group: Group) -> Vec<(u32, &Cohort)> {
-        let own = self.0.get(&group).into_iter().flatten();
-        let mut weeks: Vec<(u32, &Cohort)> = own.map(|(week, cohort)| (*week, cohort)).collect();
+        let cohorts = self.0.get(&group).into_iter().flatten();
+        let mut weeks: Vec<(u32, &Cohort)> = cohorts.map(|(week, cohort)| (*week, cohort)).collect();
         weeks.reverse();
         weeks
     }

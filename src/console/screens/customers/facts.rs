@@ -125,15 +125,15 @@ fn enterprise_lines(company: &DisplayedCompany, group: Group) -> Vec<FactLine> {
     let Some(funnel) = company.funnels.iter().find(|funnel| funnel.group == group) else { return Vec::new() };
     let asked = "SELECT DISTINCT c.customer_id, c.created_day, t.day AS asked_day, t.seat_count\nFROM customers c\n\
                  JOIN enterprise_turns t ON t.customer_id = c.customer_id AND t.turn_number = 0 AND t.thread_type = 'new_lead'";
-    let came = format!(
+    let arrivals_sql = format!(
         "SELECT customer_id, created_day, acquisition_source FROM customers\nWHERE group_id = '{group}' AND customer_type = \
          'large'\nORDER BY customer_id DESC"
     );
     let of_group = format!("\nWHERE c.group_id = '{group}'");
     let mut lines = vec![heading_line("enterprises, whole run", String::new())];
     for (name, count, sql) in [
-        ("came", funnel.enterprises, came.clone()),
-        ("no plan good enough", funnel.lost_before_request(), came),
+        ("came", funnel.enterprises, arrivals_sql.clone()),
+        ("no plan good enough", funnel.lost_before_request(), arrivals_sql),
         ("asked for an offer", funnel.requests, format!("{asked}{of_group}")),
         (
             "signed",

@@ -109,7 +109,7 @@ fn lines(fit: &Fit, width: usize, tier: &dyn Fn(Plan) -> String) -> Vec<FitLine>
     lines.push(line(format!("quota    typical use {} a day{smallest}", fit.usage.format_units()), Role::Header));
     let quotas = Plan::ALL.map(|plan| format!("{plan} {}", compact_number(fit.plans[plan].quota)));
     lines.push(line(format!(" {} a day", quotas.join(" · ")), shared_role(fit, FitCriterion::Quota)));
-    let mut told = |name: &str, text: &str, role: Role| {
+    let mut add_rows = |name: &str, text: &str, role: Role| {
         for (at, text) in wrap(text, width.saturating_sub(NAME_WIDTH + 1)).into_iter().enumerate() {
             let name = if at == 0 { name } else { "" };
             lines.push(line(format!("{name:<NAME_WIDTH$} {text}"), role));
@@ -117,10 +117,10 @@ fn lines(fit: &Fit, width: usize, tier: &dyn Fn(Plan) -> String) -> Vec<FitLine>
     };
     match fit.last_week {
         Some(week) => {
-            told("leads", &format!("last week: {}", week.describe()), Role::Text);
-            told("", &format!("last 4 weeks: {}", fit.recent.describe()), Role::Text);
+            add_rows("leads", &format!("last week: {}", week.describe()), Role::Text);
+            add_rows("", &format!("last 4 weeks: {}", fit.recent.describe()), Role::Text);
         }
-        None => told("leads", "no week has been simulated", Role::Dim),
+        None => add_rows("leads", "no week has been simulated", Role::Dim),
     }
     for plan in Plan::ALL {
         let name = if plan == Plan::A { "missing" } else { "" };
@@ -128,10 +128,10 @@ fn lines(fit: &Fit, width: usize, tier: &dyn Fn(Plan) -> String) -> Vec<FitLine>
             true => Role::Bad,
             false => Role::Text,
         };
-        told(name, &format!("{plan} {}", fit.describe_gaps(plan)), role);
+        add_rows(name, &format!("{plan} {}", fit.describe_gaps(plan)), role);
     }
-    told("", "█ reached · ▓ reached, in the range · ▒ rest of the range", Role::Dim);
-    told(
+    add_rows("", "█ reached · ▓ reached, in the range · ▒ rest of the range", Role::Dim);
+    add_rows(
         "",
         &format!(
             "Ranges are for the group's means (±{}). Customers require more quality at a higher price.",

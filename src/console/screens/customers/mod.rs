@@ -93,7 +93,7 @@ impl Customers {
     /// Opens a group if it is known.
     pub fn show_group(&mut self, group: Group, company: &DisplayedCompany) {
         self.focus = CustomersPane::Groups;
-        self.open_group = company.observation.known_groups.iter().position(|own| *own == group);
+        self.open_group = company.observation.known_groups.iter().position(|known_group| *known_group == group);
         self.group_state = OpenGroupState::default();
         self.select_open();
     }

@@ -201,7 +201,7 @@ impl CustomerData {
         let (group, plan) = (Group::parse(text_at(row, 0)), Plan::parse(text_at(row, 1)));
         if let (Some(group), Some(plan)) = (group, plan) {
             let facts = self.groups.entry(group).or_default();
-            take(&mut facts.plans[Plan::ALL.iter().position(|own| *own == plan).unwrap_or(0)], row);
+            take(&mut facts.plans[Plan::ALL.iter().position(|other_plan| *other_plan == plan).unwrap_or(0)], row);
         }
     }
 

@@ -44,8 +44,8 @@ impl Pane<Customers> for WeeksPane {
         let flow = customers.group_state.flow;
         let (name, term, figure) = FLOWS[flow];
         let sql = Some(flow_statement(flow, group, week));
-        let own = Figure { title: format!("{name} of {group} in week {week}"), term, sql, week_quantity: None };
-        Some(own.with_week_quantity(WeekQuantity::for_group(figure, group), week))
+        let quantity = Figure { title: format!("{name} of {group} in week {week}"), term, sql, week_quantity: None };
+        Some(quantity.with_week_quantity(WeekQuantity::for_group(figure, group), week))
     }
 
     fn handle_action(&self, customers: &mut Customers, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {

@@ -478,12 +478,12 @@ impl PaneScreen for Inbox {
             true => Constraint::Percentage(45),
             false => Constraint::Length(0),
         };
-        let [said, own] = Layout::vertical([constraint, Constraint::Min(0)]).areas(above);
-        if !said.is_empty() {
-            canvas.register_click(said, Click::Pane(Thread as usize));
-            thread::draw_side_thread(self, canvas, said, look);
+        let [side_thread_area, thread_area] = Layout::vertical([constraint, Constraint::Min(0)]).areas(above);
+        if !side_thread_area.is_empty() {
+            canvas.register_click(side_thread_area, Click::Pane(Thread as usize));
+            thread::draw_side_thread(self, canvas, side_thread_area, look);
         }
-        draw_pane(self, Thread, canvas, own, look);
+        draw_pane(self, Thread, canvas, thread_area, look);
         draw_pane(self, Offer, canvas, offer, look);
     }
 }

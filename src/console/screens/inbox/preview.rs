@@ -47,7 +47,7 @@ fn draw_planned_offer(canvas: &mut Canvas<'_>, row: Rect, (thread, offers): &Pla
         ([], None) => thread.asked_plan().map_or("–".to_owned(), |plan| format!("plan {plan}?")),
         ([], Some((_, price))) => format!("asks {}", cents(price)),
         ([(_, price)], _) => cents(*price),
-        (own, _) => format!("{} offers", own.len()),
+        (last_offers, _) => format!("{} offers", last_offers.len()),
     };
     let value = format!("{}/mo", dollars(max_monthly_revenue(thread, offers)));
     let room = rest.width.saturating_sub(value.len() as u16 + 1);

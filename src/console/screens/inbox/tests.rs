@@ -428,7 +428,7 @@ fn first_offer_outcomes_agree_with_turns_and_subscriptions() {
         let sql = screen.figure(&look).and_then(|figure| figure.sql).expect("rows");
         let behind = session.query(&sql).expect("rows");
         assert_eq!(behind.rows.len() as f64, all, "{row:?}");
-        assert_eq!(behind.rows.iter().map(|own| number_at(own, 5)).sum::<f64>(), signed, "{row:?}");
+        assert_eq!(behind.rows.iter().map(|turn_row| number_at(turn_row, 5)).sum::<f64>(), signed, "{row:?}");
     }
     let first = "SELECT count(DISTINCT thread_id) FROM enterprise_turns WHERE sender = 'agent' AND thread_type = 'new_lead'";
     assert_eq!(threads, number_at(&session.query(first).expect("a count").rows[0], 0));

@@ -172,12 +172,12 @@ impl FiledWeek<'_> {
     fn summary(&self, company: &DisplayedCompany) -> String {
         let one = |forecast: &Forecast| {
             let filed = ScoredForecast::new(self.day, forecast, &company.cash_by_day);
-            let came = match filed.outcome {
+            let coverage = match filed.outcome {
                 Some(_) if filed.is_covered() => " inside",
                 Some(_) => " OUTSIDE",
                 None => "",
             };
-            format!("{} wk {}{came}", forecast.horizon_days / 7, short_dollars(forecast.point))
+            format!("{} wk {}{coverage}", forecast.horizon_days / 7, short_dollars(forecast.point))
         };
         let all: Vec<String> = self.forecasts.iter().map(one).collect();
         let naively = describe_naive_share(self.filled_naively).map_or(String::new(), |naively| format!("{naively}: "));
@@ -313,7 +313,7 @@ fn collect_numbers(value: &Value, path: &str, leaves: &mut Vec<(String, f64)>) {
                 collect_numbers(inner, &path, leaves);
             }
         }
-        Value::Number(own) => leaves.extend(own.as_f64().map(|number| (path.to_owned(), number))),
+        Value::Number(json_number) => leaves.extend(json_number.as_f64().map(|number| (path.to_owned(), number))),
         _ => {}
     }
 }
@@ -368,16 +368,16 @@ mod tests {
     #[test]
     fn later_calls_show_the_previous_value() {
         let mut settings = KnownSettings::default();
-        let mut said = |tool: &str, args: Value| {
+        let mut describe = |tool: &str, args: Value| {
             settings.describe_change(novamind_tools::find(tool).expect("a tool").spec(), &args)
         };
-        assert_eq!(said("set_prices", json!({"A": 12})), "A 12");
-        assert_eq!(said("set_prices", json!({"A": 14, "B": 25})), "A 12 → 14 · B 25");
-        assert_eq!(said("set_prices", json!({"A": 14})), "unchanged");
+        assert_eq!(describe("set_prices", json!({"A": 12})), "A 12");
+        assert_eq!(describe("set_prices", json!({"A": 14, "B": 25})), "A 12 → 14 · B 25");
+        assert_eq!(describe("set_prices", json!({"A": 14})), "unchanged");
         let ads = "set_targeted_ad_spend";
-        let first = said(ads, json!({"targeted_spend": {"linkedin": {"E1": 200, "E2": 50}}}));
+        let first = describe(ads, json!({"targeted_spend": {"linkedin": {"E1": 200, "E2": 50}}}));
         assert_eq!(first, "targeted_spend(linkedin(E1 200 E2 50))");
-        let second = said(ads, json!({"targeted_spend": {"linkedin": {"E1": 300}}}));
+        let second = describe(ads, json!({"targeted_spend": {"linkedin": {"E1": 300}}}));
         assert_eq!(second, "targeted_spend linkedin E1 200 → 300 · targeted_spend linkedin E2 50 → –");
     }
 }

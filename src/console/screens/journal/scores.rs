@@ -89,8 +89,8 @@ impl Pane<Journal> for ScoresPane {
             canvas.draw_text(row, &head, Role::Header);
         }
         for ((at, score), row) in company.forecast_scores.iter().enumerate().zip(rows.by_ref()) {
-            let own = if summary { role_of(score) } else { Role::Text };
-            let role = if seat.focused && at == journal.horizon { Role::Selection } else { own };
+            let usual_role = if summary { role_of(score) } else { Role::Text };
+            let role = if seat.focused && at == journal.horizon { Role::Selection } else { usual_role };
             let counted = || format!("{:<9}{:>10}", format_weeks(score.horizon_days), score.scored);
             canvas.clear(row, role);
             canvas.draw_text(row, &if summary { line_of(score) } else { counted() }, role);

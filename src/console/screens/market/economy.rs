@@ -172,8 +172,8 @@ fn draw_curve(
     if lanes == 0 {
         return;
     }
-    let [told, rivals] = [0, 1].map(|lane| Rect { y: upper.bottom() + lane, height: 1, ..area });
-    let names = Rect { width: plot.x - area.x, ..told };
+    let [published_row, rivals] = [0, 1].map(|lane| Rect { y: upper.bottom() + lane, height: 1, ..area });
+    let names = Rect { width: plot.x - area.x, ..published_row };
     canvas.draw_text(names, "publ", Role::Dim);
     canvas.draw_text(Rect { y: rivals.y, ..names }, "news", Role::Dim);
     for measurement in view.economy {
@@ -181,12 +181,12 @@ fn draw_curve(
         let role = if measurement.day == here.day { Role::Strong } else { Role::Series(0) };
         if measurement.day == here.day && to > from {
             canvas.draw_text(
-                Rect { x: from, width: to - from, ..told },
+                Rect { x: from, width: to - from, ..published_row },
                 &"─".repeat((to - from) as usize),
                 Role::Dim,
             );
         }
-        canvas.draw_text(Rect { x: to, width: 1, ..told }, "◆", role);
+        canvas.draw_text(Rect { x: to, width: 1, ..published_row }, "◆", role);
     }
     let counts: Vec<(u16, usize)> =
         (plot.left()..plot.right()).map(|x| (x, count_matching(view.news, |day| column(day) == x))).collect();

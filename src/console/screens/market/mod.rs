@@ -85,7 +85,7 @@ impl Market {
         self.focus = MarketPane::Groups;
         // A filter could hide the group.
         self.table.handle_action(Action::Close, 1);
-        if let Some(row) = self.groups.iter().position(|own| *own == group) {
+        if let Some(row) = self.groups.iter().position(|shown_group| *shown_group == group) {
             self.table.select(row);
         }
         self.reset_report();
@@ -150,7 +150,7 @@ impl Market {
         let known = |group: &Group| self.facts.known.get(group).copied().unwrap_or_default();
         let rows = self.groups.iter().map(|group| groups::row_of(*group, known(group), company)).collect();
         self.table.set_columns_and_rows(groups::columns(), rows);
-        if let Some(row) = self.groups.iter().position(|own| Some(*own) == kept) {
+        if let Some(row) = self.groups.iter().position(|shown_group| Some(*shown_group) == kept) {
             self.table.select(row);
         }
         let tried = self.facts.attempts.iter().map(|attempt| attempts::row_of(attempt, company)).collect();

@@ -24,11 +24,11 @@ fn confirm_and_call(screen: &mut Market, session: &mut Session, action: Action) 
     let answer = session.call(tool, arguments, Via::Form);
     let company = DisplayedCompany::from_session(session);
     let called = Response::ToolCalled(*tool, answer.map(Box::new), Arc::new(company.clone()));
-    let said = with_context(&company, |look| {
+    let effects = with_context(&company, |look| {
         screen.on_company_change(look);
         screen.handle_response(&called, look)
     });
-    (text.clone(), said)
+    (text.clone(), effects)
 }
 
 fn week(session: &mut Session) {
@@ -113,7 +113,7 @@ fn known_groups_open_customers_and_unknown_groups_are_explained() {
     screen.show_group(group);
     let effects = handle_action(&mut screen, Action::Open, &company);
     assert!(
-        matches!(effects[..], [Effect::ShowGroup(ScreenId::Customers, own)] if own == group),
+        matches!(effects[..], [Effect::ShowGroup(ScreenId::Customers, shown_group)] if shown_group == group),
         "{effects:?}"
     );
     handle_action(&mut screen, Action::Last, &company);

@@ -10,11 +10,11 @@ use novamind_tui::theme::Role;
 
 /// Returns the lines on competitors: quality that they have not copied yet, and their next move.
 pub fn competitor_lines(hidden: &HiddenValues) -> Vec<String> {
-    let own: Vec<String> =
+    let bank_texts: Vec<String> =
         hidden.group_banks.iter().map(|(group, bank)| format!("{group} {}", grouped_number(*bank, 4))).collect();
-    let own = if own.is_empty() { String::new() } else { format!(", by group {}", own.join(", ")) };
+    let bank_text = if bank_texts.is_empty() { String::new() } else { format!(", by group {}", bank_texts.join(", ")) };
     vec![
-        format!("x-ray, day {}: uncopied quality {}{own}", hidden.day, grouped_number(hidden.shared_bank, 4)),
+        format!("x-ray, day {}: uncopied quality {}{bank_text}", hidden.day, grouped_number(hidden.shared_bank, 4)),
         next_move_text(hidden.next_competitor_move.as_ref()),
     ]
 }

@@ -150,8 +150,8 @@ pub(super) fn draw_run(
     let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
     let known = previews.get(&run.id).and_then(Option::as_ref);
     let facts = facts(run, known);
-    let beside = inside.width >= 70 && inside.height < 14;
-    let (above, below) = if beside {
+    let is_flat = inside.width >= 70 && inside.height < 14;
+    let (above, below) = if is_flat {
         let left = Rect { width: 42, ..inside };
         (left, Rect { x: inside.x + 43, width: inside.width - 43, ..inside })
     } else {

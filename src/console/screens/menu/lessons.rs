@@ -56,8 +56,8 @@ impl LessonList {
 
     /// Draws the list and the learning goal of the selected lesson.
     pub(super) fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, selected: usize) {
-        let beside = area.width >= MIN_WIDTH_FOR_DETAILS;
-        let (above, below) = if beside {
+        let is_wide = area.width >= MIN_WIDTH_FOR_DETAILS;
+        let (above, below) = if is_wide {
             let left = Rect { width: area.width / 2, ..area };
             (left, Rect { x: left.right() + 1, width: area.width - left.width - 1, ..area })
         } else {
@@ -85,8 +85,8 @@ impl LessonList {
             );
             canvas.register_click(row, Click::Row(0, at));
         }
-        if let Some(own) = self.lessons.get(selected) {
-            draw_lesson(canvas, below, own);
+        if let Some(lesson) = self.lessons.get(selected) {
+            draw_lesson(canvas, below, lesson);
         }
     }
 }

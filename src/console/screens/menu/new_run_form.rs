@@ -45,11 +45,13 @@ const FIELD_WIDTH: u16 = 18;
 
 impl NewRunForm {
     pub(super) fn new(configuration: &Configuration) -> NewRunForm {
-        let told = |name: &String| {
-            configuration.load_scenario(name).map_or_else(|error| error.to_string(), |own| own.description)
+        let describe = |name: &String| {
+            configuration
+                .load_scenario(name)
+                .map_or_else(|error| error.to_string(), |scenario| scenario.description)
         };
         let scenarios: Vec<(String, String)> =
-            configuration.scenario_names().into_iter().map(|name| (name.clone(), told(&name))).collect();
+            configuration.scenario_names().into_iter().map(|name| (name.clone(), describe(&name))).collect();
         let scenario = scenarios.iter().position(|(name, _)| name == DEFAULT_SCENARIO).unwrap_or(0);
         NewRunForm {
             scenarios,
@@ -67,10 +69,14 @@ impl NewRunForm {
 
     /// Reads days and cash of the selected scenario.
     pub(super) fn read_terms(&mut self, configuration: &Configuration) {
-        let name = self.scenarios.get(self.scenario).map_or(DEFAULT_SCENARIO, |own| own.0.as_str());
-        let own = Mode::SELECTABLE[self.mode] != Mode::Baseline;
+        let name = self
+            .scenarios
+            .get(self.scenario)
+            .map_or(DEFAULT_SCENARIO, |scenario_entry| scenario_entry.0.as_str());
+        let is_unranked = Mode::SELECTABLE[self.mode] != Mode::Baseline;
         let scenario = configuration.load_scenario(name);
-        self.scenario_terms = scenario.and_then(|scenario| configuration.days_and_cash(&scenario, own)).ok();
+        self.scenario_terms =
+            scenario.and_then(|scenario| configuration.days_and_cash(&scenario, is_unranked)).ok();
     }
 
     /// Returns whether the selected row accepts text.
@@ -157,7 +163,7 @@ impl NewRunForm {
             scenario: self
                 .scenarios
                 .get(self.scenario)
-                .map_or(DEFAULT_SCENARIO, |own| own.0.as_str())
+                .map_or(DEFAULT_SCENARIO, |entry| entry.0.as_str())
                 .to_owned(),
             mode: Mode::SELECTABLE[self.mode],
             participant: (!participant.is_empty()).then(|| participant.to_owned()),
@@ -207,7 +213,7 @@ impl NewRunForm {
             None => say(FORM_ROWS[self.selected_row].1, Role::Text),
         }
         let mode = Mode::SELECTABLE[self.mode];
-        let scenario = self.scenarios.get(self.scenario).map_or("", |own| own.1.as_str());
+        let scenario = self.scenarios.get(self.scenario).map_or("", |entry| entry.1.as_str());
         say("", Role::Dim);
         say(&format!("{}: {}. {}", mode.id(), mode.purpose(), mode_description(mode)), Role::Text);
         say(&format!("scenario: {scenario}"), Role::Text);

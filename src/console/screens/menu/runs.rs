@@ -265,9 +265,9 @@ impl StartMenu {
         let offered = wrap(offer, width.saturating_sub(4) as usize);
         let from = lines.len();
         lines.extend(offered);
-        let own = centered_rect(area, width, lines.len() as u16 + 4);
-        canvas.clear(own, Role::Text);
-        let inside = canvas.draw_pane_frame(own, title, "", true);
+        let dialog_area = centered_rect(area, width, lines.len() as u16 + 4);
+        canvas.clear(dialog_area, Role::Text);
+        let inside = canvas.draw_pane_frame(dialog_area, title, "", true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         // The question stays visible even if the reason is long.
         let room = inside.height.saturating_sub(1) as usize;
@@ -276,7 +276,7 @@ impl StartMenu {
         for (row, (at, line)) in row_rects(inside).zip(shown) {
             canvas.draw_text(row, line, if at < from { Role::Warning } else { Role::Strong });
         }
-        canvas.draw_pane_keys(own, "y yes · esc no");
+        canvas.draw_pane_keys(dialog_area, "y yes · esc no");
     }
 
     pub(super) fn draw_runs(&self, canvas: &mut Canvas<'_>, area: Rect) {

@@ -67,12 +67,12 @@ impl ProductPanel for QualityComponentsPane {
         let from = first_visible_row(selected, below.height as usize, company.quality.len());
         for (row, (at, quality)) in row_rects(below).zip(company.quality.iter().enumerate().skip(from)) {
             let parts = if wide { format!(" {base:>7.4} {shared:>+8.4}") } else { String::new() };
-            let own = match quality.group_bonus {
+            let bonus_text = match quality.group_bonus {
                 bonus if bonus > 0.0 => format!("{bonus:+.4}"),
                 _ => "–".to_owned(),
             };
             let [a, b, c] = quality.by_plan.0;
-            let text = format!("{:<6}{parts} {own:>8} {a:>9.4} {b:>8.4} {c:>8.4}", quality.group.id());
+            let text = format!("{:<6}{parts} {bonus_text:>8} {a:>9.4} {b:>8.4} {c:>8.4}", quality.group.id());
             let role = match (seat.focused && at == selected, quality.group_bonus > 0.0) {
                 (true, _) => Role::Selection,
                 (false, true) => Role::Text,

@@ -9,7 +9,7 @@ pub use novamind_worker::posts::{Post, PostKind};
 
 /// Returns the player's posts from the database.
 pub fn own_posts(rows: &QueryResult) -> Vec<Arc<Post>> {
-    let own = |row: &Vec<novamind_database::Cell>| {
+    let to_own_post = |row: &Vec<novamind_database::Cell>| {
         let answers = number_at(row, 3) as u32;
         let comments: Vec<u64> = serde_json::from_str(text_at(row, 5)).unwrap_or_default();
         Arc::new(Post {
@@ -23,7 +23,7 @@ pub fn own_posts(rows: &QueryResult) -> Vec<Arc<Post>> {
             comments: comments.len() as u32,
         })
     };
-    rows.rows.iter().map(own).collect()
+    rows.rows.iter().map(to_own_post).collect()
 }
 
 /// Filter of the feed.
@@ -94,14 +94,14 @@ pub fn threads(others: &[Arc<Post>], posts: &[Arc<Post>]) -> Vec<Arc<Post>> {
     let place = |post: &Arc<Post>| {
         let thread = match post.kind {
             PostKind::Own => Some(post.number),
-            PostKind::Comments => post.answered_post.filter(|own| days.contains_key(own)),
+            PostKind::Comments => post.answered_post.filter(|number| days.contains_key(number)),
             _ => None,
         };
-        let day = thread.and_then(|own| days.get(&own).copied()).unwrap_or(post.day);
+        let day = thread.and_then(|number| days.get(&number).copied()).unwrap_or(post.day);
         // Within a day the player's thread comes first: its post, then the comments by arrival.
         let within = match (thread, post.kind) {
-            (Some(own), PostKind::Own) => (0, Reverse(own), 0),
-            (Some(own), _) => (0, Reverse(own), post.number),
+            (Some(number), PostKind::Own) => (0, Reverse(number), 0),
+            (Some(number), _) => (0, Reverse(number), post.number),
             (None, _) => (1, Reverse(post.number), 0),
         };
         (Reverse(day), within)
@@ -155,15 +155,15 @@ mod tests {
 
     #[test]
     fn filter_combines_kind_week_and_text() {
-        let own = post(PostKind::Customers, 6, 21, None);
+        let customer_post = post(PostKind::Customers, 6, 21, None);
         let mut filter = PostFilter::default();
-        assert!(filter.matches(&own) && filter.label().is_empty());
+        assert!(filter.matches(&customer_post) && filter.label().is_empty());
         filter.earlier_week(4);
-        assert!(!filter.matches(&own));
+        assert!(!filter.matches(&customer_post));
         filter.earlier_week(4);
         filter.text = "wORDS".to_owned();
         filter.next_kind();
-        assert!(filter.matches(&own));
+        assert!(filter.matches(&customer_post));
         assert_eq!(filter.label(), "customers · week 3 · \"wORDS\"");
         for _ in 0..4 {
             filter.next_kind();

@@ -124,8 +124,8 @@ impl Social {
             parts.extend(lead_lines_around(post.day, &company.group_weeks, &company.observation.known_groups));
             let comments = self.feed.iter().filter(of);
             parts.extend(comments.map(|comment| format!("↳ {}\n  {}", comment.heading(), comment.text)));
-        } else if let Some(own) = self.own_posts.iter().find(|own| post.answered_post == Some(own.number)) {
-            parts.push(format!("On {}:\n  {}", own.heading(), own.text));
+        } else if let Some(answered) = self.own_posts.iter().find(|answered| post.answered_post == Some(answered.number)) {
+            parts.push(format!("On {}:\n  {}", answered.heading(), answered.text));
         }
         Effect::ShowText(format!("day {} · {}", post.day, post.heading()), parts.join("\n\n"))
     }
@@ -141,7 +141,7 @@ impl Social {
         match post.kind {
             PostKind::Own => Some(post.number),
             PostKind::Comments => post.answered_post.filter(|number| self.own_posts.iter().any(|post| post.number == *number)),
-            _ => self.own_posts.iter().find(|own| own.answered_post == Some(post.number)).map(|own| own.number),
+            _ => self.own_posts.iter().find(|answer| answer.answered_post == Some(post.number)).map(|answer| answer.number),
         }
     }
 
@@ -351,10 +351,10 @@ impl PaneScreen for Social {
             let [left, side] =
                 Layout::horizontal([Constraint::Min(0), Constraint::Length(right)]).areas(area);
             let [feed, draft] = Layout::vertical([Constraint::Min(0), Constraint::Length(8)]).areas(left);
-            let [own, weeks] = Layout::vertical([Constraint::Percentage(60), Constraint::Min(0)]).areas(side);
+            let [own_posts_area, weeks] = Layout::vertical([Constraint::Percentage(60), Constraint::Min(0)]).areas(side);
             draw_pane(self, Feed, canvas, feed, look);
             draw_pane(self, Draft, canvas, draft, look);
-            draw_pane(self, OwnPosts, canvas, own, look);
+            draw_pane(self, OwnPosts, canvas, own_posts_area, look);
             return self.draw_weekly_counts(canvas, weeks);
         }
         // Panes stacked; if there are too few rows, only the focused one.
@@ -366,8 +366,8 @@ impl PaneScreen for Social {
         let [upper, draft] = Layout::vertical([Constraint::Min(0), Constraint::Length(low)]).areas(area);
         if self.focus == OwnPosts {
             let halves = [Constraint::Percentage(50), Constraint::Min(0)];
-            let [own, weeks] = Layout::vertical(halves).areas(upper);
-            draw_pane(self, OwnPosts, canvas, own, look);
+            let [own_posts_area, weeks] = Layout::vertical(halves).areas(upper);
+            draw_pane(self, OwnPosts, canvas, own_posts_area, look);
             self.draw_weekly_counts(canvas, weeks);
         } else {
             draw_pane(self, Feed, canvas, upper, look);

@@ -79,7 +79,7 @@ impl Subquery {
         let mut given: Vec<String> = Vec::new();
         for column in columns {
             let lower = |name: &str| name.to_lowercase();
-            let free = |name: &String| given.iter().all(|own| lower(own) != lower(name));
+            let free = |name: &String| given.iter().all(|given_name| lower(given_name) != lower(name));
             let first = if column.is_empty() { "column".to_owned() } else { column.clone() };
             let numbered = (2..).map(|number| format!("{first}_{number}"));
             given.extend(std::iter::once(first.clone()).chain(numbered).find(free));

@@ -66,7 +66,7 @@ impl TableBrowser {
             let columns: Vec<usize> = columns.collect();
             if holds(&table.name) || !columns.is_empty() {
                 entries.push(BrowserRow { table: at, column: None });
-                entries.extend(columns.into_iter().map(|own| BrowserRow { table: at, column: Some(own) }));
+                entries.extend(columns.into_iter().map(|column| BrowserRow { table: at, column: Some(column) }));
             }
         }
         entries

@@ -82,15 +82,15 @@ fn table_candidate(table: &Table) -> Candidate {
 
 /// Returns the columns of the table with a name or alias in the statement, or a name in the database.
 fn source_candidates(name: &str, sources: &[NamedTable]) -> Option<Vec<Candidate>> {
-    let own = sources.iter().find(|source| source.name.eq_ignore_ascii_case(name)).map(|source| source.table);
-    let meant = own.or_else(|| table(name))?;
+    let named_source = sources.iter().find(|source| source.name.eq_ignore_ascii_case(name)).map(|source| source.table);
+    let meant = named_source.or_else(|| table(name))?;
     Some(meant.columns.iter().map(|column| column_candidate(meant, column)).collect())
 }
 
 /// Returns the suggestions for a word without a point before it.
 fn all_candidates(sql: &str, pieces: &[Token], word_start: usize, sources: &[NamedTable]) -> Vec<Candidate> {
-    let said = |token: &&Token| token.kind != TokenKind::Comment && token.range.end <= word_start;
-    let last = pieces.iter().rev().find(said).map(|token| sql[token.range.clone()].to_uppercase());
+    let is_before_word = |token: &&Token| token.kind != TokenKind::Comment && token.range.end <= word_start;
+    let last = pieces.iter().rev().find(is_before_word).map(|token| sql[token.range.clone()].to_uppercase());
     let wants_table = last.is_some_and(|word| word == "FROM" || word == "JOIN");
     let names = cte_names(sql, pieces)
         .into_iter()

@@ -237,9 +237,9 @@ impl QueryEditor {
             return;
         }
         let x = cursor.x.saturating_sub(completion.typed_chars as u16 + 2).max(area.x).min(area.right() - width);
-        let own = Rect { x, y, width, height };
-        canvas.clear(own, Role::Field);
-        let inside = canvas.draw_pane_frame(own, "", "", true);
+        let list_area = Rect { x, y, width, height };
+        canvas.clear(list_area, Role::Field);
+        let inside = canvas.draw_pane_frame(list_area, "", "", true);
         let from = first_visible_row(completion.selected, inside.height as usize, completion.candidates.len());
         for (row, (at, one)) in row_rects(inside).zip(completion.candidates.iter().enumerate().skip(from)) {
             let chosen = at == completion.selected;

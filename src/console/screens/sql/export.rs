@@ -42,10 +42,10 @@ impl ExportMenu {
 
     /// Draws the list over the screen. `rows` describes the exported rows.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, pane: usize, rows: &str, look: &ScreenContext<'_>) {
-        let own = centered_rect(area, 62, EXPORT_ACTIONS.len() as u16 + 2);
-        canvas.clear(own, Role::Text);
+        let dialog_area = centered_rect(area, 62, EXPORT_ACTIONS.len() as u16 + 2);
+        canvas.clear(dialog_area, Role::Text);
         canvas.clicks.clear();
-        let inside = canvas.draw_pane_frame(own, "Export", rows, true);
+        let inside = canvas.draw_pane_frame(dialog_area, "Export", rows, true);
         for (row, (at, way)) in row_rects(inside).zip(EXPORT_ACTIONS.iter().enumerate()) {
             let selected = at == self.selected;
             let role = |other| if selected { Role::Selection } else { other };
@@ -58,7 +58,7 @@ impl ExportMenu {
             canvas.draw_text(doc, way.entry().doc, role(Role::Text));
             canvas.register_click(row, Click::Row(pane, at));
         }
-        canvas.draw_pane_keys(own, &look.hints(&[Action::Open, Action::Close]));
+        canvas.draw_pane_keys(dialog_area, &look.hints(&[Action::Open, Action::Close]));
     }
 }
 
@@ -87,8 +87,8 @@ fn copy_effects(text: String, rows: &QueryResult, how: &str) -> Vec<Effect> {
             MAX_CLIPBOARD_BYTES >> 10
         ))];
     }
-    let said = format!("Copied {} {how}, {} KB", format_row_count(rows.rows.len()), kilobytes(text.len()));
-    vec![Effect::Copy(text), Effect::Say(said)]
+    let notice = format!("Copied {} {how}, {} KB", format_row_count(rows.rows.len()), kilobytes(text.len()));
+    vec![Effect::Copy(text), Effect::Say(notice)]
 }
 
 /// Returns `1 row`, `3,000 rows`.
@@ -109,8 +109,8 @@ mod tests {
     #[test]
     fn oversized_clipboard_text_is_rejected_with_its_size() {
         let small = export_rows(Action::CopyTabs, &result(3, 2));
-        assert!(matches!(&small[..], [Effect::Copy(text), Effect::Say(said)]
-            if text == "a\nxxx\nxxx\n" && said == "Copied 2 rows with tabs, 0.0 KB"));
+        assert!(matches!(&small[..], [Effect::Copy(text), Effect::Say(notice)]
+            if text == "a\nxxx\nxxx\n" && notice == "Copied 2 rows with tabs, 0.0 KB"));
         let large = export_rows(Action::CopyMarkdown, &result(1000, 90));
         assert!(matches!(&large[..], [Effect::Complain(text)] if text.starts_with("88.")), "{large:?}");
     }

@@ -38,8 +38,8 @@ impl StatementHistory {
     /// `None` if both are empty.
     pub fn picker(&self, earlier: &[String]) -> Option<Picker> {
         let mut items: Vec<PickerItem> = Vec::new();
-        let own = self.entries.iter().rev().map(|kept| (kept.sql.as_str(), kept.is_draft));
-        for (sql, draft) in own.chain(earlier.iter().rev().map(|sql| (sql.as_str(), false))) {
+        let entries = self.entries.iter().rev().map(|kept| (kept.sql.as_str(), kept.is_draft));
+        for (sql, draft) in entries.chain(earlier.iter().rev().map(|sql| (sql.as_str(), false))) {
             if items.iter().all(|item| item.sql != sql) {
                 items.push(PickerItem {
                     tag: if draft { "draft" } else { "" },

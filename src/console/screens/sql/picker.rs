@@ -123,25 +123,25 @@ impl Picker {
 
     /// Draws the list over the screen.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, pane: usize) {
-        let own =
+        let dialog_area =
             centered_rect(area, area.width.saturating_sub(4).clamp(20, 150), area.height.saturating_sub(2).max(5));
-        canvas.clear(own, Role::Text);
+        canvas.clear(dialog_area, Role::Text);
         canvas.clicks.clear();
         let note = format!("{} of {}", self.matches.len(), self.items.len());
-        let inside = canvas.draw_pane_frame(own, self.title, &note, true);
+        let inside = canvas.draw_pane_frame(dialog_area, self.title, &note, true);
         let line = Rect { height: 1.min(inside.height), ..inside };
         canvas.draw_text(line, "›", Role::Key);
         self.field.draw(canvas, Rect { x: line.x + 2, width: line.width.saturating_sub(2), ..line });
         let rest = Rect { y: inside.y + 1, height: inside.height.saturating_sub(1), ..inside };
-        let [list, preview] = if own.width >= MIN_WIDTH_FOR_SIDE_PREVIEW {
+        let [list, preview] = if dialog_area.width >= MIN_WIDTH_FOR_SIDE_PREVIEW {
             Layout::horizontal([Constraint::Percentage(45), Constraint::Percentage(55)]).areas(rest)
         } else {
             let shown = if rest.height >= 9 { rest.height / 2 } else { 0 };
             Layout::vertical([Constraint::Min(0), Constraint::Length(shown)]).areas(rest)
         };
         self.draw_list(canvas, list, pane);
-        self.draw_preview(canvas, preview, own.width >= MIN_WIDTH_FOR_SIDE_PREVIEW);
-        canvas.draw_pane_keys(own, &format!("type to find · up/down choose · enter {} · esc close", self.enter_label));
+        self.draw_preview(canvas, preview, dialog_area.width >= MIN_WIDTH_FOR_SIDE_PREVIEW);
+        canvas.draw_pane_keys(dialog_area, &format!("type to find · up/down choose · enter {} · esc close", self.enter_label));
     }
 
     fn draw_list(&self, canvas: &mut Canvas<'_>, area: Rect, pane: usize) {
@@ -166,12 +166,12 @@ impl Picker {
         }
     }
 
-    fn draw_preview(&self, canvas: &mut Canvas<'_>, area: Rect, beside: bool) {
+    fn draw_preview(&self, canvas: &mut Canvas<'_>, area: Rect, is_side_by_side: bool) {
         let Some(item) = self.selected_item() else { return };
         if area.width < 4 || area.height < 2 {
             return;
         }
-        let inside = if beside {
+        let inside = if is_side_by_side {
             for row in row_rects(area) {
                 canvas.draw_text(Rect { width: 1, ..row }, "│", Role::Border);
             }

@@ -129,12 +129,12 @@ impl PivotForm {
 
     /// Draws the setup over the screen.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, pane: usize, look: &ScreenContext<'_>) {
-        let own = centered_rect(area, 56, LINE_COUNT as u16 + 2);
-        canvas.clear(own, Role::Text);
+        let dialog_area = centered_rect(area, 56, LINE_COUNT as u16 + 2);
+        canvas.clear(dialog_area, Role::Text);
         canvas.clicks.clear();
         let title = format!("Pivot by {}", self.rows.columns[self.shape.row_column]);
         let words = self.filter.label();
-        let inside = canvas.draw_pane_frame(own, &title, words.trim_start_matches(", "), true);
+        let inside = canvas.draw_pane_frame(dialog_area, &title, words.trim_start_matches(", "), true);
         for (row, (at, (label, value))) in row_rects(inside).zip(self.lines().into_iter().enumerate()) {
             let selected = at == self.line;
             let role = |other| if selected { Role::Selection } else { other };
@@ -151,7 +151,7 @@ impl PivotForm {
         let key = |action| look.keys.label(action).unwrap_or_default();
         let [open, left, right] = [Action::Open, Action::Left, Action::Right].map(key);
         canvas.draw_pane_keys(
-            own,
+            dialog_area,
             &format!("{open} run · {left} {right} change · {}", look.hints(&[Action::Close])),
         );
     }
@@ -166,7 +166,7 @@ fn is_identifier_column(column: &str) -> bool {
 /// Returns the next or previous option, cyclically.
 fn next_choice<T: PartialEq + Copy>(all: impl Iterator<Item = T>, now: T, on: bool) -> T {
     let all: Vec<T> = all.collect();
-    let at = all.iter().position(|own| *own == now).unwrap_or(0);
+    let at = all.iter().position(|choice| *choice == now).unwrap_or(0);
     all[(at + if on { 1 } else { all.len() - 1 }) % all.len()]
 }
 

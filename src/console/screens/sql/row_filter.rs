@@ -75,7 +75,7 @@ fn is_exact_in_sql(query_result: &QueryResult, at: usize) -> bool {
 /// Equivalent to `instr(lower(cell), text) > 0`; SQLite's `lower` changes ASCII letters only.
 fn cell_contains(cell: &Cell, text: &str) -> bool {
     match cell {
-        Cell::Text(own) => own.to_ascii_lowercase().contains(text),
+        Cell::Text(cell_text) => cell_text.to_ascii_lowercase().contains(text),
         Cell::Integer(number) => number.to_string().contains(text),
         Cell::Real(_) | Cell::Null => false,
     }
@@ -104,7 +104,7 @@ mod tests {
         let sql = "WITH t(name, units, price) AS (VALUES ('Ada''s', 1234, 2.5), ('GRÜN', 7, 12.0), ('grün 12', 12, NULL))
                    SELECT * FROM t";
         let query_result = session.query(sql).expect("rows");
-        for (filter, shown, told) in [
+        for (filter, shown, is_expressible) in [
             ("ada's", 1, true),
             ("12", 2, false),  // in 12.0, and not in 1,234
             ("1,2", 1, false), // the screen shows 1234 with a separator
@@ -116,12 +116,12 @@ mod tests {
         ] {
             let (meant, rows) = filter_and_row_count(&query_result, filter);
             assert_eq!(rows, shown, "{filter}");
-            assert_eq!(matches!(meant, RowFilter::Containing { .. }), told, "{filter}: {meant:?}");
-            assert_eq!(meant.warning().is_some(), !told, "{filter}");
+            assert_eq!(matches!(meant, RowFilter::Containing { .. }), is_expressible, "{filter}: {meant:?}");
+            assert_eq!(meant.warning().is_some(), !is_expressible, "{filter}");
             let counting = count_statement(sql, &query_result.columns, 0, &meant).expect("a statement");
             let counted = session.query(&counting).unwrap_or_else(|refusal| panic!("{refusal}\n{counting}"));
-            assert_eq!(counted.rows.len(), if told { shown } else { 3 }, "{counting}");
-            assert!(counting.contains(if told { ", rows with" } else { ", all rows" }), "{counting}");
+            assert_eq!(counted.rows.len(), if is_expressible { shown } else { 3 }, "{counting}");
+            assert!(counting.contains(if is_expressible { ", rows with" } else { ", all rows" }), "{counting}");
         }
         assert_eq!(RowFilter::from_filter("", &query_result, &[0, 1, 2]), RowFilter::All);
     }

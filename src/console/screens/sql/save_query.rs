@@ -88,10 +88,10 @@ impl SaveQueryForm {
 
     /// Draws the dialog over the screen.
     pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, library: &QueryLibrary, look: &ScreenContext<'_>) {
-        let own = centered_rect(area, 72, 6);
-        canvas.clear(own, Role::Text);
+        let dialog_area = centered_rect(area, 72, 6);
+        canvas.clear(dialog_area, Role::Text);
         canvas.clicks.clear();
-        let inside = canvas.draw_pane_frame(own, "Save query as", "", true);
+        let inside = canvas.draw_pane_frame(dialog_area, "Save query as", "", true);
         let line = Rect { height: 1.min(inside.height), ..inside };
         self.field.draw(canvas, Rect { x: line.x + 1, width: line.width.saturating_sub(2), ..line });
         let (text, role) = self.hint(library);
@@ -100,7 +100,7 @@ impl SaveQueryForm {
         for (row, line) in rows.zip(wrap(&text, inside.width.saturating_sub(2).into())) {
             canvas.draw_text(Rect { x: row.x + 1, width: row.width.saturating_sub(2), ..row }, &line, role);
         }
-        canvas.draw_pane_keys(own, &look.hints(&[Action::Commit, Action::Discard]));
+        canvas.draw_pane_keys(dialog_area, &look.hints(&[Action::Commit, Action::Discard]));
     }
 }
 

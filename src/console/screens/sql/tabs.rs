@@ -164,13 +164,13 @@ impl ResultTabs {
         let mut x = area.x;
         for (at, label) in labels.iter().enumerate().skip(first) {
             let room = area.right().saturating_sub(x);
-            let own = Rect { x, y: area.y, width: (label.width() as u16).min(room), height: 1 };
-            if own.width < 4 {
+            let tab_area = Rect { x, y: area.y, width: (label.width() as u16).min(room), height: 1 };
+            if tab_area.width < 4 {
                 break;
             }
-            canvas.draw_text(own, label, if at == self.current_index { Role::Selection } else { Role::Dim });
-            canvas.register_click(own, Click::Row(pane, FIRST_TAB_CLICK + at));
-            x += own.width + 1;
+            canvas.draw_text(tab_area, label, if at == self.current_index { Role::Selection } else { Role::Dim });
+            canvas.register_click(tab_area, Click::Row(pane, FIRST_TAB_CLICK + at));
+            x += tab_area.width + 1;
         }
         Rect { y: area.y + 1, height: area.height - 1, ..area }
     }

@@ -123,8 +123,8 @@ fn results_are_copied_and_exported_in_full() {
     handle_action(&mut screen, &company, Action::Export);
     assert!(contains(&screen_rows(&screen, &company, 80, 21), "1 of 3 rows, as filtered"));
     let copied = handle_action(&mut screen, &company, Action::CopyMarkdown);
-    assert!(matches!(&copied[..], [Effect::Copy(text), Effect::Say(said)]
-        if text.ends_with("| network | 28114 | 12.0 |\n") && said.starts_with("Copied 1 row as Markdown")));
+    assert!(matches!(&copied[..], [Effect::Copy(text), Effect::Say(notice)]
+        if text.ends_with("| network | 28114 | 12.0 |\n") && notice.starts_with("Copied 1 row as Markdown")));
     assert_eq!(screen.scopes()[0], Scope::Result, "the list is closed");
 }
 

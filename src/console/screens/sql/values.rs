@@ -13,9 +13,9 @@ const MAX_COLUMN_WIDTH: u16 = 48;
 
 /// Returns whether a column contains only numbers.
 pub fn is_numeric(rows: &QueryResult, at: usize) -> bool {
-    let mut said = rows.rows.iter().filter_map(|row| row.get(at)).filter(|cell| **cell != Cell::Null);
+    let mut values = rows.rows.iter().filter_map(|row| row.get(at)).filter(|cell| **cell != Cell::Null);
     let is_number = |cell: &Cell| matches!(cell, Cell::Integer(_) | Cell::Real(_));
-    said.next().is_some_and(is_number) && said.all(is_number)
+    values.next().is_some_and(is_number) && values.all(is_number)
 }
 
 /// Returns the number of decimals shown in a column.

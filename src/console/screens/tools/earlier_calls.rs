@@ -16,19 +16,19 @@ pub fn earlier_calls(tool: ToolId, company: &DisplayedCompany, most: usize) -> V
         JournalEntry::Call { day, tool: tool_id, args, .. } if *tool_id == tool => Some((*day, args)),
         _ => None,
     });
-    let mut told: Vec<(u32, &Value)> = Vec::new();
+    let mut distinct_calls: Vec<(u32, &Value)> = Vec::new();
     for (day, arguments) in calls {
-        let full = told.len() == most;
-        match told.last_mut() {
+        let full = distinct_calls.len() == most;
+        match distinct_calls.last_mut() {
             Some((first, known)) if *known == arguments => *first = day,
             _ if full => break,
-            _ => told.push((day, arguments)),
+            _ => distinct_calls.push((day, arguments)),
         }
     }
     let words = |arguments: &Value| {
         describe_deals(tool, arguments, &company.company_names).unwrap_or_else(|| format_arguments(arguments))
     };
-    told.into_iter().map(|(day, arguments)| (day, words(arguments))).collect()
+    distinct_calls.into_iter().map(|(day, arguments)| (day, words(arguments))).collect()
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use novamind_tools::{ArgumentKind, CATALOGUE, MapKey, ToolSpec, ToolId};
 /// Names of all arguments with their tools: `set_prices.A`.
 static ARGUMENT_TERMS: LazyLock<Vec<String>> = LazyLock::new(|| {
     let of =
-        |spec: &'static ToolSpec| spec.arguments.iter().map(move |own| format!("{}.{}", spec.name(), own.name));
+        |spec: &'static ToolSpec| spec.arguments.iter().map(move |argument| format!("{}.{}", spec.name(), argument.name));
     CATALOGUE.iter().flat_map(|tool| of(tool.spec())).collect()
 });
 

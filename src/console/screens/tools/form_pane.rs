@@ -167,17 +167,17 @@ fn layout_form(tools: &Tools, form: &ToolForm, area: Rect, look: &ScreenContext<
     let terms = cost_and_effect_text(form.spec, &look.company.numbers, look.company.observation.day);
     let terms: Vec<_> = summary.iter().cloned().chain(lines(&terms, Role::Text)).collect();
     let blank: Vec<_> = terms.iter().cloned().chain([(String::new(), Role::Text)]).collect();
-    let told = |detail| outcome_lines(form, &tools.leads, &tools.sales, look, (width, detail));
+    let outcome_with_detail = |detail| outcome_lines(form, &tools.leads, &tools.sales, look, (width, detail));
     // Keep a row for the note that text is cut.
     let fits = |head: &[(String, Role)], gap: usize, outcome: &OutcomeLines| {
         head.len() + values + gap + outcome.required_lines < area.height as usize && !outcome.is_truncated(width)
     };
-    let usual = told(DetailLevel::Full);
+    let usual = outcome_with_detail(DetailLevel::Full);
     if usual.required_lines == 0 || width < MIN_BRIEF_WIDTH || fits(&blank, 1, &usual) {
         return FormLayout { head: blank, outcome: usual, gap: 1 };
     }
-    let dense = told(DetailLevel::Compact);
-    let outcome = if fits(&summary, 0, &dense) { dense } else { told(DetailLevel::Brief) };
+    let dense = outcome_with_detail(DetailLevel::Compact);
+    let outcome = if fits(&summary, 0, &dense) { dense } else { outcome_with_detail(DetailLevel::Brief) };
     let head = [blank, terms, summary].into_iter().find(|head| fits(head, 0, &outcome)).unwrap_or_default();
     FormLayout { head, outcome, gap: 0 }
 }

@@ -141,8 +141,8 @@ fn lines_of(tools: &Tools) -> Vec<ListLine> {
     let tool_specs = tools.visible_tools();
     let mut lines = Vec::new();
     for module in ToolModule::ALL {
-        let own = tool_specs.iter().enumerate().filter(|(_, spec)| spec.module == module);
-        let list_lines: Vec<ListLine> = own.map(|(at, spec)| ListLine::Tool(at, spec)).collect();
+        let module_specs = tool_specs.iter().enumerate().filter(|(_, spec)| spec.module == module);
+        let list_lines: Vec<ListLine> = module_specs.map(|(at, spec)| ListLine::Tool(at, spec)).collect();
         if !list_lines.is_empty() {
             lines.push(ListLine::Module(module));
             lines.extend(list_lines);

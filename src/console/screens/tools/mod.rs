@@ -156,7 +156,7 @@ impl Tools {
 
     /// Restores unsent values.
     pub fn restore_drafts(&mut self, tool: ToolId, values: &BTreeMap<String, String>, company: &DisplayedCompany) {
-        let Some(spec) = CATALOGUE.iter().map(|own| own.spec()).find(|spec| spec.id == tool) else { return };
+        let Some(spec) = CATALOGUE.iter().map(|definition| definition.spec()).find(|spec| spec.id == tool) else { return };
         let form = self.forms.entry(tool).or_insert_with(|| ToolForm::new(spec, company));
         form.sheet.restore_drafts(values);
     }

@@ -25,11 +25,11 @@ pub(super) struct ChannelLeads(BTreeMap<(String, String), (f64, f64)>);
 
 impl ChannelLeads {
     pub fn from_rows(rows: &QueryResult) -> ChannelLeads {
-        let own = |row: &Vec<novamind_database::Cell>| {
+        let to_pair = |row: &Vec<novamind_database::Cell>| {
             let pair = (text_at(row, 0).to_owned(), text_at(row, 1).to_owned());
             (pair, (number_at(row, 2), number_at(row, 3)))
         };
-        ChannelLeads(rows.rows.iter().map(own).collect())
+        ChannelLeads(rows.rows.iter().map(to_pair).collect())
     }
 
     /// Returns whether a block shows them.
@@ -134,7 +134,7 @@ pub(super) fn outcome_lines(
         answer_lines(answer, &mut paragraph);
     }
     let spread =
-        form.preview.as_ref().is_some_and(|preview| preview.as_ref().is_ok_and(|own| own.research.is_some()));
+        form.preview.as_ref().is_some_and(|preview| preview.as_ref().is_ok_and(|result| result.research.is_some()));
     let mut needed = if spread { lines.len() } else { 0 };
     let tables =
         [form_margin_lines(form, sales, look.company, detail == DetailLevel::Brief), reference_lines(form.spec.id, look.company)];

@@ -262,7 +262,7 @@ impl ToolSheet {
                         .rows
                         .iter()
                         .position(|text| text == name)
-                        .zip(block.columns.iter().position(|own| own == key));
+                        .zip(block.columns.iter().position(|column_key| column_key == key));
                     if let (Some((at, across)), Some(draft)) = (place, &old.cells[row][column].draft) {
                         block.cells[at][across].draft = Some(draft.clone());
                     }
@@ -299,8 +299,8 @@ impl ToolSheet {
     pub fn restore_drafts(&mut self, values: &BTreeMap<String, String>) {
         for block in 0..self.blocks.len() {
             if self.blocks[block].accepts_new_rows() {
-                let own = format!("{}.", self.blocks[block].argument.name);
-                for customer in values.keys().filter_map(|path| path.strip_prefix(&own)) {
+                let path_prefix = format!("{}.", self.blocks[block].argument.name);
+                for customer in values.keys().filter_map(|path| path.strip_prefix(&path_prefix)) {
                     self.add_customer(block, customer);
                 }
             }

@@ -54,14 +54,14 @@ fn down_in_the_last_row_continues_typing() {
 #[test]
 fn second_reset_restores_the_draft() {
     let keys = ["enter", "1", "2", "down", "2", "5", "enter", "r"];
-    let (tools, said) = form_after_keys(ToolId::SetPrices, &keys);
+    let (tools, effects) = form_after_keys(ToolId::SetPrices, &keys);
     assert!(!tools.has_unsent_text());
-    assert!(matches!(&said[..], [Effect::Say(text)] if text.starts_with("2 values discarded")), "{said:?}");
-    let (tools, said) = form_after_keys(ToolId::SetPrices, &[&keys[..], &["r"]].concat());
+    assert!(matches!(&effects[..], [Effect::Say(text)] if text.starts_with("2 values discarded")), "{effects:?}");
+    let (tools, effects) = form_after_keys(ToolId::SetPrices, &[&keys[..], &["r"]].concat());
     assert_eq!(tools.visible_form().expect("a form").sheet.arguments(), Ok(json!({"A": 12, "B": 25})));
-    assert!(matches!(said.last(), Some(Effect::Say(text)) if text == "2 values restored"), "{said:?}");
-    let (_, said) = form_after_keys(ToolId::SetPrices, &["r"]);
-    assert!(matches!(&said[..], [Effect::Complain(_)]), "{said:?}");
+    assert!(matches!(effects.last(), Some(Effect::Say(text)) if text == "2 values restored"), "{effects:?}");
+    let (_, effects) = form_after_keys(ToolId::SetPrices, &["r"]);
+    assert!(matches!(&effects[..], [Effect::Complain(_)]), "{effects:?}");
 }
 
 #[test]

@@ -270,7 +270,7 @@ impl Xray {
         self.problem = None;
         match typed {
             ParsedInput::Group(group, day) => {
-                select_row(&mut self.groups, Group::all().position(|own| own == group));
+                select_row(&mut self.groups, Group::all().position(|known_group| known_group == group));
                 if day.is_some() {
                     self.set_day(day);
                 }
@@ -323,7 +323,7 @@ impl Xray {
             }
             Action::BreakpointHistory => self.send_breakpoint_work(BreakpointCommand::History),
             _ => match self.breakpoint_table.selected().and_then(|row| self.breakpoints.get(row)) {
-                Some(own) => self.send_breakpoint_work(BreakpointCommand::Remove(own.number)),
+                Some(breakpoint) => self.send_breakpoint_work(BreakpointCommand::Remove(breakpoint.number)),
                 None => vec![Effect::Complain("No breakpoint is set".to_owned())],
             },
         }

@@ -234,14 +234,14 @@ impl Pane<Xray> for InspectionPane {
         }
         let view = xray.view();
         let title = match (view, view.choices()) {
-            (XrayView::Customer, _) => xray.customer.map_or(String::new(), |own| format!(" {own}")),
+            (XrayView::Customer, _) => xray.customer.map_or(String::new(), |customer| format!(" {customer}")),
             (XrayView::Commands, _) => match (xray.pending_command(), xray.command_output.as_ref().map(|inspection_result| &inspection_result.question)) {
                 (Some(words), _) => format!(": {words}"),
                 (None, Some(InspectionQuestion::Command(words, _))) => format!(": {words}"),
                 _ => String::new(),
             },
-            (_, ViewChoices::Groups) => xray.group().map_or(String::new(), |own| format!(" of {own}")),
-            (_, ViewChoices::Parts) => xray.selected_part().map_or(String::new(), |own| format!(" of {}", own.id())),
+            (_, ViewChoices::Groups) => xray.group().map_or(String::new(), |group| format!(" of {group}")),
+            (_, ViewChoices::Parts) => xray.selected_part().map_or(String::new(), |part| format!(" of {}", part.id())),
             _ => String::new(),
         };
         let note = match (xray.asked.is_waiting(), view.has_day()) {

@@ -35,8 +35,8 @@ pub fn rows(map: &SpilloverMap, width: usize) -> Vec<StyledRow> {
         }
         rows.extend(plain(LEGEND, Role::Dim));
         if !is_wide {
-            let told = map.rows.iter().filter_map(|row| row_numbers(row, map));
-            rows.extend(told.flat_map(|text| plain(&text, Role::Text).collect::<Vec<StyledRow>>()));
+            let number_texts = map.rows.iter().filter_map(|row| row_numbers(row, map));
+            rows.extend(number_texts.flat_map(|text| plain(&text, Role::Text).collect::<Vec<StyledRow>>()));
         }
     }
     rows.extend(map.notes.iter().flat_map(|note| plain(note, Role::Text)));
@@ -73,11 +73,11 @@ fn role_of(change: f64) -> Role {
 
 /// Returns the numbers of a row: `  S1→ S2 +0.000120, S3 -0.000002`; `None` if no group received a spillover.
 fn row_numbers(row: &SpilloverRow, map: &SpilloverMap) -> Option<String> {
-    let heard = row.cells.iter().zip(&map.targets).filter_map(|(cell, to)| match cell {
+    let changes = row.cells.iter().zip(&map.targets).filter_map(|(cell, to)| match cell {
         SpilloverCell::Applied(change, _) => Some(format!("{to} {change:+.6}")),
         SpilloverCell::NoWeight | SpilloverCell::Dropped => None,
     });
-    let texts: Vec<String> = heard.collect();
+    let texts: Vec<String> = changes.collect();
     (!texts.is_empty()).then(|| format!("  {}→ {}", row.from, texts.join(", ")))
 }
 

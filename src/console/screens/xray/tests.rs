@@ -130,7 +130,7 @@ fn input_accepts_existing_days_with_or_without_a_target() {
     assert!(matches!(asked, Some(InspectionQuestion::Drift(3))));
     let (asked, ..) = typed(XrayView::Quality, Action::SeekDay, "5");
     assert!(matches!(asked, Some(InspectionQuestion::Quality(_, 5))));
-    for (view, text, said) in [
+    for (view, text, expected) in [
         (XrayView::Leads, "S2 15", "there is no day 15; choose a day from 1 to 14"),
         (XrayView::Customer, "7 0", "there is no day 0"),
         (XrayView::Leads, "S2 soon", "a day is a whole number"),
@@ -138,7 +138,7 @@ fn input_accepts_existing_days_with_or_without_a_target() {
     ] {
         let (asked, problem, _) = typed(view, Action::TypeTarget, text);
         assert!(asked.is_none(), "{text}");
-        assert!(problem.is_some_and(|problem| problem.contains(said)), "{text}");
+        assert!(problem.is_some_and(|problem| problem.contains(expected)), "{text}");
     }
 }
 

@@ -13,11 +13,11 @@ use novamind_session::identifiers::{ByPlan, Plan};
 struct PlanEntry<'a, T> {
     plan: Plan,
     #[serde(flatten)]
-    own: &'a T,
+    values: &'a T,
 }
 
 fn by_plan<T>(plans: &ByPlan<T>) -> [PlanEntry<'_, T>; 3] {
-    Plan::ALL.map(|plan| PlanEntry { plan, own: &plans[plan] })
+    Plan::ALL.map(|plan| PlanEntry { plan, values: &plans[plan] })
 }
 
 pub(super) fn leads_to_json(lead_equation: &LeadEquation, held: &[(LeadFactor, f64)]) -> Value {

@@ -76,14 +76,14 @@ pub(super) fn reputation_to_json(reputation_equation: &ReputationEquation) -> Va
     })
 }
 
-pub(super) fn spillover_to_json(own: &Spillover) -> Value {
-    let of = |group: &Group| (group.id().to_owned(), contribution_to_json(&own.contributions[*group]));
+pub(super) fn spillover_to_json(spillover: &Spillover) -> Value {
+    let of = |group: &Group| (group.id().to_owned(), contribution_to_json(&spillover.contributions[*group]));
     json!({
-        "day": own.day,
-        "own": Value::Object(own.known_groups.iter().map(of).collect()),
-        "spills": own.spillovers,
-        "least_own_change": own.thresholds.subscriber_contribution,
-        "least_spill": own.thresholds.spillover,
+        "day": spillover.day,
+        "own": Value::Object(spillover.known_groups.iter().map(of).collect()),
+        "spills": spillover.spillovers,
+        "least_own_change": spillover.thresholds.subscriber_contribution,
+        "least_spill": spillover.thresholds.spillover,
     })
 }
 
@@ -163,7 +163,7 @@ fn follows_to_json(draw_effect: &DrawEffect) -> Value {
         DrawEffect::Project { tier, days, gain } => json!({"tier": tier, "days": days, "gain": gain}),
         DrawEffect::Found(group) => json!({"found": group.map(Group::id)}),
         DrawEffect::Surge(surge) => json!({
-            "surge": surge.map(|own| json!({"until": own.end_day - 1, "multiplier": own.multiplier})),
+            "surge": surge.map(|change| json!({"until": change.end_day - 1, "multiplier": change.multiplier})),
         }),
         DrawEffect::Index { before, after } => json!({"before": before, "after": after}),
         DrawEffect::CompetitorMove(made) => json!({

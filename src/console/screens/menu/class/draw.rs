@@ -183,8 +183,10 @@ impl ClassPage {
         let lit = |student_points: &&StudentPoints<'_>| {
             student_points.label == self.shown.highlighted_student.as_deref()
         };
-        let others = points.iter().filter(|own| !lit(own)).flat_map(|own| own.points.clone()).collect();
-        let mine: Vec<(f64, f64)> = points.iter().filter(lit).flat_map(|own| own.points.clone()).collect();
+        let others =
+            points.iter().filter(|series| !lit(series)).flat_map(|series| series.points.clone()).collect();
+        let mine: Vec<(f64, f64)> =
+            points.iter().filter(lit).flat_map(|series| series.points.clone()).collect();
         let scattered = |points, role| Curve { is_scatter: true, ..Curve::from_points(points, role) };
         let mut lines = vec![scattered(others, Role::Text), scattered(mine.clone(), Role::Series(0))];
         lines.extend(diagonal.map(|ends| Curve::from_points(ends.to_vec(), Role::Dim)));
@@ -205,7 +207,7 @@ impl ClassPage {
     ) {
         let found = scatter(view, ranking, self.part);
         let title = match &found {
-            Some(own) => format!("{} by {}", own.figure, own.decision),
+            Some(scatter) => format!("{} by {}", scatter.figure, scatter.decision),
             None => "Decisions".to_owned(),
         };
         let inside = canvas.draw_pane_frame(
@@ -214,10 +216,10 @@ impl ClassPage {
             &self.highlighted_student_text(view, ranking, HIGHLIGHT_SYMBOL),
             false,
         );
-        match found.filter(|own| !own.points.is_empty()) {
-            Some(own) => {
-                let unit = if own.figure == "cash" { AxisUnit::Dollars } else { AxisUnit::Number };
-                self.draw_points(canvas, inside, &own.points, (&compact_number, unit), None);
+        match found.filter(|scatter| !scatter.points.is_empty()) {
+            Some(scatter) => {
+                let unit = if scatter.figure == "cash" { AxisUnit::Dollars } else { AxisUnit::Number };
+                self.draw_points(canvas, inside, &scatter.points, (&compact_number, unit), None);
             }
             None => canvas.draw_text(inside, " All students made the same decisions", Role::Dim),
         }
@@ -240,7 +242,7 @@ impl ClassPage {
             &self.highlighted_student_text(view, ranking, HIGHLIGHT_SYMBOL),
             false,
         );
-        let Some(own) = all.get(self.question.min(all.len().saturating_sub(1))) else {
+        let Some(guesses) = all.get(self.question.min(all.len().saturating_sub(1))) else {
             return canvas.draw_text(inside, " No guesses", Role::Dim);
         };
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
@@ -248,16 +250,16 @@ impl ClassPage {
             1 => String::new(),
             all => format!("{}/{all} ", self.question + 1),
         };
-        let question = wrap(&format!("{number}{}", own.question), inside.width as usize);
+        let question = wrap(&format!("{number}{}", guesses.question), inside.width as usize);
         let rows = (question.len() as u16).min(inside.height);
         for (row, line) in row_rects(inside).zip(&question) {
             canvas.draw_text(row, line, Role::Strong);
         }
         let rest = Rect { y: inside.y + rows, height: inside.height - rows, ..inside };
-        if own.choices.is_empty() {
-            self.draw_numeric_guesses(canvas, rest, own);
+        if guesses.choices.is_empty() {
+            self.draw_numeric_guesses(canvas, rest, guesses);
         } else {
-            draw_choice_counts(canvas, rest, own);
+            draw_choice_counts(canvas, rest, guesses);
         }
     }
 

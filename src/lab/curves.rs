@@ -59,7 +59,7 @@ pub fn all_curves_report(params: &Params) -> LabReport {
     }
     let mut exhibit = LabReport::with_table("Participation curves", table);
     let shown = |is_enterprise: bool| {
-        Group::all().filter(move |own| own.is_initially_known() && own.is_enterprise() == is_enterprise)
+        Group::all().filter(move |group| group.is_initially_known() && group.is_enterprise() == is_enterprise)
     };
     for (of, is_enterprise) in [("individuals", false), ("enterprises", true)] {
         exhibit.graphs.push(mean_curve_graph(of, shown(is_enterprise), params));

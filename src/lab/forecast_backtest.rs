@@ -58,8 +58,8 @@ pub fn band_coverage(
     horizon: u32,
     bands: &ErrorBands,
 ) -> Coverage {
-    let own = runs.iter().filter(|run| policy.is_none_or(|policy| run.policy == policy));
-    let made: Vec<Hindcast> = own.flat_map(|run| hindcasts(&run.weeks, horizon, bands)).collect();
+    let policy_runs = runs.iter().filter(|run| policy.is_none_or(|policy| run.policy == policy));
+    let made: Vec<Hindcast> = policy_runs.flat_map(|run| hindcasts(&run.weeks, horizon, bands)).collect();
     let held = made.iter().filter(|hindcast| hindcast.is_covered).count();
     // Rounded to the displayed digits to keep the file readable.
     let share = if made.is_empty() { 0.0 } else { held as f64 / made.len() as f64 };

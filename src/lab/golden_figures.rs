@@ -158,9 +158,9 @@ pub struct GoldenComparison {
 
 /// Compares our runs (a list of figures per seed) with a reference.
 pub fn compare_with_reference(reference: &ReferenceFigures, runs: &[Vec<MetricValue>]) -> GoldenComparison {
-    let mut own: BTreeMap<(&str, &str, u32), Vec<f64>> = BTreeMap::new();
+    let mut values_by_cell: BTreeMap<(&str, &str, u32), Vec<f64>> = BTreeMap::new();
     for figure in runs.iter().flatten() {
-        own.entry((figure.figure, figure.group, figure.day)).or_default().push(figure.value);
+        values_by_cell.entry((figure.figure, figure.group, figure.day)).or_default().push(figure.value);
     }
     let mut comparison = GoldenComparison {
         policy: reference.policy.clone(),
@@ -171,8 +171,8 @@ pub fn compare_with_reference(reference: &ReferenceFigures, runs: &[Vec<MetricVa
     let mut missing = BTreeSet::new();
     let countable = reference.cells.iter().filter(|(_, sample)| sample.count >= MIN_SEEDS);
     for (cell @ (figure, group, day), sample) in countable {
-        let Some(values) = own.get(&(figure.as_str(), group.as_str(), *day)) else {
-            let known = own.keys().any(|(text, split, _)| text == figure && split == group);
+        let Some(values) = values_by_cell.get(&(figure.as_str(), group.as_str(), *day)) else {
+            let known = values_by_cell.keys().any(|(text, split, _)| text == figure && split == group);
             if !known {
                 missing.insert(if group.is_empty() { figure.clone() } else { format!("{figure} {group}") });
             }
@@ -354,7 +354,7 @@ mod tests {
         assert!((z("subs_total") - 1.0).abs() < 1e-12, "{}", z("subs_total"));
         let values: Vec<f64> = singles(2).collect();
         let mean = values.iter().sum::<f64>() / 5.0;
-        let variance = values.iter().map(|own| (own - mean) * (own - mean)).sum::<f64>() / 4.0;
+        let variance = values.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>() / 4.0;
         assert!((z("cash") - (mean - 4.0) / (variance / 5.0).sqrt()).abs() < 1e-12, "{}", z("cash"));
     }
 }

@@ -181,7 +181,12 @@ fn measure_figures(lesson: &Arc<Lesson>) -> Result<Vec<FigureResult>, RunError> 
         let values: Vec<f64> = of_play.collect();
         values.iter().sum::<f64>() / values.len() as f64
     };
-    Ok(lesson.plan.measured.iter().map(|own| FigureResult { stated: own.clone(), mean: mean(own) }).collect())
+    Ok(lesson
+        .plan
+        .measured
+        .iter()
+        .map(|figure| FigureResult { stated: figure.clone(), mean: mean(figure) })
+        .collect())
 }
 
 /// Measures the figures of one play on a seed.
@@ -200,18 +205,18 @@ fn figure_values(
         scheduled_calls: &first.plays,
         weeks: figures.iter().map(|measured_figure| measured_figure.week.unwrap_or(last)).max(),
         is_judged: false,
-        needs_database: figures.iter().any(|own| own.measurement.needs_database()),
+        needs_database: figures.iter().any(|measured_figure| measured_figure.measurement.needs_database()),
     };
     let mut values = vec![None; figures.len()];
     let mut measure = |session: &mut Session, week: u32| {
         // A bankrupt company does not change.
         let stays = session.ended().is_some();
-        for (value, own) in values.iter_mut().zip(figures) {
-            let wanted = own.week.unwrap_or(last);
+        for (value, figure) in values.iter_mut().zip(figures) {
+            let wanted = figure.week.unwrap_or(last);
             if wanted == week || (stays && wanted > week) {
                 let problem =
-                    |problem| RunError::InvalidRequest(format!("measured figure {}: {problem}", own.name));
-                *value = measure_over_part(&own.measurement, session).map_err(problem)?;
+                    |problem| RunError::InvalidRequest(format!("measured figure {}: {problem}", figure.name));
+                *value = measure_over_part(&figure.measurement, session).map_err(problem)?;
             }
         }
         Ok(())

@@ -37,7 +37,7 @@ pub fn concordance(rankings: &[Vec<f64>]) -> Option<f64> {
     let sums: Vec<f64> =
         (0..things as usize).map(|at| rankings.iter().map(|values| values[at]).sum::<f64>()).collect();
     let squares: f64 = sums.iter().map(|sum| sum * sum).sum();
-    let ties: f64 = rankings.iter().map(|own| tie_correction(own)).sum();
+    let ties: f64 = rankings.iter().map(|ranking| tie_correction(ranking)).sum();
     let spread = judges * judges * things * (things * things - 1.0) - judges * ties;
     let above = 12.0 * squares - 3.0 * judges * judges * things * (things + 1.0) * (things + 1.0);
     (spread > 0.0).then(|| above / spread)

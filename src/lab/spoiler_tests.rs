@@ -126,18 +126,18 @@ fn leaked_numbers(text: &str, answers: &PolicyNumbers) -> Vec<String> {
         let names = |word: &str| line.contains(word) || line.contains(&word.replace('_', " "));
         let holds = |group: &str, amounts: &[(&str, f64)]| {
             let values = self::numbers_in(line);
-            let own =
+            let matches_value =
                 |amount: &(&str, f64)| amount.0 == group && values.iter().any(|one| one.value == amount.1);
-            line.contains(group) && amounts.iter().any(own)
+            line.contains(group) && amounts.iter().any(matches_value)
         };
         for (group, channel) in answers.channels.iter().copied() {
-            let beside = |first: &str, second: &str| {
+            let is_near = |first: &str, second: &str| {
                 line.match_indices(first).any(|(at, _)| {
                     line.get(at + first.len()..)
                         .is_some_and(|rest| rest.find(second).is_some_and(|gap| gap <= MAX_DISTANCE))
                 })
             };
-            if names(channel) && (beside(channel, group) || beside(group, channel)) {
+            if names(channel) && (is_near(channel, group) || is_near(group, channel)) {
                 found.push(format!("{channel} for {group}: {line}"));
             }
             if lower.contains("dev") && holds(group, &answers.development) {
@@ -177,9 +177,9 @@ fn svg_text(svg: &str) -> String {
     let (mut text, mut row) = (String::new(), "");
     for piece in svg.split("<text").skip(1) {
         let Some((tag, rest)) = piece.split_once('>') else { continue };
-        let own = tag.split(" y=\"").nth(1).and_then(|rest| rest.split('"').next()).unwrap_or_default();
-        text += if own == row { " " } else { "\n" };
-        row = own;
+        let row_y = tag.split(" y=\"").nth(1).and_then(|rest| rest.split('"').next()).unwrap_or_default();
+        text += if row_y == row { " " } else { "\n" };
+        row = row_y;
         text += rest.split("</text>").next().unwrap_or_default();
     }
     text

@@ -89,11 +89,11 @@ pub fn describe_turning_points(weeks: &[WeekFigures]) -> Vec<String> {
 mod tests {
     use super::*;
 
-    fn week(day: u32, subscribers: u32, came: u32, left: u32, payments: f64, costs: f64) -> WeekFigures {
+    fn week(day: u32, subscribers: u32, joined: u32, left: u32, payments: f64, costs: f64) -> WeekFigures {
         WeekFigures {
             day,
             individual_subscribers: subscribers,
-            new_individual_subscribers: came,
+            new_individual_subscribers: joined,
             cancellations: left,
             payments,
             costs,
@@ -112,9 +112,9 @@ mod tests {
             ("advertising", -200.0),
             ("compute", 0.0),
         ]);
-        let told: Vec<(&str, f64, f64)> =
+        let shares: Vec<(&str, f64, f64)> =
             cost_shares(&totals).iter().map(|cost| (cost.name, cost.dollars, cost.share)).collect();
-        assert_eq!(told, [("development and R&D", 600.0, 0.75), ("ads and leads", 200.0, 0.25)]);
+        assert_eq!(shares, [("development and R&D", 600.0, 0.75), ("ads and leads", 200.0, 0.25)]);
         assert!(cost_shares(&BTreeMap::new()).is_empty());
     }
 

@@ -95,8 +95,11 @@ pub fn collect(
             let from = run.manifest.participant.clone().unwrap_or_default();
             notes.push(CollectNote::Relabelled { run: id.clone(), from, to: to.clone() });
         }
-        let other =
-            run.manifest.study.as_ref().filter(|stamp| study.is_some_and(|own| own.digest != stamp.digest));
+        let other = run
+            .manifest
+            .study
+            .as_ref()
+            .filter(|stamp| study.is_some_and(|study| study.digest != stamp.digest));
         if let (Some(stamp), Some(label)) = (other, &label) {
             others.insert(label.clone(), (id.clone(), stamp.digest.clone()));
         }

@@ -115,12 +115,12 @@ mod tests {
         assert_eq!(rows(&curve_explorer).len(), 11);
         assert!(rows(&curve_explorer)[0][0] == "$0" && rows(&curve_explorer)[10][3] == "–");
         assert_eq!(footnotes(&curve_explorer).len(), 2);
-        let told = describe_outcome(&curve_explorer.outcome_at(20.0, 0.4));
-        assert!(told.contains(" to ") && told.contains("revenue per lead $"), "{told}");
+        let text = describe_outcome(&curve_explorer.outcome_at(20.0, 0.4));
+        assert!(text.contains(" to ") && text.contains("revenue per lead $"), "{text}");
         let companies =
             CurveExplorer::open(&mut session, Group::parse("E1").expect("a group")).expect("an explorer");
-        let told = describe_outcome(&companies.outcome(&companies.plans));
-        assert!(told.contains("ask for an offer"), "{told}");
+        let text = describe_outcome(&companies.outcome(&companies.plans));
+        assert!(text.contains("ask for an offer"), "{text}");
     }
 
     #[test]

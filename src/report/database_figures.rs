@@ -225,8 +225,8 @@ mod tests {
                 assert_eq!(book.seats[at + 1], active, "an individual has one seat");
                 left_before_the_end += if at < 8 { group_week.left } else { 0 };
             }
-            let came: u32 = session.company().group_weeks().iter().map(|week| week[book.group].leads).sum();
-            assert_eq!(book.leads, f64::from(came), "{}", book.group);
+            let leads: u32 = session.company().group_weeks().iter().map(|week| week[book.group].leads).sum();
+            assert_eq!(book.leads, f64::from(leads), "{}", book.group);
         }
         assert!(left_before_the_end > 0, "no one cancelled, so the test checked nothing");
     }

@@ -17,7 +17,7 @@ pub fn describe_deals(tool: ToolId, arguments: &Value, names: &EnterpriseNames) 
     let deals = arguments.get("deals")?.as_array()?;
     let texts: Option<Vec<String>> =
         deals.iter().take(MAX_LISTED_DEALS).map(|deal| describe_deal(deal, names)).collect();
-    let mut words = texts.filter(|told| !told.is_empty())?.join(" · ");
+    let mut words = texts.filter(|text| !text.is_empty())?.join(" · ");
     if deals.len() > MAX_LISTED_DEALS {
         words += &format!(" · {} more", pluralize((deals.len() - MAX_LISTED_DEALS) as u32, "enterprise"));
     }
@@ -48,22 +48,22 @@ mod tests {
     #[test]
     fn deals_name_their_enterprises_in_every_call_form() {
         let names = EnterpriseNames::new(3, &Params::bundled().personas.email);
-        let told = |tool: ToolId, deals: Value| describe_deals(tool, &json!({ "deals": deals }), &names);
+        let describe = |tool: ToolId, deals: Value| describe_deals(tool, &json!({ "deals": deals }), &names);
         let (one, send) = (names.name_with_number(7), ToolId::SendEnterpriseDeal);
         let offered = Some(format!("{one}: B $35.00 or C $60.50"));
-        assert_eq!(told(send, json!([[7, [["B", 35], ["C", 60.5]]]])), offered);
+        assert_eq!(describe(send, json!([[7, [["B", 35], ["C", 60.5]]]])), offered);
         let object = json!([{"customer_id": 7, "offerings": [
             {"plan": "B", "price_per_seat": 35.0}, {"plan": "C", "price": 60.5}]}]);
-        assert_eq!(told(send, object), offered);
+        assert_eq!(describe(send, object), offered);
         for ended in [json!([7]), json!([[7]]), json!([{"customer_id": 7}])] {
-            assert_eq!(told(ToolId::RejectEnterpriseDeal, ended), Some(one.clone()));
+            assert_eq!(describe(ToolId::RejectEnterpriseDeal, ended), Some(one.clone()));
         }
         let many: Vec<u32> = (1..=3_569).collect();
-        let many = told(ToolId::RejectEnterpriseDeal, json!(many)).expect("words");
+        let many = describe(ToolId::RejectEnterpriseDeal, json!(many)).expect("words");
         assert!(many.ends_with(" · 3,566 enterprises more"), "{many}");
         for none in [json!([]), json!(["x"]), json!([[7, [["B"]]]]), json!([-4])] {
-            assert_eq!(told(send, none.clone()), None, "{none}");
+            assert_eq!(describe(send, none.clone()), None, "{none}");
         }
-        assert_eq!(told(ToolId::SetPrices, json!([7])), None);
+        assert_eq!(describe(ToolId::SetPrices, json!([7])), None);
     }
 }

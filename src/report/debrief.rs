@@ -94,7 +94,7 @@ pub fn debrief_paragraphs(debrief: &Debrief) -> Vec<String> {
         lines.extend(debrief.pitfalls.iter().map(|(day, say)| format!("Day {day}: {say}")));
     }
     if let Some(text) = &debrief.text {
-        lines.extend(split_paragraphs(text).into_iter().flat_map(|own| [String::new(), own]));
+        lines.extend(split_paragraphs(text).into_iter().flat_map(|paragraph| [String::new(), paragraph]));
         lines.extend([String::new(), describe_figure_source(debrief)]);
         lines.push(String::new());
         lines.extend(named_terms(text).iter().map(|term| format!("{}: {}", term.title, term.text)));
@@ -113,12 +113,12 @@ pub fn describe_comparison(debrief: &Debrief) -> Vec<String> {
             vec!["Your decisions cannot be compared with the reference play in this run.".to_owned()]
         }
         DecisionComparison::Different(parting) => {
-            let told = |name: &str, play: &Option<ReferenceCurve>| {
+            let describe_play = |name: &str, play: &Option<ReferenceCurve>| {
                 let text = play.as_ref().and_then(|play| play.text.as_ref());
                 text.map(|text| format!("The {name} play: {text}"))
             };
             let mut lines: Vec<String> =
-                [told("reference", &debrief.reference), told("bad", &debrief.bad_play)]
+                [describe_play("reference", &debrief.reference), describe_play("bad", &debrief.bad_play)]
                     .into_iter()
                     .flatten()
                     .collect();
@@ -149,8 +149,8 @@ fn describe_decision(decision: &DifferentDecision, names: &EnterpriseNames) -> S
             settings.iter().take(MAX_LISTED_SETTINGS).map(one).collect::<Vec<_>>().join("; ") + &more
         }
         DecisionDifference::Calls { own: values, good } => {
-            let told = |calls| describe_calls(decision.tool, calls, names);
-            format!("{}; reference play: {}", told(values), told(good))
+            let describe = |calls| describe_calls(decision.tool, calls, names);
+            format!("{}; reference play: {}", describe(values), describe(good))
         }
     };
     format!("{}: {text}", decision.tool.name())
@@ -174,8 +174,10 @@ fn describe_calls(tool: ToolId, calls: &[Value], names: &EnterpriseNames) -> Str
             return words;
         }
         let of = |(name, value): (&String, &Value)| format!("{name} {}", format_argument(value));
-        call.as_object()
-            .map_or_else(|| format_argument(call), |own| own.iter().map(of).collect::<Vec<_>>().join(", "))
+        call.as_object().map_or_else(
+            || format_argument(call),
+            |fields| fields.iter().map(of).collect::<Vec<_>>().join(", "),
+        )
     };
     let more = match calls.len().saturating_sub(MAX_LISTED_CALLS) {
         0 => String::new(),
@@ -187,7 +189,7 @@ fn describe_calls(tool: ToolId, calls: &[Value], names: &EnterpriseNames) -> Str
     }
 }
 
-fn describe_effect(parting: &FirstDifference, own: &Debrief) -> String {
+fn describe_effect(parting: &FirstDifference, debrief: &Debrief) -> String {
     let effect = match parting.effect {
         DecisionEffect::Simulated(effect) => effect,
         DecisionEffect::Rejected => {
@@ -200,12 +202,12 @@ fn describe_effect(parting: &FirstDifference, own: &Debrief) -> String {
                 .to_owned();
         }
     };
-    let judged_by = own.judged_by.as_ref();
-    let figure = judged_by.zip(effect.judged).map(|(judged, (own, with))| {
-        let (own, with) = (format_figure(judged.figure, own), format_figure(judged.figure, with));
-        format!("{} of {with} rather than {own}, and ", judged.figure.name())
+    let judged_by = debrief.judged_by.as_ref();
+    let figure = judged_by.zip(effect.judged).map(|(judged, (actual, with))| {
+        let (actual, with) = (format_figure(judged.figure, actual), format_figure(judged.figure, with));
+        format!("{} of {with} rather than {actual}, and ", judged.figure.name())
     });
-    let told = format!(
+    let text = format!(
         "Re-run with these decisions of the reference play in week {} and your other decisions: {}\
          cash of {} on day {} rather than {} ({}).",
         parting.week,
@@ -215,7 +217,7 @@ fn describe_effect(parting: &FirstDifference, own: &Debrief) -> String {
         format_money(effect.own),
         signed_dollars(effect.with - effect.own)
     );
-    told + &describe_single_or_joint_effect(effect, own)
+    text + &describe_single_or_joint_effect(effect, debrief)
 }
 
 /// Explains the result if the first different decisions of the reference play alone make it worse.
@@ -349,10 +351,10 @@ fn summary_facts(debrief: &Debrief) -> Vec<NamedValue> {
     let day = format!("day {}", debrief.cash_by_day.len().saturating_sub(1));
     let mut facts = vec![NamedValue::new("You", last(&debrief.cash_by_day), day)];
     for (name, curve) in [("Reference play", &debrief.reference), ("Bad play", &debrief.bad_play)] {
-        let told = |curve: &ReferenceCurve| {
+        let fact = |curve: &ReferenceCurve| {
             NamedValue::new(name, last(&curve.cash_by_day), curve.text.clone().unwrap_or_default())
         };
-        facts.extend(curve.as_ref().map(told));
+        facts.extend(curve.as_ref().map(fact));
     }
     facts
 }
@@ -385,7 +387,7 @@ fn judged_chart(judged: &JudgedFigure, summary: &str) -> Chart {
         points: values.iter().map(|(day, value)| (f64::from(*day), *value)).collect(),
     };
     let references = [("reference play", &judged.reference), ("bad play", &judged.bad_play)];
-    let others = references.into_iter().filter_map(|(name, own)| Some(curve(name, own.as_ref()?)));
+    let others = references.into_iter().filter_map(|(name, values)| Some(curve(name, values.as_ref()?)));
     Chart {
         title: format!("{} by week", capitalize(judged.figure.name())),
         summary: summary.to_owned(),
@@ -403,9 +405,14 @@ fn guess_blocks(debrief: &Debrief) -> Vec<Block> {
     let asked = debrief.steps.iter().filter_map(|step| Some((step, step.question.as_ref()?)));
     let rows: Vec<Vec<String>> = asked
         .map(|(step, question)| {
-            let said =
+            let guess_text =
                 |value: Option<f64>| value.map_or("–".to_owned(), |value| format_guess(question, value));
-            vec![step.title.clone(), question.text.clone(), said(question.guess), said(question.outcome)]
+            vec![
+                step.title.clone(),
+                question.text.clone(),
+                guess_text(question.guess),
+                guess_text(question.outcome),
+            ]
         })
         .collect();
     if rows.is_empty() {
@@ -417,7 +424,7 @@ fn guess_blocks(debrief: &Debrief) -> Vec<Block> {
 
 fn goal_blocks(debrief: &Debrief) -> Vec<Block> {
     let row = |step: &DebriefStep| {
-        let met = |met| match met {
+        let verdict = |is_met| match is_met {
             Some(true) => "reached",
             Some(false) => "missed",
             None => "not judged",
@@ -430,7 +437,7 @@ fn goal_blocks(debrief: &Debrief) -> Vec<Block> {
                 goal.text.clone(),
                 number(goal.value),
                 number(goal.bound),
-                met(goal.met).to_owned(),
+                verdict(goal.met).to_owned(),
                 describe_effort(step),
             ]
         };

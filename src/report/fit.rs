@@ -488,20 +488,23 @@ mod tests {
         let session = play_weeks(5);
         let now = session.company().delivered_quality();
         let (weeks, estimates) = (session.company().group_weeks(), session.company().estimates());
-        for own in &estimates {
-            let last = &weeks[weeks.len() - 1][own.group];
-            let quality =
-                now.iter().find(|quality| quality.group == own.group).map(|quality| quality.by_plan);
+        for group_estimates in &estimates {
+            let last = &weeks[weeks.len() - 1][group_estimates.group];
+            let quality = now
+                .iter()
+                .find(|quality| quality.group == group_estimates.group)
+                .map(|quality| quality.by_plan);
             assert_eq!(
                 (last.quality, last.floor),
-                (quality, Some(own.true_range(own.required_quality))),
+                (quality, Some(group_estimates.true_range(group_estimates.required_quality))),
                 "{}",
-                own.group
+                group_estimates.group
             );
         }
         let s1 = estimates[0].group;
         assert!(weeks[0][s1].quality != weeks[4][s1].quality, "development changes it");
-        let unknown = Group::all().find(|group| estimates.iter().all(|own| own.group != *group));
+        let unknown = Group::all()
+            .find(|group| estimates.iter().all(|group_estimates| group_estimates.group != *group));
         assert_eq!(weeks[4][unknown.expect("unknown groups")].floor, None);
     }
 }

@@ -33,11 +33,16 @@ pub struct Funnel {
 /// Returns the funnel of every known group of enterprises, in their fixed order.
 pub fn funnels(session: &Session) -> Vec<Funnel> {
     let (estimates, quality) = (session.company().estimates(), session.company().delivered_quality());
-    let known = estimates.iter().filter(|own| own.group.is_enterprise());
+    let known = estimates.iter().filter(|group_estimates| group_estimates.group.is_enterprise());
     let quotas = session.settings().core.quotas;
     known
-        .map(|own| {
-            funnel(own, &quality, session.company().group_weeks(), &quotas.0.map(|quota| quota.units()))
+        .map(|group_estimates| {
+            funnel(
+                group_estimates,
+                &quality,
+                session.company().group_weeks(),
+                &quotas.0.map(|quota| quota.units()),
+            )
         })
         .collect()
 }
@@ -149,26 +154,27 @@ mod tests {
         assert_eq!(all.iter().map(|funnel| funnel.group.id()).collect::<Vec<_>>(), ["E1", "E2", "E3"]);
         let mut number =
             |sql: String| novamind_database::number_at(&session.query(&sql).expect("rows").rows[0], 0) as u32;
-        for own in &all {
-            let group = own.group;
+        for funnel in &all {
+            let group = funnel.group;
             let of = |table: &str, condition: &str| {
                 format!(
                     "SELECT count(DISTINCT c.customer_id) FROM customers c {table} WHERE c.group_id = '{group}' {condition}"
                 )
             };
-            assert_eq!(own.enterprises, number(of("", "")), "{group}");
+            assert_eq!(funnel.enterprises, number(of("", "")), "{group}");
             let turns = "JOIN enterprise_turns t ON t.customer_id = c.customer_id";
-            assert_eq!(own.requests, number(of(turns, "AND t.thread_type = 'new_lead'")), "{group}");
+            assert_eq!(funnel.requests, number(of(turns, "AND t.thread_type = 'new_lead'")), "{group}");
             let signed = "AND t.thread_type = 'new_lead' AND t.close_reason = 'accepted'";
-            assert_eq!(own.deals, number(of(turns, signed)), "{group}");
+            assert_eq!(funnel.deals, number(of(turns, signed)), "{group}");
         }
         assert!(
-            all.iter().any(|own| own.deals > 0) && all.iter().any(|own| own.lost_before_request() > 0),
+            all.iter().any(|funnel| funnel.deals > 0)
+                && all.iter().any(|funnel| funnel.lost_before_request() > 0),
             "{all:?}"
         );
-        let away = all.iter().find(|own| own.lost_before_request() > 0).expect("some");
+        let away = all.iter().find(|funnel| funnel.lost_before_request() > 0).expect("some");
         assert!(away.describe().contains("found no plan good enough"), "{}", away.describe());
-        let lately = all.iter().find(|own| own.recently_lost > 0).expect("some, lately");
+        let lately = all.iter().find(|funnel| funnel.recently_lost > 0).expect("some, lately");
         assert!(
             lately.describe().contains(" delivers ") && lately.describe().contains("required quality is ")
         );

@@ -128,8 +128,8 @@ mod tests {
         let mut cash = vec![100.0; 29];
         (cash[21], cash[28]) = (160.0, -40.0);
         let outages = [(3, 30), (9, 10), (10, 20), (11, 5), (25, 40)];
-        let told = highlights(&weeks, &cash, &outages, Some(RunEndReason::Bankruptcy));
-        let lines: Vec<String> = told.iter().map(|one| format!("{} {}", one.day, one.text)).collect();
+        let found = highlights(&weeks, &cash, &outages, Some(RunEndReason::Bankruptcy));
+        let lines: Vec<String> = found.iter().map(|one| format!("{} {}", one.day, one.text)).collect();
         assert_eq!(
             lines,
             [
@@ -155,8 +155,8 @@ mod tests {
     fn partial_bankruptcy_week_is_never_the_best() {
         let cut_short = WeekFigures { days_run: 2, ..week(23, 0, 0, -10.0) };
         let weeks = [week(7, 0, 0, -50.0), week(14, 0, 0, -40.0), week(21, 0, 0, -60.0), cut_short];
-        let told = highlights(&weeks, &[100.0; 24], &[], Some(RunEndReason::Bankruptcy));
-        let best = told.iter().find(|one| one.text.contains("best week")).expect("a best week");
+        let found = highlights(&weeks, &[100.0; 24], &[], Some(RunEndReason::Bankruptcy));
+        let best = found.iter().find(|one| one.text.contains("best week")).expect("a best week");
         assert_eq!((best.day, best.text.as_str()), (14, "best week for cash: -$40"));
     }
 }

@@ -203,11 +203,11 @@ mod tests {
 
     #[test]
     fn the_same_run_gives_the_same_report_but_for_its_name() {
-        let told = |session: novamind_session::Session| {
+        let reports = |session: novamind_session::Session| {
             let id = session.manifest().id.clone();
             let story = RunReport::from_session(&session);
             (report_to_markdown(&story).replace(&id, "RUN"), report_to_html(&story).replace(&id, "RUN"))
         };
-        assert_eq!(told(test_kit::finished_run()), told(test_kit::finished_run()));
+        assert_eq!(reports(test_kit::finished_run()), reports(test_kit::finished_run()));
     }
 }

@@ -85,13 +85,13 @@ pub fn describe_question(question: &LessonQuestion) -> Vec<String> {
 pub fn describe_guess_and_outcome(question: &LessonQuestion) -> Vec<String> {
     let written = |value: f64| format_guess(question, value);
     let is_choice = !question.choices.is_empty();
-    let said = |choice: &str, number: &str, value: f64| match is_choice {
+    let sentence = |choice: &str, number: &str, value: f64| match is_choice {
         true => format!("{choice}: {}.", written(value)),
         false => format!("{number} {}.", written(value)),
     };
-    let guess = question.guess.map(|guess| said("You chose", "You guessed", guess));
+    let guess = question.guess.map(|guess| sentence("You chose", "You guessed", guess));
     let outcome = match question.outcome {
-        Some(outcome) => Some(said("The answer", "It was", outcome)),
+        Some(outcome) => Some(sentence("The answer", "It was", outcome)),
         None if question.guess.is_some() && question.told_at_end => {
             Some("You will see the result at the end of this part.".to_owned())
         }

@@ -73,13 +73,13 @@ pub fn report_to_html(story: &RunReport) -> String {
 }
 
 /// Returns the debrief of a lesson as Markdown.
-pub fn debrief_to_markdown(own: &Debrief) -> String {
-    markdown::to_markdown(&debrief::debrief_page(own))
+pub fn debrief_to_markdown(debrief: &Debrief) -> String {
+    markdown::to_markdown(&debrief::debrief_page(debrief))
 }
 
 /// Returns the debrief of a lesson as one self-contained HTML page without scripts.
-pub fn debrief_to_html(own: &Debrief) -> String {
-    html::to_html(&debrief::debrief_page(own))
+pub fn debrief_to_html(debrief: &Debrief) -> String {
+    html::to_html(&debrief::debrief_page(debrief))
 }
 
 /// Returns the card of a run as text of 80 columns.

@@ -94,7 +94,7 @@ fn chart_markdown(chart: &Chart) -> String {
         Plot::Lines { curves, .. } => {
             // The curves of one chart share a scale so that they can be compared.
             let all: Vec<f64> = curves.iter().flat_map(curve_values).collect();
-            let trend = |own: &Curve| sparkline_between(&curve_values(own), min_and_max(&all));
+            let trend = |curve: &Curve| sparkline_between(&curve_values(curve), min_and_max(&all));
             curves.iter().map(|curve| (curve.name.clone(), trend(curve))).collect()
         }
         Plot::Stacks { series: parts, .. } => {
@@ -115,7 +115,7 @@ fn curve_values(curve: &Curve) -> Vec<f64> {
 fn sparkline(values: &[f64]) -> String {
     let is_cost = values.iter().all(|value| *value <= 0.0);
     let sizes: Vec<f64> =
-        sample_values(values).into_iter().map(|own| if is_cost { -own } else { own }).collect();
+        sample_values(values).into_iter().map(|value| if is_cost { -value } else { value }).collect();
     sparkline_between(&sizes, min_and_max(&sizes))
 }
 

@@ -142,9 +142,9 @@ pub fn best_tried_channel_share(rows: &[ChannelRow]) -> Option<ChannelSkill> {
         })
         .collect();
     groups.sort_by(|left, right| right.spend.total_cmp(&left.spend).then(left.group.cmp(&right.group)));
-    let told = || groups.iter().filter_map(|group| Some((group.spend, group.best.as_ref()?)));
-    let spend: f64 = told().map(|(spend, _)| spend).sum();
-    let on_best: f64 = told().map(|(spend, best)| best.share * spend).sum();
+    let spend_and_best = || groups.iter().filter_map(|group| Some((group.spend, group.best.as_ref()?)));
+    let spend: f64 = spend_and_best().map(|(spend, _)| spend).sum();
+    let on_best: f64 = spend_and_best().map(|(spend, best)| best.share * spend).sum();
     let share = (spend > 0.0).then(|| on_best / spend);
     (!groups.is_empty()).then_some(ChannelSkill { share, groups })
 }
@@ -185,7 +185,7 @@ pub fn true_best_channel_share(
         *all += row.spend;
         *on_best += if channel.id() == row.channel { row.spend } else { 0.0 };
     }
-    let (all, on_best) = by_group.values().fold((0.0, 0.0), |sum, own| (sum.0 + own.0, sum.1 + own.1));
+    let (all, on_best) = by_group.values().fold((0.0, 0.0), |sum, spend| (sum.0 + spend.0, sum.1 + spend.1));
     let shares = by_group.iter().map(|(group, (all, on_best))| ((*group).to_owned(), on_best / all));
     (all > 0.0).then(|| TrueBestChannelSpend { share: on_best / all, groups: shares.collect() })
 }
@@ -356,7 +356,7 @@ pub fn naive_forecast_weeks(journal: &[JournalEntry]) -> (u32, u32) {
         JournalEntry::Advance { filled_naively, .. } => Some(filled_naively.contains(&true)),
         _ => None,
     });
-    filed.fold((0, 0), |(naive, all), own| (naive + u32::from(own), all + 1))
+    filed.fold((0, 0), |(naive, all), is_naive| (naive + u32::from(is_naive), all + 1))
 }
 
 #[cfg(test)]

@@ -46,12 +46,9 @@ pub fn describe_changed_parameters(changed: &ChangedParameters) -> Vec<String> {
     if !changed.waiting.is_empty() {
         lines.push("scheduled for a later day:".to_owned());
     }
-    lines.extend(
-        changed
-            .waiting
-            .iter()
-            .map(|own| format!("  {}: {} from day {}", own.key, own.new, own.from_day.unwrap_or_default())),
-    );
+    lines.extend(changed.waiting.iter().map(|change| {
+        format!("  {}: {} from day {}", change.key, change.new, change.from_day.unwrap_or_default())
+    }));
     lines
 }
 

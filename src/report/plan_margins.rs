@@ -141,24 +141,26 @@ impl PlanSales {
 
     /// Returns the sum over all groups.
     pub fn usage_of_plan(&self, plan: Plan) -> PlanUsage {
-        self.sum(|_, own| own == plan)
+        self.sum(|_, row_plan| row_plan == plan)
     }
 
     fn by_group(&self, plan: Plan) -> Vec<(Group, PlanUsage)> {
-        let of = |group: Group| (group, self.sum(|own, of| own == group && of == plan));
+        let of =
+            |group: Group| (group, self.sum(|row_group, row_plan| row_group == group && row_plan == plan));
         Group::all().map(of).filter(|(_, plan_usage)| plan_usage.customers > 0.0).collect()
     }
 
     fn sum(&self, counts: impl Fn(Group, Plan) -> bool) -> PlanUsage {
-        let own = self.subscribed.iter().chain(&self.used).filter(|(group, plan, _)| counts(*group, *plan));
-        own.fold(PlanUsage::default(), |sum, (_, _, more)| sum.add(*more))
+        let counted_rows =
+            self.subscribed.iter().chain(&self.used).filter(|(group, plan, _)| counts(*group, *plan));
+        counted_rows.fold(PlanUsage::default(), |sum, (_, _, more)| sum.add(*more))
     }
 }
 
 fn by_plan(rows: &QueryResult, read: impl Fn(&[Cell]) -> PlanUsage) -> Vec<(Group, Plan, PlanUsage)> {
-    let own =
+    let parse_row =
         |row: &Vec<Cell>| Some((Group::parse(text_at(row, 0))?, Plan::parse(text_at(row, 1))?, read(row)));
-    rows.rows.iter().filter_map(own).collect()
+    rows.rows.iter().filter_map(parse_row).collect()
 }
 
 /// Terms of a plan under a draft.
@@ -277,14 +279,14 @@ pub fn margin_summary(
             return format!("{plan} no usage on day {day}");
         };
         let unit_cost = set.unit_cost(models);
-        let told = |margin: &dyn Fn(f64) -> Option<f64>| format_margin(unit_cost.and_then(margin));
+        let margin_text = |margin: &dyn Fn(f64) -> Option<f64>| format_margin(unit_cost.and_then(margin));
         let also = match lever {
             MarginSetting::Price if differs_by_a_cent(set.price, paid) => {
-                let margin = told(&|unit_cost| margin(set.price, plan_usage.compute_cost(unit_cost)?));
+                let margin = margin_text(&|unit_cost| margin(set.price, plan_usage.compute_cost(unit_cost)?));
                 format!(", list {} {margin}", cents(set.price))
             }
             MarginSetting::Quota => {
-                let margin = told(&|unit_cost| plan_usage.margin_at_full_quota(set.quota, unit_cost));
+                let margin = margin_text(&|unit_cost| plan_usage.margin_at_full_quota(set.quota, unit_cost));
                 format!(", at quota {} {margin}", compact_number(set.quota))
             }
             _ => String::new(),
@@ -293,7 +295,7 @@ pub fn margin_summary(
             "{plan} T{}: paid {} {}{also}",
             set.tier,
             cents(paid),
-            told(&|unit_cost| plan_usage.margin(unit_cost))
+            margin_text(&|unit_cost| plan_usage.margin(unit_cost))
         )
     };
     let head = format!("gross margin at day-{day} usage");
@@ -313,13 +315,13 @@ fn describe_groups(
     models: &[(u8, f64)],
 ) -> Option<String> {
     let unit_cost = set.unit_cost(models)?;
-    let told = |(group, plan_usage): &(Group, PlanUsage)| {
+    let describe_group = |(group, plan_usage): &(Group, PlanUsage)| {
         let margin = plan_usage.margin(unit_cost).map_or("–".to_owned(), |margin| percent(margin, 0));
         format!("{group} {margin} of {}", plan_usage.revenue_per_seat().map_or("–".to_owned(), format_money))
     };
     let groups = sales.by_group(plan);
     (groups.len() > 1).then(|| {
-        let texts: Vec<String> = groups.iter().map(told).collect();
+        let texts: Vec<String> = groups.iter().map(describe_group).collect();
         format!("{plan} by group on T{}: {}", set.tier, texts.join(", "))
     })
 }

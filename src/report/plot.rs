@@ -81,7 +81,7 @@ pub fn plot_in(frame: &PlotArea, drawn: &[PlotSeries<'_>]) -> String {
     let placed = |(x, y): &(f64, f64)| (frame.x_scale.position(*x), frame.y_scale.position(*y));
     let all = || {
         let points = drawn.iter().flat_map(|plot_series| plot_series.points);
-        points.filter(|own| placed(own).0.is_finite() && placed(own).1.is_finite())
+        points.filter(|point| placed(point).0.is_finite() && placed(point).1.is_finite())
     };
     let Some((left, right)) = padded_range(all().map(|point| point.0)) else { return String::new() };
     let Some((low, high)) = padded_range(all().map(|point| point.1)) else { return String::new() };
@@ -125,7 +125,7 @@ pub fn plot_in(frame: &PlotArea, drawn: &[PlotSeries<'_>]) -> String {
 
 /// Draws horizontal bars, each between its label and its value.
 pub fn bars(points: &[(f64, f64)], width: usize) -> String {
-    let most = points.iter().map(|point| point.1).filter(|own| own.is_finite()).fold(0.0, f64::max);
+    let most = points.iter().map(|point| point.1).filter(|value| value.is_finite()).fold(0.0, f64::max);
     let (labels, values): (Vec<String>, Vec<String>) =
         points.iter().map(|(x, y)| (format_tick(*x), compact_number(*y))).unzip();
     let widest = |texts: &[String]| texts.iter().map(|text| text.width()).max().unwrap_or(0);

@@ -43,8 +43,8 @@ pub fn lay_out(text: &str, width: usize) -> Vec<ProseLine> {
             }
             MarkdownBlock::Paragraph(text) => lines.extend(wrap_chars(styled_chars(&text), "", "", width)),
             MarkdownBlock::Item(mark, text) => {
-                let beside = " ".repeat(mark.width());
-                lines.extend(wrap_chars(styled_chars(&text), &mark, &beside, width));
+                let blank_mark = " ".repeat(mark.width());
+                lines.extend(wrap_chars(styled_chars(&text), &mark, &blank_mark, width));
             }
             MarkdownBlock::Quote(text) => lines.extend(wrap_chars(styled_chars(&text), "  ", "  ", width)),
             MarkdownBlock::Verbatim(text) => {
@@ -78,7 +78,7 @@ fn parse_blocks(text: &str) -> Vec<MarkdownBlock> {
             continue;
         }
         let broken = line.ends_with("  ") || bare.ends_with('\\');
-        let said = bare.strip_suffix('\\').unwrap_or(bare).trim_end();
+        let content = bare.strip_suffix('\\').unwrap_or(bare).trim_end();
         let fresh = match line_start(bare, indent) {
             _ if fenced => Some(MarkdownBlock::Verbatim(line.trim_end().to_owned())),
             Some(block) => Some(block),
@@ -89,11 +89,11 @@ fn parse_blocks(text: &str) -> Vec<MarkdownBlock> {
                     | MarkdownBlock::Quote(text),
                 ) => {
                     text.push(' ');
-                    text.push_str(said);
+                    text.push_str(content);
                     None
                 }
                 _ if indent >= 4 => Some(MarkdownBlock::Verbatim(line.trim_end().to_owned())),
-                _ => Some(MarkdownBlock::Paragraph(said.to_owned())),
+                _ => Some(MarkdownBlock::Paragraph(content.to_owned())),
             },
         };
         match (fresh, blocks.last_mut()) {

@@ -196,10 +196,11 @@ fn limit_rows(limits: &TimeLimits) -> String {
         ("Active minutes per session", limits.session_minutes),
         ("Active minutes per run, over all sessions", limits.study_minutes),
     ];
-    let minutes = |number: Option<u32>, none: &str| number.map_or(none.to_owned(), |own| own.to_string());
-    let row = |(what, own): (&str, Option<u32>)| format!("| {what} | {} |\n", minutes(own, "no limit"));
+    let minutes =
+        |number: Option<u32>, none: &str| number.map_or(none.to_owned(), |number| number.to_string());
+    let row = |(what, limit): (&str, Option<u32>)| format!("| {what} | {} |\n", minutes(limit, "no limit"));
     let text: String = all.into_iter().map(row).collect();
-    if all.iter().all(|(_, own)| own.is_none()) {
+    if all.iter().all(|(_, limit)| limit.is_none()) {
         return text;
     }
     let at_limit = match limits.at_limit {

@@ -100,9 +100,10 @@ pub struct Ranking {
 
 impl Ranking {
     /// Returns the best results and those around this run's.
-    pub fn top_and_neighbors(&self, best: usize, beside: usize) -> Vec<&RankedRun> {
+    pub fn top_and_neighbors(&self, best: usize, neighbors: usize) -> Vec<&RankedRun> {
         let number = self.entries.iter().position(|place| place.owner == ResultOwner::ThisRun);
-        let wanted = |at: usize| at < best || number.is_some_and(|own| own.abs_diff(at) <= beside);
+        let wanted =
+            |at: usize| at < best || number.is_some_and(|position| position.abs_diff(at) <= neighbors);
         self.entries.iter().enumerate().filter(|(at, _)| wanted(*at)).map(|(_, place)| place).collect()
     }
 
@@ -223,7 +224,7 @@ mod tests {
 
     #[test]
     fn changed_parameters_prevent_ranking() {
-        let own = |scenario: &str, overrides: &[(&str, &str)]| {
+        let has_own_parameters = |scenario: &str, overrides: &[(&str, &str)]| {
             let overrides =
                 overrides.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
             let new =
@@ -235,8 +236,8 @@ mod tests {
                 .has_own_parameters
         };
         for scenario in ["default", "paper", "competitor-off"] {
-            assert!(!own(scenario, &[]), "{scenario}");
-            assert!(own(scenario, &[("quality.base_product_quality", "1.0")]), "{scenario}");
+            assert!(!has_own_parameters(scenario, &[]), "{scenario}");
+            assert!(has_own_parameters(scenario, &[("quality.base_product_quality", "1.0")]), "{scenario}");
         }
     }
 

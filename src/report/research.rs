@@ -116,21 +116,21 @@ mod tests {
     #[test]
     fn outlook_shows_the_spread_before_purchase() {
         let session = run(500, Mode::Sandbox);
-        let told = |tier: u8| outlook_lines(&session.company().research_outlook(tier));
+        let outlook = |tier: u8| outlook_lines(&session.company().research_outlook(tier));
         assert_eq!(
-            told(1),
+            outlook(1),
             [
                 "94% chance of finishing on day 30, the earliest; 100% by the last day (500)",
                 "half of all projects gain between +0.0265 and +0.0535 quality; 3% gain the minimum, +0.001",
             ]
         );
         assert_eq!(
-            told(9)[0],
+            outlook(9)[0],
             "32% chance of finishing on day 30, the earliest, 50% by day 102, 75% by day 204; more than 99% by the \
              last day (500)"
         );
         assert_eq!(
-            told(20),
+            outlook(20),
             [
                 "35% chance of finishing on day 30, the earliest, 50% by day 466, 75% by day 1222; 51% by \
                  the last day (500)",
@@ -141,7 +141,7 @@ mod tests {
 
     #[test]
     fn mean_days_are_at_least_the_minimum() {
-        let told = |mode| {
+        let mean_texts = |mode| {
             let session = run(500, mode);
             let means = session.company().research_means();
             assert_eq!(means[4], session.company().research_outlook(5).means);
@@ -149,7 +149,7 @@ mod tests {
         };
         let words = |days: &str, gain: &str| (days.to_owned(), gain.to_owned());
         assert_eq!(
-            told(Mode::Sandbox),
+            mean_texts(Mode::Sandbox),
             [words("30", "+0.0402"), words("33", "+0.0703"), words("39", "+0.1105"), words("59", "+0.2210")]
         );
         let session = run(500, Mode::Sandbox);
@@ -160,7 +160,7 @@ mod tests {
         );
         // Agents receive the means without the spread.
         assert_eq!(
-            told(Mode::Baseline),
+            mean_texts(Mode::Baseline),
             [
                 words("≥30", "≥0.0400"),
                 words("≥30", "≥0.0700"),

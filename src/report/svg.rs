@@ -457,7 +457,11 @@ mod tests {
     }
 
     fn coordinate_of(ticks: &[(f64, f64)], value: f64) -> f64 {
-        ticks.iter().find(|(own, _)| *own == value).unwrap_or_else(|| panic!("no tick {value}: {ticks:?}")).1
+        ticks
+            .iter()
+            .find(|(tick, _)| *tick == value)
+            .unwrap_or_else(|| panic!("no tick {value}: {ticks:?}"))
+            .1
     }
 
     fn points(svg: &str, class: &str) -> Vec<(f64, f64)> {

@@ -114,24 +114,24 @@ fn participation_curve() -> TermPicture {
 /// Compares the plans with the first group among those with the narrowest estimates.
 fn estimates_and_plans(fits: &[Fit]) -> TermPicture {
     let individuals = fits.iter().filter(|fit| !fit.group.is_enterprise());
-    let Some(own) =
+    let Some(fit) =
         individuals.min_by(|one, other| one.max_relative_error.total_cmp(&other.max_relative_error))
     else {
         return TermPicture { caption: "No group of individuals is known yet.".to_owned(), drawing: None };
     };
     let places =
-        || Plan::ALL.into_iter().map(|plan| (plan, own.plans[plan].lead_price, own.plans[plan].quality));
-    let right = places().map(|place| place.1).fold(own.budget.most, f64::max) * 1.05;
-    let top = places().map(|place| place.2).fold(own.floor.most, f64::max) * 1.05;
+        || Plan::ALL.into_iter().map(|plan| (plan, fit.plans[plan].lead_price, fit.plans[plan].quality));
+    let right = places().map(|place| place.1).fold(fit.budget.most, f64::max) * 1.05;
+    let top = places().map(|place| place.2).fold(fit.floor.most, f64::max) * 1.05;
     let upright = |at: f64| ("", vec![(at, 0.0), (at, top)]);
     TermPicture {
         caption: format!(
             "{}, estimates of day {}: plans by price and quality. Shaded: mean required quality. Vertical: mean budget.",
-            own.group, own.study_day
+            fit.group, fit.study_day
         ),
         drawing: Some(TermDrawing::Lines(TermLines {
-            lines: vec![upright(own.budget.least), upright(own.budget.most)],
-            band: [0.0, right].map(|at| (at, own.floor.least, own.floor.most)).to_vec(),
+            lines: vec![upright(fit.budget.least), upright(fit.budget.most)],
+            band: [0.0, right].map(|at| (at, fit.floor.least, fit.floor.most)).to_vec(),
             plans: places().collect(),
             x_axis: TermXAxis::Dollars,
         })),
@@ -180,7 +180,7 @@ fn quality_bank(seen: &VisibleFigures<'_>) -> TermPicture {
     let of_group = |delivered_quality: &DeliveredQuality| {
         (format!("added for {}", delivered_quality.group), delivered_quality.group_bonus)
     };
-    let groups = seen.quality.iter().map(of_group).filter(|own| own.1 > 0.0);
+    let groups = seen.quality.iter().map(of_group).filter(|bonus| bonus.1 > 0.0);
     let first = [("base quality".to_owned(), base), ("added for all groups".to_owned(), shared)];
     TermPicture {
         caption: "Base quality and additions so far. How much of it competitors have copied is never shown."
@@ -293,12 +293,18 @@ mod tests {
     #[test]
     fn every_picture_exists_or_explains_its_absence() {
         for term in ["participation-curve", "required-quality", "fit", "spill-over", "quality-bank"] {
-            let own = picture(term, 0);
-            assert!(own.drawing.is_some() && own.to_text().lines().count() > 2, "{term}: {own:?}");
+            let term_picture = picture(term, 0);
+            assert!(
+                term_picture.drawing.is_some() && term_picture.to_text().lines().count() > 2,
+                "{term}: {term_picture:?}"
+            );
         }
         for term in ["cohort", "network-source"] {
-            let own = picture(term, 0);
-            assert!(own.drawing.is_none() && own.caption.contains("has run yet"), "{term}: {own:?}");
+            let term_picture = picture(term, 0);
+            assert!(
+                term_picture.drawing.is_none() && term_picture.caption.contains("has run yet"),
+                "{term}: {term_picture:?}"
+            );
             assert!(picture(term, 4).drawing.is_some(), "{term}");
         }
         assert!(!has_picture("cash"));

@@ -380,7 +380,8 @@ mod tests {
             for row in session.query(&sql).expect("rows").rows {
                 let (id, dollars) =
                     (novamind_database::text_at(&row, 0), novamind_database::number_at(&row, 1));
-                let category = Category::ALL.into_iter().find(|own| own.id() == id).expect("a category");
+                let category =
+                    Category::ALL.into_iter().find(|category| category.id() == id).expect("a category");
                 assert!((week.booked.total_of(category) - dollars).abs() < 0.01, "week {} {id}", at + 1);
             }
         }

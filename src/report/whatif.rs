@@ -93,7 +93,7 @@ fn group_equal_differences(differences: &[CallDifference]) -> Vec<Vec<&CallDiffe
                 == (call.tool, &call.recorded, &call.edited)
         };
         match all.iter_mut().find(same) {
-            Some(own) => own.push(call),
+            Some(call_differences) => call_differences.push(call),
             None => all.push(vec![call]),
         }
     }
@@ -298,8 +298,8 @@ mod tests {
             branches: Vec::new(),
             figures: Vec::new(),
         };
-        let told = |day| milestone_label(&comparison, day, 7);
-        assert_eq!([28, 35, 42, 49].map(told), ["4", "5", "6 ahead", "7 ahead"]);
+        let label = |day| milestone_label(&comparison, day, 7);
+        assert_eq!([28, 35, 42, 49].map(label), ["4", "5", "6 ahead", "7 ahead"]);
         assert_eq!(
             heading(&comparison, 7),
             "re-simulation of weeks 4 to 7 (days 22 to 49), same random draws; days after 35 were not played: no further \

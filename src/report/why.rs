@@ -140,20 +140,20 @@ mod tests {
             equation(&explanation),
             "conversion -1.00 pt = price -1.00 pt · load and outages 0 · residual 0"
         );
-        let told = why(WeekFigure::CashChange, 100.0, -4_900.4, &[(Cause::Market, -5_000.0)]);
-        assert_eq!(equation(&told), "cash change -$5,000 = market -$5,000 · residual 0");
+        let cash_explanation = why(WeekFigure::CashChange, 100.0, -4_900.4, &[(Cause::Market, -5_000.0)]);
+        assert_eq!(equation(&cash_explanation), "cash change -$5,000 = market -$5,000 · residual 0");
     }
 
     #[test]
     fn details_show_old_and_new_values() {
         let input = |name, old, new, is_share| CauseDetail::Input(InputDetail { name, old, new, is_share });
-        let told = [
+        let cases = [
             (CauseDetail::Occurred(2, "move"), "2 moves"),
             (CauseDetail::Occurred(1, "call"), "1 call"),
             (input("peak overload", 0.0, 0.131, true), "peak overload: 0.0% → 13.1%"),
             (input("index", 49.0, 50.25, false), "index: 49 → 50.25"),
         ];
-        for (detail, words) in told {
+        for (detail, words) in cases {
             assert_eq!(describe_detail(&detail), words);
         }
     }

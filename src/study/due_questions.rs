@@ -30,19 +30,18 @@ impl Study {
         if !is_session {
             return Vec::new();
         }
-        let asked = self
-            .questionnaires
-            .iter()
-            .flat_map(|own| due_occasions(own, session).into_iter().map(move |at| (own, at)));
+        let asked = self.questionnaires.iter().flat_map(|questionnaire| {
+            due_occasions(questionnaire, session).into_iter().map(move |at| (questionnaire, at))
+        });
         asked
-            .flat_map(|(own, occasion)| {
-                let open = own.questions.iter().filter(|question| {
-                    !session.log().answer_book().is_answered(&own.name, &occasion, &question.id)
+            .flat_map(|(questionnaire, occasion)| {
+                let open = questionnaire.questions.iter().filter(|question| {
+                    !session.log().answer_book().is_answered(&questionnaire.name, &occasion, &question.id)
                 });
                 let due = |question: &Question| DueQuestion {
-                    questionnaire: own.name.clone(),
-                    title: own.title.clone(),
-                    introduction: own.introduction.clone(),
+                    questionnaire: questionnaire.name.clone(),
+                    title: questionnaire.title.clone(),
+                    introduction: questionnaire.introduction.clone(),
                     occasion: occasion.clone(),
                     question: question.clone(),
                 };

@@ -21,9 +21,9 @@ pub const SEAL_KEY_FILE: &str = "seal.key";
 /// Fails if the system provides no random numbers, if a file cannot be read or written, or if `lab.pub` or `seal.key` exists
 /// without `lab.key`.
 pub fn make_keys(folder: &Path) -> Result<(LabPublicKey, Vec<PathBuf>), RunError> {
-    let [own, public, seal] =
+    let [lab_key, public, seal] =
         [LAB_KEY_FILE, LAB_PUBLIC_KEY_FILE, SEAL_KEY_FILE].map(|name| folder.join(name));
-    let orphan = [&public, &seal].into_iter().find(|path| path.exists()).filter(|_| !own.exists());
+    let orphan = [&public, &seal].into_iter().find(|path| path.exists()).filter(|_| !lab_key.exists());
     if let Some(path) = orphan {
         return Err(RunError::InvalidRequest(format!(
             "{} was derived from a {LAB_KEY_FILE} that is not in this folder. Copy it here, or remove {0}; nothing was written",
@@ -31,12 +31,12 @@ pub fn make_keys(folder: &Path) -> Result<(LabPublicKey, Vec<PathBuf>), RunError
         )));
     }
     let mut written = Vec::new();
-    let key = if own.exists() {
-        LabKey::read(&own)?
+    let key = if lab_key.exists() {
+        LabKey::read(&lab_key)?
     } else {
         let key = LabKey::generate()?;
-        key.write(&own)?;
-        written.push(own);
+        key.write(&lab_key)?;
+        written.push(lab_key);
         key
     };
     if !public.exists() {

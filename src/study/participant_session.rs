@@ -122,10 +122,10 @@ impl ParticipantSession {
         if WithdrawalRecord::exists_in(&self.runs) {
             return Ok(NextStep::Withdrawn(self.withdrawal_summary()));
         }
-        let own = self.study_runs()?;
-        match self.pending_consent(&own) {
+        let study_runs = self.study_runs()?;
+        match self.pending_consent(&study_runs) {
             Some(text) => Ok(NextStep::Consent(text)),
-            None => self.next_step_with_runs(&own),
+            None => self.next_step_with_runs(&study_runs),
         }
     }
 
@@ -137,11 +137,12 @@ impl ParticipantSession {
         self.next_step_with_runs(&self.study_runs()?)
     }
 
-    fn next_step_with_runs(&self, own: &[ParticipantRun]) -> Result<NextStep, RunError> {
+    fn next_step_with_runs(&self, study_runs: &[ParticipantRun]) -> Result<NextStep, RunError> {
         let is = |manifest: &Manifest, practice| {
             manifest.study.as_ref().is_some_and(|study_stamp| study_stamp.practice == practice)
         };
-        let find = |practice| own.iter().find(|(manifest, _)| is(manifest, practice)).map(|(_, run)| run);
+        let find =
+            |practice| study_runs.iter().find(|(manifest, _)| is(manifest, practice)).map(|(_, run)| run);
         let (practice, session) = (find(true), find(false));
         let has_practised = practice.is_some_and(|run| run.ended.is_some());
         if session.is_none() && !has_practised && self.study.protocol.practice.offer != PracticeOffer::None {
@@ -268,13 +269,13 @@ impl ParticipantSession {
     }
 
     /// Returns the consent text if the participant has not agreed yet.
-    fn pending_consent(&self, own: &[ParticipantRun]) -> Option<ConsentText> {
+    fn pending_consent(&self, study_runs: &[ParticipantRun]) -> Option<ConsentText> {
         let text = self.consent_text()?;
         let digest = text.digest();
         let agreed = |(manifest, _): &ParticipantRun| {
             manifest.consent.as_ref().is_some_and(|consent| consent.digest == digest)
         };
-        (!own.iter().any(agreed)).then_some(text)
+        (!study_runs.iter().any(agreed)).then_some(text)
     }
 
     /// Returns the participant's runs of this study, the most recently played first.

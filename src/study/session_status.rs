@@ -56,13 +56,13 @@ pub enum SessionState {
 pub fn session_statuses(study: &Study, runs: &Path) -> Vec<SessionStatus> {
     let folders = all_run_folders(runs);
     let entries = folders.iter().flat_map(|folder| std::fs::read_dir(folder).into_iter().flatten().flatten());
-    let own = entries.filter_map(|entry| {
+    let statuses = entries.filter_map(|entry| {
         let folder = entry.path();
         let manifest = ManifestCheck::read(&folder).ok()?.manifest;
         let is_own = manifest.study.as_ref().is_some_and(|stamp| stamp.digest == study.digest);
         is_own.then(|| session_status(&folder, &manifest))
     });
-    let mut status: Vec<SessionStatus> = own.collect();
+    let mut status: Vec<SessionStatus> = statuses.collect();
     status.sort_by(|one, other| (&one.participant, &one.run).cmp(&(&other.participant, &other.run)));
     status
 }
@@ -118,6 +118,6 @@ fn session_state(lines: &[Line], locked: bool) -> SessionState {
     match state.unwrap_or(SessionState::Plays) {
         // The run is not locked, and no line records that it was closed.
         SessionState::Plays | SessionState::Idle | SessionState::Paused if !locked => SessionState::Stopped,
-        said => said,
+        state => state,
     }
 }

@@ -161,10 +161,11 @@ impl CollectionBuilder<'_> {
     /// Returns whether a record started from a handout of the class, or without a handout from its lesson.
     fn belongs_to_class(&self, manifest: &Manifest) -> bool {
         let class = self.sources.class;
-        let own = manifest.handout.as_ref().is_some_and(|stamp| stamp.class == class.class);
+        let has_class_handout = manifest.handout.as_ref().is_some_and(|stamp| stamp.class == class.class);
         let of_lesson = class.lesson.as_ref().zip(manifest.lesson.as_ref());
-        own || (manifest.handout.is_none()
-            && of_lesson.is_some_and(|(class_lesson, other)| class_lesson.name == other.name))
+        has_class_handout
+            || (manifest.handout.is_none()
+                && of_lesson.is_some_and(|(class_lesson, other)| class_lesson.name == other.name))
     }
 
     fn add_run(&mut self, found: &FoundRun) {
@@ -278,14 +279,14 @@ impl CollectionBuilder<'_> {
             .collect();
         for student in &class.students {
             let label = student.label.clone();
-            let own = || self.runs.iter().filter(|run| run.label == label);
+            let student_runs = || self.runs.iter().filter(|run| run.label == label);
             let is_finished = |part: &u32| {
-                own().any(|run| run.evidence.part == *part && run.verdict == RunVerdict::Finished)
+                student_runs().any(|run| run.evidence.part == *part && run.verdict == RunVerdict::Finished)
             };
             let open: Vec<u32> = (1..=parts).filter(|part| !is_finished(part)).collect();
-            let is_whole =
-                own().any(|run| matches!(run.verdict, RunVerdict::Finished | RunVerdict::NotFinished));
-            if own().next().is_none() && !texts.contains(&label) {
+            let is_whole = student_runs()
+                .any(|run| matches!(run.verdict, RunVerdict::Finished | RunVerdict::NotFinished));
+            if student_runs().next().is_none() && !texts.contains(&label) {
                 self.findings.push(ClassFinding::Missing { label });
             } else if is_whole && !open.is_empty() {
                 self.findings.push(ClassFinding::NotFinished { label, parts: open });

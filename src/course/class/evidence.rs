@@ -163,13 +163,14 @@ pub(super) fn session_evidence(session: &Session, standing: Option<&LessonProgre
     let steps = standing.map_or(0, |lesson_progress| lesson_progress.current_part().steps.len());
     let numbers: BTreeSet<usize> = (0..steps).collect();
     let of_step = |step: &usize| standing.map(|progress| step_evidence(progress, *step)).unwrap_or_default();
-    let tries = numbers.iter().filter_map(|step| standing.map(|own| own.attempt(*step))).max();
-    let hints = numbers.iter().filter_map(|step| standing.map(|own| own.hint_count(*step) as u32)).sum();
-    let pitfalls = standing.map(|own| own.met_pitfalls().into_iter().map(str::to_owned).collect());
+    let tries = numbers.iter().filter_map(|step| standing.map(|progress| progress.attempt(*step))).max();
+    let hints =
+        numbers.iter().filter_map(|step| standing.map(|progress| progress.hint_count(*step) as u32)).sum();
+    let pitfalls = standing.map(|progress| progress.met_pitfalls().into_iter().map(str::to_owned).collect());
     let opening = session.cash_by_day().first().map(|cash| (0, *cash));
     let weeks = session.weeks().iter().map(|week| (week.day, week.cash));
     Evidence {
-        part: standing.map_or(1, |own| own.part as u32 + 1),
+        part: standing.map_or(1, |progress| progress.part as u32 + 1),
         seed,
         day: session.day(),
         is_over: session.ended().is_some(),

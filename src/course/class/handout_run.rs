@@ -59,15 +59,15 @@ impl HandoutRun {
         &self.manifest.id
     }
 
-    /// Returns the files of a branch for one student. Uses a temporary folder in `beside`.
+    /// Returns the files of a branch for one student. Uses a temporary folder in `parent_folder`.
     ///
     /// # Errors
-    /// Returns an error if `beside` cannot be written.
+    /// Returns an error if `parent_folder` cannot be written.
     pub(super) fn branch_files(
         &self,
         label: &str,
         stamp: &HandoutStamp,
-        beside: &Path,
+        parent_folder: &Path,
     ) -> Result<HandoutRunFiles, RunError> {
         let was_changed = self.lines.iter().any(|line| matches!(line.record, Record::Override(_)));
         let mode = if was_changed || self.manifest.fault.is_some() { Mode::Debug } else { Mode::Sandbox };
@@ -90,7 +90,7 @@ impl HandoutRun {
             }),
             ..self.manifest.clone()
         };
-        let workshop = TemporaryFolder::create_in(beside)?;
+        let workshop = TemporaryFolder::create_in(parent_folder)?;
         let folder = workshop.path().join(&stamp.run);
         create_branch_files(&folder, &manifest, &self.lines)?;
         let text = |file: &str| {

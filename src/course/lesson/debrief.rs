@@ -264,7 +264,7 @@ impl PlayedPart {
         };
         let judged_by = self.judged_by().map(|figure| {
             let of = |played: &Option<PlayResult>| {
-                played.as_ref().filter(|_| decides).map(|own| figure_by_day(figure, &own.figures))
+                played.as_ref().filter(|_| decides).map(|result| figure_by_day(figure, &result.figures))
             };
             JudgedFigure {
                 figure,
@@ -277,7 +277,7 @@ impl PlayedPart {
         let curve = |played: Option<PlayResult>, play: &ReferencePlay| {
             let text = is_last.then(|| play.text_of(part).to_owned());
             let played = played.filter(|_| decides);
-            played.map(|own| ReferenceCurve { text, cash_by_day: own.cash_by_day })
+            played.map(|result| ReferenceCurve { text, cash_by_day: result.cash_by_day })
         };
         let part = self.standing.current_part();
         Debrief {
@@ -391,7 +391,7 @@ impl PlayedPart {
             scheduled_calls.week == week && matches!(call, Some(LessonCall::Tool(tool, _)) if differs(tool))
         };
         let mut calls: Vec<ScheduledCalls> =
-            self.calls.iter().filter(|own| !is_other(own)).cloned().collect();
+            self.calls.iter().filter(|scheduled_calls| !is_other(scheduled_calls)).cloned().collect();
         let made = good.calls_for(&differs).into_iter().map(|(tool, args)| LessonCall::Tool(tool, args));
         calls.push(ScheduledCalls {
             part: self.standing.part,

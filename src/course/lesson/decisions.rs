@@ -95,15 +95,15 @@ pub(super) fn different_decisions(
 ) -> Vec<DifferentDecision> {
     let settings = week_decisions.settings.iter().filter_map(|(tool, settings)| {
         let other = good.settings.get(tool)?;
-        let (own, good) = (flatten_arguments(settings), flatten_arguments(other));
-        let names: BTreeSet<&String> = own.keys().chain(good.keys()).collect();
+        let (actual, good) = (flatten_arguments(settings), flatten_arguments(other));
+        let names: BTreeSet<&String> = actual.keys().chain(good.keys()).collect();
         let value =
             |of: &BTreeMap<String, Value>, name: &String| of.get(name).cloned().unwrap_or(Value::Null);
         let settings: Vec<SettingDifference> = names
             .into_iter()
             .map(|name| SettingDifference {
                 name: name.clone(),
-                own: value(&own, name),
+                own: value(&actual, name),
                 good: value(&good, name),
             })
             .filter(|setting| !is_same_value(&setting.own, &setting.good))

@@ -102,7 +102,7 @@ impl LessonStatus {
         let part = standing.current_part();
         let going = lesson_step(session);
         let step = going.unwrap_or_else(|| standing.last_started_step());
-        let own = part.steps.get(step)?;
+        let planned_step = part.steps.get(step)?;
         let (begin, end) = part.step_weeks(step);
         let passed = weeks_passed(session).clamp(begin, end) - begin;
         let plan = &standing.lesson.plan;
@@ -113,14 +113,14 @@ impl LessonStatus {
             part: (plan.parts.len() > 1).then(|| part.title.clone()),
             step,
             steps: part.steps.len(),
-            step_title: own.title.clone(),
-            text: filled(&own.text),
-            weeks: (passed, own.weeks),
+            step_title: planned_step.title.clone(),
+            text: filled(&planned_step.text),
+            weeks: (passed, planned_step.weeks),
             try_number: standing.attempt(step),
             question: step_question(&standing, step),
             goals: goal_statuses(session, &standing, step, (begin, passed)),
-            hints: own.hints.iter().take(standing.hint_count(step)).map(filled).collect(),
-            hint_count: own.hints.len(),
+            hints: planned_step.hints.iter().take(standing.hint_count(step)).map(filled).collect(),
+            hint_count: planned_step.hints.len(),
             pitfalls: triggered_pitfalls(&standing),
             previous_step: step
                 .checked_sub(1)
@@ -199,10 +199,10 @@ pub(super) fn step_question(standing: &LessonProgress, step: usize) -> Option<Le
 }
 
 pub(super) fn triggered_pitfalls(standing: &LessonProgress) -> Vec<(u32, String)> {
-    let said = |(day, note): &(u32, LessonNote)| {
+    let triggered = |(day, note): &(u32, LessonNote)| {
         let name = note.name.as_deref()?;
-        let pitfall = standing.lesson.plan.pitfalls.iter().find(|own| own.name == name)?;
+        let pitfall = standing.lesson.plan.pitfalls.iter().find(|pitfall| pitfall.name == name)?;
         Some((*day, standing.lesson.fill_figures(&pitfall.say)))
     };
-    standing.events.iter().filter_map(said).collect()
+    standing.events.iter().filter_map(triggered).collect()
 }

@@ -189,8 +189,8 @@ mod tests {
             ("reputation 3", "reputation is a figure of a group; write for example reputation(S1)", 1),
             ("payments(S1)", "payments is a figure of the whole company; write payments without a group", 1),
         ] {
-            let (said, at) = parse(text).expect_err("a problem");
-            assert!(said.starts_with(message) && at == column, "{text}: {said} at {at}");
+            let (problem, at) = parse(text).expect_err("a problem");
+            assert!(problem.starts_with(message) && at == column, "{text}: {problem} at {at}");
         }
     }
 }

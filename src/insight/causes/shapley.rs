@@ -40,8 +40,8 @@ mod tests {
         let alone = [3.0, -1.5, 0.0, 7.0];
         let sum =
             |set: u32| (0..4).filter(|cause| set & (1 << cause) != 0).map(|cause| alone[cause]).sum::<f64>();
-        for (value, own) in shapley_values(4, |set| 10.0 + sum(set)).into_iter().zip(alone) {
-            assert!((value - own).abs() < 1e-12, "{value} instead of {own}");
+        for (value, expected) in shapley_values(4, |set| 10.0 + sum(set)).into_iter().zip(alone) {
+            assert!((value - expected).abs() < 1e-12, "{value} instead of {expected}");
         }
     }
 

@@ -247,14 +247,15 @@ fn unchanged_settings_are_no_cause_and_figures_add_up() {
         }
         last_values = values;
     }
-    let value = |quantity| last_values.iter().find(|(own, _)| *own == quantity).expect("it was asked").1;
+    let value = |quantity| last_values.iter().find(|(known, _)| *known == quantity).expect("it was asked").1;
     let s1 = Group::parse("S1").expect("a group");
     assert_eq!(
         value(group_quantity(WeekFigure::Reputation, "S1")),
         session.debug_hidden_state().expect("a debug run").world().market.reputation.get(s1)
     );
-    let leads: f64 =
-        Group::all().map(|own| f64::from(session.company().group_weeks()[WEEKS as usize][own].leads)).sum();
+    let leads: f64 = Group::all()
+        .map(|group| f64::from(session.company().group_weeks()[WEEKS as usize][group].leads))
+        .sum();
     assert_eq!(value(company_quantity(WeekFigure::Leads)), leads);
     let mood = session.debug_hidden_state().expect("a debug run").mean_satisfaction(s1).expect("subscribers");
     assert_eq!(value(group_quantity(WeekFigure::Satisfaction, "S1")), mood.0);
@@ -294,7 +295,7 @@ fn hidden_figures_need_a_recorded_inspection() {
             );
         }
         // A group that is not discovered has no figures.
-        let unknown = Group::all().find(|own| !own.is_initially_known()).expect("a group to find");
+        let unknown = Group::all().find(|group| !group.is_initially_known()).expect("a group to find");
         let quantity = WeekQuantity::for_group(WeekFigure::Leads, unknown).expect("a figure");
         let refused = open_causes(&session)
             .explain(WeekQuestion { quantity, week: None }, &continue_progress)

@@ -184,7 +184,7 @@ impl WeekResimulation {
             inputs => {
                 let two = WeekPair { start: &self.start, before: &self.before, after: &self.after };
                 two.held_inputs(
-                    selected_candidates(&self.inputs, inputs).map(|own| own.cause),
+                    selected_candidates(&self.inputs, inputs).map(|candidate| candidate.cause),
                     &self.days_without_calls,
                 )
             }
@@ -209,21 +209,21 @@ fn call_candidates(eve: &MemorySnapshot, moves: &[RecordedStep], after: &BranchO
     for call in moves.iter().filter_map(as_accepted_call) {
         let cause = Cause::Calls(call.tool);
         match by_tool.iter_mut().find(|candidate| candidate.cause == cause) {
-            Some(own) => drop(own.lines.insert(call.seq)),
+            Some(candidate) => drop(candidate.lines.insert(call.seq)),
             None => {
                 let lines = BTreeSet::from([call.seq]);
                 by_tool.push(Candidate { cause, details: Vec::new(), lines });
             }
         }
     }
-    by_tool.retain_mut(|own| {
-        let Cause::Calls(tool) = own.cause else { return false };
+    by_tool.retain_mut(|candidate| {
+        let Cause::Calls(tool) = candidate.cause else { return false };
         let changed = set.iter().filter(|change| change.setting.tool() == tool);
-        own.details = changed.map(|change| CauseDetail::Setting(*change)).collect();
+        candidate.details = changed.map(|change| CauseDetail::Setting(*change)).collect();
         if tool.tool().spec().kind == ToolKind::Setting {
-            return in_steps || !own.details.is_empty();
+            return in_steps || !candidate.details.is_empty();
         }
-        own.details = vec![CauseDetail::Occurred(own.lines.len(), "call")];
+        candidate.details = vec![CauseDetail::Occurred(candidate.lines.len(), "call")];
         true
     });
     by_tool

@@ -150,9 +150,9 @@ impl<'a> BranchSimulation<'a> {
         edits: &'a Edits,
         hashed: bool,
     ) -> BranchSimulation<'a> {
-        let told = hashed || has_replies(moves);
+        let processes_text = hashed || has_replies(moves);
         let params = edits.params.as_ref().unwrap_or(&start.params).clone();
-        let feed = if told { start.feed.clone() } else { Default::default() };
+        let feed = if processes_text { start.feed.clone() } else { Default::default() };
         let overrides = start.overrides.rebased_on(&params, &edits.dropped_lines);
         let given = (start.streams.clone(), start.names.clone());
         let simulation = Simulation::from_parts((params, overrides), given, start.world.clone(), feed);
@@ -165,7 +165,7 @@ impl<'a> BranchSimulation<'a> {
             week: WeekFigures::default(),
             group_week: ByGroup::default(),
             call_entries: Vec::new(),
-            processes_text: told,
+            processes_text,
             has_unprocessed_text: false,
             numbers: OnceLock::new(),
             weeks: Vec::new(),

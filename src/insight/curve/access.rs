@@ -75,20 +75,24 @@ impl CurveExplorer {
         let quality = delivered
             .iter()
             .find(|delivered_quality| delivered_quality.group == group)
-            .map(|own| own.by_plan);
-        let estimates = all.iter().find(|own| own.group == group);
-        let Some((own, quality)) = estimates.zip(quality) else {
-            let known: Vec<&str> = all.iter().map(|own| own.group.id()).collect();
+            .map(|delivered_quality| delivered_quality.by_plan);
+        let estimates = all.iter().find(|estimates| estimates.group == group);
+        let Some((estimates, quality)) = estimates.zip(quality) else {
+            let known: Vec<&str> = all.iter().map(|estimates| estimates.group.id()).collect();
             let message =
                 format!("group {group} is not known yet; the known groups are {}", known.join(", "));
             return Err(Rejection::for_field("group", "group_not_discovered", message));
         };
         // Drift since the study is unknown.
-        let market = |reading| (Expectation::default(), Arc::new(assumed_params(own, reading, run.params())));
+        let market =
+            |reading| (Expectation::default(), Arc::new(assumed_params(estimates, reading, run.params())));
         let markets =
             [EstimateReading::Likely, EstimateReading::Strict, EstimateReading::Generous].map(market).into();
-        let basis =
-            CurveBasis::Estimates { level: own.level, noise: own.max_relative_error, as_of: own.as_of };
+        let basis = CurveBasis::Estimates {
+            level: estimates.level,
+            noise: estimates.max_relative_error,
+            as_of: estimates.as_of,
+        };
         Ok(CurveExplorer::from_markets(group, basis, current_offer(run, group, &quality), markets))
     }
 }

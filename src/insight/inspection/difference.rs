@@ -69,7 +69,7 @@ impl DayDifference {
                 .collect()
         };
         let figures = one.figures.iter().zip(&other.figures);
-        let figures = figures.filter(|((_, own), (_, other))| own.to_bits() != other.to_bits());
+        let figures = figures.filter(|((_, one), (_, other))| one.to_bits() != other.to_bits());
         let all = differing_customers(one, other);
         let count = |subscribes| {
             all.iter().filter(|customer_difference| customer_difference.subscribes == subscribes).count()
@@ -89,7 +89,7 @@ impl DayDifference {
                 .collect(),
             differing_parts: names(false),
             equal_parts: names(true),
-            figures: figures.map(|((name, own), (_, other))| (name.clone(), *own, *other)).collect(),
+            figures: figures.map(|((name, one), (_, other))| (name.clone(), *one, *other)).collect(),
             differing_customers: count((true, true)),
             only_in_one: (count((true, false)), count((false, true))),
             first_customers: all.into_iter().take(MAX_LISTED_CUSTOMERS).collect(),

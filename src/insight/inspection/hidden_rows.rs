@@ -96,11 +96,11 @@ pub(crate) fn pmi_row(day: u32, seen: &HiddenDay) -> [HiddenValue; 8] {
     [
         day.into(),
         seen.market.pmi.into(),
-        reading.map(|own| own.measured_day).into(),
-        reading.map(|own| own.value).into(),
-        reading.map(|own| own.change).into(),
-        reading.map(|own| own.trend.id()).into(),
-        reading.map(|own| own.phase.id()).into(),
+        reading.map(|reading| reading.measured_day).into(),
+        reading.map(|reading| reading.value).into(),
+        reading.map(|reading| reading.change).into(),
+        reading.map(|reading| reading.trend.id()).into(),
+        reading.map(|reading| reading.phase.id()).into(),
         seen.market.measured.as_ref().map(|(_, published)| *published).into(),
     ]
 }
@@ -113,7 +113,7 @@ pub(crate) fn thread_row(thread_day: &EnterpriseThreadDay) -> [HiddenValue; 22] 
     let (answer, at, price) = match thread_day.answer {
         None => (Null, None, None),
         Some(OfferResponse::Accept(at)) => {
-            ("accept".into(), Some(at), thread_day.offerings.get(at).map(|own| own.price))
+            ("accept".into(), Some(at), thread_day.offerings.get(at).map(|offering| offering.price))
         }
         Some(OfferResponse::Counter(at, price)) => ("counter".into(), Some(at), Some(price)),
         Some(OfferResponse::Silence) => ("silence".into(), None, None),
@@ -203,9 +203,9 @@ fn customer_row(
         subscribed(row.promotion.into()),
         subscribed(row.effective_price.into()),
         subscribed(row.effective_c_max.into()),
-        negotiator.map(|own| own.reply_delay_mean).into(),
-        negotiator.map(|own| own.reply_delay_std).into(),
-        negotiator.map(|own| own.initial_offer_factor).into(),
-        negotiator.map(|own| own.max_negotiation_turns).into(),
+        negotiator.map(|negotiator| negotiator.reply_delay_mean).into(),
+        negotiator.map(|negotiator| negotiator.reply_delay_std).into(),
+        negotiator.map(|negotiator| negotiator.initial_offer_factor).into(),
+        negotiator.map(|negotiator| negotiator.max_negotiation_turns).into(),
     ]
 }

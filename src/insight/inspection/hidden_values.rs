@@ -57,17 +57,17 @@ impl Inspector<'_> {
         let look = InspectionPermit::start(self.run, "values", "", day)?;
         let day = look.day();
         let seen = self.hidden_day(&look, day)?;
-        let own = seen.banks.group_banks;
+        let group_banks = seen.banks.group_banks;
         let next_drift = next_drift_day(day, &look.hidden_state(self.run).params().drift);
         Ok(HiddenValues {
             day,
             groups: ByGroup::from_fn(|group| true_group_values(group, &seen)),
             shared_bank: seen.banks.shared,
             group_banks: Group::all()
-                .map(|group| (group, own[group]))
+                .map(|group| (group, group_banks[group]))
                 .filter(|(_, bank)| *bank != 0.0)
                 .collect(),
-            next_competitor_move: next_competitor_move(look.hidden_state(self.run), day, &own),
+            next_competitor_move: next_competitor_move(look.hidden_state(self.run), day, &group_banks),
             common_expectation: seen.market.drift.global_quality,
             next_drift_day: Some(next_drift).filter(|next| *next <= self.run.manifest().days),
             pmi: seen.market.pmi,

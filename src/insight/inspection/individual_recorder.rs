@@ -170,8 +170,8 @@ impl DayObserver for IndividualRecorder {
     fn on_day_end(&self, world: &World, _: &Params, facts: &Facts) {
         let mut pages = self.lock();
         if let Some(first) = pages.signup.as_mut().filter(|first| first.day == world.day) {
-            let own = facts.arrivals.iter().find(|arrival| arrival.customer == self.customer);
-            first.source = own.map_or(Source::Organic, |arrival| arrival.source);
+            let arrival = facts.arrivals.iter().find(|arrival| arrival.customer == self.customer);
+            first.source = arrival.map_or(Source::Organic, |arrival| arrival.source);
         }
         let Some(mut today) = pages.today.take() else { return };
         let ended = facts.endings.iter().find(|ending| ending.customer == self.customer);

@@ -34,12 +34,12 @@ impl IndividualView {
         let days = self.days.iter().rev();
         let mut later = u32::MAX;
         // The count increases while an issue is open; otherwise a new issue was opened.
-        let same = days.take_while(|own| {
-            let is_same = own.open_issue_days > 0 && own.open_issue_days < later;
-            later = own.open_issue_days;
+        let same = days.take_while(|day| {
+            let is_same = day.open_issue_days > 0 && day.open_issue_days < later;
+            later = day.open_issue_days;
             is_same
         });
-        same.last().map_or(Some(individual_day.day), |own| Some(own.day))
+        same.last().map_or(Some(individual_day.day), |day| Some(day.day))
     }
 
     /// Returns the last bill before that day.

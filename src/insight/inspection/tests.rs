@@ -261,17 +261,22 @@ fn competitor_and_drift_state_match_the_world_and_next_move_occurs() {
         let (params, streams) = (look.hidden_state(&session).params(), look.hidden_state(&session).streams());
         let last_event = used.events.last().map(|event| event.day);
         let decided = next_move(day, 119, last_event, params, streams);
-        let told = decided.map(|next| (next.day, next.sampled, next.u));
-        assert_eq!(told, coming.map(|event| (event.day, event.sampled, event.u)));
+        let decided_move = decided.map(|next| (next.day, next.sampled, next.u));
+        assert_eq!(decided_move, coming.map(|event| (event.day, event.sampled, event.u)));
         let drift = session.inspect().drift_state(Some(day)).expect("a look");
         assert_eq!(drift.common_expectation, used.drift.global_quality);
         let group = |group: Group| drift.groups[group.index()];
-        assert!(Group::all().all(|own| group(own).expectation == used.drift.expectation(own)));
+        assert!(
+            Group::all()
+                .all(|market_group| group(market_group).expectation == used.drift.expectation(market_group))
+        );
         let Some(next) = drift.next_day else { continue };
         // Budgets change only by drift.
         let [eve, after] = [next - 1, next].map(|day| &days[day as usize - 1].drift.c_max);
         assert_eq!(*eve, used.drift.c_max, "nothing drifts between days {day} and {next}");
-        assert!(Group::all().all(|own| after[own] == eve[own] + group(own).next_step.c_max));
+        assert!(Group::all().all(
+            |market_group| after[market_group] == eve[market_group] + group(market_group).next_step.c_max
+        ));
     }
 }
 
@@ -372,9 +377,9 @@ fn assert_effects_match_day(
             DrawEffect::Leads { expected, number } => {
                 let group = keyed_draws.group.expect("a group");
                 let key = [keyed_draws.key[0].1, keyed_draws.key[1].1];
-                let came = facts.arrivals.iter().filter(|arrival| arrival.group == group).count() as u64;
+                let arrivals = facts.arrivals.iter().filter(|arrival| arrival.group == group).count() as u64;
                 let now = inside.lead_factors(group).expected();
-                assert_eq!(streams.open(Part::LeadCount, key).poisson(now), came);
+                assert_eq!(streams.open(Part::LeadCount, key).poisson(now), arrivals);
                 assert_eq!(streams.open(Part::LeadCount, key).poisson(*expected), u64::from(*number));
                 saw("leads");
             }
@@ -443,12 +448,12 @@ fn purchases_make_the_predicted_draws() {
             assert_eq!(next_draws.streams[tier - 1].effect, project);
         }
         for _ in 0..3 {
-            let told = session.inspect().next_draws(RandomPart::Discovery, None).expect("a look");
+            let next_draws = session.inspect().next_draws(RandomPart::Discovery, None).expect("a look");
             let before: Vec<Group> = hidden_state(&session).world().market.undiscovered().collect();
             session.call("research_market", &json!({}), Via::Script).expect("an attempt");
             let market = &hidden_state(&session).world().market;
             let new = before.into_iter().find(|group| market.is_known(*group));
-            assert_eq!(told.streams[0].effect, DrawEffect::Found(new));
+            assert_eq!(next_draws.streams[0].effect, DrawEffect::Found(new));
             found += u32::from(new.is_some());
         }
         // Wait until both projects are finished.

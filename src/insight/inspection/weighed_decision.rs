@@ -76,11 +76,11 @@ impl DecisionTerm {
         let mut each = |change: &dyn Fn(&mut Experience)| other.experiences.0.iter_mut().for_each(change);
         match self {
             DecisionTerm::Issue => each(&|experience| experience.issues = 0.0),
-            DecisionTerm::Ads => each(&|own| own.ads = 0.0),
-            DecisionTerm::Quota => each(&|own| own.quota = 1.0),
-            DecisionTerm::Relationship => each(&|own| own.relationship = 0.0),
-            DecisionTerm::Tenure => each(&|own| own.tenure = 0.0),
-            DecisionTerm::Service => each(&|own| own.delivered += weighing.service_penalty),
+            DecisionTerm::Ads => each(&|experience| experience.ads = 0.0),
+            DecisionTerm::Quota => each(&|experience| experience.quota = 1.0),
+            DecisionTerm::Relationship => each(&|experience| experience.relationship = 0.0),
+            DecisionTerm::Tenure => each(&|experience| experience.tenure = 0.0),
+            DecisionTerm::Service => each(&|experience| experience.delivered += weighing.service_penalty),
             DecisionTerm::Expectations => other.expectation.quality = 0.0,
             DecisionTerm::Budgets => other.expectation.c_max = 0.0,
             DecisionTerm::Economy => other.willingness_to_pay = 1.0,

@@ -231,7 +231,7 @@ fn scale_settings(
 fn scale_numbers(value: &Value, factor: f64) -> Value {
     match value {
         Value::Number(number) => {
-            number.as_f64().map_or(Value::Null, |own| json_number(round_to_12_digits(own * factor)))
+            number.as_f64().map_or(Value::Null, |number| json_number(round_to_12_digits(number * factor)))
         }
         Value::Object(fields) => {
             fields.iter().map(|(name, value)| (name.clone(), scale_numbers(value, factor))).collect()
@@ -437,28 +437,28 @@ mod tests {
 
     #[test]
     fn invalid_edit_is_rejected_with_the_syntax() {
-        let said = |text: &str| text.parse::<DecisionEdit>().expect_err(text);
-        assert!(said("").starts_with("an edit is missing"));
+        let message = |text: &str| text.parse::<DecisionEdit>().expect_err(text);
+        assert!(message("").starts_with("an edit is missing"));
         assert_eq!(
-            said("set_price * 2"),
+            message("set_price * 2"),
             "there is no tool set_price; did you mean set_prices or set_promotion?"
         );
         assert!(
-            said("set_capacity_tier * 2").starts_with("set_capacity_tier has no amounts; a factor works")
+            message("set_capacity_tier * 2").starts_with("set_capacity_tier has no amounts; a factor works")
         );
-        assert!(said("set_prices * much").starts_with("much is not a factor"));
-        assert!(said("set_prices * -1").starts_with("-1 is not a factor"));
-        assert!(said("set_prices * inf").starts_with("inf is not a factor"));
-        assert!(said("set_prices * 1e308").starts_with("1e308 is not a factor"));
-        assert_eq!(said("keep get_vars"), "get_vars does not change the company");
-        assert_eq!(said("next_week"), "next_week does not change the company");
-        assert!(said("drop it").starts_with("it is not a line number"));
-        assert_eq!(said("in x set_prices B=3"), "x is not the number of a week");
-        assert!(said("set group.S1.c_max_mean").starts_with("set needs a parameter and a value"));
-        assert!(said("set quality.base_product_quality 5 from 300").contains("in 24 set"));
-        assert!(said("in 3 set").starts_with("there is no tool set"));
-        assert_eq!(said("set_prices B"), "B is not an argument; write NAME=VALUE");
-        assert!(said("set_prices {B}").starts_with("the arguments are not JSON"));
+        assert!(message("set_prices * much").starts_with("much is not a factor"));
+        assert!(message("set_prices * -1").starts_with("-1 is not a factor"));
+        assert!(message("set_prices * inf").starts_with("inf is not a factor"));
+        assert!(message("set_prices * 1e308").starts_with("1e308 is not a factor"));
+        assert_eq!(message("keep get_vars"), "get_vars does not change the company");
+        assert_eq!(message("next_week"), "next_week does not change the company");
+        assert!(message("drop it").starts_with("it is not a line number"));
+        assert_eq!(message("in x set_prices B=3"), "x is not the number of a week");
+        assert!(message("set group.S1.c_max_mean").starts_with("set needs a parameter and a value"));
+        assert!(message("set quality.base_product_quality 5 from 300").contains("in 24 set"));
+        assert!(message("in 3 set").starts_with("there is no tool set"));
+        assert_eq!(message("set_prices B"), "B is not an argument; write NAME=VALUE");
+        assert!(message("set_prices {B}").starts_with("the arguments are not JSON"));
     }
 
     #[test]

@@ -60,11 +60,11 @@ impl Futures {
 
     /// Returns the number of futures in which a branch ends in bankruptcy.
     pub fn bankruptcy_count(&self, branch: usize) -> u32 {
-        let own = self.branches.get(branch).into_iter().flatten();
+        let branch_futures = self.branches.get(branch).into_iter().flatten();
         let is_broke = |weeks: &Vec<FigureValues>| {
             weeks.last().is_some_and(|last| last[BranchFigure::Cash as usize] < 0.0)
         };
-        own.filter(|weeks| weeks.len() < self.days.len() || is_broke(weeks)).count() as u32
+        branch_futures.filter(|weeks| weeks.len() < self.days.len() || is_broke(weeks)).count() as u32
     }
 
     /// Returns a figure in each future, NaN if it has no value.

@@ -133,18 +133,20 @@ impl WhatIf {
         }
         let (all, mut edits) = build_branch_edits(alternatives, parting, self.run.manifest.mode)?;
         let week_before = parting.week_before(self.run.days_per_week());
-        for (own, decided) in edits.iter_mut().zip(&all) {
-            own.week_before = week_before;
+        for (branch_edits, decided) in edits.iter_mut().zip(&all) {
+            branch_edits.week_before = week_before;
             if self.automates_capacity {
-                self.apply_lesson_capacity(own, decided, parting);
+                self.apply_lesson_capacity(branch_edits, decided, parting);
             }
         }
         let Some(day) = parting.last_day_naming_new_customers(&edits) else { return Ok(Some((all, edits))) };
         let day = self.run.last_boundary(day);
-        let met = self.run.snapshot_at(day, &mut |simulated| progress(simulated as usize, day as usize));
-        let Some(memory_snapshot) = met.map_err(|error| unreadable_record(&error))? else { return Ok(None) };
+        let snapshot = self.run.snapshot_at(day, &mut |simulated| progress(simulated as usize, day as usize));
+        let Some(memory_snapshot) = snapshot.map_err(|error| unreadable_record(&error))? else {
+            return Ok(None);
+        };
         let meant = Arc::new(memory_snapshot.world.customers.numbers.clone());
-        edits.iter_mut().for_each(|own| own.recorded_numbers = Some(meant.clone()));
+        edits.iter_mut().for_each(|branch_edits| branch_edits.recorded_numbers = Some(meant.clone()));
         Ok(Some((all, edits)))
     }
 
@@ -290,8 +292,10 @@ impl WhatIf {
             Edits { redraw: redrawn, ..edits.clone() }
         };
         let salts = || 0..u64::from(count);
-        let drawn: Vec<Edits> =
-            edits.iter().flat_map(|own| salts().map(move |salt| redrawn(own, salt))).collect();
+        let drawn: Vec<Edits> = edits
+            .iter()
+            .flat_map(|branch_edits| salts().map(move |salt| redrawn(branch_edits, salt)))
+            .collect();
         let Some(outcomes) = parting.simulate(&drawn, progress)? else { return Ok(None) };
         let days = parting.week_ends(self.run.days_per_week());
         let valued: Vec<_> =
@@ -403,11 +407,14 @@ impl BranchPoint {
         });
         let kept = made.clone().filter(|call| is_met(call.tool, &call.args)).map(|call| call.day);
         let changed = made.filter(|call| {
-            let mut other = edits.iter().filter_map(|own| own.changed_arguments.get(&call.seq));
+            let mut other =
+                edits.iter().filter_map(|branch_edits| branch_edits.changed_arguments.get(&call.seq));
             other.any(|args| is_met(call.tool, args))
         });
-        let added =
-            edits.iter().flat_map(|own| &own.added_calls).filter(|call| is_met(call.tool, &call.args));
+        let added = edits
+            .iter()
+            .flat_map(|branch_edits| &branch_edits.added_calls)
+            .filter(|call| is_met(call.tool, &call.args));
         kept.chain(changed.map(|call| call.day)).chain(added.map(|call| call.day)).max()
     }
 
@@ -422,7 +429,7 @@ impl BranchPoint {
     ) -> Result<Option<Vec<BranchOutcome>>, Rejection> {
         let days = (self.until - self.start.world.day) as usize * edits.len();
         let done = AtomicUsize::new(0);
-        let outcomes = parallel_map(edits, |own, stopped| {
+        let outcomes = parallel_map(edits, |branch_edits, stopped| {
             let mut go_on = |_| {
                 let day = done.fetch_add(1, Ordering::Relaxed) + 1;
                 match progress(day, days).is_break() || stopped.is_set() {
@@ -430,7 +437,7 @@ impl BranchPoint {
                     false => ControlFlow::Continue(()),
                 }
             };
-            simulate_branch(&self.start, &self.steps, own, self.until, &mut go_on)
+            simulate_branch(&self.start, &self.steps, branch_edits, self.until, &mut go_on)
         });
         match outcomes.iter().flatten().find_map(|outcome| outcome.lead_overflow.clone()) {
             Some(Rejection { code, message, .. }) => {

@@ -56,28 +56,32 @@ pub fn branch_origin(folder: &Path) -> Option<BranchOrigin> {
 /// Returns the week in which the run in a folder branched, and the first decision that only one of both runs made.
 fn branch_week_and_change(folder: &Path, parent: &Parent) -> Option<(u32, Option<FirstChange>)> {
     let lines = |folder: &Path| Some(Trajectory::read(&folder.join("trajectory.jsonl")).ok()?.lines);
-    let own = lines(folder)?;
-    let at = own.iter().position(|line| matches!(line.record, Record::Branch(_)))?;
-    let week = week_of(own[at].day) + 1;
+    let branch_lines = lines(folder)?;
+    let at = branch_lines.iter().position(|line| matches!(line.record, Record::Branch(_)))?;
+    let week = week_of(branch_lines[at].day) + 1;
     let parents = lines(&folder.with_file_name(&parent.run));
-    let change = parents.and_then(|parents| first_changed_decision(&own[at..], &parents, parent.seq));
+    let change =
+        parents.and_then(|parents| first_changed_decision(&branch_lines[at..], &parents, parent.seq));
     Some((week, change))
 }
 
 /// Returns the first decision that only one of branch and parent made on its day, up to the last day that both have reached.
 fn first_changed_decision(lines: &[Line], parents: &[Line], left_at: u64) -> Option<FirstChange> {
     let one = |line: &Line| decision_of_line(line).map(|(what, how)| (line.day, what.to_owned(), how));
-    let mine: Vec<_> = lines.iter().filter_map(one).collect();
-    let theirs: Vec<_> = parents.iter().filter(|line| line.seq > left_at).filter_map(one).collect();
+    let branch_decisions: Vec<_> = lines.iter().filter_map(one).collect();
+    let parent_decisions: Vec<_> = parents.iter().filter(|line| line.seq > left_at).filter_map(one).collect();
     let until = lines.last()?.day;
     let of = |(day, what, _): &(u32, String, Value), is_left_out| FirstChange {
         day: *day,
         what: what.clone(),
         is_left_out,
     };
-    let new = mine.iter().find(|one| !theirs.contains(one)).map(|one| of(one, false));
+    let new = branch_decisions.iter().find(|one| !parent_decisions.contains(one)).map(|one| of(one, false));
     // The current day of the branch is still open for decisions.
-    let left_out = theirs.iter().find(|one| one.0 < until && !mine.contains(one)).map(|one| of(one, true));
+    let left_out = parent_decisions
+        .iter()
+        .find(|one| one.0 < until && !branch_decisions.contains(one))
+        .map(|one| of(one, true));
     match (new, left_out) {
         (Some(new), Some(left_out)) if left_out.day < new.day => Some(left_out),
         (new, left_out) => new.or(left_out),

@@ -104,13 +104,13 @@ fn factor_scales_current_and_later_settings() {
     let runs = tempfile::tempdir().expect("a folder");
     let session = play_run(runs.path(), Mode::Debug);
     let compared = compare(&session, 5, &[&["set_prices * 0.5"]]);
-    let told: Vec<_> = compared.branches[1]
+    let changed_calls: Vec<_> = compared.branches[1]
         .call_differences
         .iter()
         .map(|call| (call.day, call.tool, call.recorded.clone(), call.edited.clone()))
         .collect();
     assert_eq!(
-        told,
+        changed_calls,
         [
             (28, ToolId::SetPrices, None, Some(json!({"A": 6, "B": 12.5, "C": 27.5}))),
             (49, ToolId::SetPrices, Some(json!({"B": 30})), Some(json!({"B": 15}))),
@@ -144,9 +144,10 @@ fn futures_share_draws_across_branches_and_calls() {
     let runs = tempfile::tempdir().expect("a folder");
     let session = play_run(runs.path(), Mode::Debug);
     let mut what_if = open_what_if(&session);
-    let asked = |own: &mut WhatIf| {
+    let asked = |what_if: &mut WhatIf| {
         let alternatives = [parse_edits(&["set_prices * 0.8"]), parse_edits(&["keep set_prices"])];
-        own.futures(10, Some(13), &alternatives, 5, &continue_progress)
+        what_if
+            .futures(10, Some(13), &alternatives, 5, &continue_progress)
             .expect("an answer")
             .expect("it is not stopped")
     };
@@ -282,12 +283,12 @@ fn related_runs_name_branch_week_and_first_change() {
     assert_eq!(branch_origin(session.folder().expect("a folder")), None);
     for id in [&session.manifest().id, &branch.manifest().id, &other.manifest().id] {
         let tree = related_runs(runs.path(), id);
-        let told: Vec<_> = tree
+        let tree_rows: Vec<_> = tree
             .iter()
             .map(|kin| (kin.run.id.clone(), kin.depth, kin.branched_in_week, kin.first_change.clone()))
             .collect();
         assert_eq!(
-            told,
+            tree_rows,
             [
                 (session.manifest().id.clone(), 0, None, None),
                 (branch.manifest().id.clone(), 1, Some(5), change(28, "set_prices", false)),
@@ -351,13 +352,13 @@ fn edited_parameter_equals_a_parameter_set_in_a_run() {
     let curve: Vec<f64> = branch_figures.values_by_week(BranchFigure::Cash).map(|(_, cash)| cash).collect();
     assert_eq!(curve, cash(&by_hand));
     assert_ne!(curve, cash(&session));
-    let told: Vec<_> = branch_figures
+    let differences: Vec<_> = branch_figures
         .parameter_differences
         .iter()
         .map(|set| (set.day, set.key.as_str(), set.edited.clone()))
         .collect();
     assert_eq!(
-        told,
+        differences,
         [
             (28, "group.S1.c_max_mean", Some(json!(200))),
             (42, "satisfaction.satisfaction_ema_alpha", Some(json!(0.9))),
@@ -440,7 +441,7 @@ fn sent_offers(session: &Session) -> (Vec<(u32, Group, u32)>, Vec<u32>) {
     let numbers = session.company().customer_numbers();
     let path = session.folder().expect("a folder").join("trajectory.jsonl");
     let lines = Trajectory::read(&path).expect("a trajectory").lines;
-    let mut met = (Vec::new(), Vec::new());
+    let mut offers = (Vec::new(), Vec::new());
     for line in &lines {
         let Record::Call(call) = &line.record else { continue };
         if call.tool != ToolId::SendEnterpriseDeal {
@@ -449,11 +450,11 @@ fn sent_offers(session: &Session) -> (Vec<(u32, Group, u32)>, Vec<u32>) {
         for deal in call.args["deals"].as_array().expect("deals") {
             let number = deal[0].as_u64().expect("a number") as u32;
             let (group, n) = numbers.find(number).expect("a customer");
-            met.0.push((line.day, group, n));
-            met.1.push(number);
+            offers.0.push((line.day, group, n));
+            offers.1.push(number);
         }
     }
-    met
+    offers
 }
 
 #[test]
@@ -483,7 +484,7 @@ fn offers_reach_the_same_enterprises_when_lead_counts_change() {
             "{alternative}"
         );
         assert_eq!(absent == 0, all_come, "{alternative}: {absent}");
-        assert!(reached.iter().all(|own| made.contains(own)), "{alternative}");
+        assert!(reached.iter().all(|offer| made.contains(offer)), "{alternative}");
         let rejected = refused.len() - absent;
         assert!(
             reached.len() + absent <= made.len() && reached.len() + absent + rejected > 10,

@@ -32,9 +32,9 @@ fn parse_bundled(name: &str, text: &str) -> Result<Policy, PolicyError> {
 pub fn short_run_policies() -> Result<Vec<(&'static str, Policy)>, PolicyError> {
     let of = |grid: &str, wanted: &dyn Fn(&Policy) -> bool| -> Result<Option<Policy>, PolicyError> {
         let all = PolicyGrid::find(grid)?.configurations;
-        Ok(all.into_iter().rev().map(|grid_point| grid_point.policy).find(|own| wanted(own)))
+        Ok(all.into_iter().rev().map(|grid_point| grid_point.policy).find(|policy| wanted(policy)))
     };
-    let routine = of(PAPER_GRID, &|own| own.rule_based == Some(RuleBased::default()))?;
+    let routine = of(PAPER_GRID, &|policy| policy.rule_based == Some(RuleBased::default()))?;
     let from_the_first_day = of("content-ads", &|_| true)?;
     let named = [("the paper's baseline", routine), ("ads from day 0", from_the_first_day)];
     Ok(named.into_iter().filter_map(|(name, policy)| Some((name, policy?))).collect())

@@ -97,7 +97,7 @@ fn arm_table(axis: &AblationAxis<'_>, day: u32) -> LabTable {
             CellValue::number(mean(&values)),
             CellValue::interval(Interval::for_mean(&values)),
             CellValue::number(difference.map(|paired_difference| paired_difference.mean)),
-            CellValue::interval(difference.and_then(|own| own.interval)),
+            CellValue::interval(difference.and_then(|paired_difference| paired_difference.interval)),
             CellValue::number(median(&axis.results.figures_of_arm(arm, |run| run.cash))),
             CellValue::number(mean(
                 &axis.results.figures_of_arm(arm, |run| f64::from(u8::from(run.is_bankrupt()))),

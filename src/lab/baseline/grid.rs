@@ -223,8 +223,8 @@ impl GridReader<'_> {
     // The part that all combinations share must be a valid policy too.
     fn check_base(&self, base: Option<&(std::ops::Range<usize>, Table)>) -> Result<(), PolicyError> {
         let Some((span, table)) = base else { return Ok(()) };
-        let told = parse_policy(table.clone(), "policy").map_err(|problem| (span.clone(), problem));
-        told.map(drop).map_err(|(span, problem)| self.error_at_key(span, &problem))
+        let parsed = parse_policy(table.clone(), "policy").map_err(|problem| (span.clone(), problem));
+        parsed.map(drop).map_err(|(span, problem)| self.error_at_key(span, &problem))
     }
 
     /// Returns the combination with a number; the last axis varies fastest.
@@ -318,8 +318,8 @@ mod tests {
         };
         // The published best configuration equals the routine's defaults.
         assert_eq!(of("mid / S1 / heavy / $100K"), Some(crate::policy::RuleBased::default()));
-        for (at, own) in grid.configurations.iter().enumerate() {
-            let same = |other: &&GridPoint| other.policy.rule_based == own.policy.rule_based;
+        for (at, grid_point) in grid.configurations.iter().enumerate() {
+            let same = |other: &&GridPoint| other.policy.rule_based == grid_point.policy.rule_based;
             assert_eq!(grid.configurations.iter().filter(same).count(), 1, "{}", labels[at]);
         }
     }

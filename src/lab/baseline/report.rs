@@ -124,10 +124,10 @@ fn many_seeds_table(grid: &PolicyGrid, board: &RankedResults<'_>) -> LabTable {
         let quartiles = Quartiles::from_values(&cash);
         let mut row = level_cells(grid, *arm);
         row.extend([
-            CellValue::number(quartiles.map(|own| own.median)),
+            CellValue::number(quartiles.map(|quartiles| quartiles.median)),
             CellValue::interval(Interval::for_median(&cash)),
-            CellValue::number(quartiles.map(|own| own.lower)),
-            CellValue::number(quartiles.map(|own| own.upper)),
+            CellValue::number(quartiles.map(|quartiles| quartiles.lower)),
+            CellValue::number(quartiles.map(|quartiles| quartiles.upper)),
             CellValue::number(mean(&of(|run| f64::from(u8::from(run.is_bankrupt()))))),
         ]);
         table.rows.push(row);
@@ -246,7 +246,11 @@ fn cash_quartile_graph(board: &RankedResults<'_>) -> Graph {
         .collect();
     let series = |name: &str, of: fn(&Quartiles) -> f64| Series {
         name: name.to_owned(),
-        points: quartiles.iter().enumerate().map(|(at, own)| (at as f64 + 1.0, of(own))).collect(),
+        points: quartiles
+            .iter()
+            .enumerate()
+            .map(|(at, arm_quartiles)| (at as f64 + 1.0, of(arm_quartiles)))
+            .collect(),
     };
     Graph {
         title: "Final cash of the configurations, highest first".to_owned(),
@@ -254,9 +258,9 @@ fn cash_quartile_graph(board: &RankedResults<'_>) -> Graph {
         x_axis: GraphAxis { label: "rank in the table", scale: AxisScale::Whole },
         y_axis: GraphAxis { label: "dollars", scale: AxisScale::Linear },
         series: vec![
-            series("upper quartile", |own| own.upper),
-            series("lower quartile", |own| own.lower),
-            series("median", |own| own.median),
+            series("upper quartile", |quartiles| quartiles.upper),
+            series("lower quartile", |quartiles| quartiles.lower),
+            series("median", |quartiles| quartiles.median),
         ],
         form: GraphForm::Lines,
     }

@@ -127,12 +127,12 @@ fn figure_table(runs: &[BehaviorRun]) -> LabTable {
     let values =
         |run: &BehaviorRun| figures.iter().map(|(figure, _)| figure.value(&run.logbook)).collect::<Vec<_>>();
     let by_run: Vec<Vec<Option<f64>>> = runs.iter().map(values).collect();
-    let row = |(run, own): (&BehaviorRun, &Vec<Option<f64>>)| {
+    let row = |(run, run_values): (&BehaviorRun, &Vec<Option<f64>>)| {
         let mut cells = vec![
             CellValue::text(&*run.logbook.run),
             participant_label(run).map_or(CellValue::Missing, CellValue::Text),
         ];
-        cells.extend(own.iter().map(|value| CellValue::number(*value)));
+        cells.extend(run_values.iter().map(|value| CellValue::number(*value)));
         cells
     };
     let rows: Vec<Vec<CellValue>> = runs.iter().zip(&by_run).map(row).collect();
@@ -140,17 +140,19 @@ fn figure_table(runs: &[BehaviorRun]) -> LabTable {
     if runs.len() > 1 {
         let samples: Vec<SampleStatistics> = (0..figures.len())
             .map(|at| {
-                SampleStatistics::from_values(&by_run.iter().filter_map(|own| own[at]).collect::<Vec<_>>())
+                SampleStatistics::from_values(
+                    &by_run.iter().filter_map(|run_values| run_values[at]).collect::<Vec<_>>(),
+                )
             })
             .collect();
-        let told = |name: &str, least: usize, of: fn(&SampleStatistics) -> f64| {
+        let summary_row = |name: &str, least: usize, of: fn(&SampleStatistics) -> f64| {
             let cells = samples.iter().map(|sample_statistics| {
                 CellValue::number((sample_statistics.count >= least).then(|| of(sample_statistics)))
             });
             [CellValue::text(name), CellValue::text("")].into_iter().chain(cells).collect()
         };
-        summary.push(told("mean", 1, |statistics| statistics.mean));
-        summary.push(told("± sd (n − 1)", 2, |own| own.std));
+        summary.push(summary_row("mean", 1, |statistics| statistics.mean));
+        summary.push(summary_row("± sd (n − 1)", 2, |statistics| statistics.std));
     }
     LabTable { rows, summary, ..LabTable::new("measures", "", columns) }
 }
@@ -168,11 +170,11 @@ fn tool_table(runs: &[BehaviorRun]) -> LabTable {
     names.dedup();
     let calls_of = |run: &BehaviorRun, name: &str| {
         let mut tools = run.logbook.measures.tools.tools.iter();
-        tools.find(|(own, _)| own == name).map_or(0, |(_, calls)| *calls)
+        tools.find(|(tool, _)| tool == name).map_or(0, |(_, calls)| *calls)
     };
     let weeks = |run: &BehaviorRun| run.logbook.weeks.len().max(1) as f64;
     let all: u32 = runs.iter().map(|run| run.logbook.measures.tools.calls).sum();
-    let mut told: Vec<(&str, u32, SampleStatistics)> = names
+    let mut by_tool: Vec<(&str, u32, SampleStatistics)> = names
         .into_iter()
         .map(|name| {
             let a_week: Vec<f64> =
@@ -180,7 +182,7 @@ fn tool_table(runs: &[BehaviorRun]) -> LabTable {
             (name, runs.iter().map(|run| calls_of(run, name)).sum(), SampleStatistics::from_values(&a_week))
         })
         .collect();
-    told.sort_by(|one, other| other.1.cmp(&one.1).then_with(|| one.0.cmp(other.0)));
+    by_tool.sort_by(|one, other| other.1.cmp(&one.1).then_with(|| one.0.cmp(other.0)));
     let row = |(name, calls, a_week): &(&str, u32, SampleStatistics)| {
         vec![
             CellValue::text(*name),
@@ -197,7 +199,7 @@ fn tool_table(runs: &[BehaviorRun]) -> LabTable {
         Column::number("calls_a_week", "calls a week", Measure::Number(2)),
         Column::number("sd_a_week", "± sd", Measure::Number(2)),
     ];
-    let rows = told.iter().take(MAX_TOOLS).map(row).collect();
+    let rows = by_tool.iter().take(MAX_TOOLS).map(row).collect();
     LabTable { rows, ..LabTable::new("tools", "Most-used tools", columns) }
 }
 
@@ -361,7 +363,7 @@ mod tests {
         let measures =
             |runs: &[BehaviorRun]| behavior_report(runs).table("measures").expect("measures").clone();
         let of = |table: &LabTable, row: usize, column: &str| {
-            let at = table.columns.iter().position(|own| own.name == column).expect(column);
+            let at = table.columns.iter().position(|table_column| table_column.name == column).expect(column);
             table.rows.iter().chain(&table.summary).nth(row).expect("a row")[at].clone()
         };
         let survival = |table: &LabTable| [0, 1, 2, 3].map(|row| of(table, row, "survival"));

@@ -258,10 +258,10 @@ fn measure_scaling(bench: &BenchContext) -> Result<Samples, BenchError> {
 /// Companies take turns, so that a slow period of the machine affects all of them equally.
 fn costs_by_size(bench: &BenchContext) -> Result<Samples, BenchError> {
     // Companies grow during the measurement, so they start slightly smaller.
-    let own = SUBSCRIBER_COUNTS
+    let sized_companies = SUBSCRIBER_COUNTS
         .iter()
         .map(|size| MeasuredCompany::with_subscribers(size / 10 * 9, RunStorage::Memory, bench));
-    let mut companies = own.collect::<Result<Vec<MeasuredCompany>, BenchError>>()?;
+    let mut companies = sized_companies.collect::<Result<Vec<MeasuredCompany>, BenchError>>()?;
     companies.push(company_with_a_million(RunStorage::Memory, bench)?);
     let mut costs = vec![Vec::new(); companies.len()];
     for _ in 0..bench.repetitions.min(MAX_WEEKS_PER_SIZE) {

@@ -70,8 +70,8 @@ pub fn measure_queries(bench: &BenchContext) -> Result<Samples, BenchError> {
     }
     let typical = FIGURES.iter().filter_map(|figure| figure.name.strip_prefix(FIGURE_NAME_PREFIX));
     let typical = typical.map(|name| {
-        let own = asked.iter().find(|(known, _)| *known == name);
-        own.map(|(_, times)| times.clone()).ok_or_else(|| BenchError(format!("unknown query {name}")))
+        let entry = asked.iter().find(|(known, _)| *known == name);
+        entry.map(|(_, times)| times.clone()).ok_or_else(|| BenchError(format!("unknown query {name}")))
     });
     let typical: Vec<Vec<f64>> = typical.collect::<Result<_, _>>()?;
     let slowest = asked.into_iter().map(|(_, times)| times).max_by(|one, other| {

@@ -158,10 +158,10 @@ impl BoundAccount {
 
     /// Returns the revenue from enterprises or individuals, dollars.
     pub(super) fn revenue_of(&self, of_companies: bool) -> f64 {
-        let own = self.groups.iter().filter(|bound_group| {
+        let bound_groups = self.groups.iter().filter(|bound_group| {
             Group::parse(bound_group.group).is_some_and(|group| group.is_enterprise() == of_companies)
         });
-        own.map(|own| own.revenue).sum()
+        bound_groups.map(|bound_group| bound_group.revenue).sum()
     }
 
     fn targeted_development(&self) -> f64 {

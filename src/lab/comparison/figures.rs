@@ -269,8 +269,8 @@ pub(super) fn group_rows(runs: &[Logbook]) -> Vec<ComparisonRow> {
         unit: "share",
         values: by_run
             .iter()
-            .map(|own| {
-                own.iter().find(|ads| ads.group == group).and_then(|ads| Some(ads.best.as_ref()?.share))
+            .map(|run_ads| {
+                run_ads.iter().find(|ads| ads.group == group).and_then(|ads| Some(ads.best.as_ref()?.share))
             })
             .collect(),
         published: None,

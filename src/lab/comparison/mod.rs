@@ -63,10 +63,10 @@ fn caveats(runs: &[Logbook]) -> Vec<String> {
     };
     let any = |differs: &dyn Fn(&Logbook, &Logbook) -> bool| runs.iter().any(|run| differs(run, first));
     note(any(&|logbook, first| logbook.seed != first.seed), "seed");
-    note(any(&|own, first| own.days != first.days), "days");
-    note(any(&|own, first| own.start_cash != first.start_cash), "cash at the start");
-    note(any(&|own, first| own.parameters_digest != first.parameters_digest), "parameters");
-    note(any(&|own, first| own.mode != first.mode), "mode");
+    note(any(&|logbook, first| logbook.days != first.days), "days");
+    note(any(&|logbook, first| logbook.start_cash != first.start_cash), "cash at the start");
+    note(any(&|logbook, first| logbook.parameters_digest != first.parameters_digest), "parameters");
+    note(any(&|logbook, first| logbook.mode != first.mode), "mode");
     let obstacles: Vec<_> = runs.iter().map(|run| RankingCriteria::from_logbook(run).obstacles()).collect();
     caveats.extend(describe_excluded(&obstacles).map(|(count, why)| match count {
         1 => format!("One run is not comparable with published runs: {why}."),

@@ -99,8 +99,8 @@ mod tests {
             let text = comparison_to_text(&compare_runs(&books), width);
             assert!(text.lines().all(|line| line.chars().count() <= width), "{width}:\n{text}");
             let row = |cash: [&str; 2]| {
-                let told = |line: &str| line.split_whitespace().any(|word| cash.contains(&word));
-                text.lines().position(told).expect("a row")
+                let has_cash = |line: &str| line.split_whitespace().any(|word| cash.contains(&word));
+                text.lines().position(has_cash).expect("a row")
             };
             assert_eq!(row(["$0", "$0"]) - row(["$2.90M", "$2,900,000"]), 29, "{text}");
         }

@@ -35,8 +35,8 @@ fn side_by_side(comparison: &Comparison) -> String {
     rows.push(vec![String::new(); comparison.runs.len() + 2]);
     let last = comparison.cash.len().saturating_sub(1);
     let every = comparison.cash.len().div_ceil(MAX_CASH_ROWS).max(1);
-    let told = comparison.cash.iter().enumerate().filter(|(at, _)| at % every == 0 || *at == last);
-    rows.extend(told.map(|(_, row)| text_row(row)));
+    let shown = comparison.cash.iter().enumerate().filter(|(at, _)| at % every == 0 || *at == last);
+    rows.extend(shown.map(|(_, row)| text_row(row)));
     align_cells(&rows)
 }
 
@@ -104,7 +104,8 @@ fn decision_lines(comparison: &Comparison, line: usize) -> String {
     let width = comparison.runs.iter().map(|run| run.chars().count()).max().unwrap_or(0);
     for decided in &comparison.decisions {
         text += &format!("  day {}\n", decided.day);
-        for (run, texts) in comparison.runs.iter().zip(&decided.by_run).filter(|(_, own)| !own.is_empty()) {
+        for (run, texts) in comparison.runs.iter().zip(&decided.by_run).filter(|(_, texts)| !texts.is_empty())
+        {
             let lines = wrap_decisions(&count_equal(texts), line.saturating_sub(width + 6));
             for (at, line) in lines.iter().enumerate() {
                 let name = if at == 0 { run.as_str() } else { "" };
@@ -124,11 +125,11 @@ fn count_equal(decisions: &[String]) -> Vec<String> {
             None => counted.push((decision, 1)),
         }
     }
-    let told = |(decision, count): (&str, usize)| match count {
+    let describe = |(decision, count): (&str, usize)| match count {
         1 => decision.to_owned(),
         count => format!("{decision} ({count} times)"),
     };
-    counted.into_iter().map(told).collect()
+    counted.into_iter().map(describe).collect()
 }
 
 /// Joins decisions into lines of limited width without breaking a decision.
@@ -184,10 +185,10 @@ mod tests {
     #[test]
     fn equal_decisions_are_counted_and_lines_wrapped() {
         let texts = ["found nothing", "price A: 1 → 2", "found nothing"].map(str::to_owned);
-        let told = count_equal(&texts);
-        assert_eq!(told, ["found nothing (2 times)", "price A: 1 → 2"]);
-        assert_eq!(wrap_decisions(&told, 100), ["found nothing (2 times); price A: 1 → 2"]);
-        assert_eq!(wrap_decisions(&told, 30), ["found nothing (2 times);", "price A: 1 → 2"]);
+        let counted = count_equal(&texts);
+        assert_eq!(counted, ["found nothing (2 times)", "price A: 1 → 2"]);
+        assert_eq!(wrap_decisions(&counted, 100), ["found nothing (2 times); price A: 1 → 2"]);
+        assert_eq!(wrap_decisions(&counted, 30), ["found nothing (2 times);", "price A: 1 → 2"]);
         assert!(wrap_decisions(&[], 30).is_empty());
     }
 }

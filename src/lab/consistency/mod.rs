@@ -348,7 +348,7 @@ struct Differences {
 
 impl Differences {
     fn compare(one: &PlayDraws, other: &PlayDraws, claim: &Claim) -> Differences {
-        let (own, others) = ((claim.draws)(one), (claim.draws)(other));
+        let (draws, others) = ((claim.draws)(one), (claim.draws)(other));
         let last = one.end.day.min(other.end.day);
         let mut found = Differences::default();
         let mut note = |key: &DrawKey, differs: bool| {
@@ -359,7 +359,7 @@ impl Differences {
             }
         };
         let is_dated = claim.compared_keys == ComparedKeys::UntilFirstEnd;
-        for (key, value) in own {
+        for (key, value) in draws {
             match others.get(key) {
                 Some(other) => note(key, value != other),
                 None if is_dated && key[0] <= last => note(key, true),
@@ -369,7 +369,7 @@ impl Differences {
         if is_dated {
             others
                 .keys()
-                .filter(|key| key[0] <= last && !own.contains_key(*key))
+                .filter(|key| key[0] <= last && !draws.contains_key(*key))
                 .for_each(|key| note(key, true));
         }
         found

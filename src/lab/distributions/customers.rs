@@ -53,12 +53,12 @@ pub const CUSTOMER_DRAWS: &[WorldDraw] = &[
         ],
         source_files: &[(TRAITS_FILE, 1)],
         distribution: |params, _| {
-            let own = &params.customer_generation;
+            let generation = &params.customer_generation;
             DrawDistribution::Exponential {
-                mean: own.steepness_left_exp_scale,
-                offset: own.steepness_left_offset,
-                min: own.steepness_left_min,
-                max: own.steepness_left_max,
+                mean: generation.steepness_left_exp_scale,
+                offset: generation.steepness_left_offset,
+                min: generation.steepness_left_min,
+                max: generation.steepness_left_max,
             }
         },
         draw: |luck, member, n| example_traits(luck, member, n).curve.steepness_left,
@@ -76,12 +76,12 @@ pub const CUSTOMER_DRAWS: &[WorldDraw] = &[
         ],
         source_files: &[(TRAITS_FILE, 1)],
         distribution: |params, _| {
-            let own = &params.customer_generation;
+            let generation = &params.customer_generation;
             DrawDistribution::Exponential {
-                mean: own.steepness_right_exp_scale,
-                offset: own.steepness_right_offset,
-                min: own.steepness_right_min,
-                max: own.steepness_right_max,
+                mean: generation.steepness_right_exp_scale,
+                offset: generation.steepness_right_offset,
+                min: generation.steepness_right_min,
+                max: generation.steepness_right_max,
             }
         },
         draw: |luck, member, n| example_traits(luck, member, n).curve.steepness_right,
@@ -99,8 +99,12 @@ pub const CUSTOMER_DRAWS: &[WorldDraw] = &[
         ],
         source_files: &[(TRAITS_FILE, 1)],
         distribution: |params, member| {
-            let (own, bounds) = (params.group(group_at(member)), &params.customer_generation);
-            normal_at_least(own.c_max_mean, bounds.c_max_std_multiplier * own.c_max_std, bounds.c_max_min)
+            let (group_params, bounds) = (params.group(group_at(member)), &params.customer_generation);
+            normal_at_least(
+                group_params.c_max_mean,
+                bounds.c_max_std_multiplier * group_params.c_max_std,
+                bounds.c_max_min,
+            )
         },
         draw: |luck, member, n| example_traits(luck, member, n).curve.c_max,
     },
@@ -112,8 +116,12 @@ pub const CUSTOMER_DRAWS: &[WorldDraw] = &[
         parameters: &["group.q_min_mean", "group.q_min_std", "customer_generation.q_min_min"],
         source_files: &[(TRAITS_FILE, 1)],
         distribution: |params, member| {
-            let own = params.group(group_at(member));
-            normal_at_least(own.q_min_mean, own.q_min_std, params.customer_generation.q_min_min)
+            let group_params = params.group(group_at(member));
+            normal_at_least(
+                group_params.q_min_mean,
+                group_params.q_min_std,
+                params.customer_generation.q_min_min,
+            )
         },
         draw: |luck, member, n| example_traits(luck, member, n).curve.q_min,
     },
@@ -125,12 +133,16 @@ pub const CUSTOMER_DRAWS: &[WorldDraw] = &[
         parameters: &["group.q_range_mean", "group.q_range_std", "customer_generation.q_range_min"],
         source_files: &[(TRAITS_FILE, 1)],
         distribution: |params, member| {
-            let own = params.group(group_at(member));
-            normal_at_least(own.q_range_mean, own.q_range_std, params.customer_generation.q_range_min)
+            let group_params = params.group(group_at(member));
+            normal_at_least(
+                group_params.q_range_mean,
+                group_params.q_range_std,
+                params.customer_generation.q_range_min,
+            )
         },
         draw: |luck, member, n| {
-            let own = example_traits(luck, member, n).curve;
-            own.q_max - own.q_min
+            let curve = example_traits(luck, member, n).curve;
+            curve.q_max - curve.q_min
         },
     },
     WorldDraw {
@@ -145,10 +157,10 @@ pub const CUSTOMER_DRAWS: &[WorldDraw] = &[
         ],
         source_files: &[(TRAITS_FILE, 1)],
         distribution: |params, member| {
-            let own = params.group(group_at(member));
+            let group_params = params.group(group_at(member));
             normal_at_least(
-                own.usage_demand_mean,
-                own.usage_demand_std,
+                group_params.usage_demand_mean,
+                group_params.usage_demand_std,
                 params.customer_generation.usage_demand_min,
             )
         },
@@ -166,10 +178,10 @@ pub const CUSTOMER_DRAWS: &[WorldDraw] = &[
         ],
         source_files: &[(TRAITS_FILE, 1)],
         distribution: |params, member| {
-            let own = params.group(group_at(member));
+            let group_params = params.group(group_at(member));
             normal_at_least(
-                own.ads_quality_sensitivity_mean,
-                own.ads_quality_sensitivity_std,
+                group_params.ads_quality_sensitivity_mean,
+                group_params.ads_quality_sensitivity_std,
                 params.customer_generation.ads_quality_sensitivity_min,
             )
         },
@@ -187,10 +199,10 @@ pub const CUSTOMER_DRAWS: &[WorldDraw] = &[
         ],
         source_files: &[(TRAITS_FILE, 1)],
         distribution: |params, member| {
-            let own = params.group(group_at(member));
+            let group_params = params.group(group_at(member));
             normal_at_least(
-                own.ads_return_sensitivity_mean,
-                own.ads_return_sensitivity_std,
+                group_params.ads_return_sensitivity_mean,
+                group_params.ads_return_sensitivity_std,
                 params.customer_generation.ads_return_sensitivity_min,
             )
         },
@@ -204,10 +216,10 @@ pub const CUSTOMER_DRAWS: &[WorldDraw] = &[
         parameters: &["group.seat_count_min", "group.seat_count_max"],
         source_files: &[(TRAITS_FILE, 1)],
         distribution: |params, member| {
-            let own = params.group(group_at(member));
+            let group_params = params.group(group_at(member));
             DrawDistribution::UniformInteger {
-                low: own.seat_count_min.unwrap_or(1),
-                high: own.seat_count_max.unwrap_or(1),
+                low: group_params.seat_count_min.unwrap_or(1),
+                high: group_params.seat_count_max.unwrap_or(1),
             }
         },
         draw: |luck, member, n| example_traits(luck, member, n).seats,
@@ -225,9 +237,10 @@ pub const CUSTOMER_DRAWS: &[WorldDraw] = &[
         ],
         source_files: &[(TRAITS_FILE, 1)],
         distribution: |params, member| {
-            let (own, bounds) = (params.group(group_at(member)), &params.customer_generation);
-            let spread = bounds.reply_delay_mean_noise_std_factor * own.reply_delay_std.unwrap_or(0.0);
-            normal_at_least(own.reply_delay_mean.unwrap_or(0.0), spread, bounds.reply_delay_mean_min)
+            let (group_params, bounds) = (params.group(group_at(member)), &params.customer_generation);
+            let spread =
+                bounds.reply_delay_mean_noise_std_factor * group_params.reply_delay_std.unwrap_or(0.0);
+            normal_at_least(group_params.reply_delay_mean.unwrap_or(0.0), spread, bounds.reply_delay_mean_min)
         },
         draw: |luck, member, n| example_negotiator(luck, member, n).reply_delay_mean,
     },
@@ -243,8 +256,8 @@ pub const CUSTOMER_DRAWS: &[WorldDraw] = &[
         ],
         source_files: &[(TRAITS_FILE, 1)],
         distribution: |params, member| {
-            let (own, bounds) = (params.group(group_at(member)), &params.customer_generation);
-            let spread = own.reply_delay_std.unwrap_or(0.0);
+            let (group_params, bounds) = (params.group(group_at(member)), &params.customer_generation);
+            let spread = group_params.reply_delay_std.unwrap_or(0.0);
             normal_at_least(
                 spread,
                 bounds.reply_delay_std_noise_std_factor * spread,
@@ -285,10 +298,10 @@ pub const CUSTOMER_DRAWS: &[WorldDraw] = &[
         ],
         source_files: &[(TRAITS_FILE, 1)],
         distribution: |params, member| {
-            let own = params.group(group_at(member));
+            let group_params = params.group(group_at(member));
             DrawDistribution::RoundedNormal {
-                mean: own.max_negotiation_turns_mean.unwrap_or(0.0),
-                std: own.max_negotiation_turns_std.unwrap_or(0.0),
+                mean: group_params.max_negotiation_turns_mean.unwrap_or(0.0),
+                std: group_params.max_negotiation_turns_std.unwrap_or(0.0),
                 rounding: RoundingMode::Nearest,
                 min: f64::from(params.customer_generation.max_negotiation_turns_min),
             }
@@ -303,8 +316,11 @@ pub const CUSTOMER_DRAWS: &[WorldDraw] = &[
         parameters: &[],
         source_files: &[("customers/persona.rs", 1)],
         distribution: |params, member| {
-            let own = &params.personas.group[member];
-            DrawDistribution::UniformInteger { low: 0, high: own.industry.len().saturating_sub(1) as u32 }
+            let group_personas = &params.personas.group[member];
+            DrawDistribution::UniformInteger {
+                low: 0,
+                high: group_personas.industry.len().saturating_sub(1) as u32,
+            }
         },
         draw: |luck, member, n| f64::from(example_traits(luck, member, n).persona.0[0]),
     },
@@ -355,9 +371,9 @@ pub const CUSTOMER_DRAWS: &[WorldDraw] = &[
         },
         draw: |luck, member, n| {
             let offers = ByPlan([PlanOffer { price: 10.0, quality: 0.3, quota: 1e6 }; 3]);
-            let own = example_traits(luck, member, 1);
+            let traits = example_traits(luck, member, 1);
             let word = luck.streams.open(Part::LeadNoise, [member as u64, n]).word();
-            LeadEvaluation::new(&offers, 0.0, (own.curve, own.usage_demand), word, &luck.params).noise
+            LeadEvaluation::new(&offers, 0.0, (traits.curve, traits.usage_demand), word, &luck.params).noise
         },
     },
 ];

@@ -179,8 +179,8 @@ impl DrawDistribution {
             }
             DrawDistribution::LogNormal { mu, sigma, min: least, max: most, factor } => {
                 let raw = |power| clamped_log_normal_moment(power, mu, sigma, least, most);
-                let own = Moments::from_raw_moments(raw(1.0), raw(2.0));
-                Moments { mean: factor * own.mean, std: factor * own.std }
+                let unscaled = Moments::from_raw_moments(raw(1.0), raw(2.0));
+                Moments { mean: factor * unscaled.mean, std: factor * unscaled.std }
             }
             DrawDistribution::Uniform { low, high } => {
                 Moments { mean: (low + high) / 2.0, std: (high - low) / 12f64.sqrt() }

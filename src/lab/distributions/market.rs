@@ -83,13 +83,13 @@ pub const MARKET_DRAWS: &[WorldDraw] = &[
         ],
         source_files: &[(COMPETITORS_FILE, 1)],
         distribution: |params, _| {
-            let own = &params.competitor;
+            let competitor = &params.competitor;
             DrawDistribution::LogNormal {
-                mu: own.competitor_event_boost_mu,
-                sigma: own.competitor_event_boost_sigma,
-                min: own.competitor_event_boost_min,
-                max: own.competitor_event_boost_max,
-                factor: magnitude_scale(EXAMPLE_DAY, EXAMPLE_RUN_DAYS, own),
+                mu: competitor.competitor_event_boost_mu,
+                sigma: competitor.competitor_event_boost_sigma,
+                min: competitor.competitor_event_boost_min,
+                max: competitor.competitor_event_boost_max,
+                factor: magnitude_scale(EXAMPLE_DAY, EXAMPLE_RUN_DAYS, competitor),
             }
         },
         draw: |luck, _, n| {
@@ -169,10 +169,10 @@ pub const MARKET_DRAWS: &[WorldDraw] = &[
         parameters: &["demand_surge.multiplier_base", "demand_surge.multiplier_range"],
         source_files: &[(SURGES_FILE, 1)],
         distribution: |params, _| {
-            let own = &params.demand_surge;
+            let demand_surge = &params.demand_surge;
             DrawDistribution::Uniform {
-                low: own.multiplier_base,
-                high: own.multiplier_base + own.multiplier_range,
+                low: demand_surge.multiplier_base,
+                high: demand_surge.multiplier_base + demand_surge.multiplier_range,
             }
         },
         draw: |luck, _, n| example_surge(luck, n, |_, multiplier| multiplier),
@@ -207,7 +207,9 @@ pub const MARKET_DRAWS: &[WorldDraw] = &[
         draw: |luck, _, n| {
             let (all, mut stream) = (unknown_groups(), luck.streams.open(Part::MarketResearch, [n]));
             let found = draw_attempt(&all, 1.0, &mut stream);
-            found.and_then(|found| all.iter().position(|own| *own == found)).map_or(f64::NAN, |at| at as f64)
+            found
+                .and_then(|found| all.iter().position(|group| *group == found))
+                .map_or(f64::NAN, |at| at as f64)
         },
     },
     WorldDraw {

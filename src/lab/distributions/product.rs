@@ -39,9 +39,9 @@ pub const PRODUCT_DRAWS: &[WorldDraw] = &[
         parameters: &["operations.downtime_minutes_choices", "operations.downtime_minutes_probabilities"],
         source_files: &[(SERVICE_FILE, 1)],
         distribution: |params, _| {
-            let own = &params.operations;
-            let lengths = own.downtime_minutes_choices.into_iter().map(f64::from);
-            DrawDistribution::Discrete(lengths.zip(own.downtime_minutes_probabilities).collect())
+            let operations = &params.operations;
+            let lengths = operations.downtime_minutes_choices.into_iter().map(f64::from);
+            DrawDistribution::Discrete(lengths.zip(operations.downtime_minutes_probabilities).collect())
         },
         draw: |luck, _, n| {
             f64::from(draw_downtime_minutes(
@@ -118,18 +118,18 @@ pub const PRODUCT_DRAWS: &[WorldDraw] = &[
         ],
         source_files: &[(RESEARCH_FILE, 1)],
         distribution: |params, tier| {
-            let own = params.research(tier as u8);
+            let tier_params = params.research(tier as u8);
             DrawDistribution::RoundedNormal {
-                mean: own.mean_days,
-                std: own.std_days,
+                mean: tier_params.mean_days,
+                std: tier_params.std_days,
                 rounding: RoundingMode::Down,
                 min: f64::from(params.development.rd_min_duration_days),
             }
         },
         draw: |luck, tier, n| {
             let z = luck.streams.open(Part::Research, [tier as u64, n]).standard_normal();
-            let own = luck.params.research(tier as u8);
-            f64::from(project_duration(own, z, &luck.params.development))
+            let tier_params = luck.params.research(tier as u8);
+            f64::from(project_duration(tier_params, z, &luck.params.development))
         },
     },
     WorldDraw {
@@ -144,10 +144,10 @@ pub const PRODUCT_DRAWS: &[WorldDraw] = &[
         ],
         source_files: &[(RESEARCH_FILE, 1)],
         distribution: |params, tier| {
-            let own = params.research(tier as u8);
+            let tier_params = params.research(tier as u8);
             DrawDistribution::Normal {
-                mean: own.mean_quality_boost,
-                std: own.std_quality_boost,
+                mean: tier_params.mean_quality_boost,
+                std: tier_params.std_quality_boost,
                 min: params.development.rd_min_quality_boost,
                 max: f64::INFINITY,
             }
@@ -171,10 +171,10 @@ pub const PRODUCT_DRAWS: &[WorldDraw] = &[
         ],
         source_files: &[("retention/billing.rs", 1), ("enterprise/outcomes.rs", 1)],
         distribution: |params, member| {
-            let (own, bounds) = (params.group(group_at(member)), &params.customer_generation);
+            let (group_params, bounds) = (params.group(group_at(member)), &params.customer_generation);
             DrawDistribution::Normal {
-                mean: own.usage_demand_mean,
-                std: bounds.daily_usage_rate_std_fraction * own.usage_demand_mean,
+                mean: group_params.usage_demand_mean,
+                std: bounds.daily_usage_rate_std_fraction * group_params.usage_demand_mean,
                 min: bounds.daily_usage_rate_min,
                 max: f64::INFINITY,
             }

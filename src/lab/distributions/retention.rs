@@ -87,18 +87,18 @@ pub const RETENTION_DRAWS: &[WorldDraw] = &[
         ],
         source_files: &[(RENEWAL_FILE, 1)],
         distribution: |params, member| {
-            let (own, law) = (params.group(group_at(member)), &params.involuntary_churn);
+            let (group_params, law) = (params.group(group_at(member)), &params.involuntary_churn);
             DrawDistribution::Normal {
-                mean: own.involuntary_churn_mean,
-                std: own.involuntary_churn_std,
+                mean: group_params.involuntary_churn_mean,
+                std: group_params.involuntary_churn_std,
                 min: law.mu_min,
                 max: law.mu_max,
             }
         },
         draw: |luck, member, n| {
             let z = luck.streams.open(Part::InvoluntaryMu, [member as u64, n]).standard_normal();
-            let own = luck.params.group(group_at(member));
-            let (mean, std) = (own.involuntary_churn_mean, own.involuntary_churn_std);
+            let group_params = luck.params.group(group_at(member));
+            let (mean, std) = (group_params.involuntary_churn_mean, group_params.involuntary_churn_std);
             involuntary_rate(mean, std, z, &luck.params.involuntary_churn)
         },
     },
@@ -163,18 +163,19 @@ pub const RETENTION_DRAWS: &[WorldDraw] = &[
         parameters: &["group.reply_delay_mean", "group.reply_delay_std", "enterprise.reply_delay_min_days"],
         source_files: &[("enterprise/messages.rs", 1)],
         distribution: |params, member| {
-            let own = params.group(group_at(member));
+            let group_params = params.group(group_at(member));
             DrawDistribution::RoundedNormal {
-                mean: own.reply_delay_mean.unwrap_or(0.0),
-                std: own.reply_delay_std.unwrap_or(0.0),
+                mean: group_params.reply_delay_mean.unwrap_or(0.0),
+                std: group_params.reply_delay_std.unwrap_or(0.0),
                 rounding: RoundingMode::Nearest,
                 min: f64::from(params.enterprise.reply_delay_min_days),
             }
         },
         draw: |luck, member, n| {
             let z = luck.streams.open(Part::ReplyDelay, [n, 1]).standard_normal();
-            let own = luck.params.group(group_at(member));
-            let (mean, std) = (own.reply_delay_mean.unwrap_or(0.0), own.reply_delay_std.unwrap_or(0.0));
+            let group_params = luck.params.group(group_at(member));
+            let (mean, std) =
+                (group_params.reply_delay_mean.unwrap_or(0.0), group_params.reply_delay_std.unwrap_or(0.0));
             f64::from(reply_delay(mean, std, z, &luck.params.enterprise))
         },
     },

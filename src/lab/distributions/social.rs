@@ -62,9 +62,13 @@ pub const SOCIAL_DRAWS: &[WorldDraw] = &[
         parameters: &["social.sentiment"],
         source_files: &[(CROWD_FILE, 1)],
         distribution: |params, _| {
-            let own = sentiment_chances(EXAMPLE_MOOD, &params.social);
-            let negative = 1.0 - own.positive - own.neutral;
-            DrawDistribution::Discrete(vec![(1.0, own.positive), (0.0, own.neutral), (-1.0, negative)])
+            let chances = sentiment_chances(EXAMPLE_MOOD, &params.social);
+            let negative = 1.0 - chances.positive - chances.neutral;
+            DrawDistribution::Discrete(vec![
+                (1.0, chances.positive),
+                (0.0, chances.neutral),
+                (-1.0, negative),
+            ])
         },
         draw: |luck, _, n| match sentiment(EXAMPLE_MOOD, post_stream(luck, n).uniform(), &luck.params.social)
         {

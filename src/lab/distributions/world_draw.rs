@@ -41,8 +41,8 @@ impl DrawFamily {
     /// Returns the members: positions of groups or numbers of tiers, with names.
     pub fn members(self, params: &Params) -> Vec<(usize, String)> {
         let groups = |wanted: &dyn Fn(&Group) -> bool| {
-            let own = Group::all().filter(|group| wanted(group));
-            own.map(|group| (group.index(), group.id().to_owned())).collect()
+            let chosen = Group::all().filter(|group| wanted(group));
+            chosen.map(|group| (group.index(), group.id().to_owned())).collect()
         };
         match self {
             DrawFamily::Single => vec![(0, String::new())],
@@ -50,8 +50,8 @@ impl DrawFamily {
             DrawFamily::Individuals => groups(&|group| !group.is_enterprise()),
             DrawFamily::Enterprises => groups(&|group| group.is_enterprise()),
             DrawFamily::ResearchTiers => {
-                let own = params.research_tier.iter();
-                own.map(|law| (usize::from(law.tier), format!("tier {}", law.tier))).collect()
+                let tiers = params.research_tier.iter();
+                tiers.map(|law| (usize::from(law.tier), format!("tier {}", law.tier))).collect()
             }
         }
     }

@@ -229,8 +229,8 @@ impl PreparedExperiment<'_> {
         let found: Vec<Result<Option<(usize, RunResult)>, ExperimentError>> =
             with.pool.install(|| left.into_par_iter().with_max_len(1).map(one).collect());
         let kept = if with.store.is_some() { before + played.into_inner() } else { 0 };
-        for own in found {
-            match own? {
+        for outcome in found {
+            match outcome? {
                 Some((number, result)) => self.known_results.insert(self.keys[number].clone(), result),
                 None => return Err(ExperimentError::Stopped { kept, of: numbers.len() }),
             };

@@ -112,8 +112,9 @@ impl RunResult {
 
     /// Returns a figure of a requested day.
     pub fn figure(&self, day: u32, figure: &str, group: &str) -> Option<f64> {
-        let own = |point: &&FigurePoint| point.day == day && point.figure == figure && point.group == group;
-        self.figures.iter().find(own).map(|point| point.value)
+        let is_requested =
+            |point: &&FigurePoint| point.day == day && point.figure == figure && point.group == group;
+        self.figures.iter().find(is_requested).map(|point| point.value)
     }
 }
 

@@ -80,8 +80,8 @@ impl ResultStore {
             let stored: Option<StoredLine<RunResult>> = serde_json::from_slice(&line).ok();
             let wanted = stored
                 .filter(|stored_line| keys.contains(stored_line.key.as_str()) && stored_line.is_intact());
-            if let Some(own) = wanted {
-                known.insert(own.key, own.result);
+            if let Some(stored_line) = wanted {
+                known.insert(stored_line.key, stored_line.result);
             }
             line.clear();
         }

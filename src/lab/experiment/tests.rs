@@ -6,9 +6,9 @@ use novamind_record::folder::configuration::Configuration;
 
 fn arm(name: &str, policy: &str) -> Arm {
     let policy = Policy::find(policy, &Configuration::bundled()).expect("a bundled policy");
-    let mut own = Arm::new(name, policy);
-    own.spec.days = Some(14);
-    own
+    let mut arm = Arm::new(name, policy);
+    arm.spec.days = Some(14);
+    arm
 }
 
 fn experiment() -> Experiment {
@@ -130,21 +130,22 @@ fn altered_result_is_replayed() {
 #[test]
 fn requested_day_figures_are_stored() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut own = experiment();
-    own.recorded.figures_on = vec![7];
-    let (results, _) = run_experiment(&own, &folder.path().join("results.jsonl"), false, 99);
+    let mut experiment = experiment();
+    experiment.recorded.figures_on = vec![7];
+    let (results, _) = run_experiment(&experiment, &folder.path().join("results.jsonl"), false, 99);
     let results = results.expect("results");
     let run = &results.by_arm[1][0];
     assert_eq!(run.figure(7, "cash", ""), Some(run.weeks[0].cash));
     assert_eq!(run.figure(14, "cash", ""), None);
-    let again = run_experiment(&own, &folder.path().join("results.jsonl"), false, 99);
+    let again = run_experiment(&experiment, &folder.path().join("results.jsonl"), false, 99);
     assert_eq!((again.0.expect("results"), again.1), (results, 0), "numbers survive the file");
 }
 
 #[test]
 fn invalid_arm_is_named() {
-    let mut own = experiment();
-    own.arms[1].spec.scenario = Some("nowhere".to_owned());
-    let error = own.prepare(&Configuration::bundled(), None, false).map(|_| ()).expect_err("no scenario");
+    let mut experiment = experiment();
+    experiment.arms[1].spec.scenario = Some("nowhere".to_owned());
+    let error =
+        experiment.prepare(&Configuration::bundled(), None, false).map(|_| ()).expect_err("no scenario");
     assert!(error.to_string().starts_with("routine: "), "{error}");
 }

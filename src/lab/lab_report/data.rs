@@ -58,9 +58,9 @@ impl LabTable {
     }
 
     fn to_json(&self) -> Value {
-        let column = |own: &Column| {
-            let unit = own.measure().map(|measure| measure.name());
-            json!({ "name": own.name, "heading": own.heading, "unit": unit })
+        let column = |column: &Column| {
+            let unit = column.measure().map(|measure| measure.name());
+            json!({ "name": column.name, "heading": column.heading, "unit": unit })
         };
         let row = |cells: &Vec<CellValue>| -> Value {
             let pairs = self.machine_readable_cells(cells);

@@ -78,7 +78,7 @@ impl Graph {
             _ => {
                 let signs = SERIES_MARKS.iter().cycle();
                 let drawn: Vec<PlotSeries<'_>> = (self.series.iter().zip(signs))
-                    .map(|(own, sign)| PlotSeries { mark: *sign, points: &own.points, is_line: true })
+                    .map(|(series, sign)| PlotSeries { mark: *sign, points: &series.points, is_line: true })
                     .collect();
                 let frame =
                     PlotArea { width, height: rows, x_scale: self.x_axis.scale, y_scale: self.y_axis.scale };
@@ -87,7 +87,7 @@ impl Graph {
                     .series
                     .iter()
                     .zip(&drawn)
-                    .map(|(own, drawn)| format!("{} {}", drawn.mark, own.name))
+                    .map(|(series, drawn)| format!("{} {}", drawn.mark, series.name))
                     .collect();
                 let legend = format!(
                     "x: {}, y: {}: {}",
@@ -102,13 +102,13 @@ impl Graph {
     }
 
     fn to_scaled_chart(&self) -> ScaledChart {
-        let curve = |own: &Series| Curve { name: own.name.clone(), points: own.points.clone() };
+        let curve = |series: &Series| Curve { name: series.name.clone(), points: series.points.clone() };
         let plot = match (self.form, self.series.first()) {
-            (GraphForm::Bars, Some(own)) => Plot::Stacks {
-                positions: own.points.iter().map(|point| point.0).collect(),
+            (GraphForm::Bars, Some(series)) => Plot::Stacks {
+                positions: series.points.iter().map(|point| point.0).collect(),
                 series: vec![StackSeries {
-                    name: own.name.clone(),
-                    values: own.points.iter().map(|point| point.1).collect(),
+                    name: series.name.clone(),
+                    values: series.points.iter().map(|point| point.1).collect(),
                 }],
             },
             _ => Plot::Lines { curves: self.series.iter().map(curve).collect(), band: None },
@@ -128,9 +128,9 @@ impl Graph {
 /// Merges neighboring bars until there are at most [`MAX_BARS`].
 fn merge_bars(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let together = points.len().div_ceil(MAX_BARS).max(1);
-    let joined = |own: &[(f64, f64)]| {
-        let middle = own.iter().map(|point| point.0).sum::<f64>() / own.len() as f64;
-        (middle, own.iter().map(|point| point.1).sum())
+    let joined = |bars: &[(f64, f64)]| {
+        let middle = bars.iter().map(|point| point.0).sum::<f64>() / bars.len() as f64;
+        (middle, bars.iter().map(|point| point.1).sum())
     };
     points.chunks(together).map(joined).collect()
 }

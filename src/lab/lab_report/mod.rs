@@ -191,17 +191,17 @@ impl CellValue {
     }
 
     fn format(&self, measure: Option<Measure>, is_short: bool) -> String {
-        let own = measure.unwrap_or(Measure::Number(2));
+        let measure = measure.unwrap_or(Measure::Number(2));
         let write = |value: f64, measure: Measure| match is_short {
             true => measure.format_short(value),
             false => measure.format(value),
         };
         match self {
             CellValue::Text(text) => text.clone(),
-            CellValue::Number(value) => write(*value, own),
+            CellValue::Number(value) => write(*value, measure),
             CellValue::NumberWithMeasure(value, measure) => write(*value, *measure),
             CellValue::Interval(Interval { low, high }) => {
-                format!("{} to {}", write(*low, own), write(*high, own))
+                format!("{} to {}", write(*low, measure), write(*high, measure))
             }
             CellValue::Missing => MISSING_VALUE.to_owned(),
         }

@@ -19,7 +19,7 @@ impl LabReport {
             self.tables
                 .iter()
                 .filter(|lab_table| !lab_table.is_machine_readable_only)
-                .map(|own| own.to_text(width)),
+                .map(|table| table.to_text(width)),
         );
         parts.extend(self.graphs.iter().map(|graph| graph.to_text(width, GRAPH_ROWS)));
         let apart = self.tables.iter().filter(|table| table.is_machine_readable_only);
@@ -49,7 +49,7 @@ impl LabTable {
             text.push('\n');
         }
         let parts: Vec<String> =
-            sheet.column_panels(width).iter().map(|own| sheet.format_panel(own)).collect();
+            sheet.column_panels(width).iter().map(|panel| sheet.format_panel(panel)).collect();
         text + &parts.join("\n")
     }
 }
@@ -96,13 +96,13 @@ impl<'a> TextLayout<'a> {
         };
         let gaps = COLUMN_GAP * self.widths.len().saturating_sub(1);
         let has_room = (0..self.columns.len()).map(least).sum::<usize>() + gaps <= width;
-        let (among, beside) = match has_room {
+        let (among, reserved) = match has_room {
             true => (self.columns.len(), 0),
             false => {
                 (self.identifying_columns(), self.widest_column_from(self.identifying_columns()) + COLUMN_GAP)
             }
         };
-        while self.width_of_first(among) - COLUMN_GAP.min(self.width_of_first(among)) + beside > width {
+        while self.width_of_first(among) - COLUMN_GAP.min(self.width_of_first(among)) + reserved > width {
             let words = (0..among).filter(|at| self.columns[*at].kind == ColumnKind::Text);
             let Some(widest) =
                 words.filter(|at| self.widths[*at] > MIN_TEXT_WIDTH).max_by_key(|at| self.widths[*at])
@@ -209,11 +209,11 @@ impl<'a> TextLayout<'a> {
         for line in 0..cells.iter().map(Vec::len).max().unwrap_or(0) {
             let mut whole = String::new();
             for (at, cell) in panel.iter().zip(cells) {
-                let (own, width) = (cell.get(line).map_or("", String::as_str), self.widths[*at]);
-                let blank = " ".repeat(width.saturating_sub(own.width()));
+                let (cell_text, width) = (cell.get(line).map_or("", String::as_str), self.widths[*at]);
+                let blank = " ".repeat(width.saturating_sub(cell_text.width()));
                 whole += &match self.columns[*at].kind {
-                    ColumnKind::Text | ColumnKind::Sparkline => format!("{own}{blank}"),
-                    ColumnKind::Number(_) | ColumnKind::Interval(_) => format!("{blank}{own}"),
+                    ColumnKind::Text | ColumnKind::Sparkline => format!("{cell_text}{blank}"),
+                    ColumnKind::Number(_) | ColumnKind::Interval(_) => format!("{blank}{cell_text}"),
                 };
                 whole += &" ".repeat(COLUMN_GAP);
             }

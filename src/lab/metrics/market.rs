@@ -106,7 +106,9 @@ impl MetricsDay<'_> {
 
     fn push_deals(&self, list: &mut Vec<DailyValue>) {
         let deals: Vec<(Group, &DealClosed)> = self.deals_by_group();
-        let of = |group: Group| deals.iter().filter(move |(own, _)| *own == group).map(|(_, deal)| *deal);
+        let of = |group: Group| {
+            deals.iter().filter(move |(deal_group, _)| *deal_group == group).map(|(_, deal)| *deal)
+        };
         push_by_group(list, "ent_accepted_cum", Aggregation::Sum, |group| of(group).count() as f64);
         for kind in ThreadKind::ALL {
             let count = deals.iter().filter(|(_, deal)| deal.kind == kind).count();

@@ -242,8 +242,8 @@ impl MetricsDay<'_> {
         push_sum(list, "new_individual_subscribers_cum", f64::from(figures.new_individual_subscribers));
         push_sum(list, "new_ent_seats_cum", f64::from(figures.new_enterprise_seats));
         for source in Source::ALL {
-            let came = facts.arrivals.iter().filter(|arrival| arrival.source == source).count();
-            push_value(list, "acq_source_cum", source.id(), Aggregation::Sum, Some(came as f64));
+            let count = facts.arrivals.iter().filter(|arrival| arrival.source == source).count();
+            push_value(list, "acq_source_cum", source.id(), Aggregation::Sum, Some(count as f64));
         }
         for group in initial_groups() {
             push_value(

@@ -195,13 +195,18 @@ impl ResultsTable {
             let seeds: BTreeSet<u64> = finished_runs.iter().map(|run| run.seed).collect();
             seeds.len() < finished_runs.len()
         };
-        let again: Vec<&str> =
-            groups.iter().filter(|(_, own)| has_one_twice(own)).map(|((_, name), _)| name.as_str()).collect();
+        let again: Vec<&str> = groups
+            .iter()
+            .filter(|(_, finished_runs)| has_one_twice(finished_runs))
+            .map(|((_, name), _)| name.as_str())
+            .collect();
         let again = (!again.is_empty()).then(|| {
             format!("Several runs of one seed: {}. A person who repeats a seed knows its future; a policy plays the same again.", again.join(", "))
         });
-        let mut rows: Vec<ResultsRow> =
-            groups.into_iter().filter_map(|(player, own)| results_row(player, &own)).collect();
+        let mut rows: Vec<ResultsRow> = groups
+            .into_iter()
+            .filter_map(|(player, finished_runs)| results_row(player, &finished_runs))
+            .collect();
         rows.extend(
             results_row((RowSource::IdleCompany, IDLE_ROW.to_owned()), &[idle])
                 .map(|row| ResultsRow { best_run: None, ..row }),

@@ -317,7 +317,8 @@ fn varied_factors(source: &StudySource<'_>, study_file: &StudyFile) -> Result<Va
     }
     let grid = flatten_table(&study_file.grid);
     check_reserved_parameters(source, "grid", grid.iter().map(|(key, _)| key))?;
-    let is_set = |key: &String| all.iter().any(|level| level.overrides.iter().any(|(own, _)| own == key));
+    let is_set =
+        |key: &String| all.iter().any(|level| level.overrides.iter().any(|(parameter, _)| parameter == key));
     if let Some((key, _)) = grid.iter().find(|(key, _)| is_set(key)) {
         let problem = "a set of overrides sets it too: vary it either there or in the grid";
         return Err(source.override_error("grid", key, problem));
@@ -333,8 +334,8 @@ fn varied_factors(source: &StudySource<'_>, study_file: &StudyFile) -> Result<Va
                 "the list is empty; add a value or remove the key",
             ));
         }
-        if let Some(at) =
-            (0..values.len()).find(|at| values[..*at].iter().any(|own| are_equal_values(own, &values[*at])))
+        if let Some(at) = (0..values.len())
+            .find(|at| values[..*at].iter().any(|earlier| are_equal_values(earlier, &values[*at])))
         {
             let problem = format!("the value {} appears twice", override_text(&values[at]));
             return Err(source.override_error("grid", &key, problem));

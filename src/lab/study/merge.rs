@@ -76,8 +76,8 @@ impl ShardSet {
             }
         }
         let is_there = |shard: &usize| {
-            let own = |head: &ShardHead| head.digest == study.digest && head.part.shard == *shard;
-            by_number.contains_key(shard) || damaged.iter().any(own)
+            let is_same_shard = |head: &ShardHead| head.digest == study.digest && head.part.shard == *shard;
+            by_number.contains_key(shard) || damaged.iter().any(is_same_shard)
         };
         let name = |shard| ShardHead::file_name(&study.study, Shard { shard, of: study.part.of });
         let missing: Vec<String> = (1..=study.part.of).filter(|shard| !is_there(shard)).map(name).collect();
@@ -124,7 +124,7 @@ impl ShardSet {
                 break;
             }
         }
-        let is_left = readers.iter().position(|own| !own.line.is_empty());
+        let is_left = readers.iter().position(|reader| !reader.line.is_empty());
         is_left.map_or(Ok(()), |at| {
             let problem = format!("{}: its runs are out of order", self.files[at].display());
             Err(io::Error::other(problem))
@@ -186,7 +186,7 @@ fn is_named_as_shard(path: &Path) -> bool {
     let numbers = name.strip_suffix(".csv").and_then(|name| name.rsplit_once('.')).map(|parts| parts.1);
     let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
     numbers
-        .and_then(|own| own.split_once("-of-"))
+        .and_then(|numbers| numbers.split_once("-of-"))
         .is_some_and(|(shard, of)| is_number(shard) && is_number(of))
 }
 

@@ -37,8 +37,8 @@ pub fn parse_shard(text: &str) -> Result<Shard, String> {
     let wrong = || format!("{text} is not a shard: write the second of four as 2/4");
     let (shard, of) = text.split_once('/').ok_or_else(wrong)?;
     let number = |text: &str| text.trim().parse::<usize>().map_err(|_| wrong());
-    let own = Shard { shard: number(shard)?, of: number(of)? };
-    if own.shard == 0 || own.shard > own.of || own.of > MAX_SHARDS { Err(wrong()) } else { Ok(own) }
+    let shard = Shard { shard: number(shard)?, of: number(of)? };
+    if shard.shard == 0 || shard.shard > shard.of || shard.of > MAX_SHARDS { Err(wrong()) } else { Ok(shard) }
 }
 
 impl Shard {

@@ -41,8 +41,8 @@ pub fn study_summary(plan: &StudyPlan, results: &[RunResult]) -> LabReport {
         row.extend([
             CellValue::number(alive / runs.len().max(1) as f64),
             CellValue::number(middle.map(|quartiles| quartiles.lower)),
-            CellValue::number(middle.map(|own| own.median)),
-            CellValue::number(middle.map(|own| own.upper)),
+            CellValue::number(middle.map(|quartiles| quartiles.median)),
+            CellValue::number(middle.map(|quartiles| quartiles.upper)),
             CellValue::interval(Interval::for_median(&cash)),
             CellValue::number(median(&peaks)),
         ]);

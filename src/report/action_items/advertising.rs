@@ -17,36 +17,36 @@ const MIN_ENTERPRISES: u32 = 3;
 pub(super) fn groups_without_requests(situation: &DiagnosisContext<'_>) -> Vec<ActionItem> {
     let recent = &situation.groups[situation.groups.len().saturating_sub(4)..];
     let enterprises = situation.estimates.iter().filter(|estimates| estimates.group.is_enterprise());
-    let paid = enterprises.filter(|own| situation.ads_by_group[own.group] > 0.0);
-    let unwanted = paid.filter_map(|own| {
-        let came: u32 = recent.iter().map(|week| week[own.group].leads).sum();
-        let asked: u32 = recent.iter().map(|week| week[own.group].asked).sum();
-        if came < MIN_ENTERPRISES || asked > 0 {
+    let paid = enterprises.filter(|estimates| situation.ads_by_group[estimates.group] > 0.0);
+    let unwanted = paid.filter_map(|estimates| {
+        let lead_count: u32 = recent.iter().map(|week| week[estimates.group].leads).sum();
+        let asked: u32 = recent.iter().map(|week| week[estimates.group].asked).sum();
+        if lead_count < MIN_ENTERPRISES || asked > 0 {
             return None;
         }
-        let offers = GroupOffers::new(situation, own)?;
-        let ads = situation.ads_by_group[own.group];
+        let offers = GroupOffers::new(situation, estimates)?;
+        let ads = situation.ads_by_group[estimates.group];
         let text = format!(
             "{}: {} arrived in {} and none requested an offer; ads for them cost {} a day",
-            own.group,
-            pluralize(came, "enterprise"),
+            estimates.group,
+            pluralize(lead_count, "enterprise"),
             pluralize(recent.len() as u32, "week"),
             format_money(ads)
         );
         // The current offers are not known to be insufficient, so only the cost of advertising can be named.
-        let (told, proposal, place) = match offers.missing_aspect() {
+        let (text, proposal, place) = match offers.missing_aspect() {
             missing @ (MissingAspect::Quota | MissingAspect::Quality) => {
-                let (told, proposal, place) = offers.remedy(missing, ads * RISK_DAYS)?;
-                (format!("{text}; {told}"), Some(proposal), place)
+                let (remedy, proposal, place) = offers.remedy(missing, ads * RISK_DAYS)?;
+                (format!("{text}; {remedy}"), Some(proposal), place)
             }
             MissingAspect::Price | MissingAspect::Balance => {
                 let saved = format!("removing these ads saves {} a day", format_money(ads));
-                (text, Some(saved), target_without_ads(situation, own.group, |_| true))
+                (text, Some(saved), target_without_ads(situation, estimates.group, |_| true))
             }
         };
         Some(ActionItem {
-            problem: Problem::NoRequests(own.group),
-            text: told,
+            problem: Problem::NoRequests(estimates.group),
+            text,
             proposal,
             target: place,
             at_risk: ads * RISK_DAYS,
@@ -80,7 +80,7 @@ fn expensive_leads(situation: &DiagnosisContext<'_>, pair: &LeadCost) -> Option<
         problem: Problem::LeadCost(channel, group),
         text,
         proposal: Some(format!("removing these ads saves {} a day", format_money(ads))),
-        target: target_without_ads(situation, group, |own| own == channel),
+        target: target_without_ads(situation, group, |other| other == channel),
         // The additional cost of the same leads.
         at_risk: ads * RISK_DAYS * (1.0 - 1.0 / rise),
         is_urgent: false,

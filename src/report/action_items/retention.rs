@@ -93,7 +93,7 @@ fn churn_wave(situation: &DiagnosisContext<'_>, group: Group) -> Option<ActionIt
     let (now, had) = (&weeks[last], there(last - 1));
     let mean_price = now[group].revenue.0.iter().sum::<f64>() / there(last).max(1.0);
     let set = last_judged_change(situation);
-    let told = set.map_or(String::new(), |(day, changes)| {
+    let change_text = set.map_or(String::new(), |(day, changes)| {
         let words: Vec<String> = changes.iter().take(2).map(|change| describe_change(change)).collect();
         let more = match changes.len().saturating_sub(2) {
             0 => String::new(),
@@ -106,7 +106,7 @@ fn churn_wave(situation: &DiagnosisContext<'_>, group: Group) -> Option<ActionIt
     Some(ActionItem {
         problem: Problem::Churn(group),
         text: format!(
-            "{group}: {} of {} cancelled last week ({}); four-week average {}{told}",
+            "{group}: {} of {} cancelled last week ({}); four-week average {}{change_text}",
             format_whole(gone),
             format_whole(had),
             percent(gone / had.max(1.0), 1),

@@ -77,9 +77,10 @@ fn missing_price(situation: &DiagnosisContext<'_>) -> ActionItem {
     // The form contains half of the displayed estimate, not of the middle of its range.
     let texts: Vec<String> = budgets
         .iter()
-        .map(|own| {
-            let range = TrueValueRange::from_estimate(own.budget, own.max_relative_error).format_money();
-            format!("{} {range} (estimate {})", own.group, format_money(own.budget.round()))
+        .map(|estimates| {
+            let range =
+                TrueValueRange::from_estimate(estimates.budget, estimates.max_relative_error).format_money();
+            format!("{} {range} (estimate {})", estimates.group, format_money(estimates.budget.round()))
         })
         .collect();
     ActionItem {
@@ -97,9 +98,10 @@ fn missing_price(situation: &DiagnosisContext<'_>) -> ActionItem {
 
 /// Finds that no channel is paid and no subscribers bring word of mouth.
 pub(super) fn no_leads(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
-    let came = situation.last_week().map_or(0, |week| week.new_individual_leads + week.new_enterprise_leads);
+    let lead_count =
+        situation.last_week().map_or(0, |week| week.new_individual_leads + week.new_enterprise_leads);
     let silent = situation.observation.subscribers + situation.observation.seats == 0;
-    if situation.daily_ad_spend > 0.0 || came > 0 || !silent {
+    if situation.daily_ad_spend > 0.0 || lead_count > 0 || !silent {
         return None;
     }
     // Groups are ranked by their fit with the current plans, then with the best model tier, then by budget.
@@ -107,8 +109,9 @@ pub(super) fn no_leads(situation: &DiagnosisContext<'_>) -> Option<ActionItem> {
         let now = |estimates: &Estimates| {
             (estimates.required_quality - best_delivered_quality(situation, estimates.group)).max(0.0)
         };
-        let missing =
-            |own: &Estimates| (own.required_quality - best_possible_quality(situation, own.group)).max(0.0);
+        let missing = |estimates: &Estimates| {
+            (estimates.required_quality - best_possible_quality(situation, estimates.group)).max(0.0)
+        };
         let reach = || missing(left).total_cmp(&missing(right));
         now(left).total_cmp(&now(right)).then_with(reach).then_with(|| right.budget.total_cmp(&left.budget))
     })?;
@@ -166,7 +169,11 @@ pub(super) fn no_sales(situation: &DiagnosisContext<'_>) -> Vec<ActionItem> {
         let figures = &week[estimates.group];
         figures.leads >= MIN_WEEKLY_LEADS && figures.conversion().is_some_and(|share| share < LOW_CONVERSION)
     };
-    situation.individuals().filter(few).filter_map(|own| no_sale(situation, own, &week[own.group])).collect()
+    situation
+        .individuals()
+        .filter(few)
+        .filter_map(|estimates| no_sale(situation, estimates, &week[estimates.group]))
+        .collect()
 }
 
 fn no_sale(situation: &DiagnosisContext<'_>, estimates: &Estimates, week: &GroupWeek) -> Option<ActionItem> {
@@ -176,11 +183,11 @@ fn no_sale(situation: &DiagnosisContext<'_>, estimates: &Estimates, week: &Group
     let share = percent(week.conversion()?, 1);
     let price = offers.lowest_price().min(estimates.budget);
     let at_risk = f64::from(week.leads - week.signed) * RISK_DAYS / 7.0 * price;
-    let (told, proposal, place) = offers.remedy(missing, at_risk)?;
+    let (remedy, proposal, place) = offers.remedy(missing, at_risk)?;
     Some(ActionItem {
         problem: Problem::NoSales(estimates.group),
         text: format!(
-            "{}: {} last week, {signed} signed ({share}); {told}",
+            "{}: {} last week, {signed} signed ({share}); {remedy}",
             estimates.group,
             pluralize(week.leads, "lead")
         ),
@@ -193,7 +200,7 @@ fn no_sale(situation: &DiagnosisContext<'_>, estimates: &Estimates, week: &Group
 
 pub(super) struct GroupOffers<'a> {
     situation: &'a DiagnosisContext<'a>,
-    own: &'a Estimates,
+    estimates: &'a Estimates,
     quality: &'a DeliveredQuality,
 }
 
@@ -203,7 +210,7 @@ impl<'a> GroupOffers<'a> {
         situation: &'a DiagnosisContext<'a>,
         estimates: &'a Estimates,
     ) -> Option<GroupOffers<'a>> {
-        Some(GroupOffers { situation, own: estimates, quality: situation.quality(estimates.group)? })
+        Some(GroupOffers { situation, estimates, quality: situation.quality(estimates.group)? })
     }
 
     fn plans(&self) -> impl Iterator<Item = Plan> + '_ {
@@ -216,7 +223,7 @@ impl<'a> GroupOffers<'a> {
 
     /// Returns the share of an account's estimated usage that the quota covers.
     fn quota_coverage(&self, plan: Plan) -> f64 {
-        (self.situation.settings.quotas[plan].units() / self.own.account_usage().max(1e-9)).min(1.0)
+        (self.situation.settings.quotas[plan].units() / self.estimates.account_usage().max(1e-9)).min(1.0)
     }
 
     fn lowest_price(&self) -> f64 {
@@ -225,8 +232,8 @@ impl<'a> GroupOffers<'a> {
 
     fn affordable_plans(&self) -> impl Iterator<Item = Plan> + '_ {
         // Enterprises negotiate their price.
-        let negotiates = self.own.group.is_enterprise();
-        self.plans().filter(move |plan| negotiates || self.price(*plan) <= self.own.budget)
+        let negotiates = self.estimates.group.is_enterprise();
+        self.plans().filter(move |plan| negotiates || self.price(*plan) <= self.estimates.budget)
     }
 
     /// Returns the affordable plan with the fewest deficits; among equals the one with the highest quality, ignoring
@@ -235,7 +242,7 @@ impl<'a> GroupOffers<'a> {
         let quality = |plan: &Plan| self.quality.by_plan[*plan];
         let lacks = |plan: &Plan| {
             u8::from(self.quota_coverage(*plan) < MIN_QUOTA_COVERAGE)
-                + u8::from(quality(plan) < self.own.required_quality)
+                + u8::from(quality(plan) < self.estimates.required_quality)
         };
         // At equal quality, customers choose the cheaper plan.
         let price = |plan: &Plan| self.price(*plan);
@@ -252,9 +259,11 @@ impl<'a> GroupOffers<'a> {
     fn describe_best_plan(&self, plan: Plan, delivered: f64) -> String {
         let quality = |plan: Plan| self.quality.by_plan[plan];
         // Screens show the range of the budget, but plans are compared by the point estimate.
-        let scope = match self.own.group.is_enterprise() {
+        let scope = match self.estimates.group.is_enterprise() {
             true => String::new(),
-            false => format!(" within their estimated budget of {}", format_money(self.own.budget.round())),
+            false => {
+                format!(" within their estimated budget of {}", format_money(self.estimates.budget.round()))
+            }
         };
         let more = self.affordable_plans().max_by(|left, right| quality(*left).total_cmp(&quality(*right)));
         match more.filter(|more| quality(*more) > delivered) {
@@ -270,7 +279,9 @@ impl<'a> GroupOffers<'a> {
         match self.best_plan() {
             None => MissingAspect::Price,
             Some(plan) if self.quota_coverage(plan) < MIN_QUOTA_COVERAGE => MissingAspect::Quota,
-            Some(plan) if self.quality.by_plan[plan] < self.own.required_quality => MissingAspect::Quality,
+            Some(plan) if self.quality.by_plan[plan] < self.estimates.required_quality => {
+                MissingAspect::Quality
+            }
             Some(_) => MissingAspect::Balance,
         }
     }
@@ -298,7 +309,7 @@ impl<'a> GroupOffers<'a> {
     /// Proposes a study that updates estimates older than four weeks, if it costs no more than is at risk. `None` if
     /// a study is already running.
     fn renewed_study(&self, at_risk: f64) -> Option<(String, ActionTarget)> {
-        let (estimates, day) = (self.own, self.situation.observation.day);
+        let (estimates, day) = (self.estimates, self.situation.observation.day);
         let is_studied = || {
             self.situation
                 .session
@@ -325,7 +336,7 @@ impl<'a> GroupOffers<'a> {
     }
 
     fn direct_remedy(&self, missing: MissingAspect, at_risk: f64) -> Option<(String, String, ActionTarget)> {
-        let (estimates, group) = (self.own, self.own.group);
+        let (estimates, group) = (self.estimates, self.estimates.group);
         let floor = TrueValueRange::from_estimate(estimates.required_quality, estimates.max_relative_error)
             .format_quality();
         let as_of = format!("as of day {}", estimates.as_of);

@@ -188,7 +188,8 @@ fn a_plan_that_delivers_more_and_has_too_small_a_quota_is_named() {
     ]);
     let session = play_company(7, 1e6, &calls, 2);
     let quality = session.company().delivered_quality();
-    let delivered_quality = quality.iter().find(|own| own.group == group("S2")).expect("S2 is known");
+    let delivered_quality =
+        quality.iter().find(|group_quality| group_quality.group == group("S2")).expect("S2 is known");
     assert!(
         delivered_quality.by_plan[Plan::C] > delivered_quality.by_plan[Plan::B],
         "C has the better model"
@@ -514,14 +515,16 @@ fn expensive_leads_name_their_earlier_cost() {
     let now = cost(last - 3, last, &mut session);
     let before = (1..=last - 7).map(|from| cost(from, from + 3, &mut session)).fold(f64::INFINITY, f64::min);
     assert!(now >= 2.0 * before, "{now} {before}");
-    let told = |each: f64| {
+    let cost_text = |each: f64| {
         if each < 100.0 {
             novamind_base::formatting::cents(each)
         } else {
             crate::formatting::format_money(each)
         }
     };
-    for words in ["content_marketing × S1: in the last 4 weeks", &told(now), &told(before), "a first bill"] {
+    for words in
+        ["content_marketing × S1: in the last 4 weeks", &cost_text(now), &cost_text(before), "a first bill"]
+    {
         assert!(need.text.contains(words), "{words} in {}", need.text);
     }
     let ActionTarget::Call(ToolId::SetTargetedAdSpend, arguments) = &need.target else { panic!("{need:?}") };

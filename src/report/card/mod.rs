@@ -143,11 +143,11 @@ mod tests {
             assert!((shown - booked).abs() < 0.005, "day {day}: {shown} and {booked}");
         }
         let best = cash.iter().copied().fold(f64::MIN, f64::max);
-        let day = cash.iter().position(|own| *own == best).expect("a day");
+        let day = cash.iter().position(|amount| *amount == best).expect("a day");
         assert_eq!(card.turning_points[0].name, format!("highest cash, day {day}"));
         assert_eq!(card.turning_points[0].value, format_money(best));
         let least = cash.iter().copied().fold(f64::MAX, f64::min);
-        let day = cash.iter().position(|own| *own == least).expect("a day");
+        let day = cash.iter().position(|amount| *amount == least).expect("a day");
         assert_eq!(card.turning_points[1].name, format!("lowest cash, day {day}"));
         assert_eq!(card.turning_points[1].value, format_money(least));
         let mut active = |day: usize| {
@@ -160,7 +160,7 @@ mod tests {
         };
         let by_week: Vec<f64> = (1..=5).map(|week| active(week * 7)).collect();
         let most = by_week.iter().copied().fold(0.0, f64::max);
-        let day = 7 * (1 + by_week.iter().position(|own| *own == most).expect("a week"));
+        let day = 7 * (1 + by_week.iter().position(|count| *count == most).expect("a week"));
         assert_eq!(card.turning_points[2].value, format_whole(most));
         assert_eq!(card.turning_points[2].name, format!("peak subscribers, day {day}"));
         assert_eq!(card.numbers[0].value, format_whole(by_week[4]));

@@ -20,10 +20,10 @@ pub fn student_curves<'a>(
     part: u32,
 ) -> Vec<StudentPoints<'a>> {
     let points = |cash: &[(u32, f64)]| cash.iter().map(|(day, cash)| (f64::from(*day), *cash)).collect();
-    let own = runs_in_part(ranking, part);
-    let good = own.first().and_then(|(_, run)| view.reference_play(run));
+    let part_runs = runs_in_part(ranking, part);
+    let good = part_runs.first().and_then(|(_, run)| view.reference_play(run));
     let good = good.map(|good| StudentPoints { label: None, points: points(&good.cash) });
-    let students = own
+    let students = part_runs
         .iter()
         .map(|(label, run)| StudentPoints { label: Some(label), points: points(&run.evidence.cash) });
     good.into_iter().chain(students).collect()
@@ -81,14 +81,14 @@ pub fn scatter<'a>(view: &ClassView<'a>, ranking: &[RankedStudent<'a>], part: u3
 /// range relative to the maximum.
 fn names_by_difference(all: &[&BTreeMap<String, f64>]) -> Vec<String> {
     let spread = |name: &String| {
-        let values = || all.iter().map(|own| own.get(name).copied().unwrap_or(0.0));
+        let values = || all.iter().map(|by_name| by_name.get(name).copied().unwrap_or(0.0));
         let (least, most) = values().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| {
             (least.min(value), most.max(value))
         });
         let distinct: BTreeSet<u64> = values().map(f64::to_bits).collect();
         (distinct.len(), (most - least) / most.abs().max(least.abs()).max(1e-9))
     };
-    let names: BTreeSet<&String> = all.iter().flat_map(|own| own.keys()).collect();
+    let names: BTreeSet<&String> = all.iter().flat_map(|by_name| by_name.keys()).collect();
     let mut apart: Vec<((usize, f64), &String)> = names
         .into_iter()
         .map(|name| (spread(name), name))

@@ -80,16 +80,17 @@ pub(super) fn draw(
         );
     }
     // The reference play covers the other students; the highlighted student covers the reference play.
-    let (good, students): (Vec<_>, Vec<_>) = drawing.points.iter().partition(|own| own.label.is_none());
-    for own in students.into_iter().chain(good) {
-        let (class, name) = match own.label {
+    let (good, students): (Vec<_>, Vec<_>) =
+        drawing.points.iter().partition(|student_points| student_points.label.is_none());
+    for student_points in students.into_iter().chain(good) {
+        let (class, name) = match student_points.label {
             None => ("good".to_owned(), "reference play".to_owned()),
             Some(label) => match class_of(label) {
                 Some(named) => named,
                 None => continue,
             },
         };
-        let finite = || own.points.iter().filter(|(x, y)| x.is_finite() && y.is_finite());
+        let finite = || student_points.points.iter().filter(|(x, y)| x.is_finite() && y.is_finite());
         let name = escape_html(&name);
         if drawing.is_line {
             let points: Vec<String> =

@@ -89,7 +89,7 @@ pub fn pitfall_counts<'a>(view: &'a ClassView<'a>) -> Vec<PitfallCount<'a>> {
     let met_by = |name: &str| {
         let labels: std::collections::BTreeSet<&str> = view
             .undamaged_runs()
-            .filter(|run| run.evidence.pitfalls.iter().any(|own| own == name))
+            .filter(|run| run.evidence.pitfalls.iter().any(|pitfall| pitfall == name))
             .map(|run| run.label.as_str())
             .collect();
         labels.len()

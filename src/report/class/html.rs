@@ -184,11 +184,11 @@ fn pitfalls_html(view: &ClassView<'_>) -> String {
 }
 
 fn bars_html(rows: impl Iterator<Item = (String, usize, bool)>, all: usize) -> String {
-    let bar = |(name, count, own): (String, usize, bool)| {
+    let bar = |(name, count, is_highlighted): (String, usize, bool)| {
         format!(
             "<li{}><span class=\"name\">{}</span><span class=\"amount\">{count}</span><span class=\"track\"><span \
              style=\"width:{:.1}%\"></span></span></li>\n",
-            if own { " class=\"own\"" } else { "" },
+            if is_highlighted { " class=\"own\"" } else { "" },
             escape_html(&name),
             100.0 * count as f64 / all.max(1) as f64
         )

@@ -55,7 +55,7 @@ fn columns<'a>(view: &ClassView<'_>) -> Vec<Column<ClassRow<'a>>> {
     for (step, goal) in all_goals(view) {
         columns.extend(columns! { row: ClassRow<'a>;
             format!("goal_{}_{}", step + 1, goal + 1), "", "measured value of the goal"
-                => format_optional(row.step(step).and_then(|own| own.goals.get(goal)?.value));
+                => format_optional(row.step(step).and_then(|evidence| evidence.goals.get(goal)?.value));
             format!("goal_of_good_{}_{}", step + 1, goal + 1), "", "measured value relative to the reference play on the same seed"
                 => format_optional(row.view.goal_share(row.run, step, goal));
         });
@@ -68,7 +68,7 @@ pub fn column_descriptions(view: &ClassView<'_>) -> Vec<Vec<String>> {
     let heading = vec!["column".to_owned(), "meaning".to_owned()];
     let all = columns(view)
         .into_iter()
-        .map(|own| vec![own.heading.name.into_owned(), own.heading.meaning.to_owned()]);
+        .map(|column| vec![column.heading.name.into_owned(), column.heading.meaning.to_owned()]);
     std::iter::once(heading).chain(all).collect()
 }
 

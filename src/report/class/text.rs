@@ -219,7 +219,7 @@ fn drawings_text(
     let drawn = |student_points: &[super::curves::StudentPoints<'_>], is_line: bool| {
         let mut all: Vec<PlotSeries<'_>> = student_points
             .iter()
-            .map(|own| PlotSeries { mark: sign(own.label), points: &own.points, is_line })
+            .map(|student| PlotSeries { mark: sign(student.label), points: &student.points, is_line })
             .collect();
         all.sort_by_key(|plot_series| ['\u{b7}', 'o', '#'].iter().position(|sign| *sign == plot_series.mark));
         plot_report(&all)

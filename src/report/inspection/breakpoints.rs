@@ -15,7 +15,9 @@ const MAX_DECIMALS: usize = 12;
 pub fn describe_breakpoints(set: &[Breakpoint]) -> Vec<String> {
     match set.is_empty() {
         true => vec!["no breakpoint is set; example: break churn(S1) > 0.05 over 7".to_owned()],
-        false => set.iter().map(|own| format!("{}  {}", own.number, own.condition)).collect(),
+        false => {
+            set.iter().map(|breakpoint| format!("{}  {}", breakpoint.number, breakpoint.condition)).collect()
+        }
     }
 }
 
@@ -114,7 +116,7 @@ pub fn describe_found_days(condition: &Condition, found: &[ConditionState], last
 /// opposite sign.
 fn describe_comparison(condition: &Condition, judged: &ConditionState) -> String {
     let value = |value: Option<f64>, others: &[f64]| {
-        value.map_or("no value".to_owned(), |own| format_distinct(own, others))
+        value.map_or("no value".to_owned(), |number| format_distinct(number, others))
     };
     match condition {
         Condition::Compared(quantity, relation, threshold) => {
@@ -138,8 +140,8 @@ fn describe_comparison(condition: &Condition, judged: &ConditionState) -> String
             format!("{quantity}{} = {of_value}, {moves} (day before {of_before})", quantity.describe_days())
         }
         Condition::Event(event) => {
-            let said = |happens: bool| if happens { "yes" } else { "no" };
-            let (today, before) = (said(judged.is_true), said(judged.was_true));
+            let answer = |happens: bool| if happens { "yes" } else { "no" };
+            let (today, before) = (answer(judged.is_true), answer(judged.was_true));
             format!("event {} {today} (day before {before})", event.id())
         }
     }

@@ -138,8 +138,8 @@ impl InspectionCommand {
         let is_from = |argument: &Argument| argument.key.is_none() && argument.value == "from";
         let day = match rest {
             [] => return Ok(InspectionCommand::Set(key.clone(), value.clone(), None)),
-            [own] if own.key.as_deref() == Some("from") => own,
-            [from, own] if is_from(from) && own.key.is_none() => own,
+            [day_argument] if day_argument.key.as_deref() == Some("from") => day_argument,
+            [from, day_argument] if is_from(from) && day_argument.key.is_none() => day_argument,
             _ => return Err(usage()),
         };
         let number = day.value.as_u64().and_then(|number| u32::try_from(number).ok());

@@ -66,7 +66,7 @@ pub fn difference_to_json(found: &DayDifference) -> Value {
         })
     };
     let parameter =
-        |(key, own, other): &(String, Value, Value)| json!({ "parameter": key, "values": [own, other] });
+        |(key, one, other): &(String, Value, Value)| json!({ "parameter": key, "values": [one, other] });
     json!({
         "parameters": found.parameters.iter().map(parameter).collect::<Vec<Value>>(),
         "differs": found.differing_parts,
@@ -157,8 +157,8 @@ fn format_distinct(value: f64, other: f64) -> String {
 fn format_distinct_cells(one: &str, other: &str) -> (String, String) {
     let number = |cell: &str| cell.parse::<f64>().ok().filter(|value| value.is_finite());
     match (number(one), number(other)) {
-        (Some(own), Some(twin)) if own.fract() != 0.0 || twin.fract() != 0.0 => {
-            (format_distinct(own, twin), format_distinct(twin, own))
+        (Some(left), Some(right)) if left.fract() != 0.0 || right.fract() != 0.0 => {
+            (format_distinct(left, right), format_distinct(right, left))
         }
         _ => (one.to_owned(), other.to_owned()),
     }

@@ -16,8 +16,8 @@ const SATISFACTION_STEP_DAYS: usize = 7;
 /// Describes the headline, curve, plans today and at the last bill, satisfaction and events.
 pub fn describe_individual(lens: &IndividualView) -> Vec<String> {
     let first = &lens.signup;
-    let came = format!("arrived on day {} through {}", first.day, first.source.id());
-    let mut lines = vec![format!("customer {} · {} · {came}", lens.customer, lens.group), headline(lens)];
+    let arrival = format!("arrived on day {} through {}", first.day, first.source.id());
+    let mut lines = vec![format!("customer {} · {} · {arrival}", lens.customer, lens.group), headline(lens)];
     let Some(individual_day) = lens.day_shown() else {
         lines.extend(describe_signup(first));
         return clean_up_numbers(lines);
@@ -117,7 +117,7 @@ fn describe_term(term: DecisionTerm, lens: &IndividualView) -> String {
     }
 }
 
-fn plan_rows(weighed: &WeighedDecision, own: Plan) -> Vec<String> {
+fn plan_rows(weighed: &WeighedDecision, current_plan: Plan) -> Vec<String> {
     let head = [
         "plan",
         "price",
@@ -137,7 +137,7 @@ fn plan_rows(weighed: &WeighedDecision, own: Plan) -> Vec<String> {
         let seen = terms.experience;
         let number = |value: f64| format!("{value:.4}");
         vec![
-            format!("{plan}{}", if plan == own { "*" } else { "" }),
+            format!("{plan}{}", if plan == current_plan { "*" } else { "" }),
             format!("{:.2}", terms.price),
             number(seen.delivered),
             number(seen.relationship),

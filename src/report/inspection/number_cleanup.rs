@@ -57,7 +57,7 @@ mod tests {
 
     #[test]
     fn zeros_have_no_sign_and_numbers_are_short() {
-        for (text, told) in [
+        for (text, expected) in [
             ("from S3 -0.0000, then", "from S3 0.0000, then"),
             ("-0 of S1→S2-0 -0.10 (-0.00)", "0 of S1→S2-0 -0.10 (0.00)"),
             ("day 0-0, +0.0000 of 20", "day 0-0, +0.0000 of 20"),
@@ -65,7 +65,7 @@ mod tests {
             ("below 999999999999999, not below", "below 999999999999999, not below"),
             ("-0e5 of -1,234.5", "-0e5 of -1,234.5"),
         ] {
-            assert_eq!(clean_up_line(text), told);
+            assert_eq!(clean_up_line(text), expected);
         }
         let long = clean_up_line(&format!("budget {:.2}, quality", 1e308));
         assert_eq!(long, "budget 1e308, quality");

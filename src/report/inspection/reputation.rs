@@ -16,8 +16,8 @@ pub fn describe_reputation(reputation_equation: &ReputationEquation) -> Vec<Stri
         &describe_contribution(&reputation_equation.contribution, least),
         reputation_equation.contribution.applied_change(),
     ));
-    let heard = reputation_equation.spillovers.iter().filter(|spill| spill.counts);
-    rows.extend(heard.map(|spill| term_row(&spillover_product(spill), spill.change)));
+    let counted = reputation_equation.spillovers.iter().filter(|spill| spill.counts);
+    rows.extend(counted.map(|spill| term_row(&spillover_product(spill), spill.change)));
     // Rounding errors are not limits.
     if reputation_equation.bounds.abs() > 1e-12 {
         rows.push(term_row("limits", reputation_equation.bounds));
@@ -76,8 +76,8 @@ pub(super) fn describe_dropped_spillovers(
     least: &ChangeThresholds,
 ) -> Vec<String> {
     let pairs = |from: Group| {
-        let own = dropped.iter().filter(|spill| spill.from == from);
-        own.map(|spill| format!("{}→{}", spill.from, spill.to)).collect::<Vec<String>>()
+        let from_source = dropped.iter().filter(|spill| spill.from == from);
+        from_source.map(|spill| format!("{}→{}", spill.from, spill.to)).collect::<Vec<String>>()
     };
     let named = |pairs: Vec<String>| match pairs.is_empty() {
         true => None,

@@ -5,7 +5,7 @@ use novamind_insight::{SatisfactionEquation, SatisfactionTerm};
 
 /// Describes the mean before, each term, the mean after, and the mean at the end of the day.
 pub fn describe_satisfaction(satisfaction_equation: &SatisfactionEquation) -> Vec<String> {
-    let SatisfactionEquation { group, day, weight, departed: left, joined: came, subscribers, .. } =
+    let SatisfactionEquation { group, day, weight, departed: left, joined, subscribers, .. } =
         *satisfaction_equation;
     let mut lines = vec![format!("satisfaction of {group} on day {day}")];
     match (satisfaction_equation.before(), satisfaction_equation.after(), satisfaction_equation.instant()) {
@@ -29,7 +29,7 @@ pub fn describe_satisfaction(satisfaction_equation: &SatisfactionEquation) -> Ve
         (None, _) => "no mean".to_owned(),
     };
     lines.push(format!(
-        "  end of day: {left} left, {came} joined, {} remain, {moved}",
+        "  end of day: {left} left, {joined} joined, {} remain, {moved}",
         subscriber_count(subscribers)
     ));
     lines.extend(describe_recent_days(satisfaction_equation.recent_days.iter().flatten().copied()));

@@ -102,7 +102,7 @@ fn heat_level(spill: &SpilloverEffect, largest: f64) -> usize {
     ((share * HEAT_MARKS.len() as f64).ceil() as usize).clamp(1, HEAT_MARKS.len()) - 1
 }
 
-fn notes(own: &Spillover, sources: &[Group], is_silent: bool) -> Vec<String> {
+fn notes(spillover: &Spillover, sources: &[Group], is_silent: bool) -> Vec<String> {
     if sources.is_empty() {
         return vec!["  no group has subscribers".to_owned()];
     }
@@ -112,18 +112,18 @@ fn notes(own: &Spillover, sources: &[Group], is_silent: bool) -> Vec<String> {
     }
     let small_own: Vec<&str> = sources
         .iter()
-        .filter(|group| !own.contributions[**group].is_applied)
+        .filter(|group| !spillover.contributions[**group].is_applied)
         .map(|group| group.id())
         .collect();
     if !small_own.is_empty() {
         lines.push(format!(
             "  own changes of {} below {}: dropped",
             small_own.join(", "),
-            format_small(own.thresholds.subscriber_contribution)
+            format_small(spillover.thresholds.subscriber_contribution)
         ));
     }
-    let dropped: Vec<&SpilloverEffect> = own.spillovers.iter().filter(|spill| !spill.counts).collect();
-    lines.extend(describe_dropped_spillovers(&dropped, &own.thresholds));
+    let dropped: Vec<&SpilloverEffect> = spillover.spillovers.iter().filter(|spill| !spill.counts).collect();
+    lines.extend(describe_dropped_spillovers(&dropped, &spillover.thresholds));
     lines
 }
 

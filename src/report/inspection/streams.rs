@@ -15,7 +15,7 @@ pub fn describe_next_draws(next_draws: &NextDraws) -> Vec<String> {
         lines.push("  a recorded series replaces these draws for its length".to_owned());
     }
     match streams.iter().any(|keyed_draws| keyed_draws.draws.len() > MAX_ROW_DRAWS) {
-        true => streams.iter().for_each(|own| lines.extend(all_draws(own))),
+        true => streams.iter().for_each(|keyed_draws| lines.extend(all_draws(keyed_draws))),
         false => lines.extend(stream_rows(streams)),
     }
     clean_up_numbers(lines)
@@ -27,10 +27,14 @@ fn stream_rows(streams: &[KeyedDraws]) -> Vec<String> {
     let mut head = vec!["stream", "key"];
     head.extend(numbers.iter().map(String::as_str));
     head.push("result");
-    let row = |own: &KeyedDraws| {
-        let draws = own.draws.iter().map(|draw| format!("{:.6}", draw.uniform));
-        let what = [describe_effect(&own.effect)];
-        [own.stream.to_owned(), format_key(own)].into_iter().chain(draws).chain(what).collect()
+    let row = |keyed_draws: &KeyedDraws| {
+        let draws = keyed_draws.draws.iter().map(|draw| format!("{:.6}", draw.uniform));
+        let what = [describe_effect(&keyed_draws.effect)];
+        [keyed_draws.stream.to_owned(), format_key(keyed_draws)]
+            .into_iter()
+            .chain(draws)
+            .chain(what)
+            .collect()
     };
     indented_table(&head, &streams.iter().map(row).collect::<Vec<_>>())
 }

@@ -178,7 +178,8 @@ impl Logbook {
             total.add(&week.effort);
             wording += week.wording;
         }
-        let own = weeks.iter().filter(|week| !week.inherited).map(|week| week.effort.time.active_seconds());
+        let active_seconds =
+            weeks.iter().filter(|week| !week.inherited).map(|week| week.effort.time.active_seconds());
         let ads = DatabaseFigures::load_channels(session);
         let (manifest, last) = (session.manifest(), lines.last());
         let end = find_end(lines);
@@ -205,7 +206,7 @@ impl Logbook {
             day: session.day(),
             cash: session.cash_by_day().last().copied().unwrap_or(manifest.cash),
             score: session.score(),
-            median_week_seconds: median(own.collect()),
+            median_week_seconds: median(active_seconds.collect()),
             open_week: timeline.open.effort,
             format: manifest.format,
             study: manifest.study.clone(),
@@ -240,9 +241,11 @@ impl NotesSummary {
 
 fn week_record(session: &Session, span: &WeekSpan, at: usize) -> WeekRecord {
     let decided = session.company().decisions().get(at);
-    let mut decisions: Vec<String> =
-        decided.iter().flat_map(|own| own.changes.iter().map(describe_change)).collect();
-    decisions.extend(decided.iter().flat_map(|own| own.purchases.iter().cloned()));
+    let mut decisions: Vec<String> = decided
+        .iter()
+        .flat_map(|week_decisions| week_decisions.changes.iter().map(describe_change))
+        .collect();
+    decisions.extend(decided.iter().flat_map(|week_decisions| week_decisions.purchases.iter().cloned()));
     let cash = session.cash_by_day();
     let own_rationale = span.rationale.as_deref().filter(|_| !span.filed_at_limit);
     let scored = |filed: &FiledForecast| ScoredForecast::new(span.decision_day, &filed.to_forecast(), cash);

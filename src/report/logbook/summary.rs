@@ -202,8 +202,8 @@ fn tools_block(tools: &BTreeMap<String, u32>) -> Block {
 }
 
 fn decision_blocks(book: &Logbook) -> Vec<Block> {
-    let told = book.weeks.iter().filter(|week| !week.decisions.is_empty());
-    let blocks: Vec<Block> = told
+    let decision_weeks = book.weeks.iter().filter(|week| !week.decisions.is_empty());
+    let blocks: Vec<Block> = decision_weeks
         .map(|week| Block::Folded {
             title: format!("Week {}", week.week),
             note: pluralize(week.decisions.len() as u32, "decision"),
@@ -216,9 +216,9 @@ fn decision_blocks(book: &Logbook) -> Vec<Block> {
 
 fn longest_screens(screens: &BTreeMap<String, TimeSpent>, most: usize) -> String {
     let sorted = screens_by_time(screens);
-    let told =
+    let texts =
         sorted.iter().take(most).map(|(name, seconds)| format!("{name} {}", format_duration(*seconds)));
-    told.collect::<Vec<_>>().join(", ")
+    texts.collect::<Vec<_>>().join(", ")
 }
 
 fn screens_by_time(screens: &BTreeMap<String, TimeSpent>) -> Vec<(&str, f64)> {

@@ -191,7 +191,7 @@ fn forecast_chart(story: &RunReport, horizon: u32) -> Option<Block> {
     let through = |value: &dyn Fn(&ScoredForecast) -> f64| -> Vec<(f64, f64)> {
         due.iter().map(|filed| (f64::from(filed.due_day()), value(filed))).collect()
     };
-    let came = through(&|filed| filed.outcome.unwrap_or(filed.forecast.point));
+    let actual = through(&|filed| filed.outcome.unwrap_or(filed.forecast.point));
     let band = due
         .iter()
         .map(|filed| (f64::from(filed.due_day()), filed.forecast.lower, filed.forecast.upper))
@@ -204,8 +204,8 @@ fn forecast_chart(story: &RunReport, horizon: u32) -> Option<Block> {
         inside.count()
     );
     // Outliers among forecasts must not flatten the actual values.
-    let low = came.iter().map(|point| point.1).fold(f64::INFINITY, f64::min);
-    let high = came.iter().map(|point| point.1).fold(f64::NEG_INFINITY, f64::max);
+    let low = actual.iter().map(|point| point.1).fold(f64::INFINITY, f64::min);
+    let high = actual.iter().map(|point| point.1).fold(f64::NEG_INFINITY, f64::max);
     let reach = (high - low).max(0.1 * high.abs()).max(1.0);
     Some(Block::Chart(Chart {
         title: format!("Cash forecast {ahead} ahead, and the outcome"),
@@ -215,7 +215,7 @@ fn forecast_chart(story: &RunReport, horizon: u32) -> Option<Block> {
         y_limits: Some((low - reach, high + reach)),
         plot: Plot::Lines {
             curves: vec![
-                Curve { name: "actual".to_owned(), points: came },
+                Curve { name: "actual".to_owned(), points: actual },
                 Curve { name: "forecast".to_owned(), points: through(&|filed| filed.forecast.point) },
             ],
             band: Some(Band { name: "95 % interval".to_owned(), points: band }),
@@ -235,12 +235,13 @@ mod tests {
             panic!("a chart")
         };
         let Plot::Lines { curves, .. } = &chart.plot else { panic!("{chart:?}") };
-        let told: Vec<(f64, f64)> = (1..)
+        let expected: Vec<(f64, f64)> = (1..)
             .zip(session.weeks())
             .map(|(week, week_figures)| (f64::from(week), f64::from(week_figures.individual_subscribers)))
             .collect();
-        assert_eq!(curves[0].points, told);
-        let (week, most) = told.iter().rev().max_by(|one, other| one.1.total_cmp(&other.1)).expect("weeks");
+        assert_eq!(curves[0].points, expected);
+        let (week, most) =
+            expected.iter().rev().max_by(|one, other| one.1.total_cmp(&other.1)).expect("weeks");
         let peak = format!("subscribers: peak {} in week {week:.0},", format_whole(*most));
         assert!(*most > 0.0 && chart.summary.starts_with(&peak), "{}", chart.summary);
     }

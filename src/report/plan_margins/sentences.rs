@@ -39,7 +39,8 @@ fn plan_sentences(
         return vec![format!("plan {plan}: no usage on day {day}")];
     };
     let unit_cost = set.unit_cost(models);
-    let on_own = |told: &dyn Fn(f64) -> Option<f64>, of: &str| describe_margin(unit_cost.and_then(told), of);
+    let on_own =
+        |at_cost: &dyn Fn(f64) -> Option<f64>, of: &str| describe_margin(unit_cost.and_then(at_cost), of);
     let at_list = |unit_cost: f64| margin(set.price, plan_usage.compute_cost(unit_cost)?);
     let is_at_list = lever == MarginSetting::Price && differs_by_a_cent(set.price, paid);
     let mut line = format!(
@@ -60,10 +61,11 @@ fn plan_sentences(
     }
     let mut lines = vec![line];
     lines.extend(group_sentence(sales, plan, unit_cost));
-    let told = |unit_cost: f64| if is_at_list { at_list(unit_cost) } else { plan_usage.margin(unit_cost) };
+    let margin_at =
+        |unit_cost: f64| if is_at_list { at_list(unit_cost) } else { plan_usage.margin(unit_cost) };
     let others = models.iter().filter(|(tier, _)| *tier != set.tier);
     let others: Vec<(u8, f64)> =
-        others.filter_map(|(tier, unit_cost)| Some((*tier, told(*unit_cost)?))).collect();
+        others.filter_map(|(tier, unit_cost)| Some((*tier, margin_at(*unit_cost)?))).collect();
     let basis = if is_at_list { "at that list price" } else { "of the price paid now" };
     lines.extend(
         other_models_sentence(&others)
@@ -74,7 +76,7 @@ fn plan_sentences(
 
 fn group_sentence(sales: &PlanSales, plan: Plan, unit_cost: Option<f64>) -> Option<String> {
     let groups = sales.by_group(plan);
-    let told = |(group, plan_usage): &(_, PlanUsage)| {
+    let describe_group = |(group, plan_usage): &(_, PlanUsage)| {
         let paid = plan_usage.revenue_per_seat().map_or("nothing".to_owned(), cents);
         format!(
             "{group} {}",
@@ -82,7 +84,7 @@ fn group_sentence(sales: &PlanSales, plan: Plan, unit_cost: Option<f64>) -> Opti
         )
     };
     (groups.len() > 1).then(|| {
-        let texts: Vec<String> = groups.iter().map(told).collect();
+        let texts: Vec<String> = groups.iter().map(describe_group).collect();
         format!("plan {plan} by group: {}", texts.join("; "))
     })
 }

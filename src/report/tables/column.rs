@@ -77,8 +77,8 @@ macro_rules! values {
 values! {
     str: str::to_owned;
     String: String::clone;
-    bool: |own: &bool| super::format_flag(*own);
-    f64: |own: &f64| super::format_number(*own);
+    bool: |flag: &bool| super::format_flag(*flag);
+    f64: |number: &f64| super::format_number(*number);
     u8: u8::to_string;
     u32: u32::to_string;
     u64: u64::to_string;

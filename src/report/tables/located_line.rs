@@ -22,7 +22,9 @@ pub(super) struct LineRow<'a, T> {
 }
 
 /// Prepends the place columns, which all tables about lines share.
-pub(super) fn with_location_columns<'a, T>(own: Vec<Column<LineRow<'a, T>>>) -> Vec<Column<LineRow<'a, T>>> {
+pub(super) fn with_location_columns<'a, T>(
+    row_columns: Vec<Column<LineRow<'a, T>>>,
+) -> Vec<Column<LineRow<'a, T>>> {
     let place = columns! { row: LineRow<'a, T>;
         "run", "name", "name of the run" => row.located.run;
         "participant", "label", "label of the participant" => row.located.participant;
@@ -32,7 +34,7 @@ pub(super) fn with_location_columns<'a, T>(own: Vec<Column<LineRow<'a, T>>>) -> 
         "week", "number", "week being decided, from 1; for a closing line, the closed week" => row.located.week();
         "day", "day", "last simulated day" => row.located.line.day;
     };
-    place.into_iter().chain(own).collect()
+    place.into_iter().chain(row_columns).collect()
 }
 
 pub(super) fn locate_lines<'a>(
@@ -48,8 +50,8 @@ pub(super) fn locate_lines<'a>(
         is_after_end: is_afterwards,
         seconds: (line.at_nanoseconds() - began) as f64 / 1e9,
     };
-    let own = lines.iter().map(|line| place(line, false));
-    own.chain(afterwards.iter().map(|line| place(line, true))).collect()
+    let trajectory_lines = lines.iter().map(|line| place(line, false));
+    trajectory_lines.chain(afterwards.iter().map(|line| place(line, true))).collect()
 }
 
 impl LocatedLine<'_> {

@@ -168,8 +168,8 @@ pub(super) fn columns() -> Vec<Column<Logbook>> {
         "note_versions", "count", "number of saved versions of the notes before the end" => run.notes.versions;
         "note_words", "count", "words of the last saved notes; this and the next two columns are empty if lines do not contain \
          their text" => run.notes.wording.map(|word_counts| word_counts.words);
-        "note_planning_words", "count", "planning words among them" => run.notes.wording.map(|own| own.planning);
-        "note_if_words", "count", "occurrences of \"if\"" => run.notes.wording.map(|own| own.ifs);
+        "note_planning_words", "count", "planning words among them" => run.notes.wording.map(|word_counts| word_counts.planning);
+        "note_if_words", "count", "occurrences of \"if\"" => run.notes.wording.map(|word_counts| word_counts.ifs);
         "parameters_digest", "digest", "digest of the effective parameters" => run.parameters_digest;
         "state_hash", "hash", "state hash after the last week" => run.state_hash;
         "last_seq", "number", "number of the last line of the trajectory" => run.last_seq;

@@ -96,21 +96,21 @@ pub(super) fn columns<'a>() -> Vec<Column<WeekRow<'a>>> {
         "filled_naively", "0 or 1", "1: at least one forecast was naive" => row.week.filled_naively;
         "filed_at_limit", "0 or 1", "1: a time limit filed the week" => row.week.filed_at_limit;
         "forecast_7_point", "dollars", "cash predicted for 7 days ahead" => row.forecast(7).map(|scored_forecast| scored_forecast.forecast.point);
-        "forecast_7_lower", "dollars", LOWER_MEANING => row.forecast(7).map(|own| own.forecast.lower);
-        "forecast_7_upper", "dollars", UPPER_MEANING => row.forecast(7).map(|own| own.forecast.upper);
-        "forecast_7_outcome", "dollars", OUTCOME_MEANING => row.forecast(7).and_then(|own| own.outcome);
-        "forecast_28_point", "dollars", "cash predicted for 28 days ahead" => row.forecast(28).map(|own| own.forecast.point);
-        "forecast_28_lower", "dollars", LOWER_MEANING => row.forecast(28).map(|own| own.forecast.lower);
-        "forecast_28_upper", "dollars", UPPER_MEANING => row.forecast(28).map(|own| own.forecast.upper);
-        "forecast_28_outcome", "dollars", OUTCOME_MEANING => row.forecast(28).and_then(|own| own.outcome);
-        "forecast_84_point", "dollars", "cash predicted for 84 days ahead" => row.forecast(84).map(|own| own.forecast.point);
-        "forecast_84_lower", "dollars", LOWER_MEANING => row.forecast(84).map(|own| own.forecast.lower);
-        "forecast_84_upper", "dollars", UPPER_MEANING => row.forecast(84).map(|own| own.forecast.upper);
-        "forecast_84_outcome", "dollars", OUTCOME_MEANING => row.forecast(84).and_then(|own| own.outcome);
-        "forecast_182_point", "dollars", "cash predicted for 182 days ahead" => row.forecast(182).map(|own| own.forecast.point);
-        "forecast_182_lower", "dollars", LOWER_MEANING => row.forecast(182).map(|own| own.forecast.lower);
-        "forecast_182_upper", "dollars", UPPER_MEANING => row.forecast(182).map(|own| own.forecast.upper);
-        "forecast_182_outcome", "dollars", OUTCOME_MEANING => row.forecast(182).and_then(|own| own.outcome);
+        "forecast_7_lower", "dollars", LOWER_MEANING => row.forecast(7).map(|scored_forecast| scored_forecast.forecast.lower);
+        "forecast_7_upper", "dollars", UPPER_MEANING => row.forecast(7).map(|scored_forecast| scored_forecast.forecast.upper);
+        "forecast_7_outcome", "dollars", OUTCOME_MEANING => row.forecast(7).and_then(|scored_forecast| scored_forecast.outcome);
+        "forecast_28_point", "dollars", "cash predicted for 28 days ahead" => row.forecast(28).map(|scored_forecast| scored_forecast.forecast.point);
+        "forecast_28_lower", "dollars", LOWER_MEANING => row.forecast(28).map(|scored_forecast| scored_forecast.forecast.lower);
+        "forecast_28_upper", "dollars", UPPER_MEANING => row.forecast(28).map(|scored_forecast| scored_forecast.forecast.upper);
+        "forecast_28_outcome", "dollars", OUTCOME_MEANING => row.forecast(28).and_then(|scored_forecast| scored_forecast.outcome);
+        "forecast_84_point", "dollars", "cash predicted for 84 days ahead" => row.forecast(84).map(|scored_forecast| scored_forecast.forecast.point);
+        "forecast_84_lower", "dollars", LOWER_MEANING => row.forecast(84).map(|scored_forecast| scored_forecast.forecast.lower);
+        "forecast_84_upper", "dollars", UPPER_MEANING => row.forecast(84).map(|scored_forecast| scored_forecast.forecast.upper);
+        "forecast_84_outcome", "dollars", OUTCOME_MEANING => row.forecast(84).and_then(|scored_forecast| scored_forecast.outcome);
+        "forecast_182_point", "dollars", "cash predicted for 182 days ahead" => row.forecast(182).map(|scored_forecast| scored_forecast.forecast.point);
+        "forecast_182_lower", "dollars", LOWER_MEANING => row.forecast(182).map(|scored_forecast| scored_forecast.forecast.lower);
+        "forecast_182_upper", "dollars", UPPER_MEANING => row.forecast(182).map(|scored_forecast| scored_forecast.forecast.upper);
+        "forecast_182_outcome", "dollars", OUTCOME_MEANING => row.forecast(182).and_then(|scored_forecast| scored_forecast.outcome);
     };
     columns.extend(FIGURES.map(|(name, unit, meaning)| {
         Column::new(name, unit, meaning, move |row: &WeekRow<'a>| {

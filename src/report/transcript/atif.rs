@@ -57,11 +57,11 @@ fn step_json(act: &TranscriptStep) -> Option<Value> {
             called(tool.name(), args, value.to_string(), extra)
         }
         TranscriptAction::Query { sql, answer, extra } => {
-            let said = match answer {
+            let output = match answer {
                 Ok(rows) => rows.clone(),
                 Err((code, message)) => json!({ "success": false, "error": message, "code": code }),
             };
-            called("query", &json!({ "sql": sql }), said.to_string(), extra)
+            called("query", &json!({ "sql": sql }), output.to_string(), extra)
         }
         TranscriptAction::Note(text) => json!({
             "source": "agent",

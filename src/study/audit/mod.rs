@@ -231,8 +231,9 @@ impl RunAudit<'_> {
 
     /// Returns findings on contradictions between `run.toml` and the first line.
     fn check_manifest(&self) -> Vec<AuditFinding> {
-        let told = self.run.manifest.iter();
-        told.flat_map(|manifest| manifest_differences(&self.run.folder, manifest))
+        let manifests = self.run.manifest.iter();
+        manifests
+            .flat_map(|manifest| manifest_differences(&self.run.folder, manifest))
             .map(|words| self.finding(FindingKind::Manifest, Some(1), "", words))
             .collect()
     }

@@ -144,7 +144,7 @@ impl Condition {
             }
             Condition::Event(event) => {
                 let measured_day = day.checked_sub(1).and_then(|at| days.get(at as usize));
-                measured_day.is_some_and(|own| event.happens_on(own))
+                measured_day.is_some_and(|measured_day| event.happens_on(measured_day))
             }
         }
     }

@@ -50,7 +50,7 @@ impl Inspector<'_> {
         let chosen: Vec<Condition> = set
             .iter()
             .filter(|breakpoint| number.is_none_or(|number| breakpoint.number == number))
-            .map(|own| own.condition)
+            .map(|breakpoint| breakpoint.condition)
             .collect();
         if let Some(number) = number.filter(|_| chosen.is_empty()) {
             return Err(self.unknown_breakpoint_rejection(number));

@@ -71,13 +71,13 @@ impl<'a> TokenReader<'a> {
     ) -> Result<(T, Token<'a>), ConditionParseError> {
         let token = self.next();
         let Some(word) = token else {
-            let ids: Vec<&str> = known.iter().map(|own| id(*own)).collect();
+            let ids: Vec<&str> = known.iter().map(|choice| id(*choice)).collect();
             return Err(self.error_at(None, format!("{what} is missing: {}", ids.join(", "))));
         };
         let name = word.text.to_lowercase().replace('-', "_");
-        let found = known.iter().find(|own| id(**own).eq_ignore_ascii_case(&name));
+        let found = known.iter().find(|choice| id(**choice).eq_ignore_ascii_case(&name));
         found.map(|found| (*found, word)).ok_or_else(|| {
-            let ids: Vec<&str> = known.iter().map(|own| id(*own)).collect();
+            let ids: Vec<&str> = known.iter().map(|choice| id(*choice)).collect();
             let near = similar_names(&name, ids.iter().copied());
             let help = match near.is_empty() {
                 true => format!("choose one of {}", ids.join(", ")),

@@ -30,7 +30,7 @@ impl Breakpoints {
 
     /// Sets a breakpoint, or returns the existing one with the same condition.
     pub(crate) fn set(&mut self, condition: Condition) -> Breakpoint {
-        if let Some(known) = self.set.iter().find(|own| own.condition == condition) {
+        if let Some(known) = self.set.iter().find(|breakpoint| breakpoint.condition == condition) {
             return *known;
         }
         self.last_number += 1;

@@ -67,26 +67,26 @@ measures! {
     IndividualLeads = "individual_leads", MeasureKind::Flow,
         Some(|day| day.figures.new_individual_leads.into()), None;
     NewSubscribers = "new_subscribers", MeasureKind::Flow,
-        Some(|day| day.figures.new_individual_subscribers.into()), Some(|own| Some(own.signed.into()));
+        Some(|day| day.figures.new_individual_subscribers.into()), Some(|figures| Some(figures.signed.into()));
     NewSeats = "new_seats", MeasureKind::Flow, Some(|day| day.figures.new_enterprise_seats.into()), None;
     Conversion = "conversion", MeasureKind::Share(7),
-        Some(|day| day.figures.new_individual_subscribers.into()), Some(|own| Some(own.signed.into()));
+        Some(|day| day.figures.new_individual_subscribers.into()), Some(|figures| Some(figures.signed.into()));
     Cancellations = "cancellations", MeasureKind::Flow,
-        Some(|day| day.figures.cancellations.into()), Some(|own| Some(own.left.into()));
+        Some(|day| day.figures.cancellations.into()), Some(|figures| Some(figures.left.into()));
     Churn = "churn", MeasureKind::Share(30),
-        Some(|day| day.figures.cancellations.into()), Some(|own| Some(own.left.into()));
+        Some(|day| day.figures.cancellations.into()), Some(|figures| Some(figures.left.into()));
     Upgrades = "upgrades", MeasureKind::Flow, Some(|day| day.figures.upgrades.into()), None;
     Downgrades = "downgrades", MeasureKind::Flow, Some(|day| day.figures.downgrades.into()), None;
     Usage = "usage", MeasureKind::Flow,
-        Some(|day| day.figures.total_usage as f64), Some(|own| Some(own.usage as f64));
+        Some(|day| day.figures.total_usage as f64), Some(|figures| Some(figures.usage as f64));
     Overload = "overload", MeasureKind::State, Some(|day| day.figures.overload), None;
     Downtime = "downtime_minutes", MeasureKind::Flow,
         Some(|day| day.figures.downtime_minutes.into()), None;
     OpenIssues = "open_issues", MeasureKind::State,
-        Some(|day| day.open_issues().into()), Some(|own| Some(own.open_issues.into()));
-    Reputation = "reputation", MeasureKind::State, None, Some(|own| Some(own.reputation));
-    Satisfaction = "satisfaction", MeasureKind::State, None, Some(|own| own.satisfaction);
-    Relationship = "relationship", MeasureKind::State, None, Some(|own| own.relationship);
+        Some(|day| day.open_issues().into()), Some(|figures| Some(figures.open_issues.into()));
+    Reputation = "reputation", MeasureKind::State, None, Some(|figures| Some(figures.reputation));
+    Satisfaction = "satisfaction", MeasureKind::State, None, Some(|figures| figures.satisfaction);
+    Relationship = "relationship", MeasureKind::State, None, Some(|figures| figures.relationship);
 }
 
 /// The reason why a figure is invalid.

@@ -77,7 +77,7 @@ impl Inspector<'_> {
 
     pub(crate) fn unknown_breakpoint_rejection(&self, number: u32) -> Rejection {
         let numbers: Vec<String> =
-            self.cache.breakpoints.all().iter().map(|own| own.number.to_string()).collect();
+            self.cache.breakpoints.all().iter().map(|breakpoint| breakpoint.number.to_string()).collect();
         let message = match numbers.is_empty() {
             true => format!("there is no breakpoint {number}; no breakpoint is set"),
             false => format!("there is no breakpoint {number}; there are {}", numbers.join(", ")),
@@ -101,7 +101,7 @@ impl Inspector<'_> {
         let shows_past = known.last_day() < from;
         let series = if shows_past { Arc::default() } else { known.clone() };
         let goes_on = |day: u32| breakpoints_hit(day, &set, &series).is_empty();
-        let looks = ("breakpoint", set.iter().map(|own| own.condition.to_string()).collect());
+        let looks = ("breakpoint", set.iter().map(|breakpoint| breakpoint.condition.to_string()).collect());
         let watched = WatchedDays {
             days,
             watch: series.clone(),
@@ -135,9 +135,10 @@ impl Inspector<'_> {
 /// Returns the breakpoints that became true on a day.
 fn breakpoints_hit(day: u32, set: &[Breakpoint], series: &MeasuredDays) -> Vec<BreakpointHit> {
     series.with_days(|days| {
-        let judged = set
-            .iter()
-            .map(|own| BreakpointHit { breakpoint: *own, state: own.condition.evaluate(days, day) });
+        let judged = set.iter().map(|breakpoint| BreakpointHit {
+            breakpoint: *breakpoint,
+            state: breakpoint.condition.evaluate(days, day),
+        });
         judged.filter(|hit| hit.state.becomes_true()).collect()
     })
 }
@@ -149,11 +150,11 @@ fn breakpoints_still_true(
     series: &MeasuredDays,
 ) -> Vec<StillTrueBreakpoint> {
     series.with_days(|measured| {
-        let of = |own: &Breakpoint| {
+        let of = |breakpoint: &Breakpoint| {
             let judged: Vec<ConditionState> =
-                days.clone().map(|day| own.condition.evaluate(measured, day)).collect();
+                days.clone().map(|day| breakpoint.condition.evaluate(measured, day)).collect();
             let until = judged.iter().rfind(|judged| judged.is_true)?.day;
-            let hit = BreakpointHit { breakpoint: *own, state: *judged.last()? };
+            let hit = BreakpointHit { breakpoint: *breakpoint, state: *judged.last()? };
             let becomes_true = judged.iter().any(ConditionState::becomes_true);
             let began =
                 judged.iter().find(|judged| judged.is_first_value && judged.is_true).map(|judged| judged.day);

@@ -149,14 +149,15 @@ fn add_subscriber_writes(pages: &mut RecordedWrites, group: Group, world: &World
     };
     let mut left: Vec<_> = facts.endings.iter().filter(has_left).collect();
     left.sort_by_key(|ended| ended.cause as u8);
-    left.into_iter().for_each(|own| pages.add_amount(WriteSource::Cancellations(own.cause), -1.0));
+    left.into_iter().for_each(|ended| pages.add_amount(WriteSource::Cancellations(ended.cause), -1.0));
     for source in Source::ALL {
-        let came = facts.arrivals.iter().filter(|arrival| arrival.group == group && arrival.source == source);
+        let arrivals =
+            facts.arrivals.iter().filter(|arrival| arrival.group == group && arrival.source == source);
         let signed = |customer: u32| {
-            let mut own = facts.openings.iter().filter(|opening| opening.customer == customer);
-            own.any(|opening| opening.status == SubscriptionStatus::Subscribed)
+            let mut openings = facts.openings.iter().filter(|opening| opening.customer == customer);
+            openings.any(|opening| opening.status == SubscriptionStatus::Subscribed)
         };
-        let count = came.filter(|own| signed(own.customer)).count();
+        let count = arrivals.filter(|arrival| signed(arrival.customer)).count();
         (0..count).for_each(|_| pages.add_amount(WriteSource::Signups(source), 1.0));
     }
     let of_group =

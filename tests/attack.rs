@@ -154,8 +154,9 @@ fn hostile_statements_are_rejected_or_bounded() {
     let session = played_session(runs.path());
     let folder = session.folder().expect("a folder").to_owned();
     let (before, hash) = (database_contents(&folder), session.state_hash());
-    let position = rusqlite::Connection::open(folder.join("world.db"))
-        .and_then(|own| own.query_row("SELECT line_hash FROM projection", [], |row| row.get::<_, String>(0)));
+    let position = rusqlite::Connection::open(folder.join("world.db")).and_then(|connection| {
+        connection.query_row("SELECT line_hash FROM projection", [], |row| row.get::<_, String>(0))
+    });
     // Internal names and values, which no result and no message may reveal.
     const INSIDE: [&str; 12] = [
         "inner_",

@@ -141,11 +141,11 @@ impl PairedDifference {
     /// Computes the difference of pairs. Skips pairs with a missing value; `None` without pairs.
     pub fn from_pairs(pairs: impl IntoIterator<Item = (f64, f64)>) -> Option<PairedDifference> {
         let differences = pairs.into_iter().map(|(value, other)| value - other);
-        let differences: Vec<f64> = differences.filter(|own| !own.is_nan()).collect();
+        let differences: Vec<f64> = differences.filter(|difference| !difference.is_nan()).collect();
         (!differences.is_empty()).then(|| PairedDifference {
             mean: mean(&differences),
             interval: Interval::for_mean(&differences),
-            first_greater: differences.iter().filter(|own| **own > 0.0).count() as u32,
+            first_greater: differences.iter().filter(|difference| **difference > 0.0).count() as u32,
             pair_count: differences.len() as u32,
         })
     }
@@ -173,9 +173,12 @@ mod tests {
     fn mean_interval_matches_the_standard_error() {
         // With standard deviation 1 and twenty values, the mean is known to ±1.96 / sqrt(20) = 0.44.
         let values: Vec<f64> = (0..20).map(|at| if at % 2 == 0 { 1.0 } else { -1.0 }).collect();
-        let own = Interval::for_mean(&values).expect("values");
-        assert!((-0.5..-0.35).contains(&own.low) && (0.35..0.5).contains(&own.high), "{own:?}");
-        assert_eq!(Interval::for_mean(&values), Some(own), "the same numbers, the same interval");
+        let interval = Interval::for_mean(&values).expect("values");
+        assert!(
+            (-0.5..-0.35).contains(&interval.low) && (0.35..0.5).contains(&interval.high),
+            "{interval:?}"
+        );
+        assert_eq!(Interval::for_mean(&values), Some(interval), "the same numbers, the same interval");
         assert_eq!(Interval::for_mean(&[]), None);
         assert_eq!(Interval::for_mean(&[3.0; MIN_SAMPLE_SIZE - 1]), None, "too few values for an interval");
         assert_eq!(Interval::for_mean(&[3.0; MIN_SAMPLE_SIZE]), Some(Interval { low: 3.0, high: 3.0 }));

@@ -77,8 +77,8 @@ impl Scope {
             Some(schema) => schema.eq_ignore_ascii_case(HIDDEN_SCHEMA),
             None => table(name).is_none(),
         };
-        let mut own = self.tables().filter(|_| is_there);
-        own.find(|table| table.hidden_name().is_some_and(|text| text.eq_ignore_ascii_case(name)))
+        let mut tables = self.tables().filter(|_| is_there);
+        tables.find(|table| table.hidden_name().is_some_and(|text| text.eq_ignore_ascii_case(name)))
     }
 }
 
@@ -122,8 +122,8 @@ impl Table {
     /// Returns the column that is the rowid, if any.
     pub fn row_number_column(&self) -> Option<&str> {
         let [key] = self.key.as_slice() else { return None };
-        let own = self.columns.iter().find(|column| column.name == *key)?;
-        (own.kind == "INTEGER").then_some(&own.name)
+        let key_column = self.columns.iter().find(|column| column.name == *key)?;
+        (key_column.kind == "INTEGER").then_some(&key_column.name)
     }
 
     /// Returns a description of the table in a few lines.
@@ -161,9 +161,15 @@ mod tests {
     #[test]
     fn hidden_tables_require_the_hidden_scope() {
         assert_eq!(hidden_tables().len(), 7);
-        assert!(hidden_tables().iter().all(|own| own.hidden_name().is_some() && table(&own.name).is_none()));
-        let named =
-            |scope: Scope, schema, name| scope.hidden_table(schema, name).map(|own| own.name.as_str());
+        assert!(
+            hidden_tables()
+                .iter()
+                .all(|hidden_table| hidden_table.hidden_name().is_some()
+                    && table(&hidden_table.name).is_none())
+        );
+        let named = |scope: Scope, schema, name| {
+            scope.hidden_table(schema, name).map(|hidden_table| hidden_table.name.as_str())
+        };
         assert_eq!(named(Scope::Hidden, Some("HIDDEN"), "Groups"), Some("hidden.groups"));
         assert_eq!(named(Scope::Hidden, None, "groups"), Some("hidden.groups"));
         assert_eq!(named(Scope::Hidden, None, "customers"), None, "the visible table is meant");

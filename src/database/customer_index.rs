@@ -62,7 +62,8 @@ impl<R: RowRun> CustomerIndex<R> {
 fn customer_range(days: &[Arc<PackedDay>]) -> Range<u32> {
     let of_runs = days.iter().flat_map(|day| (0..day.run_count()).map(|run| day.customer_range(run)));
     let of_runs = of_runs.filter(|(first, last)| first <= last);
-    let (first, last) = of_runs.fold((u32::MAX, 0), |all, own| (all.0.min(own.0), all.1.max(own.1)));
+    let (first, last) =
+        of_runs.fold((u32::MAX, 0), |all, run_range| (all.0.min(run_range.0), all.1.max(run_range.1)));
     if first <= last { first..last + 1 } else { 0..0 }
 }
 

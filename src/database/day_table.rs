@@ -192,13 +192,17 @@ unsafe impl<'vtab, K: DayTableDefinition> VTab<'vtab> for DayTable<K> {
                 ))
             })
             // Texts are compared byte by byte, unlike NOCASE.
-            .filter(|(at, own)| !is_text(own) || info.collation(*at).is_ok_and(|text| text == "BINARY"))
+            .filter(|(at, constraint)| {
+                !is_text(constraint) || info.collation(*at).is_ok_and(|text| text == "BINARY")
+            })
             .collect();
-        for (argument, (at, own)) in (1..).zip(&handled) {
+        for (argument, (at, constraint)) in (1..).zip(&handled) {
             let mut usage = info.constraint_usage(*at);
             usage.set_argv_index(argument);
             // Equality of days and kinds is exact for values of every type; SQLite checks other constraints again.
-            usage.set_omit(own.comparison == Comparison::Equal && matches!(own.column, DAY | KIND));
+            usage.set_omit(
+                constraint.comparison == Comparison::Equal && matches!(constraint.column, DAY | KIND),
+            );
         }
         let columns: Option<Vec<c_int>> =
             info.order_bys().map(|order| (!order.is_order_by_desc()).then(|| order.column())).collect();
@@ -206,8 +210,13 @@ unsafe impl<'vtab, K: DayTableDefinition> VTab<'vtab> for DayTable<K> {
             columns.filter(|columns| !columns.is_empty()).and_then(|columns| RowOrder::for_columns(&columns));
         info.set_order_by_consumed(order.is_some());
         let share = |column: c_int, of_equal: f64, of_other: f64| {
-            let own = handled.iter().filter(|(_, own)| own.column == column);
-            own.map(|(_, own)| if own.comparison == Comparison::Equal { of_equal } else { of_other })
+            let constraints = handled.iter().filter(|(_, constraint)| constraint.column == column);
+            constraints
+                .map(
+                    |(_, constraint)| {
+                        if constraint.comparison == Comparison::Equal { of_equal } else { of_other }
+                    },
+                )
                 .fold(1.0, f64::min)
         };
         let rows = 1e6
@@ -218,7 +227,7 @@ unsafe impl<'vtab, K: DayTableDefinition> VTab<'vtab> for DayTable<K> {
         info.set_estimated_cost(rows);
         info.set_estimated_rows(rows as i64);
         info.set_idx_num(order.unwrap_or(RowOrder::ByNumber) as c_int);
-        info.set_idx_str(&handled.iter().map(|(_, own)| own.encode()).collect::<String>());
+        info.set_idx_str(&handled.iter().map(|(_, constraint)| constraint.encode()).collect::<String>());
         Ok(true)
     }
 
@@ -374,7 +383,7 @@ unsafe impl<K: DayTableDefinition> VTabCursor for DayCursor<'_, K> {
                 Type::Text if column == KIND => {
                     let wanted: String = values.get(at)?;
                     // An unknown kind has no rows.
-                    kinds &= K::KINDS.iter().position(|own| *own == wanted).map_or(0, |at| 1 << at);
+                    kinds &= K::KINDS.iter().position(|kind| *kind == wanted).map_or(0, |at| 1 << at);
                     continue;
                 }
                 Type::Text if column == K::TEXT => {

@@ -25,7 +25,9 @@ pub(super) fn explain_error(message: &str, sql: &str, scope: Scope) -> String {
     if let Some(column) = message.strip_prefix("ambiguous column name: ") {
         let holders: Vec<&str> = scope
             .tables()
-            .filter(|table| table.columns.iter().any(|own| own.name.eq_ignore_ascii_case(column)))
+            .filter(|table| {
+                table.columns.iter().any(|table_column| table_column.name.eq_ignore_ascii_case(column))
+            })
             .map(|table| table.name.as_str())
             .collect();
         let holders = if holders.is_empty() { "several tables".to_owned() } else { holders.join(", ") };
@@ -93,15 +95,17 @@ fn explain_unknown_column(column: &str, sql: &str, scope: Scope) -> String {
         );
     }
     let alone = column.rsplit('.').next().unwrap_or(column);
-    let columns = mentioned.iter().flat_map(|table| &table.columns).map(|own| own.name.as_str());
+    let columns =
+        mentioned.iter().flat_map(|table| &table.columns).map(|table_column| table_column.name.as_str());
     let columns: BTreeSet<&str> = columns.collect();
     let mut help = match columns.contains(alone) {
         // The column exists under another alias of its table.
         true => String::new(),
         false => suggestion(alone, columns.iter().copied()),
     };
-    let elsewhere =
-        scope.tables().filter(|table| table.columns.iter().any(|own| own.name.eq_ignore_ascii_case(alone)));
+    let elsewhere = scope.tables().filter(|table| {
+        table.columns.iter().any(|table_column| table_column.name.eq_ignore_ascii_case(alone))
+    });
     let elsewhere: Vec<&str> = elsewhere.map(|table| table.name.as_str()).collect();
     if help.is_empty() && !columns.contains(alone) && !elsewhere.is_empty() {
         let verb = if elsewhere.len() == 1 { "has" } else { "have" };
@@ -130,11 +134,10 @@ pub(super) fn empty_result_hint(sql: &str, scope: Scope) -> Option<String> {
     let mentioned = mentioned_tables(sql, scope);
     let mut hints = Vec::new();
     for (column, value) in text_comparisons(sql, scope) {
-        let lists = mentioned
-            .iter()
-            .flat_map(|table| &table.columns)
-            .filter(|own| own.name.eq_ignore_ascii_case(&column) && !own.values.is_empty());
-        let lists: Vec<&Vec<String>> = lists.map(|own| &own.values).collect();
+        let lists = mentioned.iter().flat_map(|table| &table.columns).filter(|table_column| {
+            table_column.name.eq_ignore_ascii_case(&column) && !table_column.values.is_empty()
+        });
+        let lists: Vec<&Vec<String>> = lists.map(|table_column| &table_column.values).collect();
         if !lists.is_empty() && !lists.iter().any(|values| values.contains(&value)) {
             let valid: Vec<String> = lists[0].iter().map(|known| format!("'{known}'")).collect();
             hints.push(format!("{column} is never '{value}'; it is one of {}", valid.join(", ")));
@@ -296,11 +299,11 @@ mod tests {
 
     #[test]
     fn only_the_xray_connection_suggests_hidden_tables() {
-        let told = |message: &str, sql: &str| super::explain_error(message, sql, Scope::Hidden);
-        let text = told("no such table: hidden.group", "");
+        let explain = |message: &str, sql: &str| super::explain_error(message, sql, Scope::Hidden);
+        let text = explain("no such table: hidden.group", "");
         assert!(text.starts_with("there is no table hidden.group; did you mean hidden.groups"), "{text}");
         assert!(text.contains("hidden.competitors, hidden.customers, hidden.drift"), "{text}");
-        let text = told("no such column: reputaton", "SELECT reputaton FROM hidden.groups");
+        let text = explain("no such column: reputaton", "SELECT reputaton FROM hidden.groups");
         assert!(text.contains("did you mean reputation? hidden.groups has day, group_id"), "{text}");
         let sql = "SELECT 1 FROM hidden.threads WHERE kind = 'lead'";
         let hint = super::empty_result_hint(sql, Scope::Hidden).expect("a hint");

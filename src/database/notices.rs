@@ -199,7 +199,7 @@ const MAX_DIGITS: usize = 18;
 impl PatternTexts {
     fn push(&mut self, text: &str) {
         let (pattern, numbers) = split_numbers(text);
-        let known = self.patterns.iter().position(|own| *own == pattern);
+        let known = self.patterns.iter().position(|known_pattern| *known_pattern == pattern);
         let at = known.unwrap_or_else(|| {
             self.patterns.push(pattern);
             self.patterns.len() - 1

@@ -110,7 +110,7 @@ impl Projector {
         let (jobs, queue) = sync_channel(QUEUE_CAPACITY);
         let spare = FactsPool::default();
         let failed = SharedFailure::default();
-        let told: fn(rusqlite::Error) -> ProjectionError =
+        let map_error: fn(rusqlite::Error) -> ProjectionError =
             if location.path().is_some() { to_error } else { to_memory_error };
         let (writer_spare, writer_failed) = (spare.clone(), failed.clone());
         let (writer_gate, writer_store) = (gate.clone(), store.clone());
@@ -128,7 +128,7 @@ impl Projector {
                     readers_are_not_blocked: readers_go_on,
                     spare,
                     failed,
-                    to_error: told,
+                    to_error: map_error,
                 }
                 .run(&queue);
             })

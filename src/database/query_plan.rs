@@ -30,7 +30,7 @@ pub(super) fn mask_plan(plan: &mut Vec<Vec<Cell>>, sql: &str) {
     let (inside, mut rest): (Vec<_>, Vec<_>) = plan.drain(..).partition(of_inside);
     let parents: Vec<&Cell> = inside.iter().filter_map(|row| row.get(PARENT_COLUMN)).collect();
     let still: Vec<Cell> = rest.iter().filter_map(|row| row.get(PARENT_COLUMN).cloned()).collect();
-    rest.retain(|row| row.first().is_none_or(|own| !parents.contains(&own) || still.contains(own)));
+    rest.retain(|row| row.first().is_none_or(|id| !parents.contains(&id) || still.contains(id)));
     *plan = rest;
 }
 

@@ -64,10 +64,10 @@ impl Projector {
 /// # Errors
 /// The database cannot be read, or the file cannot be created.
 pub fn export_sqlite(location: &DatabaseLocation, file: &Path) -> Result<(), ProjectionError> {
-    let told = |problem: String| ProjectionError(format!("{}: {problem}", file.display()));
-    let source = location.open_reader().map_err(|error| told(error.to_string()))?;
-    let store = load_store(&source).ok_or_else(|| told("the database cannot be read".to_owned()))?;
-    write_sqlite_file(&source, &store, file).map_err(|error| told(error.to_string()))
+    let file_error = |problem: String| ProjectionError(format!("{}: {problem}", file.display()));
+    let source = location.open_reader().map_err(|error| file_error(error.to_string()))?;
+    let store = load_store(&source).ok_or_else(|| file_error("the database cannot be read".to_owned()))?;
+    write_sqlite_file(&source, &store, file).map_err(|error| file_error(error.to_string()))
 }
 
 fn write_sqlite_file(source: &Connection, store: &BlockStore, file: &Path) -> rusqlite::Result<()> {

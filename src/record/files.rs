@@ -43,8 +43,8 @@ pub fn create_folder(folder: &Path) -> Result<(), RunError> {
     let missing: Vec<&Path> =
         folder.ancestors().take_while(|path| !path.as_os_str().is_empty() && !path.exists()).collect();
     std::fs::create_dir_all(folder).map_err(RunError::io(folder))?;
-    let synced = missing.iter().rev().try_for_each(|own| sync_folder(parent_folder(own)));
-    synced.inspect_err(|_| missing.iter().for_each(|own| drop(std::fs::remove_dir(own))))
+    let synced = missing.iter().rev().try_for_each(|ancestor| sync_folder(parent_folder(ancestor)));
+    synced.inspect_err(|_| missing.iter().for_each(|ancestor| drop(std::fs::remove_dir(ancestor))))
 }
 
 /// Returns the folder of a file; for a bare name, the current directory.
@@ -82,7 +82,7 @@ pub fn open_regular_file(path: &Path) -> io::Result<File> {
 /// # Errors
 /// The path is not a regular file, or it cannot be opened or created.
 pub fn open_regular_file_for_append(path: &Path) -> io::Result<File> {
-    if std::fs::metadata(path).is_ok_and(|own| !own.is_file()) {
+    if std::fs::metadata(path).is_ok_and(|metadata| !metadata.is_file()) {
         return Err(not_regular_file_error());
     }
     File::options().create(true).read(true).append(true).open(path)
@@ -147,8 +147,9 @@ pub mod sync_probe {
     pub fn has_synced(path: &Path) -> bool {
         let name = path.file_name().expect("a name").to_string_lossy().into_owned();
         let folder = super::parent_folder(path);
-        SYNCED_ENTRIES
-            .with_borrow(|synced| synced.iter().any(|(own, names)| own == folder && names.contains(&name)))
+        SYNCED_ENTRIES.with_borrow(|synced| {
+            synced.iter().any(|(parent, names)| parent == folder && names.contains(&name))
+        })
     }
 
     /// Clears the recorded syncs of this thread, and lets later syncs fail or succeed.

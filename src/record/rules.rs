@@ -97,12 +97,14 @@ impl TimeLimits {
             ("session_minutes", self.session_minutes),
             ("study_minutes", self.study_minutes),
         ];
-        match limits.iter().find_map(|(key, own)| own.filter(|own| *own <= warning).map(|own| (key, own))) {
+        match limits.iter().find_map(|(key, minutes)| {
+            minutes.filter(|minutes| *minutes <= warning).map(|minutes| (key, minutes))
+        }) {
             None => Ok(()),
-            Some((key, own)) => Err((
+            Some((key, minutes)) => Err((
                 "limits.warning_minutes",
                 format!(
-                    "a warning {warning} minutes before the end of {key} = {own} would show from the start"
+                    "a warning {warning} minutes before the end of {key} = {minutes} would show from the start"
                 ),
             )),
         }

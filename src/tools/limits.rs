@@ -22,8 +22,9 @@ pub const REJECTION_CODE: &str = "amount_too_large";
 /// `amount_too_large`, with the path of the first such number.
 pub fn check_arguments(spec: &ToolSpec, arguments: &Arguments) -> Result<(), Rejection> {
     for (name, value) in arguments.as_map() {
-        let own = |name: &str| spec.arguments.iter().find(|one| one.name == name || one.alias == Some(name));
-        let Some(argument) = own(name) else { continue };
+        let find_argument =
+            |name: &str| spec.arguments.iter().find(|one| one.name == name || one.alias == Some(name));
+        let Some(argument) = find_argument(name) else { continue };
         let bound = match argument.kind {
             ArgumentKind::Number(range)
             | ArgumentKind::Integer(range)

@@ -131,11 +131,11 @@ impl Notebook {
             );
         }
         if code.len() > MAX_CODE_BYTES {
-            let (own, most) = (bytes(code.len()), bytes(MAX_CODE_BYTES));
-            return refused("code", format!("the code has {own} bytes, and {most} are allowed"));
+            let (size, most) = (bytes(code.len()), bytes(MAX_CODE_BYTES));
+            return refused("code", format!("the code has {size} bytes, and {most} are allowed"));
         }
-        let own = self.statements(*what);
-        if own.get(name).is_none() && own.entries().len() >= MAX_ENTRIES {
+        let stored = self.statements(*what);
+        if stored.get(name).is_none() && stored.entries().len() >= MAX_ENTRIES {
             let kind = match what {
                 NotebookSection::Calculation => "calculations",
                 NotebookSection::Script => "scripts",
@@ -147,7 +147,7 @@ impl Notebook {
         }
         let entries = self.calculations.entries().iter().chain(self.scripts.entries());
         let kept: usize = entries.map(|(name, code)| name.len() + code.len()).sum();
-        let replaced = own.get(name).map_or(0, |code| name.len() + code.len());
+        let replaced = stored.get(name).map_or(0, |code| name.len() + code.len());
         let after = kept - replaced + name.len() + code.len();
         if after > MAX_BYTES {
             let (after, most) = (bytes(after), bytes(MAX_BYTES));

@@ -512,8 +512,8 @@ fn fully_rejected_deals_report_each_reason() {
     ]);
     assert_eq!(company.rejected_results("send_enterprise_deal", deals), value);
     let deals = json!({"deals": [77, "x"]});
-    let told = json!([{"error": "invalid format"}, {"customer_id": 77, "error": "no active thread"}]);
-    assert_eq!(company.rejected_results("reject_enterprise_deal", deals), told);
+    let reasons = json!([{"error": "invalid format"}, {"customer_id": 77, "error": "no active thread"}]);
+    assert_eq!(company.rejected_results("reject_enterprise_deal", deals), reasons);
     // A rejection of the whole call has no results.
     let none = json!({"deals": []});
     assert_eq!(company.rejected_results("send_enterprise_deal", none), json!([]));

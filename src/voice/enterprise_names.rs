@@ -69,7 +69,7 @@ impl EnterpriseNames {
     /// Replaces `customer 16064` by the name and the number in a recorded text.
     pub fn insert_names(&self, text: &str) -> String {
         const WORD: &str = "ustomer ";
-        let mut told = String::with_capacity(text.len() + 16);
+        let mut output = String::with_capacity(text.len() + 16);
         let mut rest = text;
         while let Some(at) = rest.find(WORD) {
             let after = &rest[at + WORD.len()..];
@@ -77,17 +77,17 @@ impl EnterpriseNames {
             let begins = rest[..at].ends_with(['C', 'c']);
             match after[..digits].parse() {
                 Ok(customer) if begins => {
-                    told += &rest[..at - 1];
-                    told += &self.name_with_number(customer);
+                    output += &rest[..at - 1];
+                    output += &self.name_with_number(customer);
                     rest = &after[digits..];
                 }
                 _ => {
-                    told += &rest[..at + WORD.len()];
+                    output += &rest[..at + WORD.len()];
                     rest = after;
                 }
             }
         }
-        told + rest
+        output + rest
     }
 }
 
@@ -180,7 +180,7 @@ mod tests {
     fn insert_names_replaces_customer_numbers() {
         let names = names(42);
         let (one, other) = (names.name_with_number(4_711), names.name_with_number(12));
-        for (text, told) in [
+        for (text, expected) in [
             ("Customer 4711 (E2, 1,094 seats) accepts.", format!("{one} (E2, 1,094 seats) accepts.")),
             ("Deal closed with customer 12: plan A", format!("Deal closed with {other}: plan A")),
             ("customer 12, Customer 4711", format!("{other}, {one}")),
@@ -188,7 +188,7 @@ mod tests {
             ("customer ", "customer ".to_owned()),
             ("ustomer 12 customer 99999999999", "ustomer 12 customer 99999999999".to_owned()),
         ] {
-            assert_eq!(names.insert_names(text), told);
+            assert_eq!(names.insert_names(text), expected);
         }
     }
 }

@@ -243,8 +243,8 @@ mod tests {
             for number in 0..400 {
                 let text = message(&turn(number, content.clone()), &personas);
                 assert!(!text.contains(['{', '}']) && !text.contains("  "), "{text}");
-                let said = text.to_lowercase();
-                assert!(facts.iter().all(|fact| said.contains(fact)), "{facts:?} in {text}");
+                let lowercase = text.to_lowercase();
+                assert!(facts.iter().all(|fact| lowercase.contains(fact)), "{facts:?} in {text}");
                 assert_eq!(text, text.trim());
                 assert!(text.ends_with(['.', '?', '!']), "{text}");
                 if facts.is_empty() {

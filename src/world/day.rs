@@ -132,16 +132,16 @@ pub fn step_day_observed(
     };
     let decided = settle_and_decide(customers, felt.calls, &judgement, watch);
     issues::record_issues(decided.settled, facts);
-    let mut told = |write: &ReputationWrite<'_>| watch.on_reputation_change(write);
+    let mut on_write = |write: &ReputationWrite<'_>| watch.on_reputation_change(write);
     let renewals =
-        renewal::record_decisions(decided.decisions, &mut market.reputation, params, facts, &mut told);
+        renewal::record_decisions(decided.decisions, &mut market.reputation, params, facts, &mut on_write);
     let talks = NegotiationContext { day: &today, product, drift: &market.drift };
     watch.before_negotiations(enterprise, customers, &talks);
-    let negotiated = enterprise.step(customers, &mut market.reputation, &talks, facts, &mut told);
+    let negotiated = enterprise.step(customers, &mut market.reputation, &talks, facts, &mut on_write);
     let knowledge = market.knowledge;
     let moods = satisfaction::sum_by_group(felt.moods);
     let is_known = |group: Group| knowledge[group].level >= 1;
-    reputation::apply_contributions(&mut market.reputation, &moods, is_known, params, &mut told);
+    reputation::apply_contributions(&mut market.reputation, &moods, is_known, params, &mut on_write);
     watch.on_reputation_settled(&moods, market, params);
 
     // Customers and the press write posts.

@@ -40,7 +40,9 @@ impl FixedInputs {
     /// Replaces lead factors of a day with fixed ones.
     pub fn apply_to_leads(&self, day: u32, weekday: f64, factors: &mut ByGroup<LeadFactors>) {
         let month_day = self.value_on_day(day, &self.month_days);
-        for lead_factors in factors.0.iter_mut().filter(|own| **own != LeadFactors::default()) {
+        for lead_factors in
+            factors.0.iter_mut().filter(|lead_factors| **lead_factors != LeadFactors::default())
+        {
             lead_factors.calendar = month_day.map_or(lead_factors.calendar, |factor| weekday * factor);
             lead_factors.surge = self.value_on_day(day, &self.surges).unwrap_or(lead_factors.surge);
         }

@@ -121,8 +121,8 @@ impl Streams {
     /// Draws up to that day that are read again stay the same, see [`Draws::open_for_day`].
     pub fn redrawn_after(&self, salt: u64, last_own_day: u32) -> Self {
         let keys = part_keys("novamind random streams, redrawn, version 1", &[self.seed, salt]);
-        let own = self.original.clone().unwrap_or_else(|| (last_own_day, self.keys.clone()));
-        Streams { seed: self.seed, keys, original: Some(own) }
+        let original = self.original.clone().unwrap_or_else(|| (last_own_day, self.keys.clone()));
+        Streams { seed: self.seed, keys, original: Some(original) }
     }
 
     /// Returns the seed from which these streams are derived.

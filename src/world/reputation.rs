@@ -102,17 +102,17 @@ impl ReputationBook {
         self.values[group] = if has_floor { moved.max(law.reputation_floor) } else { moved };
     }
 
-    /// Adds changes in order and reports the result to `told`.
+    /// Adds changes in order and reports the result to `on_write`.
     pub fn add_all(
         &mut self,
         (group, cause): (Group, ReputationCause),
         changes: &[f64],
         params: &Params,
-        told: &mut OnReputationWrite<'_>,
+        on_write: &mut OnReputationWrite<'_>,
     ) {
         let before = self.get(group);
         changes.iter().for_each(|change| self.add(group, *change, params));
-        told(&ReputationWrite { group, cause, changes, before, after: self.get(group) });
+        on_write(&ReputationWrite { group, cause, changes, before, after: self.get(group) });
     }
 }
 
@@ -191,12 +191,12 @@ pub fn apply_contributions(
     moods: &ByGroup<ReputationContribution>,
     is_known: impl Fn(Group) -> bool,
     params: &Params,
-    told: &mut OnReputationWrite<'_>,
+    on_write: &mut OnReputationWrite<'_>,
 ) {
     let law = &params.reputation;
     for group in Group::all().filter(|group| moods[*group].count > 0) {
         let Some(change) = daily_change(&moods[group], law) else { continue };
-        book.add_all((group, ReputationCause::Contributions(moods[group])), &[change], params, told);
+        book.add_all((group, ReputationCause::Contributions(moods[group])), &[change], params, on_write);
         if !is_known(group) {
             continue;
         }
@@ -205,7 +205,7 @@ pub fn apply_contributions(
             if spill.counts {
                 let (weight, factor) = (spill.weight, law.cross_group_spillover_factor);
                 let cause = ReputationCause::Spillover(Spillover { source: group, change, weight, factor });
-                book.add_all((other, cause), &[spill.change], params, told);
+                book.add_all((other, cause), &[spill.change], params, on_write);
             }
         }
     }
@@ -239,8 +239,8 @@ mod tests {
 
     fn assert_book(book: &ReputationBook, expected: &[(&str, f64)]) {
         for &(id, value) in expected {
-            let own = book.get(group(id));
-            assert!((own / value - 1.0).abs() < 1e-9, "{id}: got {own}, expected {value}");
+            let actual = book.get(group(id));
+            assert!((actual / value - 1.0).abs() < 1e-9, "{id}: got {actual}, expected {value}");
         }
     }
 

@@ -71,20 +71,21 @@ fn start_menu_opens_and_resumes_a_handout() {
     let path = folder.join("S01.nm").display().to_string();
     enter(&mut console, &path);
     console.assert_shows("Three weeks");
-    let own = |console: &Console| console.app.run().expect("a run").company.folder.clone().expect("a folder");
-    let first = own(&console);
+    let run_folder =
+        |console: &Console| console.app.run().expect("a run").company.folder.clone().expect("a folder");
+    let first = run_folder(&console);
     assert!(first.starts_with(runs.join("participants/S01")), "{}", first.display());
     // The menu lists the student's runs, and the same file resumes.
     console.press("esc ; q");
     console.assert_shows("1 on this machine");
     choose(&mut console, "Handout");
     enter(&mut console, &path);
-    assert_eq!(own(&console), first);
+    assert_eq!(run_folder(&console), first);
     // Another student uses the same computer.
     console.press("esc ; q");
     choose(&mut console, "Handout");
     enter(&mut console, &folder.join("S02.nm").display().to_string());
-    assert!(own(&console).starts_with(runs.join("participants/S02")));
+    assert!(run_folder(&console).starts_with(runs.join("participants/S02")));
     console.press("esc q");
     let left = console.exit.clone().expect("it has left");
     assert!(left.1.expect("a farewell").contains("Resume it with `novamind --as S02 --run latest`"));

@@ -201,10 +201,11 @@ fn shown_value(name: &str, cell: &str) -> Option<ShownNumber> {
     let mut from = 0;
     while let Some(at) = low[from..].find(before).map(|at| at + from) {
         from = at + before.len();
-        let own = low[..at].trim_end_matches(['*', '"']);
-        let word = own.ends_with(|letter: char| letter.is_alphanumeric() || "'-_".contains(letter));
-        let phrase =
-            own.strip_suffix(' ').is_some_and(|own| own.ends_with(|last: char| last.is_alphanumeric()));
+        let prefix = low[..at].trim_end_matches(['*', '"']);
+        let word = prefix.ends_with(|letter: char| letter.is_alphanumeric() || "'-_".contains(letter));
+        let phrase = prefix
+            .strip_suffix(' ')
+            .is_some_and(|prefix| prefix.ends_with(|last: char| last.is_alphanumeric()));
         if word || phrase {
             continue;
         }
@@ -249,11 +250,11 @@ fn shown_figures(text: &str) -> Vec<(usize, ShownNumber, String)> {
         let line = line.split(';').next().unwrap_or_default();
         for cell in line.split(['│', '┌', '┐', '└', '·']).flat_map(cells) {
             for (figure, Figure(names, _)) in FIGURES.iter().enumerate() {
-                let own = names.iter().filter_map(|name| match *name {
+                let numbers = names.iter().filter_map(|name| match *name {
                     CASH_CHANGE => shown_cash_change(cell),
                     name => shown_value(name, cell),
                 });
-                found.extend(own.map(|written| (figure, written, cell.trim().to_owned())));
+                found.extend(numbers.map(|written| (figure, written, cell.trim().to_owned())));
             }
         }
     }

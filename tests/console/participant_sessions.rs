@@ -137,7 +137,7 @@ impl Lab {
 fn recorded_questions(run: &Path) -> Vec<String> {
     let trajectory = Trajectory::read(&run.join("trajectory.jsonl")).expect("it reads");
     let after = read_afterwards(run, &trajectory).expect("it reads");
-    let told = |line: &novamind::record::trajectory::Line| match &line.record {
+    let describe = |line: &novamind::record::trajectory::Line| match &line.record {
         Record::Activity(Activity::Question(question_shown)) => {
             Some(format!("{} asked {} {}", line.day, question_shown.occasion, question_shown.id))
         }
@@ -151,7 +151,7 @@ fn recorded_questions(run: &Path) -> Vec<String> {
         )),
         _ => None,
     };
-    trajectory.lines.iter().chain(&after.lines).filter_map(told).collect()
+    trajectory.lines.iter().chain(&after.lines).filter_map(describe).collect()
 }
 
 /// Runs a week; its report stays open.
@@ -345,7 +345,8 @@ fn other_runs_require_the_experimenter_code() {
 
 #[test]
 fn the_results_page_shows_what_the_protocol_says() {
-    for (results, own, published) in [("none", false, false), ("own", true, false), ("published", true, true)]
+    for (results, shows_score, published) in
+        [("none", false, false), ("own", true, false), ("published", true, true)]
     {
         let lab = Lab::new();
         lab.edit("[access]", &format!("[session]\nresults = \"{results}\"\n[access]"));
@@ -353,8 +354,8 @@ fn the_results_page_shows_what_the_protocol_says() {
         let mut console = lab.open_console((120, 40));
         console.press("'P01' enter end y enter 4 enter enter n enter 'test' enter f enter");
         let screen = console.screen();
-        assert_eq!(screen.contains("You end with"), own, "{screen}");
-        assert_eq!(screen.contains('$'), own, "no figure of a result that is not shown:\n{screen}");
+        assert_eq!(screen.contains("You end with"), shows_score, "{screen}");
+        assert_eq!(screen.contains('$'), shows_score, "no figure of a result that is not shown:\n{screen}");
         assert_eq!(screen.contains("Rule-based baseline"), published, "{screen}");
         assert!(!screen.contains("seed 5"), "{screen}");
     }

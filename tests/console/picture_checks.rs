@@ -8,7 +8,7 @@ pub const SIZES: [(u16, u16); 4] = [(60, 16), (80, 24), (120, 40), (200, 60)];
 /// Returns the screen in the usual window. Adds words truncated next to free space, in windows of all these sizes, to
 /// `complaints`. The size of the console does not change.
 pub fn snapshot_text(console: &mut Console, complaints: &mut Vec<String>) -> String {
-    let own = console.size;
+    let initial_size = console.size;
     let mut usual = String::new();
     for size in SIZES {
         console.size = size;
@@ -19,7 +19,7 @@ pub fn snapshot_text(console: &mut Console, complaints: &mut Vec<String>) -> Str
             usual = letters;
         }
     }
-    console.size = own;
+    console.size = initial_size;
     usual
 }
 

@@ -79,16 +79,16 @@ fn picture(console: &mut Console, place: &str, rich: bool, found: &mut Vec<Strin
         for theme in THEMES {
             console.app.theme = Theme::bundled(theme).expect("a theme");
             let buffer = console.draw();
-            let own = buffer_text(&buffer);
+            let drawn_text = buffer_text(&buffer);
             if let Some(before) = &letters {
-                assert_eq!(*before, own, "the theme {theme} changes the text");
+                assert_eq!(*before, drawn_text, "the theme {theme} changes the text");
             } else {
-                found.extend(complaints(place, size, rich, &own));
+                found.extend(complaints(place, size, rich, &drawn_text));
                 if size == SIZES[1] {
-                    text.clone_from(&own);
+                    text.clone_from(&drawn_text);
                 }
             }
-            letters = Some(own);
+            letters = Some(drawn_text);
         }
     }
     text

@@ -131,7 +131,7 @@ fn copied_run_folder_appears_once_in_the_tree() {
     let screen = console.screen();
     assert!(!screen.contains("copied"), "{screen}");
     let listed = novamind::record::folder::runs::list_runs(runs.path()).expect("a list");
-    let told: Vec<_> =
+    let copies: Vec<_> =
         listed.iter().filter_map(|run| Some((run.id.as_str(), run.copy_of.as_deref()?))).collect();
-    assert_eq!(told, [("copied", ids[1].as_str())]);
+    assert_eq!(copies, [("copied", ids[1].as_str())]);
 }

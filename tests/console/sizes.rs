@@ -178,12 +178,12 @@ fn every_pane_is_drawn_with_and_without_data() {
 
 /// Draws the screen in windows of some sizes. The size of the console does not change.
 fn draw_in(console: &mut Console, sizes: &[(u16, u16)]) {
-    let own = console.size;
+    let initial_size = console.size;
     for size in sizes {
         console.size = *size;
         console.screen();
     }
-    console.size = own;
+    console.size = initial_size;
 }
 
 #[test]
@@ -254,14 +254,14 @@ fn footer_message_is_separated_from_keys() {
     let mut console = console(runs.path());
     let message = "charts use blocks";
     console.press("; d");
-    let mut beside = 0;
+    let mut shared_width_count = 0;
     for width in 60..140 {
         console.size = (width, 20);
         let screen = console.screen();
         let line = screen.lines().last().expect("a last line").to_owned();
         let (before, _) = line.split_once(message).unwrap_or_else(|| panic!("{line}"));
         assert!(before.is_empty() || before.ends_with("  "), "{line}");
-        beside += u32::from(!before.trim().is_empty());
+        shared_width_count += u32::from(!before.trim().is_empty());
     }
-    assert!(beside > 40, "the keys and the message share the line: {beside}");
+    assert!(shared_width_count > 40, "the keys and the message share the line: {shared_width_count}");
 }

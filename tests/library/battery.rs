@@ -170,7 +170,7 @@ fn is_ordered(sql: &str) -> bool {
     sql.rfind("ORDER BY").is_some_and(|at| sql[at..].matches(')').count() <= sql[at..].matches('(').count())
 }
 
-fn result_difference(sql: &str, own: &QueryResult, plain: &QueryResult) -> Option<String> {
+fn result_difference(sql: &str, actual: &QueryResult, plain: &QueryResult) -> Option<String> {
     let sorted = |rows: &QueryResult| {
         let mut rows: Vec<String> = rows.rows.iter().map(|row| format!("{row:?}")).collect();
         if !is_ordered(sql) {
@@ -178,14 +178,14 @@ fn result_difference(sql: &str, own: &QueryResult, plain: &QueryResult) -> Optio
         }
         rows
     };
-    if own.columns != plain.columns {
-        return Some(format!("columns {:?}, not {:?}", own.columns, plain.columns));
+    if actual.columns != plain.columns {
+        return Some(format!("columns {:?}, not {:?}", actual.columns, plain.columns));
     }
-    let (own, plain) = (sorted(own), sorted(plain));
-    let first = own.iter().zip(&plain).find(|(own, plain)| own != plain);
+    let (actual, plain) = (sorted(actual), sorted(plain));
+    let first = actual.iter().zip(&plain).find(|(actual, plain)| actual != plain);
     match first {
-        Some((own, plain)) => Some(format!("{own}\n    not {plain}")),
-        None if own.len() != plain.len() => Some(format!("{} rows, not {}", own.len(), plain.len())),
+        Some((actual, plain)) => Some(format!("{actual}\n    not {plain}")),
+        None if actual.len() != plain.len() => Some(format!("{} rows, not {}", actual.len(), plain.len())),
         None => None,
     }
 }

@@ -95,12 +95,12 @@ fn record_days(session: &mut Session) -> Vec<DayRecord> {
             {
                 seen.left[ending.group] += 1;
             }
-            for own in Group::all() {
+            for group in Group::all() {
                 let moods: Vec<f64> =
-                    xray.blocks(own).flat_map(|block| block.satisfaction.iter().copied()).collect();
-                seen.subscribers[own] = moods.len() as u32;
-                seen.satisfaction[own] = moods.iter().sum::<f64>() / moods.len() as f64;
-                seen.reputation[own] = xray.reputation(own);
+                    xray.blocks(group).flat_map(|block| block.satisfaction.iter().copied()).collect();
+                seen.subscribers[group] = moods.len() as u32;
+                seen.satisfaction[group] = moods.iter().sum::<f64>() / moods.len() as f64;
+                seen.reputation[group] = xray.reputation(group);
             }
             all.push(seen);
         };
@@ -210,20 +210,20 @@ fn breakpoints_match_a_full_scan() {
     assert_eq!(parts(&stopping), parts(&alone), "stopping changes nothing");
     // Searching the finished run without breakpoints finds the same days.
     for (text, holds) in CONDITIONS {
-        let own = condition(text);
+        let parsed = condition(text);
         let found: Vec<u32> = alone
             .inspect()
-            .find_condition_days(own)
+            .find_condition_days(parsed)
             .expect("a look")
             .iter()
             .map(|condition_state| condition_state.day)
             .collect();
-        let of_it = expected.iter().filter(|(_, text)| *text == own.to_string());
+        let of_it = expected.iter().filter(|(_, text)| *text == parsed.to_string());
         assert_eq!(found, of_it.map(|(day, _)| *day).collect::<Vec<_>>(), "{text}");
-        let back = alone.inspect().condition_history(own).expect("a look");
+        let back = alone.inspect().condition_history(parsed).expect("a look");
         let last = |is_true: bool| (1..=days.len()).rev().find(|day| holds(&days, *day) == is_true);
-        assert_eq!(back.last_true.map(|own| own.day as usize), last(true), "{text}");
-        assert_eq!(back.last_false.map(|own| own.day as usize), last(false), "{text}");
+        assert_eq!(back.last_true.map(|state| state.day as usize), last(true), "{text}");
+        assert_eq!(back.last_false.map(|state| state.day as usize), last(false), "{text}");
         let since = if back.today.is_true { last(false) } else { last(true) };
         assert_eq!(back.unchanged_since() as usize, since.map_or(1, |day| day + 1), "{text}");
     }
@@ -467,18 +467,18 @@ fn hidden_figures_cannot_stop_unfinished_runs() {
         advance_week(&mut session);
         let place = session.folder().expect("a folder").to_owned();
         let lines = || Trajectory::read(&place.join("trajectory.jsonl")).expect("lines").lines.len();
-        let (before, own) = (lines(), condition("reputation(S3) falls"));
+        let (before, hidden_condition) = (lines(), condition("reputation(S3) falls"));
         let reputation = WriteTarget::Reputation(group("S3"));
         let mut inside = session.inspect();
         let rejections = [
-            inside.set_breakpoint(own).expect_err("hidden"),
+            inside.set_breakpoint(hidden_condition).expect_err("hidden"),
             inside.breakpoints().expect_err("hidden"),
             inside.clear_breakpoints(None).expect_err("hidden"),
             inside.clear_breakpoints(Some(99)).expect_err("hidden"),
             inside.run_until_breakpoint(3, &mut |_| {}).expect_err("hidden"),
-            inside.condition_history(own).expect_err("hidden"),
+            inside.condition_history(hidden_condition).expect_err("hidden"),
             inside.breakpoint_histories(Some(99)).expect_err("hidden"),
-            inside.find_condition_days(own).expect_err("hidden"),
+            inside.find_condition_days(hidden_condition).expect_err("hidden"),
             inside.figure_writes(reputation, None).expect_err("hidden"),
             inside.figure_writes(WriteTarget::Cash, Some(9000)).expect_err("hidden"),
         ];
@@ -492,7 +492,7 @@ fn hidden_figures_cannot_stop_unfinished_runs() {
         assert_eq!((lines(), session.day()), (before, 7), "no line is recorded and no day is simulated");
         // After abandoning the run, the user can search it, but not continue it.
         session.abandon().expect("it ends");
-        let number = session.inspect().set_breakpoint(own).expect("a breakpoint").number;
+        let number = session.inspect().set_breakpoint(hidden_condition).expect("a breakpoint").number;
         assert_eq!(session.inspect().breakpoint_histories(Some(number)).expect("a look").len(), 1);
         assert!(session.inspect().figure_writes(reputation, Some(3)).expect("a look").day == 3);
         assert_eq!(
@@ -528,7 +528,7 @@ fn in_memory_run_supports_breakpoints_if_fully_watched() {
 
 #[test]
 fn condition_errors_name_column_and_similar_words() {
-    for (text, column, said) in [
+    for (text, column, expected) in [
         ("", 1, "a figure is missing: cash, recurring_revenue"),
         ("chrun(S1) > 0.05", 1, "chrun is not a figure; did you mean churn"),
         ("churn(S11) > 0.05", 7, "S11 is not a group; did you mean S1"),
@@ -547,7 +547,7 @@ fn condition_errors_name_column_and_similar_words() {
         ("event rival tomorrow", 13, "unexpected tomorrow at the end"),
     ] {
         let problem = text.parse::<Condition>().expect_err(text);
-        assert!(problem.message.contains(said), "{text}: {}", problem.message);
+        assert!(problem.message.contains(expected), "{text}: {}", problem.message);
         assert_eq!(problem.column, column, "{text}: {}", problem.message);
     }
     for (text, written) in [
@@ -559,11 +559,11 @@ fn condition_errors_name_column_and_similar_words() {
         assert_eq!(condition(text).to_string(), written);
         assert_eq!(condition(&condition(text).to_string()), condition(text), "{text}");
     }
-    let said = |text: &str| WriteTarget::parse_with_day(text).expect_err(text).message;
-    assert!(said("reputatoin(S1)").contains("did you mean reputation?"));
-    assert!(said("reputation").starts_with("reputation is a figure of a group"));
-    assert!(said("cash(S1)").starts_with("cash is a figure of the whole company"));
-    assert!(said("cash yesterday").contains("a whole number is expected"));
+    let error_message = |text: &str| WriteTarget::parse_with_day(text).expect_err(text).message;
+    assert!(error_message("reputatoin(S1)").contains("did you mean reputation?"));
+    assert!(error_message("reputation").starts_with("reputation is a figure of a group"));
+    assert!(error_message("cash(S1)").starts_with("cash is a figure of the whole company"));
+    assert!(error_message("cash yesterday").contains("a whole number is expected"));
     assert_eq!(
         WriteTarget::parse_with_day("subscribers(s2) 84"),
         Ok((WriteTarget::Subscribers(group("S2")), Some(84)))
@@ -592,12 +592,12 @@ fn breakpoint_search_distinguishes_always_true_from_never_true() {
     }
     let run = session.inspect().run_until_breakpoint(5, &mut |_| {}).expect("days");
     assert_eq!(run.hits, []);
-    let told: Vec<_> = run
+    let still_true: Vec<_> = run
         .still_true
         .iter()
         .map(|true_breakpoint| (true_breakpoint.hit.breakpoint.number, true_breakpoint.last_true_day))
         .collect();
-    assert_eq!(told, [(1, 19)]);
+    assert_eq!(still_true, [(1, 19)]);
     assert_eq!(session.company().observe().cash_change_days, 5);
 }
 
@@ -614,13 +614,13 @@ fn change_conditions_start_at_the_second_value() {
     let began = numbers[0].expect("it became true on one of the days");
     assert!(began > 30, "{began}");
     let found = session.inspect().find_condition_days(condition("churn(S1) >= 0")).expect("days");
-    let told: Vec<_> = found
+    let states: Vec<_> = found
         .iter()
         .map(|condition_state| {
             (condition_state.day, condition_state.is_first_value, condition_state.becomes_true())
         })
         .collect();
-    assert_eq!(told, [(began, true, false)], "a condition that is true from the start is reported as such");
+    assert_eq!(states, [(began, true, false)], "a condition that is true from the start is reported as such");
     // Conditions on values of a day are checked from the first day on.
     assert_eq!(
         session.inspect().find_condition_days(condition("subscribers(S1) >= 0")).expect("days").len(),

@@ -73,8 +73,8 @@ fn play_weeks(folder: &Path, price: f64, weeks: u32) {
         .call("set_prices", &json!({"A": price, "B": price * 2.5, "C": price * 6.25}), Via::Script)
         .expect("prices");
     for _ in 0..weeks {
-        let awaits = |own: &Session| {
-            lesson_step(own).is_some_and(|step| own.lesson().is_some_and(|it| it.awaits_guess(step)))
+        let awaits = |session: &Session| {
+            lesson_step(session).is_some_and(|step| session.lesson().is_some_and(|it| it.awaits_guess(step)))
         };
         if awaits(&session) {
             submit_guess(&mut session, if price < 20.0 { 2.0 } else { 1.0 }).expect("a guess");
@@ -102,9 +102,9 @@ fn forge_all(folder: &Path, change: impl Fn(usize, &mut serde_json::Value)) {
 
 /// Exports a run as an archive next to its machine, and removes the run.
 fn export_and_remove_run(folder: &Path, archive: &Path) {
-    let beside = archive.parent().expect("a folder");
-    fs::create_dir_all(beside).expect("a folder");
-    let export = Export::prepare(folder, beside, &SealKey::default()).expect("it is whole");
+    let parent = archive.parent().expect("a folder");
+    fs::create_dir_all(parent).expect("a folder");
+    let export = Export::prepare(folder, parent, &SealKey::default()).expect("it is whole");
     export.write(archive, false, None).expect("written");
     drop(export);
     fs::remove_dir_all(folder).expect("removed");
@@ -222,7 +222,7 @@ fn check_tables(school: &TestClass, collection: &ClassCollection) {
     let plain = view(ClassDisplayOptions::default());
     let table = rows(&plain);
     assert_eq!(table.len(), collection.runs.len() + 1);
-    let column = |name: &str| table[0].iter().position(|own| own == name).expect(name);
+    let column = |name: &str| table[0].iter().position(|cell| cell == name).expect(name);
     let first = table.iter().find(|row| row[0] == "S01").expect("a row");
     assert_eq!(
         first[column("of_good")],

@@ -129,14 +129,17 @@ fn debrief_uses_the_figure_of_the_goal() {
         finish_lesson(student_of(judged_by_revenue(folder.path()), &folder.path().join("runs")), 30, 0);
     let found = debrief(&session);
     let judged = found.judged_by.as_ref().expect("a figure");
-    let own: Vec<(u32, f64)> =
+    let actual: Vec<(u32, f64)> =
         session.weeks().iter().map(|week| (week.day, week.recurring_revenue)).collect();
-    assert_eq!((judged.figure, &judged.actual), (WeekFigure::RecurringRevenue, &own));
+    assert_eq!((judged.figure, &judged.actual), (WeekFigure::RecurringRevenue, &actual));
     let good = judged.reference.as_ref().expect("the good play");
-    assert!(good.len() == 2 && good != &own, "{good:?}");
+    assert!(good.len() == 2 && good != &actual, "{good:?}");
     let DecisionComparison::Different(parting) = &found.comparison else { panic!("{:?}", found.comparison) };
     let (before, with) = parting.effect.as_simulated().and_then(|effect| effect.judged).expect("an effect");
-    assert_eq!((Some(before), Some(with)), (own.last().map(|own| own.1), good.last().map(|good| good.1)));
+    assert_eq!(
+        (Some(before), Some(with)),
+        (actual.last().map(|week| week.1), good.last().map(|good| good.1))
+    );
     let markdown = debrief_to_markdown(&found);
     for text in
         ["Recurring revenue on day 14: yours $", "the reference play's $", "Recurring revenue by week"]

@@ -52,10 +52,10 @@ fn difference_starts_on_the_day_of_the_change() {
         .expect("a look")
         .difference
         .expect("it was asked");
-    let told = last.figures.iter().find(|(name, ..)| name == "cash").expect("cash differs");
-    assert_eq!((told.1, told.2), (one.cash_by_day()[21], other.cash_by_day()[21]));
+    let cash = last.figures.iter().find(|(name, ..)| name == "cash").expect("cash differs");
+    assert_eq!((cash.1, cash.2), (one.cash_by_day()[21], other.cash_by_day()[21]));
     let subscribers =
-        |name: &str| last.figures.iter().find(|(text, ..)| text == name).map(|own| (own.1, own.2));
+        |name: &str| last.figures.iter().find(|(text, ..)| text == name).map(|figure| (figure.1, figure.2));
     let (value, others) = subscribers("individual subscribers").expect("they differ");
     let (only_own, only_others) = last.only_in_one;
     assert_eq!(value - others, only_own as f64 - only_others as f64, "{last:?}");
@@ -116,14 +116,14 @@ fn figures_of_past_days_are_reproduced() {
         session.advance("wait", &forecasts, Via::Script, &mut keep).expect("a week");
     }
     let mut again = Vec::new();
-    let told = session.inspect().replay_days(&mut |day| {
+    let replayed = session.inspect().replay_days(&mut |day| {
         again.push((
             day.figures.day,
             day.figures.cash,
             day.xray.expect("hidden state").facts().arrivals.len(),
         ));
     });
-    told.expect("a look");
+    replayed.expect("a look");
     assert_eq!(again, live);
 }
 
@@ -183,8 +183,12 @@ fn differing_parameter_is_listed_first() {
     assert_eq!(parameters(&mut session, 16, 17), [(key.to_owned(), old, json!(0.5))]);
     // Leads of a day include individuals and enterprises.
     let found = session.inspect().compare_days(3, 20).expect("a look");
-    let sum: f64 =
-        found.figures.iter().filter(|(name, ..)| name.ends_with("leads of the day")).map(|own| own.2).sum();
+    let sum: f64 = found
+        .figures
+        .iter()
+        .filter(|(name, ..)| name.ends_with("leads of the day"))
+        .map(|figure| figure.2)
+        .sum();
     let recorded = session
         .inspect()
         .query_hidden_tables("SELECT SUM(came) FROM hidden.factors WHERE day = 20", None)

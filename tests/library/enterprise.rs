@@ -360,13 +360,14 @@ fn check_rules_match_tables(run: &mut Session) {
                 thread.waiting.thread
             )
         };
-        let theirs = run.query(&newest("customer")).expect("rows").rows;
-        let ours = run.query(&newest("agent")).expect("rows").rows;
-        let price =
-            theirs.first().map(|row| serde_json::from_str::<Value>(text_at(row, 1)).expect("an offer"));
+        let customer_messages = run.query(&newest("customer")).expect("rows").rows;
+        let agent_messages = run.query(&newest("agent")).expect("rows").rows;
+        let price = customer_messages
+            .first()
+            .map(|row| serde_json::from_str::<Value>(text_at(row, 1)).expect("an offer"));
         let price = price.and_then(|offer| offer["price"].as_f64());
         assert_eq!(price, thread.waiting.asked);
-        if let Some(row) = theirs.first() {
+        if let Some(row) = customer_messages.first() {
             let plan = thread.asked_plan.expect("a plan").id();
             assert!(text_at(row, 0).to_lowercase().contains(&format!("plan {}", plan.to_lowercase())));
             asked += 1;
@@ -375,10 +376,14 @@ fn check_rules_match_tables(run: &mut Session) {
         }
         let last: Vec<Value> =
             thread.waiting.last_offer.iter().map(|(plan, price)| json!([plan.id(), price])).collect();
-        let value =
-            ours.first().map_or(json!([]), |row| serde_json::from_str(text_at(row, 1)).expect("offers"));
-        let told = value.as_array().expect("a list").iter();
-        assert_eq!(last, told.map(|own| json!([own["plan"], own["price_per_seat"]])).collect::<Vec<_>>());
+        let value = agent_messages
+            .first()
+            .map_or(json!([]), |row| serde_json::from_str(text_at(row, 1)).expect("offers"));
+        let offers = value.as_array().expect("a list").iter();
+        assert_eq!(
+            last,
+            offers.map(|offer| json!([offer["plan"], offer["price_per_seat"]])).collect::<Vec<_>>()
+        );
     }
     assert!(asked > 3, "{asked} companies asked");
     let row = threads[0].to_json(run.company().company_names());

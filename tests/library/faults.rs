@@ -132,8 +132,8 @@ fn symptom(fault: Fault) -> Symptom {
         Fault::ReferralsSwapped => at(12, |session| {
             let mut from_s1 = |to: &str| {
                 let leads = session.inspect().lead_equations(group(to), Some(12)).expect("a look");
-                let own = &leads.last().expect("a day").word_of_mouth;
-                own.iter().find(|(source, _)| *source == group("S1")).expect("S1 has subscribers").1
+                let word_of_mouth = &leads.last().expect("a day").word_of_mouth;
+                word_of_mouth.iter().find(|(source, _)| *source == group("S1")).expect("S1 has subscribers").1
             };
             let shown = from_s1("S2") / from_s1("S1");
             let rate = |to: &str| parameter(session, &format!("referral_leads_per_subscriber_day.S1.{to}"));
@@ -159,9 +159,9 @@ fn symptom(fault: Fault) -> Symptom {
             })
         }),
         Fault::TargetedGainAsGeneral => at(7, |session| {
-            let mut own =
+            let mut group_gain =
                 |day| session.inspect().quality_equation(group("S1"), Some(day)).expect("a look").group_gain;
-            let grown = own(5) - own(4);
+            let grown = group_gain(5) - group_gain(4);
             let gain = parameter(session, "development.targeted_dev_improvement_coef")
                 * libm::log(1.0 + 6000.0 / parameter(session, "development.targeted_dev_spend_scale"));
             (grown / gain - 1.0).abs() > 1e-9
@@ -223,8 +223,8 @@ fn fault_persists_with_its_run_and_is_not_disclosed() {
         assert_eq!(read_manifest(&path).expect("of the line").fault, Some(fault));
         let lines = Trajectory::read(&path.join("trajectory.jsonl")).expect("lines").lines;
         assert!(matches!(&lines[0].record, Record::Start(start) if start.fault == Some(fault)));
-        let told = std::fs::read_to_string(path.join("trajectory.jsonl")).expect("lines");
-        assert!(!told.contains(&format!("{fault:?}")));
+        let text = std::fs::read_to_string(path.join("trajectory.jsonl")).expect("lines");
+        assert!(!text.contains(&format!("{fault:?}")));
         // Another number is another run.
         let other = Fault::ALL.into_iter().find(|other| *other != fault).expect("another");
         let mut forged = read_manifest(&path).expect("of the line");
@@ -248,7 +248,7 @@ fn faults_require_a_debug_run() {
         }
     }
     assert!(
-        std::fs::read_dir(folder.path()).expect("a folder").all(|own| own.expect("one").path().is_file())
+        std::fs::read_dir(folder.path()).expect("a folder").all(|entry| entry.expect("one").path().is_file())
     );
     let new = |key: &str| NewRun {
         overrides: vec![(key.to_owned(), "3".to_owned())],
@@ -275,9 +275,9 @@ fn setting_parameters_keeps_the_fault() {
     let set: Value = json!(0.3);
     session.set_parameter("quality.base_product_quality", &set, Some(10)).expect("from a later day on");
     advance_weeks(&mut session, 1);
-    let mut own =
+    let mut group_gain =
         |day| session.inspect().quality_equation(group("S1"), Some(day)).expect("a look").group_gain;
-    let grown = own(13) - own(12);
+    let grown = group_gain(13) - group_gain(12);
     assert!(grown < 0.005, "{grown}");
     let place = run_folder(&session);
     drop(session);

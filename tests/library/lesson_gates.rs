@@ -105,18 +105,18 @@ fn hidden_state_requires_the_last_part_to_be_over() {
 fn interrupted_lesson_start_is_completed_on_open() {
     let folder = tempfile::tempdir().expect("a folder");
     let session = begin_lesson(folder.path(), "gates", PARTS);
-    let (own, hash) = (run_folder(&session), session.state_hash());
+    let (run_path, hash) = (run_folder(&session), session.state_hash());
     let standing = session.lesson().expect("a lesson").clone();
     let parameters = session.params().ads.log_curve_k;
     drop(session);
-    let path = own.join("trajectory.jsonl");
+    let path = run_path.join("trajectory.jsonl");
     let whole = std::fs::read_to_string(&path).expect("lines");
     let lines: Vec<&str> = whole.lines().collect();
     assert!(lines.len() >= 9, "start, calls, a week, parameters, the step");
     for kept in 1..=lines.len() {
-        truncate_run(&own, &lines[..kept]);
+        truncate_run(&run_path, &lines[..kept]);
         let mut again =
-            Session::open(&own, Access::Write, true).unwrap_or_else(|error| panic!("{kept}: {error}"));
+            Session::open(&run_path, Access::Write, true).unwrap_or_else(|error| panic!("{kept}: {error}"));
         assert_eq!(again.lesson(), Some(&standing), "{kept} lines were left");
         assert_eq!(again.params().ads.log_curve_k, parameters, "{kept}");
         assert_eq!(again.state_hash(), hash, "{kept} lines were left");
@@ -247,9 +247,11 @@ value = 1
             && !session.params().competitor.competitor_events_disabled
     );
     let wrong = measured.replace("competitor-off", "no-such-world");
-    let said = write_lesson(folder.path(), "gates", &(PARTS.to_owned() + &wrong)).expect_err("it is refused");
-    assert!(said.contains("no-such-world") && said.contains("line "), "{said}");
+    let problem =
+        write_lesson(folder.path(), "gates", &(PARTS.to_owned() + &wrong)).expect_err("it is refused");
+    assert!(problem.contains("no-such-world") && problem.contains("line "), "{problem}");
     let wrong = measured.replace("quality.base_product_quality", "quality.luck");
-    let said = write_lesson(folder.path(), "gates", &(PARTS.to_owned() + &wrong)).expect_err("it is refused");
-    assert!(said.contains("quality.luck"), "{said}");
+    let problem =
+        write_lesson(folder.path(), "gates", &(PARTS.to_owned() + &wrong)).expect_err("it is refused");
+    assert!(problem.contains("quality.luck"), "{problem}");
 }

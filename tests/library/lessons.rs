@@ -118,9 +118,9 @@ fn wrong_files_name_line_and_key() {
         ),
     ] {
         assert!(PLAN.contains(old), "{old}");
-        let said = write_lesson(folder.path(), "two", &PLAN.replacen(old, new, 1)).err();
-        let said = said.unwrap_or_else(|| "accepted".to_owned());
-        assert!(said.contains(part), "{new}: {said}");
+        let problem = write_lesson(folder.path(), "two", &PLAN.replacen(old, new, 1)).err();
+        let problem = problem.unwrap_or_else(|| "accepted".to_owned());
+        assert!(problem.contains(part), "{new}: {problem}");
     }
 }
 
@@ -248,9 +248,9 @@ fn missing_evaluation_is_added_on_open() {
     advance_lesson_week(&mut session).expect("a week");
     advance_lesson_week(&mut session).expect("a week");
     let standing = session.lesson().expect("a lesson").clone();
-    let own = session.folder().expect("a folder").to_owned();
+    let run_path = session.folder().expect("a folder").to_owned();
     drop(session);
-    let path = own.join("trajectory.jsonl");
+    let path = run_path.join("trajectory.jsonl");
     let text = std::fs::read_to_string(&path).expect("lines");
     let lines: Vec<&str> = text.lines().collect();
     let last_week = lines.iter().rposition(|line| line.contains("\"kind\":\"week\"")).expect("a week");
@@ -258,12 +258,12 @@ fn missing_evaluation_is_added_on_open() {
     for kept in last_week + 1..lines.len() {
         std::fs::write(&path, lines[..kept].join("\n") + "\n").expect("written");
         // The database would store the position of the removed lines.
-        for entry in std::fs::read_dir(&own).expect("a folder").flatten() {
+        for entry in std::fs::read_dir(&run_path).expect("a folder").flatten() {
             if entry.file_name().to_string_lossy().starts_with("world.db") {
                 std::fs::remove_file(entry.path()).expect("removed");
             }
         }
-        let again = Session::open(&own, Access::Write, true).expect("it opens");
+        let again = Session::open(&run_path, Access::Write, true).expect("it opens");
         assert_eq!(again.lesson(), Some(&standing), "{kept}");
         assert_eq!(again.params().quality.base_product_quality, 0.4, "{kept}");
     }
@@ -294,12 +294,12 @@ fn retry_restarts_the_step_and_is_counted() {
 fn modified_lesson_is_reported() {
     let folder = tempfile::tempdir().expect("a folder");
     let session = begin_lesson(folder.path());
-    let own = session.folder().expect("a folder").to_owned();
+    let run_path = session.folder().expect("a folder").to_owned();
     drop(session);
-    let path = own.join("lesson.toml");
+    let path = run_path.join("lesson.toml");
     let text = std::fs::read_to_string(&path).expect("a plan");
     std::fs::write(&path, text.replace("at_least = 900_000", "at_least = 1")).expect("a file");
-    let problem = Session::open(&own, Access::Write, true).err().expect("it is refused").to_string();
+    let problem = Session::open(&run_path, Access::Write, true).err().expect("it is refused").to_string();
     assert!(problem.contains("lesson.toml") && problem.contains("not the recorded lesson"), "{problem}");
 }
 

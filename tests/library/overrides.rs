@@ -185,25 +185,25 @@ fn branches_and_recovered_runs_keep_overrides() {
         let set = lines.iter().filter(|line| line.record.kind() == "override").count();
         assert!(set >= count, "week {week}: {set}");
         self::advance_week(&mut branch);
-        let own = run_folder(&branch);
+        let run_path = run_folder(&branch);
         drop(branch);
-        let reached = states(&own);
+        let reached = states(&run_path);
         assert_eq!(reached[..reached.len() - 1], expected[..reached.len() - 1], "week {week}");
-        verify(&own).expect("it verifies");
+        verify(&run_path).expect("it verifies");
     }
     let refused = session.branch(9, Mode::Sandbox).err().expect("no sandbox");
     assert_eq!(refused.code, "not_in_this_mode");
     assert!(session.branch(2, Mode::Sandbox).is_ok(), "nothing was set before week 2");
-    let own = run_folder(&session);
+    let run_path = run_folder(&session);
     drop(session);
-    let path = own.join("trajectory.jsonl");
+    let path = run_path.join("trajectory.jsonl");
     let mut bytes = std::fs::read(&path).expect("lines");
     let at = bytes.len() - 40;
     bytes[at] ^= 1;
     std::fs::write(&path, bytes).expect("written");
-    let found = recover(&own, &SealKey::default()).expect("a branch");
+    let found = recover(&run_path, &SealKey::default()).expect("a branch");
     assert_eq!(found.mode, Mode::Debug);
-    verify(&own.with_file_name(found.run)).expect("it verifies");
+    verify(&run_path.with_file_name(found.run)).expect("it verifies");
 }
 
 #[test]
@@ -234,23 +234,25 @@ fn overrides_require_a_debug_run() {
                 session
                     .company()
                     .debug_parameters()
-                    .and_then(|own| own.changes())
+                    .and_then(|parameters| parameters.changes())
                     .expect_err("refused")
                     .to_string(),
             );
             texts
         };
-        let told = tried(&mut session);
-        assert!(told.iter().all(|one| *one == "not_in_this_mode: parameters can be set in debug runs only"));
+        let rejections = tried(&mut session);
+        assert!(
+            rejections.iter().all(|one| *one == "not_in_this_mode: parameters can be set in debug runs only")
+        );
         session.abandon().expect("it ends");
-        assert_eq!(tried(&mut session), told, "{mode}");
+        assert_eq!(tried(&mut session), rejections, "{mode}");
         assert_eq!(states(&run_folder(&session)).len(), before);
     }
     let mut session = begin_run(folder.path(), Mode::Debug, 140);
     session.abandon().expect("it ends");
     let refused = session.set_parameter("group.S1.c_max_mean", &json!(300), None).expect_err("it is over");
     assert_eq!(refused.code, "run_over");
-    assert!(session.company().debug_parameters().and_then(|own| own.changes()).is_ok());
+    assert!(session.company().debug_parameters().and_then(|parameters| parameters.changes()).is_ok());
 }
 
 #[test]
@@ -307,21 +309,21 @@ fn forged_override_line_is_rejected() {
     let mut session = begin_run(folder.path(), Mode::Debug, 140);
     set_parameter(&mut session, "operations.base_outage_prob", json!(0.9), Some(10));
     advance_weeks(&mut session, 2);
-    let own = run_folder(&session);
+    let run_path = run_folder(&session);
     drop(session);
-    let path = own.join("trajectory.jsonl");
+    let path = run_path.join("trajectory.jsonl");
     let good = std::fs::read(&path).expect("lines");
-    let told = |field: &str, value: Value| {
+    let forged_error = |field: &str, value: Value| {
         std::fs::write(&path, &good).expect("written");
         for name in ["world.db", "snapshot.bin"] {
-            let _ = std::fs::remove_file(own.join(name));
+            let _ = std::fs::remove_file(run_path.join(name));
         }
-        forge_lines(&own, |_, line| {
+        forge_lines(&run_path, |_, line| {
             if line["kind"] == "override" {
                 line[field] = value.clone();
             }
         });
-        verify(&own).expect_err(field).to_string()
+        verify(&run_path).expect_err(field).to_string()
     };
     for (field, value, part) in [
         ("new", json!(0.01), "the state on day 14 is not the recorded one"),
@@ -333,19 +335,19 @@ fn forged_override_line_is_rejected() {
         ("new", json!(7), "between 0 and 1"),
         ("new", json!("often"), "expected a number"),
     ] {
-        let words = told(field, value);
+        let words = forged_error(field, value);
         assert!(words.contains(part), "{field}: {words}");
-        assert!(Session::open(&own, Access::Write, false).is_err(), "{field}");
+        assert!(Session::open(&run_path, Access::Write, false).is_err(), "{field}");
     }
     // A run of another mode must not have such a line.
     std::fs::write(&path, &good).expect("written");
-    forge_lines(&own, |_, line| {
+    forge_lines(&run_path, |_, line| {
         if line["kind"] == "start" {
             line["mode"] = "sandbox".into();
             line["rules"] = Value::Null;
         }
     });
-    let words = verify(&own).expect_err("a sandbox").to_string();
+    let words = verify(&run_path).expect_err("a sandbox").to_string();
     assert!(words.contains("only debug runs and lessons can"), "{words}");
 }
 
@@ -354,19 +356,19 @@ fn run_with_overrides_is_excluded_from_comparisons() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut session = begin_run(folder.path(), Mode::Debug, 140);
     assert!(!session.company().observe().has_own_parameters);
-    let own = |id: &str| {
+    let has_own_parameters = |id: &str| {
         let list = list_runs(folder.path()).expect("a list");
         list.into_iter().find(|run| run.id == id).expect("the run").has_own_parameters
     };
     let id = session.manifest().id.clone();
-    assert!(!own(&id));
+    assert!(!has_own_parameters(&id));
     let before = session
         .company()
         .debug_parameters()
         .and_then(|debug_parameters| debug_parameters.value("operations.base_outage_prob"))
         .expect("a value");
     set_parameter(&mut session, "operations.base_outage_prob", json!(0.9), Some(100));
-    assert!(session.company().observe().has_own_parameters && own(&id));
+    assert!(session.company().observe().has_own_parameters && has_own_parameters(&id));
     set_parameter(&mut session, "operations.base_outage_prob", before, None);
     assert!(session.company().observe().has_own_parameters, "the settings stay in the record");
     let changed = session
@@ -389,17 +391,20 @@ fn parameter_kinds(params: &Value) -> Vec<String> {
     fn walk(path: &str, value: &Value, found: &mut std::collections::BTreeMap<String, String>) {
         let below = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
         match value {
-            Value::Object(fields) => fields.iter().for_each(|(name, own)| walk(&below(name), own, found)),
+            Value::Object(fields) => {
+                fields.iter().for_each(|(name, member)| walk(&below(name), member, found))
+            }
             Value::Array(list) => {
                 let groups: Vec<&str> = Group::all().map(Group::id).collect();
                 let is_by_group = list.len() == groups.len() && list.iter().all(Value::is_number);
-                for (at, own) in list.iter().enumerate() {
+                for (at, element) in list.iter().enumerate() {
                     let place = if is_by_group { groups[at].to_owned() } else { at.to_string() };
-                    let name = ["id", "tier", "level"].iter().find_map(|field| match own.get(*field)? {
-                        Value::String(id) => Some(id.clone()),
-                        number => Some(number.to_string()),
-                    });
-                    walk(&below(&name.unwrap_or(place)), own, found);
+                    let name =
+                        ["id", "tier", "level"].iter().find_map(|field| match element.get(*field)? {
+                            Value::String(id) => Some(id.clone()),
+                            number => Some(number.to_string()),
+                        });
+                    walk(&below(&name.unwrap_or(place)), element, found);
                 }
             }
             Value::Null => {}

@@ -51,21 +51,24 @@ fn script_queries_and_prints() {
     let Some(mut session) = run_with_python(Storage::Memory) else { return };
     let hash = session.state_hash();
     let asked = session.company().query_history().to_vec();
-    let said = run_script(
+    let output = run_script(
         &mut session,
         "rows = query('SELECT day, category, amount FROM ledger')\nprint(rows, get_vars())\n\
          print(sum(row['amount'] for row in rows))",
     );
     let first =
         "[{'day': 0, 'category': 'initial_funding', 'amount': 1000000.0}] {'current_day': 0}\n1000000.0\n";
-    assert_eq!(said, json!({ "returncode": 0, "stdout": first, "stderr": "" }));
-    let said = run_script(
+    assert_eq!(output, json!({ "returncode": 0, "stdout": first, "stderr": "" }));
+    let output = run_script(
         &mut session,
         "from novamind_script import query as ask\nimport statistics, sys\n\
          print(ask(\"SELECT * FROM subscriptions WHERE status = 'active'\"), statistics.mean([1, 3]))\nsys.exit(0)",
     );
-    assert_eq!(said["stdout"], "[] 2\n");
-    assert!(said["stderr"].as_str().is_some_and(|text| text.contains("status is never 'active'")), "{said}");
+    assert_eq!(output["stdout"], "[] 2\n");
+    assert!(
+        output["stderr"].as_str().is_some_and(|text| text.contains("status is never 'active'")),
+        "{output}"
+    );
     call_tool(
         &mut session,
         "register_script",
@@ -205,9 +208,9 @@ fn scripts_are_sandboxed_on_linux() {
     }
     assert_eq!(std::fs::read_to_string(&file).expect("the file"), "kept");
     let empty = "import os\nprint(os.listdir('.'), sorted(set(os.environ) - {'PATH', 'LC_CTYPE'}))";
-    let said = run_script(&mut session, empty)["stdout"].clone();
-    let said = said.as_str().unwrap_or_default();
-    assert!(said.starts_with("[] [") && !said.contains("NOVAMIND"), "{said}");
+    let listing = run_script(&mut session, empty)["stdout"].clone();
+    let listing = listing.as_str().unwrap_or_default();
+    assert!(listing.starts_with("[] [") && !listing.contains("NOVAMIND"), "{listing}");
 }
 
 #[test]

@@ -89,7 +89,7 @@ fn due_bills_are_paid_by_active_subscribers() {
         let billed: Vec<&Vec<f64>> =
             before.iter().filter(|values| values[1] == f64::from(day % 30)).collect();
         assert_eq!(number_at(row, column(&due, "customers")), billed.len() as f64, "day {day}");
-        let dollars = billed.iter().map(|own| own[2]).sum::<f64>();
+        let dollars = billed.iter().map(|bill| bill[2]).sum::<f64>();
         assert!((number_at(row, column(&due, "dollars_due")) - dollars).abs() < 0.01, "day {day}");
         // No prices changed: subscribers with the same terms pay the same amount.
         let paid = format!(
@@ -98,8 +98,8 @@ fn due_bills_are_paid_by_active_subscribers() {
         );
         let paid: BTreeMap<u64, f64> =
             query_numbers(&mut session, &paid).iter().map(|row| (row[0] as u64, row[1])).collect();
-        for own in billed {
-            let (customer, dollars) = (own[0] as u64, own[2]);
+        for bill in billed {
+            let (customer, dollars) = (bill[0] as u64, bill[2]);
             if let Some(amount) = paid.get(&customer).filter(|_| terms.get(&customer) == Some(&dollars)) {
                 assert_eq!(*amount, dollars, "customer {customer} on day {day}");
                 payments += 1;

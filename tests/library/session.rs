@@ -522,7 +522,12 @@ fn player_post_gets_reactions_comments_and_a_notice() {
         .filter(|post| post["reply_to_agent_post_id"] == 2);
     assert!(against.count() >= 1);
     assert!(
-        session.debug_hidden_state().expect("a debug run").judgements(2).iter().all(|own| own.effect < -0.3)
+        session
+            .debug_hidden_state()
+            .expect("a debug run")
+            .judgements(2)
+            .iter()
+            .all(|judgement| judgement.effect < -0.3)
     );
     assert_eq!(
         session.company().posts().len() as f64,

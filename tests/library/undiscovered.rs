@@ -36,10 +36,10 @@ fn revealing_words(group: Group, params: &Params) -> BTreeSet<String> {
     let known: BTreeSet<String> =
         Group::all().filter(|other| other.is_initially_known()).flat_map(words).collect();
     // A known word can contain another one: Chief Compliance Officer, Compliance Officer.
-    let own = words(group)
+    let group_words = words(group)
         .into_iter()
         .filter(|word| word.contains([' ', '-']) && !known.iter().any(|other| other.contains(word.as_str())));
-    own.chain([params.group(group).name.clone()]).collect()
+    group_words.chain([params.group(group).name.clone()]).collect()
 }
 
 /// Returns the bytes of the database and its write-ahead log.
@@ -87,9 +87,9 @@ fn check_undiscovered_groups(session: &mut Session, found: &BTreeSet<Group>) {
     let used: BTreeSet<String> = found.iter().flat_map(|group| revealing_words(*group, params)).collect();
     for group in Group::all().filter(|group| !group.is_initially_known()) {
         let known = found.contains(&group);
-        let own = revealing_words(group, params);
+        let revealing = revealing_words(group, params);
         // Words that are part of a found word do not count.
-        for word in own.iter().filter(|word| !used.iter().any(|other| other.contains(word.as_str()))) {
+        for word in revealing.iter().filter(|word| !used.iter().any(|other| other.contains(word.as_str()))) {
             assert!(known || !contains(&bytes, word), "{word} of {group} is in the file");
         }
         let places: Vec<&String> = texts

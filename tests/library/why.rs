@@ -46,10 +46,11 @@ fn group_figures_match_breakpoints_and_tables() {
         let condition: Condition = format!("{figure} >= 0 over 7").parse().expect("a condition");
         let value =
             session.inspect().condition_history(condition).expect("a look").today.value.expect("a value");
-        let told = why(&session, figure).expect("an answer");
-        assert!((told.after - value).abs() < 1e-12, "{figure}: {} {value}", told.after);
-        let sum = told.contributions.iter().map(|part| part.amount).sum::<f64>() + told.residual;
-        assert!((sum - told.change()).abs() < 1e-9, "{figure}");
+        let explanation = why(&session, figure).expect("an answer");
+        assert!((explanation.after - value).abs() < 1e-12, "{figure}: {} {value}", explanation.after);
+        let sum =
+            explanation.contributions.iter().map(|part| part.amount).sum::<f64>() + explanation.residual;
+        assert!((sum - explanation.change()).abs() < 1e-9, "{figure}");
     }
     for figure in ["subscribers(S1)", "satisfaction(S1)", "reputation(S1)", "open_issues(S1)"] {
         let condition: Condition = format!("{figure} >= 0").parse().expect("a condition");
@@ -62,7 +63,7 @@ fn group_figures_match_breakpoints_and_tables() {
         "SELECT count(*) FROM subscriptions JOIN customers USING (customer_id) WHERE group_id = 'S1' \
          AND status = 'cancelled' AND end_day BETWEEN 64 AND 70",
     );
-    let told = why(&session, "cancellations(S1)").expect("an answer");
-    assert_eq!(told.after, left);
-    assert_eq!(told.contributions[0].cause.name(), "price", "{told:#?}");
+    let explanation = why(&session, "cancellations(S1)").expect("an answer");
+    assert_eq!(explanation.after, left);
+    assert_eq!(explanation.contributions[0].cause.name(), "price", "{explanation:#?}");
 }

@@ -118,10 +118,10 @@ fn lead_equation_yields_the_expectation_of_the_draw() {
         let mut keep = |report: &novamind::session::DayReport<'_>| {
             let xray = report.xray.expect("a debug run");
             for group in Group::all() {
-                let came =
+                let arrivals =
                     xray.facts().arrivals.iter().filter(|arrival| arrival.group == group).count() as u32;
                 let expected = xray.lead_factors(group).expected();
-                recorded.insert((report.figures.day, group.id()), (expected, came));
+                recorded.insert((report.figures.day, group.id()), (expected, arrivals));
             }
         };
         session.advance("wait", &forecasts, Via::Script, &mut keep).expect("a week");
@@ -136,13 +136,13 @@ fn lead_equation_yields_the_expectation_of_the_draw() {
             let channels: f64 = lead_equation.channels().map(|(_, leads)| leads).sum();
             let mouths: f64 = lead_equation.word_of_mouth.iter().map(|(_, leads)| leads).sum();
             let shown = factors * (channels + mouths);
-            let (expected, came) = recorded[&(lead_equation.day, group.id())];
+            let (expected, arrivals) = recorded[&(lead_equation.day, group.id())];
             assert!(
                 (shown - expected).abs() <= 1e-12 * expected.max(1.0),
                 "{group} {}: {shown} {expected}",
                 lead_equation.day
             );
-            assert_eq!((lead_equation.expected_leads(), lead_equation.actual_leads), (expected, came));
+            assert_eq!((lead_equation.expected_leads(), lead_equation.actual_leads), (expected, arrivals));
             assert_eq!(lead_equation.is_known, group.is_initially_known());
             let held = lead_equation.expected_with(&[(
                 LeadFactor::Reputation,
@@ -193,21 +193,26 @@ fn customer_view_matches_the_tables() {
                 .days
                 .iter()
                 .find(|individual_day| matches!(individual_day.outcome, SubscriberOutcome::Cancels(_)));
-            assert_eq!(left.map(|own| own.day), whole(&row[3]).filter(|_| status == "cancelled"));
+            assert_eq!(
+                left.map(|individual_day| individual_day.day),
+                whole(&row[3]).filter(|_| status == "cancelled")
+            );
             if status == "subscribed" {
                 assert_eq!(
-                    lens.day_shown().map(|own| own.day),
+                    lens.day_shown().map(|individual_day| individual_day.day),
                     Some(last_day).filter(|_| lens.signup.day < last_day)
                 );
             }
-            for own in lens.days.iter().filter(|own| own.is_due) {
-                let stays =
-                    !matches!(own.outcome, SubscriberOutcome::Cancels(EndCause::Price | EndCause::Quality));
-                let failed = own.outcome == SubscriberOutcome::Cancels(EndCause::Involuntary);
+            for individual_day in lens.days.iter().filter(|individual_day| individual_day.is_due) {
+                let stays = !matches!(
+                    individual_day.outcome,
+                    SubscriberOutcome::Cancels(EndCause::Price | EndCause::Quality)
+                );
+                let failed = individual_day.outcome == SubscriberOutcome::Cancels(EndCause::Involuntary);
                 assert!(
-                    failed || own.weighed_decision.choice.is_some() == stays,
+                    failed || individual_day.weighed_decision.choice.is_some() == stays,
                     "customer {customer} on day {}",
-                    own.day
+                    individual_day.day
                 );
             }
             if let (Some(since), Some(shown)) = (lens.issue_opened_on(), lens.day_shown()) {
@@ -354,10 +359,10 @@ fn lead_residuals_fit_a_poisson_distribution() {
         for last in (28..=1000).step_by(28).chain([1000]) {
             let days = session.inspect().lead_equations(group, Some(last)).expect("a look");
             for lead_equation in days.iter().rev().take(if last == 1000 { 20 } else { 28 }) {
-                let (expected, came) =
+                let (expected, actual) =
                     (lead_equation.expected_leads(), f64::from(lead_equation.actual_leads));
                 if expected > 0.0 {
-                    statistic += (came - expected) * (came - expected) / expected;
+                    statistic += (actual - expected) * (actual - expected) / expected;
                     // Variance of a term: 2 + 1 / λ.
                     spread += 2.0 + 1.0 / expected;
                     freedom += 1.0;

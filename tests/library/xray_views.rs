@@ -45,16 +45,16 @@ fn views_are_unavailable_in_unfinished_non_debug_runs() {
         let lines = || Trajectory::read(&place.join("trajectory.jsonl")).expect("lines").lines.len();
         let before = lines();
         // The rejection is the same for existing and missing days and for any number of draws.
-        let mut told = views(&mut session, "S1", None);
-        told.extend(views(&mut session, "D_E10", Some(3)));
-        told.extend(views(&mut session, "S1", Some(9000)));
+        let mut answers = views(&mut session, "S1", None);
+        answers.extend(views(&mut session, "D_E10", Some(3)));
+        answers.extend(views(&mut session, "S1", Some(9000)));
         for part in RandomPart::ALL {
-            told.extend(
+            answers.extend(
                 [None, Some(0), Some(3), Some(usize::MAX)]
                     .map(|count| session.inspect().next_draws(part, count).map(drop)),
             );
         }
-        for answer in told {
+        for answer in answers {
             let refusal = answer.expect_err("hidden").to_string();
             assert_eq!(refusal, "not_in_this_mode: the x-ray works in debug runs and in runs that are over");
         }

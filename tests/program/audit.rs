@@ -246,19 +246,19 @@ fn audit_finds_edited_manifests_and_clocks() {
     fs::write(run.join("run.toml"), &good).expect("written");
     assert_eq!(study.audit(&["one"]), []);
     // The label in the first line and in the file is changed, with a correct chain.
-    let mut told = lines(&run);
-    told[0].insert("participant".to_owned(), json!("P02"));
-    write_forged_lines(&run, told.clone());
+    let mut record_lines = lines(&run);
+    record_lines[0].insert("participant".to_owned(), json!("P02"));
+    write_forged_lines(&run, record_lines.clone());
     fs::write(run.join("run.toml"), good.replace("participant = \"P01\"", "participant = \"P02\""))
         .expect("written");
     let kinds = study.kinds(&["one"]);
     assert!(kinds.contains(&"assignment".to_owned()), "{kinds:?}");
     fs::write(run.join("run.toml"), &good).expect("written");
     // A clock was set back between two lines.
-    told[0].insert("participant".to_owned(), json!("P01"));
-    let at = told.len() - 2;
-    told[at].insert("at".to_owned(), json!("2026-01-01T00:00:00Z"));
-    write_forged_lines(&run, told);
+    record_lines[0].insert("participant".to_owned(), json!("P01"));
+    let at = record_lines.len() - 2;
+    record_lines[at].insert("at".to_owned(), json!("2026-01-01T00:00:00Z"));
+    write_forged_lines(&run, record_lines);
     let found = study.audit(&["one"]);
     assert!(found.iter().any(|(kind, line, _)| kind == "clock" && *line == Some(at as u64 + 1)), "{found:?}");
 }
@@ -388,14 +388,15 @@ fn audit_counts_match_the_tables() {
     study.play_session("two", &format!("P03\nyes\n{text}{text}"));
     // One week of the second participant has one forecast of their own, and half a minute passed before the last.
     let run = study.only_run("two", "P02");
-    let mut told = lines(&run);
-    let weeks: Vec<usize> = (0..told.len()).filter(|at| told[*at]["kind"] == "advance").collect();
-    told[weeks[1]]["forecasts"][0]["filled_naively"] = json!(false);
-    for line in told.iter_mut().skip(weeks[2]) {
+    let mut record_lines = lines(&run);
+    let weeks: Vec<usize> =
+        (0..record_lines.len()).filter(|at| record_lines[*at]["kind"] == "advance").collect();
+    record_lines[weeks[1]]["forecasts"][0]["filled_naively"] = json!(false);
+    for line in record_lines.iter_mut().skip(weeks[2]) {
         let at = parse_nanoseconds(line["at"].as_str().expect("a moment")) + 30_000_000_000;
         line.insert("at".to_owned(), json!(format_moment(at)));
     }
-    write_forged_lines(&run, told);
+    write_forged_lines(&run, record_lines);
     let out = study.home.0.path().join("data");
     let [one, two, out] =
         [study.machine("one"), study.machine("two"), out].map(|path| path.display().to_string());

@@ -130,6 +130,10 @@ fn commands_find_listed_runs_of_participants() {
         let answer = machine.run(&command);
         assert_eq!(answer.exit_code, 0, "{command:?}: {}", answer.stderr);
     }
-    let own = |run: &str| machine.run(&["--as", "P01", "report", run]).exit_code;
-    assert_eq!((own(&first), own(&second)), (0, 3), "a participant finds only their own runs");
+    let report_code = |run: &str| machine.run(&["--as", "P01", "report", run]).exit_code;
+    assert_eq!(
+        (report_code(&first), report_code(&second)),
+        (0, 3),
+        "a participant finds only their own runs"
+    );
 }

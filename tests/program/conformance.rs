@@ -25,22 +25,25 @@ fn every_tool_answers_and_refuses_as_the_catalogue_says() {
             continue;
         }
         let call = |args: &Value| {
-            let (status, said) = server.post("/call", &json!({ "tool": name, "args": args }));
-            assert_eq!(status, 200, "{name}: {said}");
-            said
+            let (status, response) = server.post("/call", &json!({ "tool": name, "args": args }));
+            assert_eq!(status, 200, "{name}: {response}");
+            response
         };
-        let said = call(&tool["example"]);
-        if said["success"] == true {
+        let response = call(&tool["example"]);
+        if response["success"] == true {
             answered += 1;
-            let returned = said["data"].as_object().unwrap_or_else(|| panic!("{name}: {said}"));
+            let returned = response["data"].as_object().unwrap_or_else(|| panic!("{name}: {response}"));
             let known = documented_fields(tool);
             let other: Vec<&String> = returned
                 .keys()
                 .filter(|key| !known.contains(key.as_str()) && !known.contains("<tool>"))
                 .collect();
-            assert!(other.is_empty(), "{name} returns {other:?}, which the catalogue does not name: {said}");
+            assert!(
+                other.is_empty(),
+                "{name} returns {other:?}, which the catalogue does not name: {response}"
+            );
         } else {
-            is_documented(tool, &said);
+            is_documented(tool, &response);
         }
         let another = call(&json!({ "no_such_argument": 1 }));
         assert_eq!(another["success"], false, "{name}: {another}");
@@ -48,9 +51,9 @@ fn every_tool_answers_and_refuses_as_the_catalogue_says() {
         for argument in tool["arguments"].as_array().expect("arguments") {
             let mut args = tool["example"].clone();
             args[argument["name"].as_str().expect("a name")] = json!([[["wrong"]]]);
-            let said = call(&args);
-            assert_eq!(said["success"], false, "{name}, {}: {said}", argument["name"]);
-            is_documented(tool, &said);
+            let response = call(&args);
+            assert_eq!(response["success"], false, "{name}, {}: {response}", argument["name"]);
+            is_documented(tool, &response);
         }
     }
     assert!(answered > 20, "{answered}");

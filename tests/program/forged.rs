@@ -87,7 +87,7 @@ impl OpenedArchive {
         if file == "trajectory.jsonl" {
             self.seal.last_hash = digest(text.lines().last().expect("lines"));
         }
-        let sealed_file = self.seal.file.iter_mut().find(|own| own.name == file).expect("it is sealed");
+        let sealed_file = self.seal.file.iter_mut().find(|entry| entry.name == file).expect("it is sealed");
         (sealed_file.bytes, sealed_file.blake3) = (text.len() as u64, digest(&text));
         self.files.insert(file.to_owned(), text.into_bytes());
         self.seal = self.seal.clone().with_checksum();

@@ -44,17 +44,17 @@ const MAX_DEVIATION_CHANGE: f64 = 0.25;
 
 /// Compares the median deviation of every figure with that of the last release. The verdict of the laboratory allows any difference that
 /// chance explains; this comparison does not.
-fn check_deviation_changes(policies: &[&str], said: &str) {
+fn check_deviation_changes(policies: &[&str], output: &str) {
     let text = fs::read_to_string(data_path("medians.csv")).expect("the deviations of the last release");
     let mut policy = "";
-    let mut own: BTreeMap<(String, String), f64> = BTreeMap::new();
-    for line in said.lines() {
+    let mut medians: BTreeMap<(String, String), f64> = BTreeMap::new();
+    for line in output.lines() {
         if let Some((name, _)) = line.split_once("  ").filter(|(name, _)| !name.is_empty()) {
             policy = name;
         }
         let words: Vec<&str> = line.split_whitespace().collect();
         if let [figure, _, "cells", "median", "z", median, ..] = words[..] {
-            own.insert((policy.to_owned(), figure.to_owned()), median.parse().expect("a number"));
+            medians.insert((policy.to_owned(), figure.to_owned()), median.parse().expect("a number"));
         }
     }
     let mut moved = Vec::new();
@@ -63,13 +63,13 @@ fn check_deviation_changes(policies: &[&str], said: &str) {
         if !policies.contains(&policy) {
             continue;
         }
-        let now = own.remove(&(policy.to_owned(), figure.to_owned()));
+        let now = medians.remove(&(policy.to_owned(), figure.to_owned()));
         let before: f64 = before.parse().expect("a number");
         if now.is_none_or(|now| (now - before).abs() > MAX_DEVIATION_CHANGE) {
             moved.push(format!("  {policy} {figure}: {now:?}, not {before}"));
         }
     }
-    assert!(own.is_empty(), "figures without a past: {own:?}");
+    assert!(medians.is_empty(), "figures without a past: {medians:?}");
     assert!(moved.is_empty(), "{} figures have moved:\n{}", moved.len(), moved.join("\n"));
 }
 
@@ -105,14 +105,14 @@ fn check_figures(name: &str, policy: &str, seeds: &str, until: &str, days: &str)
     command.args(options).arg("--metrics").arg(&path).env("NOVAMIND_RUNS", folder.path());
     let output = command.output().expect("the program starts");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let (own, kept) = (figures(&path), figures(&kept));
-    let keys: std::collections::BTreeSet<&String> = own.keys().chain(kept.keys()).collect();
+    let (current, kept) = (figures(&path), figures(&kept));
+    let keys: std::collections::BTreeSet<&String> = current.keys().chain(kept.keys()).collect();
     assert!(keys.len() > 200, "{name} holds {} figures", keys.len());
     let value = |figures: &Figures, key: &str| figures.get(key).map_or("nothing", String::as_str).to_owned();
     let different: Vec<String> = keys
         .into_iter()
-        .filter(|key| own.get(*key) != kept.get(*key))
-        .map(|key| format!("  {key}: {}, not {}", value(&own, key), value(&kept, key)))
+        .filter(|key| current.get(*key) != kept.get(*key))
+        .map(|key| format!("  {key}: {}, not {}", value(&current, key), value(&kept, key)))
         .collect();
     assert!(
         different.is_empty(),

@@ -358,8 +358,8 @@ fn mcp_answers_invalid_json_with_a_parse_error() {
     let tools = ask(&json!({ "jsonrpc": "2.0", "id": 5, "method": "tools/list", "params": {} }).to_string());
     let declares = |name: &str, field: &str| {
         let tools = tools["result"]["tools"].as_array().expect("tools").iter();
-        let mut own = tools.filter(|tool| tool["name"] == name);
-        own.next().expect(name)["inputSchema"]["properties"].get(field).is_some()
+        let mut matching = tools.filter(|tool| tool["name"] == name);
+        matching.next().expect(name)["inputSchema"]["properties"].get(field).is_some()
     };
     assert!(declares("set_prices", "request_id") && declares("next_week", "expected_day"));
     assert!(!declares("get_vars", "request_id") && !declares("set_prices", "expected_day"));
@@ -407,13 +407,13 @@ fn mcp_client_lists_tools_and_plays() {
         ask(id, "tools/call", json!({ "name": name, "arguments": arguments }))["result"].clone()
     };
     for (at, (tool, args)) in CALLS.iter().enumerate() {
-        let said = call(10 + at as u32, tool, serde_json::from_str(args).expect("JSON"));
-        assert_eq!(said["structuredContent"]["success"], true, "{said}");
+        let response = call(10 + at as u32, tool, serde_json::from_str(args).expect("JSON"));
+        assert_eq!(response["structuredContent"]["success"], true, "{response}");
     }
     assert_eq!(call(20, "set_capacity_tier", json!({ "tier": 9 }))["isError"], true);
     for at in 0..2 {
-        let said = call(30 + at, "next_week", json!({ "rationale": "on", "predictions": predictions() }));
-        assert_eq!(said["structuredContent"]["day"], 7 * (at + 1), "{said}");
+        let response = call(30 + at, "next_week", json!({ "rationale": "on", "predictions": predictions() }));
+        assert_eq!(response["structuredContent"]["day"], 7 * (at + 1), "{response}");
     }
     let rows = call(40, "query", json!({ "sql": "SELECT COUNT(*) AS n FROM customers" }));
     assert_eq!(rows["structuredContent"]["row_count"], 1);
@@ -459,8 +459,8 @@ assert novamind.query('SELECT COUNT(*) AS n FROM customers')['row_count'] == 1
 ";
     let mut python = home.command("python3");
     python.env("PYTHONPATH", &folder).env("NOVAMIND_API_PORT", server.port.to_string());
-    let said = python.args(["-c", program]).output().expect("python");
-    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+    let output = python.args(["-c", program]).output().expect("python");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     #[cfg(unix)]
     {
         assert_eq!(server.stop(), 0);

@@ -508,8 +508,8 @@ fn every_known_difference_has_a_passing_example() {
     let examples: Vec<&Example> = examples.into_iter().flatten().collect();
     let lines = documented_differences();
     for line in &lines {
-        let own = examples.iter().filter(|(beginning, _)| line.starts_with(beginning));
-        assert_eq!(own.count(), 1, "a line of the page has no example, or several: {line}");
+        let matching = examples.iter().filter(|(beginning, _)| line.starts_with(beginning));
+        assert_eq!(matching.count(), 1, "a line of the page has no example, or several: {line}");
     }
     assert_eq!(lines.len(), examples.len(), "an example has no line on the page");
     let stage = Fixture::new();

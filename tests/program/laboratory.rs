@@ -34,22 +34,25 @@ fn lab_commands_without_runs_support_all_formats() {
     assert_eq!(home.run(&["lab", "curves", "--svg", &path]).exit_code, 0);
     assert!(fs::read_to_string(&drawing).expect("a drawing").starts_with("<svg"));
     // Changed parameters change the account.
-    let own = |row: usize, arguments: &[&str]| {
+    let bound_value = |row: usize, arguments: &[&str]| {
         let all = json(&home, &[&["lab", "bound"], arguments].concat());
         all["tables"]["account"]["rows"][row]["own"].as_f64().expect("a number")
     };
     let (development, estimate) = (6, 15);
     let off = ["--scenario", "competitor-off"];
-    assert!(own(development, &off) < own(development, &[]), "without competitors development is cheap");
-    let said = json(&home, &["lab", "bound", "--scenario", "competitor-off"]).to_string();
     assert!(
-        said.contains("no competitors: the current parameters have none")
-            && !said.contains("seeds of the simulator"),
-        "{said}"
+        bound_value(development, &off) < bound_value(development, &[]),
+        "without competitors development is cheap"
+    );
+    let output = json(&home, &["lab", "bound", "--scenario", "competitor-off"]).to_string();
+    assert!(
+        output.contains("no competitors: the current parameters have none")
+            && !output.contains("seeds of the simulator"),
+        "{output}"
     );
     // With slack 1, the estimate is higher without competitors.
     let once = ["--slack", "1"];
-    assert!(own(estimate, &[once, off].concat()) > own(estimate, &once));
+    assert!(bound_value(estimate, &[once, off].concat()) > bound_value(estimate, &once));
 }
 
 #[test]

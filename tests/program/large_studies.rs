@@ -36,8 +36,8 @@ fn result_files(home: &Home) -> Vec<PathBuf> {
 
 /// Counts the stored runs of a shard or of the unsplit study.
 fn count_stored_runs(home: &Home, ending: &str) -> usize {
-    let own = result_files(home).into_iter().find(|path| path.to_string_lossy().ends_with(ending));
-    let bytes = own.and_then(|path| fs::read(path).ok()).unwrap_or_default();
+    let result_file = result_files(home).into_iter().find(|path| path.to_string_lossy().ends_with(ending));
+    let bytes = result_file.and_then(|path| fs::read(path).ok()).unwrap_or_default();
     bytes.iter().filter(|byte| **byte == b'\n').count()
 }
 
@@ -67,7 +67,7 @@ impl Scheduler<'_> {
     fn new<'a>(home: &'a Home, file: &'a str, out: &'a Path) -> Scheduler<'a> {
         let found = Command::new("parallel").arg("--version").output();
         let has_parallel =
-            found.is_ok_and(|own| String::from_utf8_lossy(&own.stdout).starts_with("GNU parallel"));
+            found.is_ok_and(|output| String::from_utf8_lossy(&output.stdout).starts_with("GNU parallel"));
         if !has_parallel {
             eprintln!("SKIPPED: GNU parallel is not installed; this test starts the shards itself");
         }
@@ -115,7 +115,7 @@ impl Scheduler<'_> {
     /// Waits for all shards and returns whether all succeeded.
     fn wait(children: Vec<Child>) -> bool {
         let ended = children.into_iter().map(|mut child| child.wait().expect("it ends").success());
-        ended.collect::<Vec<bool>>().into_iter().all(|own| own)
+        ended.collect::<Vec<bool>>().into_iter().all(|succeeded| succeeded)
     }
 }
 
@@ -159,9 +159,9 @@ fn merged_shards_equal_the_unsplit_study() {
 
 /// Returns whether the kill truncated a line. Such a line stays, and its run is played again.
 fn has_incomplete_line(home: &Home, ending: &str) -> bool {
-    let own =
+    let result_file =
         result_files(home).into_iter().find(|path| path.to_string_lossy().ends_with(ending)).expect("a file");
-    let text = fs::read_to_string(own).expect("lines");
+    let text = fs::read_to_string(result_file).expect("lines");
     text.lines().any(|line| serde_json::from_str::<serde_json::Value>(line).is_err())
 }
 

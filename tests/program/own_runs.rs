@@ -27,11 +27,14 @@ fn the_results_table_holds_comparable_runs_and_says_why_others_are_not_there() {
         assert_eq!(program_output.exit_code, 0, "{}", program_output.stderr);
     }
     let table = csv_rows(&home.run(&["lab", "table", "--csv"]));
-    let own = row_named(&table, "P0");
-    assert_eq!([&own["bankrupt"], &own["runs"], &own["source"]], ["0", "1", "own policy"]);
+    let policy_row = row_named(&table, "P0");
+    assert_eq!(
+        [&policy_row["bankrupt"], &policy_row["runs"], &policy_row["source"]],
+        ["0", "1", "own policy"]
+    );
     let idle = row_named(&table, "idle company");
     for column in ["best_cash", "beats", "max_survival_days", "calls_per_week"] {
-        assert_eq!(own[column], idle[column], "{column}: an idle company does not depend on the seed");
+        assert_eq!(policy_row[column], idle[column], "{column}: an idle company does not depend on the seed");
     }
     assert_eq!(idle["beats"], "13");
     assert_eq!(row_named(&table, "GPT-5.6 Sol")["std_survival_days"], "145.7");

@@ -99,9 +99,9 @@ fn json_mode_prints_one_object_per_line() {
 fn syntax_errors_name_column_and_suggestions() {
     let runs = tempfile::tempdir().expect("a folder");
     let lines = "set_pices A=3\nset_prices A=1 A=2\nset_prices A=\nnext \"x\" 1 2 3\nnext\nbranch\nstep 1\nset_prices X=3\ntables leger\nnext naive extra more\n";
-    let (said, code) = play(runs.path(), &["--json", "--days", "28"], lines);
+    let (output, code) = play(runs.path(), &["--json", "--days", "28"], lines);
     assert_eq!(code, 0, "refusals are answers");
-    let values = json_lines(&said);
+    let values = json_lines(&output);
     let codes: Vec<&str> = values.iter().filter_map(|object| object["code"].as_str()).collect();
     assert_eq!(
         codes,
@@ -180,12 +180,14 @@ fn a_run_is_left_continued_finished_and_replayed() {
     let id = text.split_whitespace().nth(1).expect("the run").to_owned();
     assert!(text.ends_with(&format!("saved run {id} · day 7\n")));
     let lines = "set_capacity_tier 2\nundo\nnext naive\nnext \"the last three days\" naive\nnext naive\nsql SELECT COUNT(*) AS n FROM predictions\n";
-    let (said, code) = play(runs.path(), &["--run", "latest"], lines);
+    let (output, code) = play(runs.path(), &["--run", "latest"], lines);
     assert_eq!(code, 0);
-    assert!(said.starts_with(&format!("run {id} · seed 3 · day 7 of 17")));
-    assert!(said.contains("undone\n"));
-    assert!(said.contains("week 3 done · day 17") && said.contains("run ended: horizon · day 17 · score $"));
-    assert!(said.contains("refused run_over: ") && said.contains("\n12\n(1 row)"));
+    assert!(output.starts_with(&format!("run {id} · seed 3 · day 7 of 17")));
+    assert!(output.contains("undone\n"));
+    assert!(
+        output.contains("week 3 done · day 17") && output.contains("run ended: horizon · day 17 · score $")
+    );
+    assert!(output.contains("refused run_over: ") && output.contains("\n12\n(1 row)"));
     let replay = program(runs.path()).args(["replay", &id, "--verify"]).output().expect("it runs");
     assert!(replay.status.success(), "{}", String::from_utf8_lossy(&replay.stderr));
 }
@@ -218,20 +220,20 @@ fn termination_at_the_prompt_leaves_at_once_with_everything_saved() {
         .expect("the program starts");
     let mut pipe = child.stdin.take().expect("a pipe");
     pipe.write_all(b"set_prices A=12\n").expect("written");
-    let mut said = BufReader::new(child.stdout.take().expect("a pipe"));
+    let mut output = BufReader::new(child.stdout.take().expect("a pipe"));
     let mut line = String::new();
     while !line.contains("ok set_prices") {
         line.clear();
-        assert!(said.read_line(&mut line).expect("readable") > 0, "it ended");
+        assert!(output.read_line(&mut line).expect("readable") > 0, "it ended");
     }
     // The answer was printed, so the line is on disk; the prompt may not have been reached yet.
     let kill = Command::new("kill").args(["-TERM", &child.id().to_string()]).status().expect("kill runs");
     assert!(kill.success());
-    let rest = std::io::read_to_string(said).expect("readable");
+    let rest = std::io::read_to_string(output).expect("readable");
     assert_eq!(child.wait().expect("it ends").code(), Some(128 + 15));
     assert!(rest.contains("saved run"), "{rest}");
-    let (said, _) = play(runs.path(), &["--run", "latest"], "get_vars\nchanges\n");
-    assert!(said.contains("price A: 0 → 12"), "{said}");
+    let (output, _) = play(runs.path(), &["--run", "latest"], "get_vars\nchanges\n");
+    assert!(output.contains("price A: 0 → 12"), "{output}");
 }
 
 #[test]
@@ -317,7 +319,7 @@ fn named_queries_are_listed_and_answered() {
 fn report_describes_weeks_and_runs() {
     let runs = tempfile::tempdir().expect("a folder");
     let lines = "report\nset_prices A=12 B=25 C=55\nnext \"if it sells, more\" naive\nreport\nreport run\nreport never\n";
-    let (said, _) = play(runs.path(), &["--seed", "7", "--days", "28", "--echo"], lines);
+    let (output, _) = play(runs.path(), &["--seed", "7", "--days", "28", "--echo"], lines);
     for part in [
         "> report\nrefused no_week_yet: no week has run yet; next runs one\n",
         "> report\nweek to day 7: cash change -$",
@@ -330,10 +332,10 @@ fn report_describes_weeks_and_runs() {
         "“if it sells, more”",
         "error usage: at never: report takes week or run",
     ] {
-        assert!(said.contains(part), "{part} is missing in\n{said}");
+        assert!(output.contains(part), "{part} is missing in\n{output}");
     }
-    let (said, _) = play(runs.path(), &["--run", "latest", "--json"], "report week\nreport run\n");
-    let values = json_lines(&said);
+    let (output, _) = play(runs.path(), &["--run", "latest", "--json"], "report week\nreport run\n");
+    let values = json_lines(&output);
     assert_eq!(values[1]["data"]["day"], 7);
     assert!(values[1]["data"]["moves"].as_array().is_some_and(|moves| !moves.is_empty()));
     assert_eq!(values[2]["data"]["survival_days"], 7);
@@ -355,11 +357,11 @@ fn the_xray_answers_in_debug_runs_and_refuses_in_others() {
     assert_eq!(answer(1)["error"], "there is no group S9; did you mean S1 or S2 or S3?");
     assert_eq!(answer(2)["code"], "day_unknown");
     assert_eq!(answer(3)["code"], "usage");
-    let (said, _) = play(runs.path(), &["--seed", "7", "--days", "28", "--json"], &lines);
-    let said = json_lines(&said);
-    for at in said.len() - 5..said.len() - 1 {
-        assert_eq!(said[at]["code"], "not_in_this_mode", "{}", said[at]);
-        assert_eq!(said[at]["error"], said[said.len() - 2]["error"]);
+    let (output, _) = play(runs.path(), &["--seed", "7", "--days", "28", "--json"], &lines);
+    let answers = json_lines(&output);
+    for at in answers.len() - 5..answers.len() - 1 {
+        assert_eq!(answers[at]["code"], "not_in_this_mode", "{}", answers[at]);
+        assert_eq!(answers[at]["error"], answers[answers.len() - 2]["error"]);
     }
 }
 
@@ -387,10 +389,10 @@ fn the_views_of_the_xray_answer_in_words_and_as_data() {
     ];
     let lines = format!("{EXAMPLE}\n{}\n", views.join("\n"));
     let debug = ["--seed", "7", "--days", "90", "--mode", "debug"];
-    let (said, _) = play(runs.path(), &[&debug[..], &["--json"]].concat(), &lines);
-    let said = json_lines(&said);
+    let (output, _) = play(runs.path(), &[&debug[..], &["--json"]].concat(), &lines);
+    let answers = json_lines(&output);
     // The last line reports the end of the input.
-    let answer = |at: usize| &said[said.len() - views.len() - 1 + at];
+    let answer = |at: usize| &answers[answers.len() - views.len() - 1 + at];
     let data = |at: usize| &answer(at)["data"];
     let number = |value: &serde_json::Value| value.as_f64().expect("a number");
     let quality = data(0);
@@ -409,7 +411,7 @@ fn the_views_of_the_xray_answer_in_words_and_as_data() {
     );
     assert_eq!(data(6)["streams"][0]["uniform"].as_array().map(Vec::len), Some(3));
     assert_eq!(data(6)["streams"][0]["key"], serde_json::json!({"day": 8}));
-    for (at, told) in [
+    for (at, expected) in [
         (7, "xray has no view qualty; did you mean quality?"),
         (8, "there is no group S9; did you mean S1 or S2 or S3?"),
         (9, "give a group and optionally a day: xray quality S2 84"),
@@ -420,10 +422,10 @@ fn the_views_of_the_xray_answer_in_words_and_as_data() {
         (14, "a whole number is expected"),
         (15, "give a group and optionally a day: xray reputation S2 84"),
     ] {
-        assert_eq!(answer(at)["error"], told, "{}", views[at]);
+        assert_eq!(answer(at)["error"], expected, "{}", views[at]);
     }
     assert_eq!(answer(16)["code"], "usage");
-    let (said, _) = play(runs.path(), &debug, &lines);
+    let (output, _) = play(runs.path(), &debug, &lines);
     for part in [
         "quality delivered to S1 on day 7",
         "= after ",
@@ -433,12 +435,12 @@ fn the_views_of_the_xray_answer_in_words_and_as_data() {
         "next drift on day ",
         "next draws of service, day 8",
     ] {
-        assert!(said.contains(part), "{part} is missing in\n{said}");
+        assert!(output.contains(part), "{part} is missing in\n{output}");
     }
     // In a sandbox run the answer does not depend on the question.
-    let (said, _) = play(runs.path(), &["--seed", "7", "--days", "90", "--json"], &lines);
-    let said = json_lines(&said);
-    let answers = &said[said.len() - views.len() - 1..said.len() - 1];
+    let (output, _) = play(runs.path(), &["--seed", "7", "--days", "90", "--json"], &lines);
+    let answers = json_lines(&output);
+    let answers = &answers[answers.len() - views.len() - 1..answers.len() - 1];
     for answer in answers {
         assert_eq!((&answer["code"], &answer["error"]), (&"not_in_this_mode".into(), &answers[0]["error"]));
     }
@@ -468,12 +470,12 @@ run 3 until cash <
 run 3 until subscribers(S1) < 0   # never
 ";
     let count = asked.lines().count();
-    let (said, _) = play(
+    let (output, _) = play(
         runs.path(),
         &["--seed", "7", "--days", "70", "--mode", "debug", "--json"],
         format!("{EXAMPLE}{asked}"),
     );
-    let values = json_lines(&said);
+    let values = json_lines(&output);
     let answers = &values[values.len() - count - 1..];
     let data = |at: usize| &answers[at]["data"];
     assert_eq!(data(0)["condition"], "subscribers(S1) >= 20");
@@ -506,12 +508,16 @@ run 3 until subscribers(S1) < 0   # never
     assert_eq!((&answers[16]["error"], &answers[16]["column"]), (&"a number is missing".into(), &19.into()));
     assert_eq!((&data(17)["day"], &data(17)["stopped_by"]), (&(day + 3).into(), &serde_json::json!([])));
     // In a run without permission to inspect, all of them are rejected before anything is parsed.
-    let (said, _) =
+    let (output, _) =
         play(runs.path(), &["--seed", "7", "--days", "28", "--json"], format!("{EXAMPLE}{asked}"));
-    let said = json_lines(&said);
-    let told = &said[said.len() - count - 1..said.len() - 1];
-    for one in told {
-        assert_eq!((&one["code"], &one["error"]), (&"not_in_this_mode".into(), &told[0]["error"]), "{one}");
+    let answers = json_lines(&output);
+    let rejections = &answers[answers.len() - count - 1..answers.len() - 1];
+    for one in rejections {
+        assert_eq!(
+            (&one["code"], &one["error"]),
+            (&"not_in_this_mode".into(), &rejections[0]["error"]),
+            "{one}"
+        );
     }
     let (text, _) = play(
         runs.path(),
@@ -536,12 +542,12 @@ fn hidden_tables_answer_in_plain_mode_and_from_the_command_line() {
                  xray sql 3 SELECT count(*) AS n FROM hidden.customers WHERE start_day > 3 # a\n\
                  xray sql 9 SELECT 1\nxray sql\nxray sql 99999999999 SELECT 1\n\
                  sql SELECT * FROM hidden.groups\nhelp xray\n";
-    let (said, _) = play(
+    let (output, _) = play(
         runs.path(),
         &["--seed", "7", "--days", "28", "--mode", "debug", "--json"],
         format!("{EXAMPLE}\n{asked}"),
     );
-    let values = json_lines(&said);
+    let values = json_lines(&output);
     let answer = |at: usize| &values[values.len() - 8 + at];
     assert_eq!(answer(0)["data"]["row_count"], 7, "{}", answer(0));
     assert_eq!(answer(0)["data"]["rows"][6]["group_id"], "S1");
@@ -552,9 +558,9 @@ fn hidden_tables_answer_in_plain_mode_and_from_the_command_line() {
     assert!(answer(5)["error"].as_str().is_some_and(|text| text.starts_with(way)), "{}", answer(5));
     assert!(answer(6)["data"]["command"].as_str().is_some_and(|text| text.contains("xray sql [DAY]")));
     let query = |options: &[&str]| {
-        let said = program(runs.path()).arg("query").args(options).output().expect("the program ends");
+        let output = program(runs.path()).arg("query").args(options).output().expect("the program ends");
         let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("UTF-8");
-        (text(said.stdout), text(said.stderr), said.status.code())
+        (text(output.stdout), text(output.stderr), output.status.code())
     };
     let sql = "SELECT max(day) AS day, count(*) AS n FROM hidden.groups, hidden.pmi USING (day)";
     let (out, err, code) = query(&["--xray", "latest", sql, "--format", "csv"]);
@@ -571,12 +577,12 @@ fn hidden_tables_answer_in_plain_mode_and_from_the_command_line() {
     let lines = lines.expect("a run");
     assert_eq!(lines.matches("\"kind\":\"xray\"").count(), 4, "each that was let through is a line");
     // In other runs the answer is the same for any question.
-    let (said, _) =
+    let (output, _) =
         play(runs.path(), &["--seed", "7", "--days", "28", "--json"], format!("{EXAMPLE}\n{asked}"));
-    let said = json_lines(&said);
-    for at in said.len() - 8..said.len() - 3 {
-        assert_eq!(said[at]["code"], "not_in_this_mode", "{}", said[at]);
-        assert_eq!(said[at]["error"], said[said.len() - 4]["error"]);
+    let answers = json_lines(&output);
+    for at in answers.len() - 8..answers.len() - 3 {
+        assert_eq!(answers[at]["code"], "not_in_this_mode", "{}", answers[at]);
+        assert_eq!(answers[at]["error"], answers[answers.len() - 4]["error"]);
     }
     for sql in [sql, "nonsense", "no-such-query"] {
         let (out, err, code) = query(&["--xray", "latest", sql]);
@@ -605,8 +611,9 @@ fn parameters_are_set_in_debug_runs_and_refused_in_others() {
         "diff 3 99",
     ];
     let lines = format!("{EXAMPLE}\n{}\n", commands.join("\n"));
-    let (said, _) = play(runs.path(), &["--seed", "7", "--days", "28", "--mode", "debug", "--json"], &lines);
-    let values = json_lines(&said);
+    let (output, _) =
+        play(runs.path(), &["--seed", "7", "--days", "28", "--mode", "debug", "--json"], &lines);
+    let values = json_lines(&output);
     // The last line states where the run was saved.
     let first = values.len() - 1 - commands.len();
     let answer = |at: usize| &values[first + at];
@@ -632,9 +639,9 @@ fn parameters_are_set_in_debug_runs_and_refused_in_others() {
     assert_eq!(changed["waiting"][0]["key"], "group.S1.c_max_mean");
     assert!(answer(11)["data"]["difference"]["differs"].as_array().is_some_and(|all| !all.is_empty()));
     assert_eq!([12, 13].map(|at| answer(at)["code"].clone()), ["usage", "day_unknown"]);
-    let (said, _) = play(runs.path(), &["--seed", "7", "--days", "28", "--json"], &lines);
-    let said = json_lines(&said);
-    for answer in &said[first..said.len() - 1] {
+    let (output, _) = play(runs.path(), &["--seed", "7", "--days", "28", "--json"], &lines);
+    let answers = json_lines(&output);
+    for answer in &answers[first..answers.len() - 1] {
         assert_eq!(answer["code"], "not_in_this_mode", "{answer}");
     }
 }
@@ -644,14 +651,14 @@ fn curve_shows_expected_lead_decisions() {
     let runs = tempfile::tempdir().expect("a folder");
     let lines =
         "curve S1\ncurve s1 20 0.4\ncurve\ncurve S9\ncurve S1 20\ncurve S1 -1 0.4\ncurve D_S05\nhelp curve\n";
-    let (said, code) = play(runs.path(), &["--seed", "7", "--days", "28", "--json"], lines);
+    let (output, code) = play(runs.path(), &["--seed", "7", "--days", "28", "--json"], lines);
     assert_eq!(code, 0);
-    let told = &json_lines(&said)[1..];
-    let data = |at: usize| &told[at]["data"];
+    let answers = &json_lines(&output)[1..];
+    let data = |at: usize| &answers[at]["data"];
     assert_eq!(
-        (&told[0]["command"], &data(0)["basis"]["kind"]),
+        (&answers[0]["command"], &data(0)["basis"]["kind"]),
         (&"curve".into(), &"estimates".into()),
-        "{said}"
+        "{output}"
     );
     assert_eq!(data(0)["curve"].as_array().map(Vec::len), Some(61));
     let conversion = |end: &str| data(1)["conversion"][end].as_f64().expect("a share");
@@ -664,13 +671,13 @@ fn curve_shows_expected_lead_decisions() {
         (6, "group_not_discovered"),
         (7, "curve GROUP PRICE QUALITY"),
     ] {
-        assert!(told[at].to_string().contains(words), "{words}: {}", told[at]);
+        assert!(answers[at].to_string().contains(words), "{words}: {}", answers[at]);
     }
     // In a debug run the same commands are recorded inspections.
-    let (said, _) =
+    let (output, _) =
         play(runs.path(), &["--seed", "7", "--days", "28", "--mode", "debug"], "curve S1\ncurve D_S05\n");
     assert!(
-        said.contains("by true values of day 0") && said.contains("D_S05: quality that leads require"),
-        "{said}"
+        output.contains("by true values of day 0") && output.contains("D_S05: quality that leads require"),
+        "{output}"
     );
 }

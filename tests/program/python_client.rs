@@ -25,8 +25,8 @@ fn client(home: &Home) -> Option<PathBuf> {
 fn python(home: &Home, client: &PathBuf, port: u16, program: &str) {
     let mut python = home.command("python3");
     python.env("PYTHONPATH", client).env("NOVAMIND_API_PORT", port.to_string());
-    let said = python.args(["-c", program]).output().expect("python");
-    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+    let output = python.args(["-c", program]).output().expect("python");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
 fn lines(home: &Home) -> Vec<Value> {

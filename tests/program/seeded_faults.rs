@@ -89,11 +89,15 @@ fn debugging_answers_match_the_program() {
         let shown = ask(&home, &faulty, &row.commands);
         // The figures of the correct run are listed, too; a row of a changed figure would change them.
         let moves_on = row.commands.iter().any(|line| line.starts_with("run "));
-        let beside = if moves_on { String::new() } else { ask(&home, &sound, &row.commands) };
+        let sound_output = if moves_on { String::new() } else { ask(&home, &sound, &row.commands) };
         let texts = figures(&row.shown);
         assert!(!texts.is_empty(), "{}: {}", row.number, row.shown);
         for figure in texts {
-            assert!(shown.contains(figure) || beside.contains(figure), "{}: {figure} in {shown}", row.number);
+            assert!(
+                shown.contains(figure) || sound_output.contains(figure),
+                "{}: {figure} in {shown}",
+                row.number
+            );
         }
     }
 }

@@ -395,12 +395,13 @@ fn final_page_shows_only_permitted_results() {
                     end.stdout.split_at(end.stdout.find("the run is over").expect("the end is reported"))
                 }
             };
-            let told = after.contains("horizon") && (json || after.contains("score"));
-            assert_eq!(told, shows, "{results}:\n{after}");
+            let has_result = after.contains("horizon") && (json || after.contains("score"));
+            assert_eq!(has_result, shows, "{results}:\n{after}");
             if !shows {
                 let after = after.split_once("\"ok\"").map_or(after, |(_, answer)| answer);
-                let told = ["score", "horizon", "dashboard", "cash", "$"].map(|word| after.contains(word));
-                assert_eq!(told, [false; 5], "{after}");
+                let shown_words =
+                    ["score", "horizon", "dashboard", "cash", "$"].map(|word| after.contains(word));
+                assert_eq!(shown_words, [false; 5], "{after}");
                 assert!(!end.stdout.contains("day 35 ·") || json, "{}", end.stdout);
             }
             // A participant who returns to the questions does not see it either.

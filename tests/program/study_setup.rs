@@ -84,21 +84,21 @@ fn check_reports_impossible_designs() {
         fs::write(lab.path("pilot/questions/week.toml"), text).expect("written");
     };
     questionnaire("2, 9");
-    let told = lab.run("check", &[]);
-    assert_eq!(told.exit_code, 0, "{}", told.stderr);
+    let output = lab.run("check", &[]);
+    assert_eq!(output.exit_code, 0, "{}", output.stderr);
     for words in [
         "ok    world       scenario default\n",
         "note  questions   questions/week.toml is due after week 9: a session has 4 weeks",
         "note  forecasts   of 4 weeks' forecasts come due: 4 looking 7 days ahead, 1 looking 28 days ahead, 0 looking 84",
     ] {
-        assert!(told.stdout.contains(words), "{words} is missing in\n{}", told.stdout);
+        assert!(output.stdout.contains(words), "{words} is missing in\n{}", output.stdout);
     }
     questionnaire("9");
-    let told = lab.run("check", &[]);
+    let output = lab.run("check", &[]);
     assert!(
-        told.exit_code == 1 && told.stdout.contains("WRONG questions   questions/week.toml is due"),
+        output.exit_code == 1 && output.stdout.contains("WRONG questions   questions/week.toml is due"),
         "{}",
-        told.stdout
+        output.stdout
     );
     questionnaire("2");
     lab.edit("# week_minutes = 20", "week_minutes = 2");
@@ -107,8 +107,8 @@ fn check_reports_impossible_designs() {
         .assert_fails(3, &["limits.warning_minutes", "week_minutes = 2 would show from the start"]);
     lab.edit("warning_minutes = 2", "warning_minutes = 1");
     lab.edit("offer = \"none\"", "offer = \"optional\"");
-    let told = lab.run("check", &[]).stdout;
-    assert!(told.contains("scenario default, for the practice practice\n"), "{told}");
+    let output = lab.run("check", &[]).stdout;
+    assert!(output.contains("scenario default, for the practice practice\n"), "{output}");
 }
 
 #[test]

@@ -69,8 +69,8 @@ fn export_accepts_a_bare_file_name() {
         command
             .current_dir(home.0.path())
             .args(["runs", "export", &run, "--format", format, "--out", format]);
-        let said = command.output().expect("the program starts");
-        assert!(said.status.success(), "{format}: {}", String::from_utf8_lossy(&said.stderr));
+        let output = command.output().expect("the program starts");
+        assert!(output.status.success(), "{format}: {}", String::from_utf8_lossy(&output.stderr));
         assert!(home.0.path().join(format).is_file(), "{format}");
     }
 }
@@ -116,7 +116,7 @@ fn atif_export_contains_calls_and_responses_only() {
         })
         .collect();
     let named = |name: &str| {
-        calls.iter().filter(|(own, _)| *own == name).map(|(_, answer)| answer).collect::<Vec<_>>()
+        calls.iter().filter(|(tool, _)| *tool == name).map(|(_, answer)| answer).collect::<Vec<_>>()
     };
     let prices: Vec<bool> = named("set_prices").iter().map(|answer| answer["success"] == true).collect();
     assert_eq!(prices, [true, false]);
@@ -149,8 +149,8 @@ fn every_export_has_the_calls_of_unknown_tools() {
     assert_eq!((&calls[0]["tool"], &calls[0]["args"]), (&json!("set_wages"), &json!({ "sales": 3 })));
     assert_eq!(calls[0]["refusal"]["code"], "unknown_tool");
     for format in ["atif", "inspect"] {
-        let told = export(&home, &run, format).to_string();
-        assert!(told.contains("set_wages") && told.contains("unknown_tool"), "{format}");
+        let exported = export(&home, &run, format).to_string();
+        assert!(exported.contains("set_wages") && exported.contains("unknown_tool"), "{format}");
     }
     let out = |name: &str| home.0.path().join(name).to_string_lossy().into_owned();
     let done = |words: &[&str]| {
@@ -222,8 +222,9 @@ fn shown_and_logged(home: &Home) -> Vec<(Value, Value)> {
     let of_run = |run: &Value| {
         let id = run["id"].as_str().expect("a name");
         let output = home.run(&["runs", "show", id, "--json"]);
-        let said = home.run(&["runs", "export", id, "--format", "inspect", "--out", &logs.to_string_lossy()]);
-        assert_eq!((output.exit_code, said.exit_code), (0, 0), "{}{}", output.stderr, said.stderr);
+        let exported =
+            home.run(&["runs", "export", id, "--format", "inspect", "--out", &logs.to_string_lossy()]);
+        assert_eq!((output.exit_code, exported.exit_code), (0, 0), "{}{}", output.stderr, exported.stderr);
         let moment = run["created"].as_str().expect("a moment")[..19].replace(':', "-");
         let file = logs.join(format!("{moment}-00-00_novamind_{id}.json"));
         let log = fs::read_to_string(file).expect("a log");
@@ -367,7 +368,7 @@ fn weeks_of_a_replay_are_recorded_for_terminal_players() {
     assert!(first < last && last + 3 >= seen.len(), "{first} {last} of {}", seen.len());
     home.run(&["replay", &run, "--cast", &file, "--week", "9"])
         .assert_fails(2, &["week 9 is not in the record"]);
-    let said = home.run(&["replay", &run, "--cast", &file, "--week", "3..2"]);
-    assert!(said.exit_code == 2 && said.stderr.contains("20..24"), "{}", said.stderr);
+    let rejection = home.run(&["replay", &run, "--cast", &file, "--week", "3..2"]);
+    assert!(rejection.exit_code == 2 && rejection.stderr.contains("20..24"), "{}", rejection.stderr);
     home.run(&["replay", &run, "--cast", "/nowhere/talk.cast"]).assert_fails(1, &["/nowhere/talk.cast"]);
 }

@@ -31,11 +31,16 @@ fn tables_match_twelve_scripted_participants() {
         "label P06 has no session; last visit: withdrew",
         "12 came: 1 declined, 1 withdrew, 10 finished, 0 neither · refused: 2 labels, 0 codes",
     ];
-    let told = program_output.stdout.lines().filter(|line| !line.contains("verified"));
-    assert_eq!(told.filter(|line| !line.is_empty()).collect::<Vec<_>>(), notes, "{}", program_output.stdout);
+    let output_lines = program_output.stdout.lines().filter(|line| !line.contains("verified"));
+    assert_eq!(
+        output_lines.filter(|line| !line.is_empty()).collect::<Vec<_>>(),
+        notes,
+        "{}",
+        program_output.stdout
+    );
     tables::compare_tables(&lab, &diaries);
-    if let Some((told, code)) = recompute(&lab.data()) {
-        assert_eq!(code, Some(0), "{told}");
+    if let Some((output, code)) = recompute(&lab.data()) {
+        assert_eq!(code, Some(0), "{output}");
     }
     tables::compare_anonymized_tables(&lab, &diaries);
     lab.assert_audit_finds_nothing();

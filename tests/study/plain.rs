@@ -55,10 +55,10 @@ impl<'a> PlainParticipant<'a> {
 
     /// Reads the output until a line contains a text.
     fn wait_for(&mut self, text: &str) {
-        let mut said = String::new();
-        while !said.lines().last().is_some_and(|line| line.contains(text)) {
-            let read = self.answers.read_line(&mut said).expect("the program responds");
-            assert!(read > 0, "{text:?} is missing in the output:\n{said}");
+        let mut output = String::new();
+        while !output.lines().last().is_some_and(|line| line.contains(text)) {
+            let read = self.answers.read_line(&mut output).expect("the program responds");
+            assert!(read > 0, "{text:?} is missing in the output:\n{output}");
         }
     }
 

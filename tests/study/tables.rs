@@ -31,9 +31,9 @@ pub fn compare_tables(lab: &Lab, diaries: &[Diary]) {
             .map(|table| read_table(&lab.data(), &format!("{table}.csv")));
     assert_eq!(diaries.len(), 12);
     for diary in diaries {
-        let own = [&runs, &weeks, &events, &queries, &answers, &notes, &forecasts];
+        let tables = [&runs, &weeks, &events, &queries, &answers, &notes, &forecasts];
         let [run, weeks, events, queries, answers, notes, forecasts] =
-            own.map(|rows| rows_of(rows, diary.label));
+            tables.map(|rows| rows_of(rows, diary.label));
         if diary.erased {
             assert!(run.is_empty() && events.is_empty() && answers.is_empty(), "{}", diary.label);
             continue;
@@ -102,9 +102,9 @@ fn compare_run_row(diary: &Diary, row: &Row) {
         assert_eq!(row[column], played.count(kind).to_string(), "{}: {column}", diary.label);
     }
     for outcome in ["confirmed", "cancelled"] {
-        let own = played.lines.iter().filter(|deed| deed.kind == "dialog" && deed.which == outcome);
-        let own = if diary.is_real_time { String::new() } else { own.count().to_string() };
-        assert_eq!(row[&format!("dialogs_{outcome}")], own, "{}: {outcome}", diary.label);
+        let dialogs = played.lines.iter().filter(|deed| deed.kind == "dialog" && deed.which == outcome);
+        let dialogs = if diary.is_real_time { String::new() } else { dialogs.count().to_string() };
+        assert_eq!(row[&format!("dialogs_{outcome}")], dialogs, "{}: {outcome}", diary.label);
     }
     compare_times(diary, row);
 }
@@ -115,13 +115,17 @@ fn cell_ms(row: &Row, column: &str) -> u64 {
 
 /// Compares the times of the whole run.
 fn compare_times(diary: &Diary, row: &Row) {
-    let told = |column: &str| cell_ms(row, column);
-    let own = |spent| diary.total_ms(spent);
+    let recorded = |column: &str| cell_ms(row, column);
+    let from_diary = |spent| diary.total_ms(spent);
     if diary.is_real_time {
         let within = |column: &str, spent: TimeCategory| {
             let (least, most) = diary.bounds.get(&spent).copied().unwrap_or_default();
-            let told = told(column);
-            assert!((least..=most).contains(&told), "{}: {column} {told}: {least} to {most}", diary.label);
+            let recorded = recorded(column);
+            assert!(
+                (least..=most).contains(&recorded),
+                "{}: {column} {recorded}: {least} to {most}",
+                diary.label
+            );
         };
         within("paused_seconds", TimeCategory::Paused);
         if !diary.bounds.contains_key(&TimeCategory::Paused) {
@@ -130,20 +134,30 @@ fn compare_times(diary: &Diary, row: &Row) {
         assert_eq!(row["idle_seconds"], "0", "{}", diary.label);
         return;
     }
-    assert_eq!(told("active_seconds"), own(TimeCategory::Active), "{}", diary.label);
+    assert_eq!(recorded("active_seconds"), from_diary(TimeCategory::Active), "{}", diary.label);
     let after_the_end = diary.answers.last().map_or(0, |answer| answer.for_ms);
-    assert_eq!(told("answering_seconds"), own(TimeCategory::Answering) - after_the_end, "{}", diary.label);
-    assert_eq!(told("idle_seconds"), own(TimeCategory::Idle), "{}", diary.label);
-    assert_eq!(told("away_seconds"), own(TimeCategory::Away) + own(TimeCategory::Paused), "{}", diary.label);
-    assert_eq!(told("paused_seconds"), own(TimeCategory::Paused), "{}", diary.label);
-    assert_eq!(told("active_seconds_after_end"), own(TimeCategory::After), "{}", diary.label);
+    assert_eq!(
+        recorded("answering_seconds"),
+        from_diary(TimeCategory::Answering) - after_the_end,
+        "{}",
+        diary.label
+    );
+    assert_eq!(recorded("idle_seconds"), from_diary(TimeCategory::Idle), "{}", diary.label);
+    assert_eq!(
+        recorded("away_seconds"),
+        from_diary(TimeCategory::Away) + from_diary(TimeCategory::Paused),
+        "{}",
+        diary.label
+    );
+    assert_eq!(recorded("paused_seconds"), from_diary(TimeCategory::Paused), "{}", diary.label);
+    assert_eq!(recorded("active_seconds_after_end"), from_diary(TimeCategory::After), "{}", diary.label);
 }
 
 fn compare_weeks(diary: &Diary, rows: &[&Row]) {
     assert_eq!(rows.len(), diary.weeks.len(), "{}", diary.label);
     for (week, row) in (1..).zip(rows) {
-        let told = |column: &str| cell_ms(row, column);
-        let own = |spent| diary.time.get(&(week, spent)).copied().unwrap_or_default();
+        let recorded = |column: &str| cell_ms(row, column);
+        let from_diary = |spent| diary.time.get(&(week, spent)).copied().unwrap_or_default();
         let count = |kind: &str| {
             diary.lines.iter().filter(|deed| deed.week == week && deed.kind == kind).count().to_string()
         };
@@ -152,13 +166,18 @@ fn compare_weeks(diary: &Diary, rows: &[&Row]) {
         if diary.is_real_time {
             continue;
         }
-        let expected = [TimeCategory::Active, TimeCategory::Idle, TimeCategory::Paused].map(own);
-        let numbers = ["active_seconds", "idle_seconds", "paused_seconds"].map(told);
+        let expected = [TimeCategory::Active, TimeCategory::Idle, TimeCategory::Paused].map(from_diary);
+        let numbers = ["active_seconds", "idle_seconds", "paused_seconds"].map(recorded);
         if week < WEEKS {
-            assert_eq!(cell_ms(row, "answering_seconds"), own(TimeCategory::Answering), "{}", diary.label);
+            assert_eq!(
+                cell_ms(row, "answering_seconds"),
+                from_diary(TimeCategory::Answering),
+                "{}",
+                diary.label
+            );
         }
         assert_eq!(numbers, expected, "{} in week {week}", diary.label);
-        let fast = if own(TimeCategory::Active) < 10_000 { "1" } else { "0" };
+        let fast = if from_diary(TimeCategory::Active) < 10_000 { "1" } else { "0" };
         assert_eq!(row["implausibly_fast"], fast, "{} in week {week}", diary.label);
     }
 }

@@ -55,9 +55,9 @@ fn slug(heading: &str) -> String {
 }
 
 fn pages() -> Vec<Page> {
-    let own = fs::read_dir(root()).expect("a folder").map(|entry| entry.expect("an entry").path());
-    let own = own.filter(|path| path.extension().is_some_and(|extension| extension == "md"));
-    let mut paths: Vec<PathBuf> = own.chain(files(&root().join("docs"), "md")).collect();
+    let root_pages = fs::read_dir(root()).expect("a folder").map(|entry| entry.expect("an entry").path());
+    let root_pages = root_pages.filter(|path| path.extension().is_some_and(|extension| extension == "md"));
+    let mut paths: Vec<PathBuf> = root_pages.chain(files(&root().join("docs"), "md")).collect();
     paths.sort();
     paths.into_iter().map(Page::read).collect()
 }
@@ -252,7 +252,9 @@ fn links_resolve() {
                     problems.push(page.problem_at(at, &format!("{target} is not there")));
                     continue;
                 };
-                let other = pages.iter().find(|other| other.path.canonicalize().is_ok_and(|own| own == path));
+                let other = pages
+                    .iter()
+                    .find(|other| other.path.canonicalize().is_ok_and(|canonical| canonical == path));
                 if !anchor.is_empty() && !other.is_some_and(|other| other.anchors().contains(anchor)) {
                     problems.push(page.problem_at(at, &format!("{target} has no such heading")));
                 }

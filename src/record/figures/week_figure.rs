@@ -65,14 +65,14 @@ define_figures! {
     Payments = "payments", Dollars, Some(|week| week.figures.payments), None;
     RunningCosts = "running costs", Dollars, Some(|week| week.figures.costs), None;
     Subscribers = "subscribers", Count,
-        Some(|week| week.figures.individual_subscribers.into()), Some(|own| own.figures.subscribers.into());
-    Leads = "leads", Count, Some(SimulatedWeek::total_leads), Some(|own| own.figures.leads.into());
+        Some(|week| week.figures.individual_subscribers.into()), Some(|group| group.figures.subscribers.into());
+    Leads = "leads", Count, Some(SimulatedWeek::total_leads), Some(|group| group.figures.leads.into());
     IndividualLeads = "individual leads", Count, Some(|week| week.figures.new_individual_leads.into()), None;
     NewSubscribers = "new subscribers", Count,
-        Some(|week| week.figures.new_individual_subscribers.into()), Some(|own| own.figures.signed.into());
+        Some(|week| week.figures.new_individual_subscribers.into()), Some(|group| group.figures.signed.into());
     Conversion = "conversion", PreciseShare, Some(|week| week.figures.conversion()), Some(WeekGroupFigures::conversion);
     Cancellations = "cancellations", Count,
-        Some(|week| week.figures.cancellations.into()), Some(|own| own.figures.left.into());
+        Some(|week| week.figures.cancellations.into()), Some(|group| group.figures.left.into());
     Churn = "churn", PreciseShare, Some(SimulatedWeek::individual_churn), Some(WeekGroupFigures::churn);
     Upgrades = "upgrades", Count, Some(|week| week.figures.upgrades.into()), None;
     Downgrades = "downgrades", Count, Some(|week| week.figures.downgrades.into()), None;
@@ -81,16 +81,16 @@ define_figures! {
     NewSeats = "new seats", Count, Some(|week| week.figures.new_enterprise_seats.into()), None;
     SeatsLost = "seats lost", Count, Some(|week| week.figures.seats_lost.into()), None;
     CompaniesLost = "companies lost", Count, Some(|week| week.figures.companies_lost.into()), None;
-    Usage = "usage", Count, Some(|week| week.figures.usage as f64), Some(|own| own.figures.usage as f64);
+    Usage = "usage", Count, Some(|week| week.figures.usage as f64), Some(|group| group.figures.usage as f64);
     OverloadPeak = "overload", Share, Some(|week| week.figures.overload_peak), None;
     Outage = "outage", Count, Some(|week| week.figures.downtime_minutes.into()), None;
     LatencyPeak = "latency", Count, Some(|week| week.figures.p95_ms_peak), None;
     ErrorRatePeak = "error rate", PreciseShare, Some(|week| week.figures.error_rate_peak), None;
     OpenIssues = "open issues", Count,
-        Some(|week| week.figures.open_issues.into()), Some(|own| own.figures.open_issues.into());
+        Some(|week| week.figures.open_issues.into()), Some(|group| group.figures.open_issues.into());
     Satisfaction = "satisfaction", Level,
-        Some(|week| week.satisfaction), Some(|own| own.figures.satisfaction.unwrap_or(f64::NAN));
-    Reputation = "reputation", Level, None, Some(|own| own.figures.reputation);
+        Some(|week| week.satisfaction), Some(|group| group.figures.satisfaction.unwrap_or(f64::NAN));
+    Reputation = "reputation", Level, None, Some(|group| group.figures.reputation);
     Income = "income", Dollars, Some(SimulatedWeek::income), None;
     Costs = "costs", Dollars, Some(SimulatedWeek::costs), None;
     AdRevenue = "ad revenue", Dollars, Some(|week| week.figures.booked.total_of(Category::AdRevenue)), None;
@@ -108,13 +108,13 @@ define_figures! {
 impl WeekFigure {
     /// Returns the figure with a name on screens, which a unit or `peak` may follow.
     pub fn parse_label(name: &str) -> Option<WeekFigure> {
-        let own = |figure: &WeekFigure| name.split(',').next().is_some_and(|name| name == figure.name());
+        let is_named = |figure: &WeekFigure| name.split(',').next().is_some_and(|name| name == figure.name());
         let longer = match name {
             "enterprise seats" => Some(WeekFigure::Seats),
             "cash at week's end" | "cash" => Some(WeekFigure::CashChange),
             _ => None,
         };
-        WeekFigure::ALL.iter().copied().find(own).or(longer)
+        WeekFigure::ALL.iter().copied().find(is_named).or(longer)
     }
 
     /// Returns the figure that sums a ledger category; `None` for the initial funding.

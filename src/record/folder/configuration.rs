@@ -112,8 +112,8 @@ impl Configuration {
             novamind_assets::scenarios().into_iter().map(|(name, _)| name.to_owned()).collect();
         // The default scenario comes first.
         names.sort_by_key(|name| name != DEFAULT_SCENARIO);
-        let own = self.toml_names("scenarios").into_iter().filter(|text| !names.contains(text));
-        let texts: Vec<String> = own.collect();
+        let user_names = self.toml_names("scenarios").into_iter().filter(|text| !names.contains(text));
+        let texts: Vec<String> = user_names.collect();
         names.extend(texts);
         names
     }
@@ -138,17 +138,17 @@ impl Configuration {
         }
     }
 
-    /// Returns days and starting cash of a scenario; `own` as in [`Configuration::load_parameters`].
+    /// Returns days and starting cash of a scenario; `with_world_files` as in [`Configuration::load_parameters`].
     ///
     /// # Errors
     /// The first invalid value, with its position.
-    pub fn days_and_cash(&self, scenario: &Scenario, own: bool) -> Result<(u32, f64), RunError> {
-        Ok(scenario.days_and_cash_with(&self.load_parameters(scenario, &[], own)?))
+    pub fn days_and_cash(&self, scenario: &Scenario, with_world_files: bool) -> Result<(u32, f64), RunError> {
+        Ok(scenario.days_and_cash_with(&self.load_parameters(scenario, &[], with_world_files)?))
     }
 
     /// Loads the parameters of a scenario and applies single overrides, each `(table.key, value as TOML)`.
     ///
-    /// `own` also applies the user's files in the folder `world`; baseline runs use bundled parameters only.
+    /// `with_world_files` also applies the user's files in the folder `world`; baseline runs use bundled parameters only.
     ///
     /// # Errors
     /// The first invalid value, with its position.
@@ -156,10 +156,10 @@ impl Configuration {
         &self,
         scenario: &Scenario,
         overrides: &[(String, String)],
-        own: bool,
+        with_world_files: bool,
     ) -> Result<Params, RunError> {
         let mut sources = Vec::new();
-        if own {
+        if with_world_files {
             for name in self.toml_names("world") {
                 sources.extend(self.read_file(format!("world/{name}.toml"))?);
             }

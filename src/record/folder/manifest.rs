@@ -234,19 +234,19 @@ impl Manifest {
     /// # Errors
     /// The bundled parameters of this program differ from those of the recording version.
     pub fn load_params(&self) -> Result<Params, RunError> {
-        let other = |own: String| RunError::OtherParameters {
+        let other = |digest: String| RunError::OtherParameters {
             id: self.id.clone(),
             version: self.version.clone(),
             recorded: self.parameters_digest.clone(),
-            expected: own,
+            expected: digest,
         };
         let text = toml::to_string(&self.parameters).expect("a table reads back");
         let over = ParameterSource { name: "run.toml".to_owned(), text };
         let loaded = Params::load(&bundled_sources(), &[over])
             .map_err(|error: ParameterError| other(format!("none that fit: {error}")))?;
         let params = Params { fault: self.fault, ..loaded };
-        let own = params.digest();
-        if own == self.parameters_digest { Ok(params) } else { Err(other(own)) }
+        let digest = params.digest();
+        if digest == self.parameters_digest { Ok(params) } else { Err(other(digest)) }
     }
 }
 
@@ -264,12 +264,13 @@ pub fn changed_parameters(params: &Params) -> Table {
     changed_entries(&as_table(params), &as_table(&Params::bundled()))
 }
 
-fn changed_entries(own: &Table, shipped: &Table) -> Table {
-    own.iter()
+fn changed_entries(table: &Table, shipped: &Table) -> Table {
+    table
+        .iter()
         .filter_map(|(key, value)| match (value, shipped.get(key)) {
             (value, Some(same)) if value == same => None,
-            (Value::Table(own), Some(Value::Table(shipped))) => {
-                Some((key.clone(), Value::Table(changed_entries(own, shipped))))
+            (Value::Table(table), Some(Value::Table(shipped))) => {
+                Some((key.clone(), Value::Table(changed_entries(table, shipped))))
             }
             (value, _) => Some((key.clone(), value.clone())),
         })

@@ -27,18 +27,22 @@ impl ManifestCheck {
     /// The run has another format or other mechanics, or neither file can be read.
     pub fn read(folder: &Path) -> Result<ManifestCheck, RunError> {
         let path = folder.join("trajectory.jsonl");
-        let own = Manifest::read(folder);
+        let file_manifest = Manifest::read(folder);
         let Some(line) = read_first_line(&path) else {
-            return own.map(|manifest| ManifestCheck { manifest, problem: None });
+            return file_manifest.map(|manifest| ManifestCheck { manifest, problem: None });
         };
-        let told = Manifest::from_start_line(&path, Some(&line))?;
-        let (manifest, problem) = match own {
-            Err(error) => (told, Some(describe_manifest_error(&error))),
+        let line_manifest = Manifest::from_start_line(&path, Some(&line))?;
+        let (manifest, problem) = match file_manifest {
+            Err(error) => (line_manifest, Some(describe_manifest_error(&error))),
             // The files belong to different runs, and the name of the folder does not confirm the trajectory.
-            Ok(own) if own.id != told.id && !folder.ends_with(&told.id) => (own, None),
-            Ok(own) => {
-                let manifest = with_unrecorded_fields(told, &own);
-                let problem = differing_field_names(&own, &manifest)
+            Ok(file_manifest)
+                if file_manifest.id != line_manifest.id && !folder.ends_with(&line_manifest.id) =>
+            {
+                (file_manifest, None)
+            }
+            Ok(file_manifest) => {
+                let manifest = with_unrecorded_fields(line_manifest, &file_manifest);
+                let problem = differing_field_names(&file_manifest, &manifest)
                     .map(|names| format!("run.toml differed ({names})"));
                 (manifest, problem)
             }
@@ -81,10 +85,10 @@ fn read_first_line(path: &Path) -> Option<Line> {
 }
 
 /// Adds the fields that only `run.toml` has.
-fn with_unrecorded_fields(manifest: Manifest, own: &Manifest) -> Manifest {
+fn with_unrecorded_fields(manifest: Manifest, file_manifest: &Manifest) -> Manifest {
     // The first line is written shortly after the run was created; in format 1 it does not list earlier runs.
-    let earlier_runs = if manifest.format == 1 { own.earlier_runs } else { manifest.earlier_runs };
-    Manifest { created: own.created.clone(), earlier_runs, ..manifest }
+    let earlier_runs = if manifest.format == 1 { file_manifest.earlier_runs } else { manifest.earlier_runs };
+    Manifest { created: file_manifest.created.clone(), earlier_runs, ..manifest }
 }
 
 fn describe_manifest_error(error: &RunError) -> String {
@@ -106,8 +110,9 @@ fn describe_manifest_error(error: &RunError) -> String {
 /// # Errors
 /// The line does not start a run, or a field differs, so one of the two files belongs to another run.
 pub fn check_start(path: &Path, first: Option<&Line>, manifest: &Manifest) -> Result<(), RunError> {
-    let told = Manifest::from_start_line(path, first)?;
-    let Some(names) = differing_field_names(manifest, &with_unrecorded_fields(told, manifest)) else {
+    let line_manifest = Manifest::from_start_line(path, first)?;
+    let Some(names) = differing_field_names(manifest, &with_unrecorded_fields(line_manifest, manifest))
+    else {
         return Ok(());
     };
     Err(RunError::Damaged {
@@ -118,36 +123,37 @@ pub fn check_start(path: &Path, first: Option<&Line>, manifest: &Manifest) -> Re
     })
 }
 
-/// Returns one sentence for each field in which `run.toml` differs from the first line; `told` is the manifest of the line.
+/// Returns one sentence for each field in which `run.toml` differs from the first line; `manifest` is the manifest of the line.
 pub fn manifest_differences(folder: &Path, manifest: &Manifest) -> Vec<String> {
-    let own = match Manifest::read(folder) {
-        Ok(own) => own,
+    let file_manifest = match Manifest::read(folder) {
+        Ok(file_manifest) => file_manifest,
         Err(error) => return vec![describe_manifest_error(&error)],
     };
     let shown = |value: Option<Value>| value.map_or("nothing".to_owned(), |value| value.to_string());
-    let differ = differing_fields(&own, &with_unrecorded_fields(manifest.clone(), &own)).into_iter();
-    let words = |(name, own, told): (String, Option<Value>, Option<Value>)| {
-        format!("run.toml says {name} = {}, the first line {}", shown(own), shown(told))
+    let differ = differing_fields(&file_manifest, &with_unrecorded_fields(manifest.clone(), &file_manifest))
+        .into_iter();
+    let words = |(name, in_file, in_line): (String, Option<Value>, Option<Value>)| {
+        format!("run.toml says {name} = {}, the first line {}", shown(in_file), shown(in_line))
     };
     differ.map(words).collect()
 }
 
 /// Returns the names of the fields that differ, separated by commas, or `None` if the manifests are equal.
-fn differing_field_names(manifest: &Manifest, told: &Manifest) -> Option<String> {
-    let names: Vec<String> = differing_fields(manifest, told).into_iter().map(|(name, ..)| name).collect();
+fn differing_field_names(manifest: &Manifest, other: &Manifest) -> Option<String> {
+    let names: Vec<String> = differing_fields(manifest, other).into_iter().map(|(name, ..)| name).collect();
     (!names.is_empty()).then(|| names.join(", "))
 }
 
-fn differing_fields(own: &Manifest, told: &Manifest) -> Vec<(String, Option<Value>, Option<Value>)> {
-    if own == told {
+fn differing_fields(manifest: &Manifest, other: &Manifest) -> Vec<(String, Option<Value>, Option<Value>)> {
+    if manifest == other {
         return Vec::new();
     }
     let fields = |manifest: &Manifest| match Value::try_from(manifest) {
         Ok(Value::Table(table)) => table,
         _ => Table::new(),
     };
-    let (own, told) = (fields(own), fields(told));
-    let names: BTreeSet<&String> = own.keys().chain(told.keys()).collect();
-    let differ = names.into_iter().filter(|name| own.get(*name) != told.get(*name));
-    differ.map(|name| (name.clone(), own.get(name).cloned(), told.get(name).cloned())).collect()
+    let (manifest, other) = (fields(manifest), fields(other));
+    let names: BTreeSet<&String> = manifest.keys().chain(other.keys()).collect();
+    let differ = names.into_iter().filter(|name| manifest.get(*name) != other.get(*name));
+    differ.map(|name| (name.clone(), manifest.get(name).cloned(), other.get(name).cloned())).collect()
 }

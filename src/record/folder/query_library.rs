@@ -169,14 +169,14 @@ impl ChartSpec {
 }
 
 impl NamedQuery {
-    fn parse(name: &str, text: &str, own: bool) -> NamedQuery {
+    fn parse(name: &str, text: &str, is_user_query: bool) -> NamedQuery {
         let head = QueryHeader::parse(text);
         NamedQuery {
             name: name.to_owned(),
             title: head.title.unwrap_or_else(|| name.replace(['-', '_'], " ")),
             description: head.description.unwrap_or_default(),
             sql: text.trim().to_owned(),
-            is_user_query: own,
+            is_user_query,
         }
     }
 
@@ -197,14 +197,15 @@ impl QueryLibrary {
     /// Loads the user's queries, then the bundled ones; the user's query replaces a bundled one with the same name. A file that
     /// cannot be read is listed with the error as its description.
     pub fn load(configuration: &Configuration) -> QueryLibrary {
-        let own = |name: String| match configuration.read_file(format!("{QUERIES_FOLDER}/{name}.sql")) {
+        let load_query = |name: String| match configuration.read_file(format!("{QUERIES_FOLDER}/{name}.sql"))
+        {
             Ok(source) => source.map(|source| NamedQuery::parse(&name, &source.text, true)),
             Err(error) => {
                 Some(NamedQuery { description: error.to_string(), ..NamedQuery::parse(&name, "", true) })
             }
         };
         let mut all: Vec<NamedQuery> =
-            configuration.file_names(QUERIES_FOLDER, ".sql").into_iter().filter_map(own).collect();
+            configuration.file_names(QUERIES_FOLDER, ".sql").into_iter().filter_map(load_query).collect();
         for shipped in QueryLibrary::bundled().0 {
             if all.iter().all(|named_query| named_query.name != shipped.name) {
                 all.push(shipped);

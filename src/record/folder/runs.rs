@@ -96,8 +96,8 @@ pub fn is_staging_folder(folder: &Path) -> bool {
 
 /// Returns the label of the participant whose runs a folder holds, if any.
 pub fn participant_of_folder(runs: &Path) -> Option<String> {
-    let own = runs.parent()?.file_name()? == PARTICIPANTS_FOLDER;
-    runs.file_name().filter(|_| own).map(|label| label.to_string_lossy().into_owned())
+    let is_participant = runs.parent()?.file_name()? == PARTICIPANTS_FOLDER;
+    runs.file_name().filter(|_| is_participant).map(|label| label.to_string_lossy().into_owned())
 }
 
 /// Returns the common folder of runs for a folder of runs, and the label of the participant if it is a participant's folder.
@@ -323,8 +323,8 @@ pub fn earlier_runs(runs: &Path, participant: Option<&str>) -> Vec<EarlierRun> {
     let whole = entries.map(|entry| entry.path()).filter(|folder| !is_staging_folder(folder));
     let manifests = whole.filter_map(|folder| ManifestCheck::read(&folder).ok());
     let manifests = manifests.map(|derived| derived.manifest);
-    let own = manifests.filter(|manifest| manifest.participant.as_deref() == participant);
-    let mut earlier: Vec<EarlierRun> = own
+    let of_participant = manifests.filter(|manifest| manifest.participant.as_deref() == participant);
+    let mut earlier: Vec<EarlierRun> = of_participant
         .map(|manifest| EarlierRun {
             run: manifest.id,
             mode: manifest.mode,

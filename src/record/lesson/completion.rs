@@ -19,7 +19,7 @@ pub fn is_lesson_over(folder: Option<&Path>, manifest: &Manifest) -> bool {
     let Some(lesson) = lesson else { return false };
     let last = LessonStamp { part: lesson.plan.parts.len() as u32, ..stamp.clone() };
     let is_last =
-        |own: &Manifest| own.lesson.as_ref() == Some(&last) && own.participant == manifest.participant;
+        |other: &Manifest| other.lesson.as_ref() == Some(&last) && other.participant == manifest.participant;
     if is_last(manifest) && run_has_ended(folder) {
         return true;
     }

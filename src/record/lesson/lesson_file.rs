@@ -224,11 +224,11 @@ impl MeasuredFigure {
 fn extract_section(texts: &str, heading: &str) -> String {
     let mut lines =
         texts.lines().skip_while(|line| line.trim() != format!("## {heading}")).skip(1).peekable();
-    let mut own = Vec::new();
+    let mut section = Vec::new();
     while let Some(line) = lines.next_if(|line| !line.starts_with("## ")) {
-        own.push(line);
+        section.push(line);
     }
-    own.join("\n").trim().to_owned()
+    section.join("\n").trim().to_owned()
 }
 
 #[cfg(test)]

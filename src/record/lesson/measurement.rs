@@ -127,8 +127,8 @@ mod tests {
     }
 
     fn parse(figure: Option<&str>, sql: Option<&str>, over: Option<&str>) -> Result<Measurement, String> {
-        let own = |text: Option<&str>| text.map(str::to_owned);
-        Measurement::try_from(MeasurementFile { figure: own(figure), sql: own(sql), over: own(over) })
+        let owned = |text: Option<&str>| text.map(str::to_owned);
+        Measurement::try_from(MeasurementFile { figure: owned(figure), sql: owned(sql), over: owned(over) })
     }
 
     #[test]

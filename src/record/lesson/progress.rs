@@ -37,7 +37,7 @@ impl LessonPart {
     pub fn step_weeks(&self, step: usize) -> (u32, u32) {
         let before: u32 = self.steps.iter().take(step).map(|lesson_step| lesson_step.weeks).sum();
         let begin = self.start_weeks + before;
-        (begin, begin + self.steps.get(step).map_or(0, |own| own.weeks))
+        (begin, begin + self.steps.get(step).map_or(0, |lesson_step| lesson_step.weeks))
     }
 
     /// Returns the step of the week after `weeks` weeks, or `None` if all steps are over.
@@ -170,8 +170,8 @@ impl LessonProgress {
 
     /// Returns the names of the triggered pitfalls, in order.
     pub fn met_pitfalls(&self) -> Vec<&str> {
-        let met = self.events.iter().filter(|(_, note)| note.event == LessonEvent::Pitfall);
-        met.filter_map(|(_, note)| note.name.as_deref()).collect()
+        let pitfalls = self.events.iter().filter(|(_, note)| note.event == LessonEvent::Pitfall);
+        pitfalls.filter_map(|(_, note)| note.name.as_deref()).collect()
     }
 
     /// Returns the choices of a guess, or `None` for other questions.

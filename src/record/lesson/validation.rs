@@ -29,7 +29,7 @@ pub(super) fn find_defect(lesson: &Lesson) -> Option<LessonDefect> {
         .iter()
         .find_map(find_part_defect)
         .or_else(|| {
-            let known: BTreeSet<&str> = plan.pitfalls.iter().map(|own| own.name.as_str()).collect();
+            let known: BTreeSet<&str> = plan.pitfalls.iter().map(|pitfall| pitfall.name.as_str()).collect();
             let named = plan.bad.pitfall.as_deref();
             match named.is_some_and(|name| known.contains(name)) {
                 true => None,
@@ -42,7 +42,7 @@ pub(super) fn find_defect(lesson: &Lesson) -> Option<LessonDefect> {
         })
         .or_else(|| {
             let parts = plan.parts.len();
-            let far = plan.pitfalls.iter().find(|own| own.part >= parts)?;
+            let far = plan.pitfalls.iter().find(|pitfall| pitfall.part >= parts)?;
             Some(wrong(
                 &format!("name = \"{}\"", far.name),
                 "pitfall.part",

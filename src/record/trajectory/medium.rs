@@ -48,10 +48,10 @@ impl Medium for NamedFile {
     }
 
     fn is_file_at(&self, path: &Path, length: Option<u64>) -> bool {
-        let (Ok(own), Ok(there)) = (self.file.metadata(), std::fs::metadata(path)) else { return false };
-        length.is_none_or(|length| own.len() == length)
-            && is_same_file(&own, &there)
-            && count_links(&own) == self.link_count
+        let (Ok(opened), Ok(there)) = (self.file.metadata(), std::fs::metadata(path)) else { return false };
+        length.is_none_or(|length| opened.len() == length)
+            && is_same_file(&opened, &there)
+            && count_links(&opened) == self.link_count
     }
 
     fn read_prefix(&mut self, length: u64) -> io::Result<Vec<u8>> {

@@ -191,11 +191,11 @@ mod tests {
             let record = Record::parse(kind, text.as_bytes()).expect(kind);
             assert_eq!(record.kind(), kind);
             let fields = example.as_object().expect("an object").iter();
-            let own = fields
+            let record_fields = fields
                 .filter(|(name, _)| !["seq", "kind", "day", "at", "prev", "sum"].contains(&name.as_str()));
-            let own: serde_json::Map<String, Value> =
-                own.map(|(name, value)| (name.clone(), value.clone())).collect();
-            assert_eq!(Value::Object(record.fields()).to_string(), Value::Object(own).to_string());
+            let record_fields: serde_json::Map<String, Value> =
+                record_fields.map(|(name, value)| (name.clone(), value.clone())).collect();
+            assert_eq!(Value::Object(record.fields()).to_string(), Value::Object(record_fields).to_string());
         }
         let kinds: std::collections::BTreeSet<&str> =
             examples.iter().map(|(kind, _)| kind.as_str()).collect();
@@ -256,9 +256,14 @@ mod tests {
             let lines = Trajectory::read(&path).expect("it reads").lines;
             for (line, text) in lines.iter().zip(text.lines()) {
                 let fields = Value::Object(line.record.fields()).to_string();
-                let own = Value::Object(line.record_fields()).to_string();
-                assert_eq!(fields, own, "{}: line {}", path.display(), line.seq + 1);
-                assert!(text.contains(&own[1..own.len() - 1]), "{}: line {}", path.display(), line.seq + 1);
+                let line_fields = Value::Object(line.record_fields()).to_string();
+                assert_eq!(fields, line_fields, "{}: line {}", path.display(), line.seq + 1);
+                assert!(
+                    text.contains(&line_fields[1..line_fields.len() - 1]),
+                    "{}: line {}",
+                    path.display(),
+                    line.seq + 1
+                );
                 count += 1;
             }
         }

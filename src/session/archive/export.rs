@@ -39,29 +39,29 @@ pub struct Export {
 }
 
 impl Export {
-    /// Copies the run in a folder and verifies it by simulation. The copies are in a hidden folder in `beside`, which
+    /// Copies the run in a folder and verifies it by simulation. The copies are in a hidden folder in `parent`, which
     /// should be on the disk of the archive. `key` is the key of the run's snapshots.
     ///
     /// # Errors
     /// [`RunError::Damaged`] if the run is damaged, with the file, the line and what is safe. Other errors if the run
-    /// has another version, or if `beside` cannot be written.
-    pub fn prepare(folder: &Path, beside: &Path, key: &SealKey) -> Result<Export, RunError> {
+    /// has another version, or if `parent` cannot be written.
+    pub fn prepare(folder: &Path, parent: &Path, key: &SealKey) -> Result<Export, RunError> {
         let derived = ManifestCheck::read(folder)?;
         let manifest = derived.manifest.clone();
         let (bytes, mut trajectory) = read_stable_trajectory(folder, &manifest, key)?;
-        let workshop = TemporaryFolder::create_in(beside)?;
-        let own = &workshop.path().join(&manifest.id);
-        std::fs::create_dir(own).map_err(RunError::io(own))?;
+        let workshop = TemporaryFolder::create_in(parent)?;
+        let copied_folder = &workshop.path().join(&manifest.id);
+        std::fs::create_dir(copied_folder).map_err(RunError::io(copied_folder))?;
         let put = |name: &str, bytes: &[u8]| {
-            let path = own.join(name);
+            let path = copied_folder.join(name);
             std::fs::write(&path, bytes).map_err(RunError::io(&path))
         };
         match derived.problem {
             None => {
-                let own = folder.join(MANIFEST_FILE);
-                put(MANIFEST_FILE, &std::fs::read(&own).map_err(RunError::io(&own))?)?;
+                let manifest_path = folder.join(MANIFEST_FILE);
+                put(MANIFEST_FILE, &std::fs::read(&manifest_path).map_err(RunError::io(&manifest_path))?)?;
             }
-            Some(_) => manifest.write(own)?,
+            Some(_) => manifest.write(copied_folder)?,
         }
         // A line without a line end was never confirmed: another program may be writing it.
         put(TRAJECTORY_FILE, bytes.get(..trajectory.length as usize).unwrap_or(&bytes))?;
@@ -82,13 +82,13 @@ impl Export {
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {}
             Err(error) => return Err(RunError::Io { path: memo, error }),
         }
-        let session =
-            Session::open(own, Access::Read, true).map_err(|error| with_original_path(error, own, folder))?;
+        let session = Session::open(copied_folder, Access::Read, true)
+            .map_err(|error| with_original_path(error, copied_folder, folder))?;
         Ok(Export {
             session,
             trajectory,
             afterwards_lines: after.lines,
-            copied_folder: own.clone(),
+            copied_folder: copied_folder.clone(),
             _temporary_folder: workshop,
         })
     }

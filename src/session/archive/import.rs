@@ -313,19 +313,23 @@ fn compare_with_existing(draft: &Path, place: &Path, seal: &Seal) -> Result<Impo
 
 fn describe_difference(draft: &Path, place: &Path) -> String {
     let lines = |folder: &Path| Trajectory::read(&folder.join(TRAJECTORY_FILE)).map(|read| read.lines);
-    let own = lines(draft).unwrap_or_default();
+    let draft_lines = lines(draft).unwrap_or_default();
     let there = match lines(place) {
         Ok(lines) if !lines.is_empty() => lines,
         Ok(_) => return "the existing record has no lines".to_owned(),
         Err(problem) => return format!("the existing record cannot be compared ({problem})"),
     };
-    let same = own.iter().zip(&there).take_while(|(own, there)| own.hash == there.hash).count();
+    let same = draft_lines
+        .iter()
+        .zip(&there)
+        .take_while(|(draft_line, line_there)| draft_line.hash == line_there.hash)
+        .count();
     let reach = |lines: &[Line]| {
         let day = lines.last().map_or(0, |line| line.day);
         format!("{} lines up to day {day}", lines.len())
     };
     let line = |lines: &[Line]| lines.get(same).map_or("nothing".to_owned(), describe_line);
-    if own.len() == there.len() && same == own.len() {
+    if draft_lines.len() == there.len() && same == draft_lines.len() {
         return "the lines are the same, but run.toml differs".to_owned();
     }
     format!(
@@ -333,9 +337,9 @@ fn describe_difference(draft: &Path, place: &Path) -> String {
          the archive has {}",
         same + 1,
         line(&there),
-        line(&own),
+        line(&draft_lines),
         reach(&there),
-        reach(&own)
+        reach(&draft_lines)
     )
 }
 

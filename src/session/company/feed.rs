@@ -96,8 +96,8 @@ impl Feed {
     /// Replaces the text of a post. Does nothing if the post does not exist.
     pub(crate) fn replace_text(&mut self, post: u32, text: &str) {
         let public_post = (post as usize).checked_sub(1).and_then(|at| self.posts.get_mut(at));
-        let Some(own) = public_post else { return };
-        let before = std::mem::replace(&mut own.content, text.to_owned());
+        let Some(public_post) = public_post else { return };
+        let before = std::mem::replace(&mut public_post.content, text.to_owned());
         self.built_in.entry(post).or_insert(before);
     }
 

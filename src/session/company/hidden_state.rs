@@ -100,7 +100,9 @@ impl<'a> HiddenState<'a> {
     /// Returns the number of active individual subscriptions of a plan.
     pub fn subscribers_on_plan(&self, plan: Plan) -> u32 {
         let individuals = self.world.customers.blocks().filter(|(group, _)| !group.is_enterprise());
-        individuals.map(|(_, block)| block.plan.iter().filter(|own| **own == plan).count() as u32).sum()
+        individuals
+            .map(|(_, block)| block.plan.iter().filter(|current_plan| **current_plan == plan).count() as u32)
+            .sum()
     }
 
     /// Returns the blocks of a group's customers.

@@ -76,8 +76,8 @@ impl History {
         let Simulation { facts, params, world, .. } = simulation;
         self.cash_by_day.push(figures.cash);
         let repeated = |notice: &Notice| matches!(notice, Notice::LeadLossRepeated { .. });
-        let told = facts.notices.iter().zip(notices).filter(|(notice, _)| !repeated(notice));
-        self.notices.extend(told.map(|(_, text)| (figures.day, text.clone())));
+        let kept_notices = facts.notices.iter().zip(notices).filter(|(notice, _)| !repeated(notice));
+        self.notices.extend(kept_notices.map(|(_, text)| (figures.day, text.clone())));
         groups::count_day(&mut self.current_groups, figures, facts, world);
         self.current_week.add_simulated_day(figures, facts, &self.call_ledger, params);
     }

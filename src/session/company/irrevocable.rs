@@ -207,22 +207,22 @@ mod tests {
     #[test]
     fn few_offers_are_listed_and_many_are_summarized_by_plan() {
         let session = Session::create(NewRun::default(), &Configuration::bundled()).expect("a run");
-        let told = |letters: &[OfferMessage]| {
+        let descriptions = |letters: &[OfferMessage]| {
             let done =
                 session.simulation().irrevocable_actions(&ResolvedCommand::SendDeals(letters.to_vec()));
             done.iter().map(IrrevocableAction::to_string).collect::<Vec<_>>()
         };
         let few: Vec<OfferMessage> = (1..=5).map(|customer| letter(customer, &[(Plan::B, 35.0)])).collect();
-        assert_eq!(told(&few).len(), 5);
+        assert_eq!(descriptions(&few).len(), 5);
         let named = |customer: u32| session.company().company_names().name_with_number(customer);
-        assert_eq!(told(&few)[0], format!("offered to {}: B $35.00", named(1)));
+        assert_eq!(descriptions(&few)[0], format!("offered to {}: B $35.00", named(1)));
         let mut many: Vec<OfferMessage> =
             (1..=3_569).map(|customer| letter(customer, &[(Plan::B, 35.0)])).collect();
-        assert_eq!(told(&many), ["offered B at $35.00 to 3,569 companies"]);
+        assert_eq!(descriptions(&many), ["offered B at $35.00 to 3,569 companies"]);
         many.push(letter(4_000, &[(Plan::B, 70.5)]));
         many.push(letter(4_001, &[(Plan::A, 8.0), (Plan::C, 54.0)]));
         assert_eq!(
-            told(&many),
+            descriptions(&many),
             [
                 format!("offered to {}: A $8.00, C $54.00", named(4_001)),
                 "offered B at $35.00 to $70.50 to 3,570 companies".to_owned()

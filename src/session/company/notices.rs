@@ -39,7 +39,8 @@ struct NoticeParties {
 impl NoticeParties {
     fn from_simulation(simulation: &Simulation) -> NoticeParties {
         let Simulation { facts, world, .. } = simulation;
-        let notices = |fits: &dyn Fn(&Notice) -> bool| facts.notices.iter().filter(|own| fits(own)).count();
+        let notices =
+            |fits: &dyn Fn(&Notice) -> bool| facts.notices.iter().filter(|notice| fits(notice)).count();
         // Without a one-to-one match, no enterprise is named.
         let only = |parties: Vec<NoticeCustomer>, count: usize| {
             if parties.len() == count { parties.into_iter() } else { Vec::new().into_iter() }
@@ -80,10 +81,10 @@ impl NoticeParties {
             .collect();
         let first = |notice: &Notice| matches!(notice, Notice::LeadLostByTimeout { .. });
         NoticeParties {
-            new_leads: only(asking, notices(&|own| *own == Notice::EnterpriseLead)),
-            silent_leads: only(ended(EndCause::LeadSilent), notices(&|own| *own == Notice::LeadSilent)),
+            new_leads: only(asking, notices(&|notice| *notice == Notice::EnterpriseLead)),
+            silent_leads: only(ended(EndCause::LeadSilent), notices(&|notice| *notice == Notice::LeadSilent)),
             timed_out_leads: only(ended(EndCause::LeadTimeout), notices(&first)),
-            deals: only(agreed, notices(&|own| matches!(own, Notice::DealWon { .. }))),
+            deals: only(agreed, notices(&|notice| matches!(notice, Notice::DealWon { .. }))),
         }
     }
 

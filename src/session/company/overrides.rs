@@ -160,7 +160,7 @@ fn params_with(params: &Params, change: &ParameterChange) -> Result<Arc<Params>,
 pub fn json_to_value(value: &Json) -> Option<Value> {
     Some(match value {
         Json::Null => return None,
-        Json::Bool(own) => Value::Boolean(*own),
+        Json::Bool(flag) => Value::Boolean(*flag),
         Json::Number(number) => match number.as_i64() {
             Some(whole) => Value::Integer(whole),
             None => Value::Float(number.as_f64()?),
@@ -180,7 +180,7 @@ pub fn value_to_json(value: &Value) -> Json {
         Value::String(text) => Json::from(text.as_str()),
         Value::Integer(number) => Json::from(*number),
         Value::Float(number) => json_number(*number),
-        Value::Boolean(own) => Json::from(*own),
+        Value::Boolean(flag) => Json::from(*flag),
         Value::Datetime(moment) => Json::from(moment.to_string()),
         Value::Array(list) => list.iter().map(value_to_json).collect(),
         Value::Table(table) => {

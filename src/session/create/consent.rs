@@ -41,8 +41,9 @@ fn earlier_consent(runs: &Path, participant: &str, digest: &str) -> Option<Conse
     let entries = folders.iter().flat_map(|folder| std::fs::read_dir(folder).into_iter().flatten().flatten());
     let manifests = entries.filter_map(|entry| ManifestCheck::read(&entry.path()).ok());
     let manifests = manifests.map(|derived| derived.manifest);
-    let own = manifests.filter(|manifest| manifest.participant.as_deref() == Some(participant));
-    own.filter_map(|manifest| manifest.consent)
+    let of_participant = manifests.filter(|manifest| manifest.participant.as_deref() == Some(participant));
+    of_participant
+        .filter_map(|manifest| manifest.consent)
         .filter(|consent| consent.digest == digest)
         .min_by(|one, other| one.at.cmp(&other.at))
 }

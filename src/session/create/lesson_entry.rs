@@ -26,13 +26,13 @@ impl LessonEntry {
     pub(crate) fn apply_to(&self, new: NewRun) -> NewRun {
         let part = &self.lesson.plan.parts[self.part];
         let quiet = (!part.surges).then(|| ("demand_surge.probability".to_owned(), "0.0".to_owned()));
-        let own = part.parameters.iter().map(|(key, value)| (key.clone(), value.to_string()));
+        let parameters = part.parameters.iter().map(|(key, value)| (key.clone(), value.to_string()));
         NewRun {
             seed: new.seed.or(Some(part.seed)),
             days: part.days,
             cash: part.cash,
             scenario: part.scenario.clone(),
-            overrides: quiet.into_iter().chain(own).collect(),
+            overrides: quiet.into_iter().chain(parameters).collect(),
             ..new
         }
     }

@@ -179,9 +179,9 @@ fn calculations_block(text: &mut String, calculated: &[CalculationOutput]) {
 
 fn posts_block(text: &mut String, world: &World, params: &Params) {
     let week = params.run.days_per_week;
-    let own = world.market.social.own.iter();
+    let posts = world.market.social.own.iter();
     let recent: Vec<&OwnPost> =
-        own.filter(|post| post.day < world.day && post.day + week >= world.day).collect();
+        posts.filter(|post| post.day < world.day && post.day + week >= world.day).collect();
     if recent.is_empty() {
         return;
     }

@@ -77,9 +77,9 @@ impl GroupWeek {
 
 /// Adds a day to the figures of its week.
 pub fn count_day(week: &mut ByGroup<GroupWeek>, figures: &DayFigures, facts: &Facts, world: &World) {
-    let came: BTreeMap<u32, &Arrival> =
+    let arrivals: BTreeMap<u32, &Arrival> =
         facts.arrivals.iter().map(|arrival| (arrival.customer, arrival)).collect();
-    for arrival in came.values() {
+    for arrival in arrivals.values() {
         let group_week = &mut week[arrival.group];
         group_week.leads += 1;
         group_week.word_of_mouth += u32::from(arrival.source.channel().is_none());
@@ -90,17 +90,17 @@ pub fn count_day(week: &mut ByGroup<GroupWeek>, figures: &DayFigures, facts: &Fa
         paid.spend += pair.spend;
     }
     for opening in &facts.openings {
-        let Some(arrival) = came.get(&opening.customer) else { continue };
-        let own = &mut week[arrival.group];
+        let Some(arrival) = arrivals.get(&opening.customer) else { continue };
+        let group_week = &mut week[arrival.group];
         match opening.status {
-            SubscriptionStatus::Lead => own.asked += 1,
+            SubscriptionStatus::Lead => group_week.asked += 1,
             SubscriptionStatus::Subscribed => {
-                own.signed += 1;
+                group_week.signed += 1;
                 if let Some(channel) = arrival.source.channel() {
-                    own.paid[channel].billed += 1;
+                    group_week.paid[channel].billed += 1;
                 }
                 if let Some(plan) = opening.plan {
-                    own.chosen[plan] += 1;
+                    group_week.chosen[plan] += 1;
                 }
             }
             SubscriptionStatus::Cancelled | SubscriptionStatus::Lost => {}
@@ -115,9 +115,9 @@ pub fn count_day(week: &mut ByGroup<GroupWeek>, figures: &DayFigures, facts: &Fa
         week[ending.group].left += 1;
     }
     for group in Group::all() {
-        let own = &mut week[group];
-        own.last_usage = figures.usage[group];
-        for (sum, units) in own.usage.0.iter_mut().zip(own.last_usage.0) {
+        let group_week = &mut week[group];
+        group_week.last_usage = figures.usage[group];
+        for (sum, units) in group_week.usage.0.iter_mut().zip(group_week.last_usage.0) {
             *sum += units;
         }
     }

@@ -135,8 +135,8 @@ impl ErrorBands {
         horizons.sort_unstable();
         horizons.dedup();
         let band = |(horizon, stage): (u32, GrowthStage)| {
-            let own = errors.iter().filter(|error| (error.0, error.1) == (stage, horizon));
-            let mut values: Vec<f64> = own.map(|(_, _, error)| *error).collect();
+            let matching = errors.iter().filter(|error| (error.0, error.1) == (stage, horizon));
+            let mut values: Vec<f64> = matching.map(|(_, _, error)| *error).collect();
             values.sort_unstable_by(f64::total_cmp);
             let [below, above] = INTERVAL_QUANTILES.map(|share| quantile(&values, share));
             // Four decimals exceed the precision of the measurement; the interval contains the point.
@@ -155,9 +155,9 @@ impl ErrorBands {
 
     /// Returns the interval of a stage for a horizon, or that of the next shorter measured horizon.
     fn interval(&self, stage: GrowthStage, horizon: u32) -> (f64, f64) {
-        let own = self.bands.iter().filter(|band| band.stage == stage);
-        let shorter = own.clone().filter(|band| band.horizon <= horizon).max_by_key(|band| band.horizon);
-        let band = shorter.or_else(|| own.clone().min_by_key(|band| band.horizon));
+        let of_stage = self.bands.iter().filter(|band| band.stage == stage);
+        let shorter = of_stage.clone().filter(|band| band.horizon <= horizon).max_by_key(|band| band.horizon);
+        let band = shorter.or_else(|| of_stage.clone().min_by_key(|band| band.horizon));
         band.map_or((-1.0, 1.0), |band| (band.below, band.above))
     }
 
@@ -165,7 +165,7 @@ impl ErrorBands {
     pub fn describe_coverage(&self) -> String {
         let held = self.coverage.iter().map(|coverage| coverage.held);
         let (least, most) = held.fold((1.0f64, 0.0f64), |all, value| (all.0.min(value), all.1.max(value)));
-        let count: usize = self.coverage.iter().map(|own| own.forecasts).sum();
+        let count: usize = self.coverage.iter().map(|coverage| coverage.forecasts).sum();
         let percent = |share: f64| (share * 100.0).round();
         let share = match percent(least) == percent(most) {
             true => format!("{} %", percent(least)),
@@ -213,8 +213,9 @@ pub fn hindcasts(weeks: &[WeekFigures], horizon: u32, bands: &ErrorBands) -> Vec
         let error = (weeks[due].cash - bought - point) / expected_flow(&pace, horizon);
         let (below, above) = bands.interval(stage, horizon);
         let wider = widening_factor(&made, before);
-        let came = (weeks[due].cash - point) / expected_flow(&pace, horizon);
-        let held = (below * wider - ROUNDING_TOLERANCE..=above * wider + ROUNDING_TOLERANCE).contains(&came);
+        let deviation = (weeks[due].cash - point) / expected_flow(&pace, horizon);
+        let held =
+            (below * wider - ROUNDING_TOLERANCE..=above * wider + ROUNDING_TOLERANCE).contains(&deviation);
         let side = if error < 0.0 { below } else { above };
         let intervals =
             if error.abs() <= ROUNDING_TOLERANCE { 0.0 } else { (error / side).min(MAX_ERROR_INTERVALS) };
@@ -356,9 +357,9 @@ mod tests {
         assert_eq!(widening_factor(&errors[1..], 20), 1.0);
         let wild: Vec<f64> = (0..20).map(|at| if at % 8 < 4 { 100.0 } else { 90_000.0 }).collect();
         let errors = hindcasts(&weeks_with_payments(&wild), 28, bands);
-        assert!(errors.iter().any(|own| !own.is_covered));
+        assert!(errors.iter().any(|hindcast| !hindcast.is_covered));
         assert!(widening_factor(&errors, 20) > 1.5, "{}", widening_factor(&errors, 20));
-        let known = errors.iter().filter(|own| own.due_week < 10).count();
+        let known = errors.iter().filter(|hindcast| hindcast.due_week < 10).count();
         assert_eq!(
             widening_factor(&errors, 10),
             widening_factor(&errors[..known], 20),
@@ -378,7 +379,7 @@ mod tests {
             "{errors:?}"
         );
         let later = hindcasts(&all, 28, ErrorBands::bundled());
-        assert!(later[1..].iter().all(|own| own.error.abs() < 1e-9), "{later:?}");
+        assert!(later[1..].iter().all(|hindcast| hindcast.error.abs() < 1e-9), "{later:?}");
         assert!(!later[4].is_covered, "later purchases are part of the outcome");
     }
 
@@ -407,12 +408,16 @@ mod tests {
         for (horizon, stage) in
             HORIZONS.into_iter().flat_map(|horizon| GrowthStage::ALL.map(|stage| (horizon, stage)))
         {
-            let own = bands.bands.iter().find(|band| (band.stage, band.horizon) == (stage, horizon));
-            let own = own.unwrap_or_else(|| panic!("{stage:?} {horizon}"));
-            assert!(own.below < 0.0 && own.above > 0.0 && own.forecasts >= 100, "{own:?}");
+            let band = bands.bands.iter().find(|band| (band.stage, band.horizon) == (stage, horizon));
+            let band = band.unwrap_or_else(|| panic!("{stage:?} {horizon}"));
+            assert!(band.below < 0.0 && band.above > 0.0 && band.forecasts >= 100, "{band:?}");
         }
-        assert_eq!(bands.coverage.iter().map(|own| own.horizon).collect::<Vec<_>>(), HORIZONS);
-        assert!(bands.coverage.iter().all(|own| (0.90..=0.99).contains(&own.held)), "{:?}", bands.coverage);
+        assert_eq!(bands.coverage.iter().map(|coverage| coverage.horizon).collect::<Vec<_>>(), HORIZONS);
+        assert!(
+            bands.coverage.iter().all(|coverage| (0.90..=0.99).contains(&coverage.held)),
+            "{:?}",
+            bands.coverage
+        );
         assert!(bands.describe_coverage().contains("of 12 policies") || bands.policies != 12);
     }
 }

@@ -170,9 +170,9 @@ mod tests {
     fn error_text_names_the_side_and_no_negative_zero() {
         let texts = [10.0, 4.0, 5.001, 5.0, 4.999, 0.0, 0.2]
             .map(|outcome| forecast_with_outcome(outcome).describe_error());
-        let told = texts.each_ref().map(|text| text.as_deref().unwrap_or_default());
+        let descriptions = texts.each_ref().map(|text| text.as_deref().unwrap_or_default());
         assert_eq!(
-            told,
+            descriptions,
             ["50.0% low", "25.0% high", "exact", "exact", "exact", "500.0% high", "480.0% high"]
         );
         let far = Forecast { point: -50.0, ..forecast_with_outcome(1.0).forecast };

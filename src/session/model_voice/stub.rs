@@ -99,15 +99,15 @@ fn serve_request(stream: TcpStream, manner: StubBehavior, values: &Mutex<Vec<Val
     let material = asked["messages"][1]["content"].as_str().unwrap_or_default();
     let material: Value = serde_json::from_str(material)?;
     values.lock().expect("not poisoned").push(asked);
-    let mut said = correct_answer(&material);
+    let mut texts = correct_answer(&material);
     match manner {
         StubBehavior::Late => std::thread::sleep(Duration::from_secs(3)),
-        StubBehavior::TooFew => drop(said.pop()),
+        StubBehavior::TooFew => drop(texts.pop()),
         StubBehavior::Correct | StubBehavior::NotJson | StubBehavior::ServerError => {}
     }
     let content = match manner {
         StubBehavior::NotJson => "Certainly! Here are the posts.".to_owned(),
-        _ => Value::from(said).to_string(),
+        _ => Value::from(texts).to_string(),
     };
     let status = if manner == StubBehavior::ServerError { "500 Internal Server Error" } else { "200 OK" };
     let body = json!({ "choices": [{ "message": { "role": "assistant", "content": content } }] }).to_string();

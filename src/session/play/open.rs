@@ -116,8 +116,8 @@ impl Session {
         session.remarks.extend(restored);
         session.remarks.append(&mut integrity.remarks);
         session.replay(&path, &trajectory, seen, database, &mut |_| {})?;
-        if let Some(own) = keeping.filter(|_| !projection && seen < trajectory.lines.len()) {
-            (own.store_snapshot)(&session, folder);
+        if let Some(cache) = keeping.filter(|_| !projection && seen < trajectory.lines.len()) {
+            (cache.store_snapshot)(&session, folder);
         }
         if let Some(location) = finished {
             session.database = RunDatabase::from_file(location);

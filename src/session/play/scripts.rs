@@ -138,7 +138,7 @@ impl Session {
         let shown = self.simulation.params.limits.dashboard_calculation_max_chars as usize;
         let run = |(name, code): (String, String)| {
             let time = most.saturating_sub(started.elapsed());
-            let said = match Language::detect(&code) {
+            let result = match Language::detect(&code) {
                 _ if time.is_zero() => {
                     let message =
                         format!("the calculations before it used the {} s of a week", most.as_secs());
@@ -150,7 +150,7 @@ impl Session {
                     self.check_python_allowed(via).and_then(|()| self.run_python(&code, time, false))
                 }
             };
-            let output = match said {
+            let output = match result {
                 Ok(script_output) => script_output.results,
                 Err(refusal) => format!("failed: {}", refusal.message),
             };

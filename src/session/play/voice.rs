@@ -49,8 +49,9 @@ impl Session {
     /// Returns the positions of the player's posts that are not judged and have no recorded scores.
     fn unscored_posts(&self) -> Vec<usize> {
         let (known, simulation) = (self.known_groups(), &self.simulation);
-        let own = simulation.world.market.social.own.iter().enumerate();
-        own.filter(|(_, post)| post.effects.is_none() && !simulation.recorded_scores.covers(post, &known))
+        let posts = simulation.world.market.social.own.iter().enumerate();
+        posts
+            .filter(|(_, post)| post.effects.is_none() && !simulation.recorded_scores.covers(post, &known))
             .map(|(at, _)| at)
             .collect()
     }

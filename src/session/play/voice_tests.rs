@@ -62,11 +62,11 @@ fn play_three_weeks(runs: &Path, configuration: &Configuration) -> (Session, Vec
 
 fn voice_answers(folder: &Path) -> Vec<VoiceAnswer> {
     let lines = Trajectory::read(&folder.join("trajectory.jsonl")).expect("a trajectory").lines;
-    let said = lines.into_iter().filter_map(|line| match line.record {
+    let answers = lines.into_iter().filter_map(|line| match line.record {
         Record::Voice(voice_answer) => Some(voice_answer),
         _ => None,
     });
-    said.collect()
+    answers.collect()
 }
 
 fn post_texts(session: &Session) -> Vec<String> {
@@ -90,8 +90,8 @@ fn run_folder(session: &Session) -> std::path::PathBuf {
 fn voice_answers_replay_without_the_model() {
     let runs = tempfile::tempdir().expect("a folder");
     let stub = StubModel::start(StubBehavior::Correct);
-    let (mut session, told) = play_three_weeks(runs.path(), &stub.configuration(true, true, 30));
-    assert_eq!(told, [None, None, None]);
+    let (mut session, weekly_notices) = play_three_weeks(runs.path(), &stub.configuration(true, true, 30));
+    assert_eq!(weekly_notices, [None, None, None]);
     let folder = run_folder(&session);
     let (hash, words) = (session.state_hash().0, post_texts(&session));
     let effects = session.simulation.world.market.social.own[0].effects.expect("it was judged");
@@ -167,11 +167,11 @@ fn failing_model_changes_nothing_and_is_reported_once() {
     ] {
         let stub = StubModel::start(manner);
         let started = Instant::now();
-        let (session, told) = play_three_weeks(runs.path(), &stub.configuration(true, true, 1));
+        let (session, weekly_notices) = play_three_weeks(runs.path(), &stub.configuration(true, true, 1));
         assert!(started.elapsed() < Duration::from_secs(20), "a week waits one second at most");
         assert_eq!(session.state_hash(), plain.state_hash(), "{manner:?}");
         assert_eq!(post_texts(&session), post_texts(&plain), "{manner:?}");
-        let notices: Vec<&String> = told.iter().flatten().collect();
+        let notices: Vec<&String> = weekly_notices.iter().flatten().collect();
         assert!(notices.len() == 1 && notices[0].contains(why), "{manner:?}: {notices:?}");
         let failed = voice_answers(&run_folder(&session));
         let is_of = |what: ModelTask| {
@@ -182,9 +182,9 @@ fn failing_model_changes_nothing_and_is_reported_once() {
     }
     // The server is gone.
     let configuration = StubModel::start(StubBehavior::Correct).configuration(true, true, 1);
-    let (session, told) = play_three_weeks(runs.path(), &configuration);
+    let (session, weekly_notices) = play_three_weeks(runs.path(), &configuration);
     assert_eq!(session.state_hash(), plain.state_hash());
-    assert_eq!(told.iter().flatten().count(), 1, "{told:?}");
+    assert_eq!(weekly_notices.iter().flatten().count(), 1, "{weekly_notices:?}");
 }
 
 #[test]

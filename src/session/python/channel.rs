@@ -121,16 +121,19 @@ mod tests {
     fn receive_joins_partial_lines_and_splits_joined_ones() {
         let (mut channel, other) = Channel::pair().expect("a socket");
         let mut other = UnixStream::from(other);
-        let mut heard = || channel.receive(Duration::from_millis(5));
-        assert_eq!(heard(), ChannelEvent::Idle);
+        let mut receive = || channel.receive(Duration::from_millis(5));
+        assert_eq!(receive(), ChannelEvent::Idle);
         other.write_all(br#"{"ask":"que"#).expect("written");
-        assert_eq!(heard(), ChannelEvent::Idle);
+        assert_eq!(receive(), ChannelEvent::Idle);
         other.write_all(b"ry\",\"sql\":\"SELECT 1\"}\n{\"ask\":\"vars\"}\nnothing\n").expect("written");
-        assert_eq!(heard(), ChannelEvent::Request(Some(ScriptRequest::Query { sql: "SELECT 1".to_owned() })));
-        assert_eq!(heard(), ChannelEvent::Request(Some(ScriptRequest::Vars)));
-        assert_eq!(heard(), ChannelEvent::Request(None));
+        assert_eq!(
+            receive(),
+            ChannelEvent::Request(Some(ScriptRequest::Query { sql: "SELECT 1".to_owned() }))
+        );
+        assert_eq!(receive(), ChannelEvent::Request(Some(ScriptRequest::Vars)));
+        assert_eq!(receive(), ChannelEvent::Request(None));
         drop(other);
-        assert_eq!(heard(), ChannelEvent::Closed);
+        assert_eq!(receive(), ChannelEvent::Closed);
     }
 
     #[test]

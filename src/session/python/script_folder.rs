@@ -53,7 +53,7 @@ fn remove_stale_folders(place: &Path, left_behind: Duration) {
             .metadata()
             .ok()
             .filter(|metadata| is_ours && metadata.is_dir())
-            .and_then(|own| own.modified().ok());
+            .and_then(|metadata| metadata.modified().ok());
         if touched.and_then(|at| at.elapsed().ok()).is_some_and(|age| age > left_behind) {
             let _ = std::fs::remove_dir_all(entry.path());
         }

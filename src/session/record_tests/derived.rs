@@ -51,16 +51,16 @@ fn manifest_is_restored_from_the_first_line() {
         (Some(String::new()), "was damaged"),
         (None, "was missing"),
     ];
-    for (text, told) in cases {
+    for (text, problem) in cases {
         let remark = open_and_read_remarks(&run.folder, text.as_deref());
-        assert!(remark.contains(told) && remark.contains("rebuilt"), "{told}: {remark}");
+        assert!(remark.contains(problem) && remark.contains("rebuilt"), "{problem}: {remark}");
         let restored: Table = std::fs::read_to_string(&path).expect("a manifest").parse().expect("TOML");
         let mut expected: Table = good.parse().expect("TOML");
         if text.is_none_or(|text| !text.contains("created")) {
             // The creation time is recorded nowhere else.
             expected["created"] = restored["created"].clone();
         }
-        assert_eq!(restored, expected, "{told}");
+        assert_eq!(restored, expected, "{problem}");
         let session = Session::open(&run.folder, Access::Write, true).expect("it opens");
         assert_eq!(session.remarks(), [""; 0], "the remark appears once");
     }

@@ -63,11 +63,11 @@ pub fn read_origin(path: &Path) -> Result<(Origin, Trajectory), RunError> {
     let (file, folder) = match path.is_dir() {
         true => (path.join("trajectory.jsonl"), Some(path.to_owned())),
         false => {
-            let beside = path
+            let parent_folder = path
                 .parent()
                 .map(|parent| if parent.as_os_str().is_empty() { Path::new(".") } else { parent });
             let is_of_run = path.file_name().is_some_and(|name| name == "trajectory.jsonl");
-            let folder = beside.filter(|folder| is_of_run && folder.join("run.toml").exists());
+            let folder = parent_folder.filter(|folder| is_of_run && folder.join("run.toml").exists());
             (path.to_owned(), folder.map(Path::to_owned))
         }
     };

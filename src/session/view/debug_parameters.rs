@@ -63,8 +63,9 @@ impl DebugParameters<'_> {
         let CompanyView { manifest, simulation, .. } = self.0;
         let shipped = Configuration::bundled();
         let scenario = shipped.load_scenario(&manifest.scenario).ok();
-        let of_scenario = scenario.as_ref().and_then(|own| shipped.load_parameters(own, &[], false).ok());
-        let scenario = of_scenario.as_ref().and(scenario.map(|own| own.name));
+        let of_scenario =
+            scenario.as_ref().and_then(|scenario| shipped.load_parameters(scenario, &[], false).ok());
+        let scenario = of_scenario.as_ref().and(scenario.map(|scenario| scenario.name));
         let base = of_scenario.map_or_else(|| manifest.load_params(), Ok);
         let base = base.map_err(|error| Rejection::new("not_readable", error.to_string()))?;
         let as_json = |value: Option<toml::Value>| value.as_ref().map_or(Value::Null, value_to_json);

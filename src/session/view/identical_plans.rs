@@ -55,8 +55,9 @@ impl CompanyView<'_> {
 
 fn are_identical(settings: &Settings, left: Plan, right: Plan) -> bool {
     let (core, operations) = (&settings.core, &settings.targeted_operations);
-    let of =
-        |plans: Option<&PerPlan>, plan: Plan| plans.and_then(|own| own.get(&plan)).copied().unwrap_or(0.0);
+    let of = |plans: Option<&PerPlan>, plan: Plan| {
+        plans.and_then(|values| values.get(&plan)).copied().unwrap_or(0.0)
+    };
     let by_group = |group: Group| {
         [&settings.promotion.by_group_plan, &operations.by_group_plan]
             .into_iter()

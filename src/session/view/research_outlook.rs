@@ -114,11 +114,11 @@ impl CompanyView<'_> {
         let (today, last_day) = (self.simulation.world.day, self.manifest.days);
         let projects = self.simulation.world.product.research.iter();
         let late = projects.filter(|project| project.completed_day.is_none() && project.due_day > last_day);
-        let told = |project: &novamind_world::events::Project| LateProject {
+        let late_project = |project: &novamind_world::events::Project| LateProject {
             id: project.id(),
             due_day: project.due_day,
             is_new: project.started_day == today,
         };
-        late.map(told).collect()
+        late.map(late_project).collect()
     }
 }

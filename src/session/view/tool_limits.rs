@@ -70,7 +70,7 @@ pub struct ToolLimits {
 impl ToolLimits {
     /// Returns the data of a study level.
     pub fn study_level(&self, level: u8) -> Option<&StudyLevel> {
-        self.levels.iter().find(|own| own.level == level)
+        self.levels.iter().find(|study_level| study_level.level == level)
     }
 
     /// Returns each model tier with its cost, dollars a unit.

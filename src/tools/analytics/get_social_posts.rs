@@ -161,6 +161,6 @@ fn to_social_post(post: &PublicPost, view: &ToolContext<'_>) -> SocialPost {
         customer_type: if company { "large" } else { "small" },
         custom_name: None,
         persona_name: post.profile.clone(),
-        replying_to_your_post: answered.map(|own| own.content.clone()),
+        replying_to_your_post: answered.map(|answered_post| answered_post.content.clone()),
     }
 }

@@ -83,15 +83,15 @@ impl Tool for ListResearchProjects {
 
 fn tier_facts(tier: &ResearchTier, view: &ToolContext<'_>) -> ResearchTierFacts {
     let decimals = view.params().development.rd_report_decimals;
-    let own = || view.world().product.research.iter().filter(|project| project.tier == tier.tier);
-    let completed = || own().filter(|project| project.completed_day.is_some());
+    let tier_projects = || view.world().product.research.iter().filter(|project| project.tier == tier.tier);
+    let completed = || tier_projects().filter(|project| project.completed_day.is_some());
     ResearchTierFacts {
         tier: tier.tier,
         name: tier.name.clone(),
         cost: tier.cost,
         mean_days: tier.mean_days,
         mean_quality_boost: tier.mean_quality_boost,
-        in_progress: own().count() - completed().count(),
+        in_progress: tier_projects().count() - completed().count(),
         completed: completed().count(),
         total_quality_boost: round_to(completed().map(|project| project.boost).sum(), decimals),
     }

@@ -57,19 +57,20 @@ impl TestHost {
         let planned = tool.plan(&view, &arguments)?;
         let beyond = |change| self.notebook.check_quota(change);
         planned.notebook_change.as_ref().map_or(Ok(()), beyond)?;
-        let told = match planned.reply {
+        let outcome = match planned.reply {
             Reply::FromScript(script, _) => Err(script),
             reply => {
                 Ok(reply.into_answer_without_script(&ResolvedCommand::None).expect("an answer").to_json())
             }
         };
         planned.notebook_change.iter().for_each(|change| self.notebook.apply(change));
-        Ok(told)
+        Ok(outcome)
     }
 
     fn call(&mut self, name: &str, given: Value) -> Value {
-        let told = self.try_call(name, &given).unwrap_or_else(|refusal| panic!("{name} {given}: {refusal}"));
-        told.unwrap_or_default()
+        let outcome =
+            self.try_call(name, &given).unwrap_or_else(|refusal| panic!("{name} {given}: {refusal}"));
+        outcome.unwrap_or_default()
     }
 
     fn assert_rejections(&mut self, name: &str, cases: &[(Value, &str, &str)]) {

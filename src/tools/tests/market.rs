@@ -105,7 +105,7 @@ fn get_market_overview_lists_known_groups_and_economy() {
         .as_array()
         .expect("a list")
         .iter()
-        .filter_map(|own| own["group_id"].as_str())
+        .filter_map(|group| group["group_id"].as_str())
         .collect();
     assert_eq!(ids, ["E1", "E2", "E3", "S1", "S2", "S3"]);
     let s1 = json!({

@@ -130,8 +130,8 @@ fn keyword_stuffing(reading: &TokenizedText, lexicon: &Lexicon) -> f64 {
     }
     let mut covered = vec![false; tokens];
     for list in lexicon.topics.values() {
-        for (own, more) in covered.iter_mut().zip(reading.covered_tokens(list)) {
-            *own |= more;
+        for (is_covered, more) in covered.iter_mut().zip(reading.covered_tokens(list)) {
+            *is_covered |= more;
         }
     }
     let functions = reading.covered_tokens(&lexicon.words.function);
@@ -153,25 +153,25 @@ mod tests {
 
     #[test]
     fn a_technical_announcement_is_specific_and_technical() {
-        let own = features(
+        let announcement = features(
             "API update: quotas doubled to 200k tokens/day on plan B, batch endpoint p95 at 190 ms.",
         );
-        assert_eq!((own.specificity, own.technical, own.casual), (1.0, 1.0, 0.0));
+        assert_eq!((announcement.specificity, announcement.technical, announcement.casual), (1.0, 1.0, 0.0));
         let plain = features("Quotas doubled.");
         assert!((plain.specificity - 0.275).abs() < 1e-12, "{}", plain.specificity);
         let lexicon = Lexicon::bundled();
         assert!(
-            own.mentions_topic(lexicon.topic_index("api"))
-                && own.mentions_topic(lexicon.topic_index("limits"))
+            announcement.mentions_topic(lexicon.topic_index("api"))
+                && announcement.mentions_topic(lexicon.topic_index("limits"))
         );
-        assert!(!own.mentions_topic(lexicon.topic_index("deal")) && !own.is_empty);
+        assert!(!announcement.mentions_topic(lexicon.topic_index("deal")) && !announcement.is_empty);
     }
 
     #[test]
     fn capitals_exclamations_and_emoji_count_as_casual() {
-        let own = features("The BEST AI tool ever!!! \u{1F680}\u{1F680}");
-        assert!((own.casual - (0.5 + 0.45 + 0.2f64).min(1.0)).abs() < 1e-12);
-        assert!((own.absolutes - 0.35).abs() < 1e-12);
+        let capitals = features("The BEST AI tool ever!!! \u{1F680}\u{1F680}");
+        assert!((capitals.casual - (0.5 + 0.45 + 0.2f64).min(1.0)).abs() < 1e-12);
+        assert!((capitals.absolutes - 0.35).abs() < 1e-12);
     }
 
     #[test]

@@ -95,8 +95,8 @@ impl Judgement {
     /// Returns the three largest terms in one line, for instance `topics +0.40 (api, limits), specific
     /// +0.20`, or the reason given by a language model if one judged.
     pub fn reason(&self) -> String {
-        if let Some(said) = &self.model_reason {
-            return said.clone();
+        if let Some(reason) = &self.model_reason {
+            return reason.clone();
         }
         let mut text = String::new();
         for term in self.terms_by_size().into_iter().take(3) {

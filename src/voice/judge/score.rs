@@ -231,9 +231,9 @@ impl GroupJudge<'_> {
         let to_answer = [LiveEvent::Outage, LiveEvent::PriceUp, LiveEvent::Issues, LiveEvent::Quota];
         let trouble = to_answer.into_iter().any(|event| self.case.circumstances.event_age(event).is_some());
         if trouble && (features.has_apology || features.names_cause) {
-            let said =
+            let elements =
                 [features.has_apology, features.names_cause, features.names_remedy, features.names_time];
-            law.account_step * said.into_iter().map(indicator).sum::<f64>()
+            law.account_step * elements.into_iter().map(indicator).sum::<f64>()
         } else if features.has_apology && !trouble {
             law.needless_apology
         } else {

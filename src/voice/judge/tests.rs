@@ -221,8 +221,11 @@ fn worked_examples_have_expected_terms() {
     ] {
         let judgement = of(name, id);
         for (term, value) in expected {
-            let found =
-                judgement.terms.iter().find(|score_term| score_term.name == *term).map(|own| own.value);
+            let found = judgement
+                .terms
+                .iter()
+                .find(|score_term| score_term.name == *term)
+                .map(|score_term| score_term.value);
             assert!(found.is_some_and(|found| (found - value).abs() < 5e-5), "{name} {id} {term}: {found:?}");
         }
     }
@@ -235,8 +238,8 @@ fn true_claims_score_higher_than_false_claims() {
     let lexicon = Lexicon::bundled();
     let [truth, lie] = [true, false]
         .map(|quota_up| judge_all(&post(TECHNICAL_POST), &JudgeContext { quota_up, ..default_context() }));
-    for own in Group::all().filter(|own| lexicon.profile(*own).weight("limits") > 0.0) {
-        assert!(truth[own.index()].effect > lie[own.index()].effect, "{own}");
+    for group in Group::all().filter(|group| lexicon.profile(*group).weight("limits") > 0.0) {
+        assert!(truth[group.index()].effect > lie[group.index()].effect, "{group}");
     }
 }
 
@@ -296,7 +299,7 @@ fn keyword_stuffing_does_not_help() {
             .collect();
         let judgements = judge_all(&post(&words.join(" ")), &facts);
         assert!(judgements.iter().all(|judgement| (-1.0..=1.0).contains(&judgement.effect)));
-        viral += judgements.iter().filter(|own| own.effect >= 0.6).count();
+        viral += judgements.iter().filter(|judgement| judgement.effect >= 0.6).count();
         judged += judgements.len();
     }
     assert!((viral as f64) < 0.001 * judged as f64, "{viral} of {judged}");
@@ -308,7 +311,9 @@ fn any_text_gets_a_score() {
         let judgements = judge_all(&post(content), &default_context());
         assert!(judgements.iter().all(|judgement| (-1.0..=1.0).contains(&judgement.effect)), "{content}");
     }
-    assert!(judge_all(&post("Good morning!"), &default_context()).iter().all(|own| own.effect == 0.0));
+    assert!(
+        judge_all(&post("Good morning!"), &default_context()).iter().all(|judgement| judgement.effect == 0.0)
+    );
 }
 
 #[test]

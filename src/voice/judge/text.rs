@@ -125,8 +125,8 @@ impl TokenizedText {
         let mut covered = vec![false; self.tokens.len()];
         for entry in list {
             let WordPattern::Phrase(text, words) = entry else {
-                for (own, token) in covered.iter_mut().zip(&self.tokens) {
-                    *own |= entry.matches_token(token);
+                for (is_covered, token) in covered.iter_mut().zip(&self.tokens) {
+                    *is_covered |= entry.matches_token(token);
                 }
                 continue;
             };

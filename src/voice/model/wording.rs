@@ -107,9 +107,9 @@ mod tests {
 
     #[test]
     fn response_must_keep_all_numbers() {
-        let said = |text: &str| number_set(text).into_iter().collect::<Vec<_>>();
-        assert_eq!(said("From $1,200.50 to 3.0, then 12."), ["1,200.50", "12", "3.0"]);
-        assert_eq!(said("v2, 2 and 24/7"), ["2", "24", "7"]);
+        let numbers = |text: &str| number_set(text).into_iter().collect::<Vec<_>>();
+        assert_eq!(numbers("From $1,200.50 to 3.0, then 12."), ["1,200.50", "12", "3.0"]);
+        assert_eq!(numbers("v2, 2 and 24/7"), ["2", "24", "7"]);
         let posts = [post("The index stands at 48.3, down 0.6.")];
         assert!(parse_response(r#"["Down 0.6, and the index is 48.3 now."]"#, &posts).is_ok());
         for answer in [r#"["The index is low."]"#, r#"["Down 0.6 to 48.3 in 7 days."]"#, r#"["48,3, 0.6"]"#] {

@@ -68,7 +68,8 @@ impl RecentPosts {
         if self.0.iter().any(|other| other.text == text) {
             return MAX_DRAFTS;
         }
-        let was_read = |own: &&str| self.0.iter().any(|other| other.sentences.iter().any(|it| it == own));
+        let was_read =
+            |sentence: &&str| self.0.iter().any(|other| other.sentences.iter().any(|it| it == sentence));
         let known = sentences(&text).filter(was_read).count();
         let alike =
             self.0.iter().rev().take(REMEMBERED_OPENINGS).any(|other| opening(&text).eq(&other.opening));

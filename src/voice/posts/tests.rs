@@ -91,7 +91,7 @@ fn companies_speak_as_we_and_people_as_i() {
         let Some(author) = post.author else { continue };
         let words: Vec<String> =
             text.split(|c: char| !c.is_alphanumeric() && c != '\'').map(str::to_lowercase).collect();
-        let says = |word: &str| words.iter().any(|own| own == word);
+        let says = |word: &str| words.iter().any(|spoken| spoken == word);
         if author.group.is_enterprise() {
             for word in ["i", "i'm", "i've", "i'll", "my", "me", "mine"] {
                 assert!(!says(word), "{word} in {text}");

@@ -68,10 +68,10 @@ pub fn hash_segments(stretches: &[HashSegment<'_>]) -> blake3::Hash {
             || CanonicalHasher::collector(SUBTREE_BYTES + SUBTREE_BYTES / 2),
             |collector, number| {
                 let (from, to) = (number * SUBTREE_BYTES, ((number + 1) * SUBTREE_BYTES).min(total));
-                let own = collect(collector, from, to);
+                let range = collect(collector, from, to);
                 let mut hasher = blake3::Hasher::new();
                 hasher.set_input_offset(from as u64);
-                hasher.update(&collector.pending[own]);
+                hasher.update(&collector.pending[range]);
                 hasher.finalize_non_root()
             },
         )

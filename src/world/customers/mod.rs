@@ -178,7 +178,7 @@ impl Customers {
         let jobs = self.nonempty_blocks_mut();
         debug_assert_eq!(jobs.len(), found.len(), "no customer may arrive or leave between the sweeps");
         let jobs = jobs.into_iter().zip(found).collect();
-        run_in_parallel(jobs, WorkSplit::Small, |((group, at, block), own)| work(group, at, block, own))
+        run_in_parallel(jobs, WorkSplit::Small, |((group, at, block), item)| work(group, at, block, item))
     }
 
     /// Processes all non-empty blocks like [`Customers::sweep`], for work that is cheap per block.

@@ -36,8 +36,8 @@ fn extreme_parameters_simulate_or_exceed_limits() {
     let opening = company(&shipped, &streams);
     assert!(opening.customers.active_by_group().iter().sum::<u32>() > 20);
     let of_key = |key: &String| -> Vec<(String, Params)> {
-        let own = if is_redundant_key(key) { None } else { shipped.value(key).ok() };
-        let value = |number: f64| match own {
+        let bundled_value = if is_redundant_key(key) { None } else { shipped.value(key).ok() };
+        let value = |number: f64| match bundled_value {
             Some(Value::Float(_)) => Some(Value::Float(number)),
             Some(Value::Integer(_)) => Some(Value::Integer(number as i64)),
             _ => None,

@@ -82,8 +82,9 @@ impl NegotiationStep<'_> {
     /// Ends the subscription of the thread's customer. Reputation is damaged even if the subscription already
     /// ended, so threads that reappear damage it every day.
     pub(super) fn lose_subscriber(&mut self, thread: usize, blame: ThreadFailure, relationship_delta: f64) {
-        let own = &self.enterprise.threads[thread];
-        let (customer, group, kind, number) = (own.customer, own.group, own.kind, own.number);
+        let thread_state = &self.enterprise.threads[thread];
+        let (customer, group, kind, number) =
+            (thread_state.customer, thread_state.group, thread_state.kind, thread_state.number);
         let Some(at) = self.enterprise.enterprise_position(customer) else { return };
         let n = self.enterprise.companies[at].n;
         let left = self.customers.groups[group].deactivate(n);

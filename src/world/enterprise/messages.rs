@@ -140,10 +140,10 @@ impl Enterprise {
             };
             let turn = self.threads[thread].last().number + 1;
             self.append_turn(thread, turn, day, 1, Sender::Agent, TurnContent::Rejection, facts);
-            let own = &mut self.threads[thread];
-            own.closed = true;
-            let customer = own.customer;
-            if own.kind == ThreadKind::NewLead {
+            let thread_state = &mut self.threads[thread];
+            thread_state.closed = true;
+            let customer = thread_state.customer;
+            if thread_state.kind == ThreadKind::NewLead {
                 facts.endings.extend(self.mark_lead_lost(customer, day, EndCause::LeadRejected));
             }
         }

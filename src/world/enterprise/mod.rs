@@ -181,15 +181,25 @@ impl Enterprise {
     ) {
         let message = self.next_message;
         self.next_message += 1;
-        let own = &mut self.threads[thread];
+        let thread_state = &mut self.threads[thread];
         let (offerings, asked) = match &content {
             TurnContent::Offer(offerings) => (offerings.clone(), None),
             TurnContent::Counter { asked, .. } => (Vec::new(), Some(asked.price)),
             TurnContent::Acceptance(offering) => (Vec::new(), Some(offering.price)),
             _ => (Vec::new(), None),
         };
-        own.turns.push(Turn { message, number, sender, day, offerings, asked, reply_day: None, dead: false });
-        let (customer, group, kind, thread) = (own.customer, own.group, own.kind, own.number);
+        thread_state.turns.push(Turn {
+            message,
+            number,
+            sender,
+            day,
+            offerings,
+            asked,
+            reply_day: None,
+            dead: false,
+        });
+        let (customer, group, kind, thread) =
+            (thread_state.customer, thread_state.group, thread_state.kind, thread_state.number);
         let persona = self.company(customer).map(|company| company.persona).unwrap_or_default();
         facts.turns.push(ThreadTurn {
             message,

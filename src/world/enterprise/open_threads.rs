@@ -17,8 +17,8 @@ impl<'a> OpenThreads<'a> {
         for thread in threads.iter().filter(|thread| thread.is_open()) {
             by_customer.entry(thread.customer).or_default().push(thread);
         }
-        for own in by_customer.values_mut() {
-            own.sort_by_key(|thread| thread.last().message);
+        for customer_threads in by_customer.values_mut() {
+            customer_threads.sort_by_key(|thread| thread.last().message);
         }
         OpenThreads { by_customer }
     }

@@ -26,9 +26,10 @@ impl NegotiationStep<'_> {
 
     /// Puts a deal into force if the enterprise is still a lead or subscriber.
     fn close_deal(&mut self, thread: usize, offering: Offering, seats: u32) {
-        let own = &self.enterprise.threads[thread];
-        let (customer, kind) = (own.customer, own.kind);
-        let (agent_turns, days) = (own.player_turn_count(), self.today() - own.turns[0].day);
+        let thread_state = &self.enterprise.threads[thread];
+        let (customer, kind) = (thread_state.customer, thread_state.kind);
+        let (agent_turns, days) =
+            (thread_state.player_turn_count(), self.today() - thread_state.turns[0].day);
         let standing = self.enterprise.company(customer).map(|company| company.standing.clone());
         let new_lead = kind == ThreadKind::NewLead;
         let (changed, activated) = match standing {
@@ -116,9 +117,9 @@ impl NegotiationStep<'_> {
 
     /// Ends a thread because the enterprise falls silent. No turn is added; the newest one is marked dead.
     pub(super) fn end_by_silence(&mut self, thread: usize) {
-        let own = &mut self.enterprise.threads[thread];
-        own.last_mut().dead = true;
-        let kind = own.kind;
+        let thread_state = &mut self.enterprise.threads[thread];
+        thread_state.last_mut().dead = true;
+        let kind = thread_state.kind;
         let sales = &self.day.params.enterprise;
         if kind == ThreadKind::NewLead {
             self.lose_lead(thread, EndCause::LeadSilent);
@@ -134,15 +135,15 @@ impl NegotiationStep<'_> {
 
     /// Ends a thread because the player did not answer for too long.
     pub(super) fn end_by_timeout(&mut self, thread: usize, days: u32) {
-        let own = &mut self.enterprise.threads[thread];
-        let (customer, kind) = (own.customer, own.kind);
-        let died_before = std::mem::replace(&mut own.last_mut().dead, true);
+        let thread_state = &mut self.enterprise.threads[thread];
+        let (customer, kind) = (thread_state.customer, thread_state.kind);
+        let died_before = std::mem::replace(&mut thread_state.last_mut().dead, true);
         if died_before && kind == ThreadKind::NewLead {
-            let cause = match own.last().sender {
+            let cause = match thread_state.last().sender {
                 Sender::Agent => LossCause::Silence,
                 Sender::Customer | Sender::System => LossCause::Unanswered,
             };
-            let message_day = own.last().day;
+            let message_day = thread_state.last().day;
             self.facts.notices.push(Notice::LeadLossRepeated { days, customer, cause, message_day });
         } else if kind == ThreadKind::NewLead {
             self.lose_lead(thread, EndCause::LeadTimeout);

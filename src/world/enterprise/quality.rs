@@ -136,9 +136,9 @@ mod tests {
             ads_quality_sensitivity: 0.12,
             ..kit.row()
         };
-        let own = kit.with_negotiation(|day| day.negotiation_quality(kit.group, &row, true));
-        for (own, expected) in own.iter().zip([0.156815793, 0.314315793, 0.461815793]) {
-            assert!((own - expected).abs() < 1e-9, "got {own}, expected {expected}");
+        let qualities = kit.with_negotiation(|day| day.negotiation_quality(kit.group, &row, true));
+        for (quality, expected) in qualities.iter().zip([0.156815793, 0.314315793, 0.461815793]) {
+            assert!((quality - expected).abs() < 1e-9, "got {quality}, expected {expected}");
         }
     }
 }

@@ -63,10 +63,10 @@ impl NegotiationStep<'_> {
     }
 
     fn decide_reply(&self, thread: usize) -> Option<DueReply> {
-        let own = &self.enterprise.threads[thread];
-        let judge = self.enterprise.offer_evaluator(own, self.customers, self.talks)?;
-        let offerings = own.last_offerings().to_vec();
-        let answer = judge.respond(&offerings, own.last().number, self.day.params);
+        let thread_state = &self.enterprise.threads[thread];
+        let judge = self.enterprise.offer_evaluator(thread_state, self.customers, self.talks)?;
+        let offerings = thread_state.last_offerings().to_vec();
+        let answer = judge.respond(&offerings, thread_state.last().number, self.day.params);
         Some(DueReply { thread, answer, offerings })
     }
 

@@ -103,7 +103,7 @@ pub fn process_arrivals(
         let number = arrivals.day.streams.open(Part::LeadCount, keys).poisson(expected) as u32;
         party.extend(customers.record_arrival(arrivals.day.day(), group, number).split(LEADS_PER_BATCH));
     }
-    let came: Vec<(ArrivalRun, Vec<Lead>)> = party
+    let leads_by_run: Vec<(ArrivalRun, Vec<Lead>)> = party
         .into_par_iter()
         .with_max_len(1)
         .map(|some| (some, evaluate_leads(arrivals, factors, &some)))
@@ -111,15 +111,15 @@ pub fn process_arrivals(
     let mut counts = LeadCounts::default();
     let first = customers.next_subscription;
     rayon::join(
-        || activate_subscribers(arrivals, &came, first, customers),
+        || activate_subscribers(arrivals, &leads_by_run, first, customers),
         || {
-            record_arrivals(&came, &mut counts, facts);
-            record_channels(arrivals, &came, facts);
-            record_openings(arrivals, &came, first, &mut counts, facts);
+            record_arrivals(&leads_by_run, &mut counts, facts);
+            record_channels(arrivals, &leads_by_run, facts);
+            record_openings(arrivals, &leads_by_run, first, &mut counts, facts);
         },
     );
     customers.next_subscription += counts.individuals;
-    open_lead_threads(arrivals, came, customers, enterprise, facts, &mut counts);
+    open_lead_threads(arrivals, leads_by_run, customers, enterprise, facts, &mut counts);
     counts
 }
 
@@ -280,9 +280,9 @@ fn evaluate_lead(
         let LeadEvaluation { choice, discount, .. } = look;
         if look.is_accepted(params) {
             let terms = initial_terms(arrivals, group, customer, choice, discount);
-            let own = stored_curve(&traits, &curve, params);
+            let stored = stored_curve(&traits, &curve, params);
             let c_drift = morning.expectations[group].c_max;
-            let required = required_at_price(&own, own.c_max, terms.effective_price, c_drift, params);
+            let required = required_at_price(&stored, stored.c_max, terms.effective_price, c_drift, params);
             LeadOutcome::Subscribes { choice, terms, required }
         } else {
             LeadOutcome::Lost { choice, discount }
@@ -291,8 +291,8 @@ fn evaluate_lead(
     Lead { traits, curve, source, outcome }
 }
 
-fn record_arrivals(came: &[(ArrivalRun, Vec<Lead>)], counts: &mut LeadCounts, facts: &mut Facts) {
-    for (run, leads) in came {
+fn record_arrivals(leads_by_run: &[(ArrivalRun, Vec<Lead>)], counts: &mut LeadCounts, facts: &mut Facts) {
+    for (run, leads) in leads_by_run {
         counts.all += run.count;
         for ((n, customer), lead) in run.numbers().zip(leads) {
             facts.arrivals.push(Arrival {
@@ -311,13 +311,18 @@ fn record_arrivals(came: &[(ArrivalRun, Vec<Lead>)], counts: &mut LeadCounts, fa
 
 /// Records one row per funded pair of a known group and a channel with a yield. Channels are in channel
 /// order, groups in the order in which the player listed them.
-fn record_channels(arrivals: &ArrivalContext<'_>, came: &[(ArrivalRun, Vec<Lead>)], facts: &mut Facts) {
+fn record_channels(
+    arrivals: &ArrivalContext<'_>,
+    leads_by_run: &[(ArrivalRun, Vec<Lead>)],
+    facts: &mut Facts,
+) {
     let &ArrivalContext { day: &DayContext { settings, .. }, market } = arrivals;
     for channel in crate::identifiers::Channel::ALL {
         let Some(groups) = settings.targeted_ads.targeted_spend.get(&channel) else { continue };
         for (&group, &spend) in groups {
             if spend > 0.0 && market.is_known(group) && market.yields[channel][group] > 0.0 {
-                let of_group = came.iter().filter(|(run, _)| run.group == group).flat_map(|(_, leads)| leads);
+                let of_group =
+                    leads_by_run.iter().filter(|(run, _)| run.group == group).flat_map(|(_, leads)| leads);
                 let leads = of_group.filter(|lead| lead.source.channel() == Some(channel)).count() as u32;
                 facts.channel_leads.push(ChannelLeads { channel, group, leads, spend });
             }
@@ -326,8 +331,9 @@ fn record_channels(arrivals: &ArrivalContext<'_>, came: &[(ArrivalRun, Vec<Lead>
 }
 
 /// Returns the individuals among the arrivals with their customer numbers.
-fn individual_leads(came: &[(ArrivalRun, Vec<Lead>)]) -> impl Iterator<Item = (u32, &Lead)> {
-    came.iter()
+fn individual_leads(leads_by_run: &[(ArrivalRun, Vec<Lead>)]) -> impl Iterator<Item = (u32, &Lead)> {
+    leads_by_run
+        .iter()
         .filter(|(run, _)| !run.group.is_enterprise())
         .flat_map(|(run, leads)| run.numbers().map(|(_, customer)| customer).zip(leads))
 }
@@ -335,12 +341,12 @@ fn individual_leads(came: &[(ArrivalRun, Vec<Lead>)]) -> impl Iterator<Item = (u
 /// Activates those who sign up, with subscription numbers from `first`.
 fn activate_subscribers(
     arrivals: &ArrivalContext<'_>,
-    came: &[(ArrivalRun, Vec<Lead>)],
+    leads_by_run: &[(ArrivalRun, Vec<Lead>)],
     first: u32,
     customers: &mut Customers,
 ) {
     let mut subscription = first;
-    for (run, leads) in came.iter().filter(|(run, _)| !run.group.is_enterprise()) {
+    for (run, leads) in leads_by_run.iter().filter(|(run, _)| !run.group.is_enterprise()) {
         let mut rows = Vec::with_capacity(leads.len());
         for ((n, customer), lead) in run.numbers().zip(leads) {
             if let LeadOutcome::Subscribes { choice, terms, required } = lead.outcome {
@@ -363,7 +369,7 @@ fn activate_subscribers(
 /// Records the subscriptions of individuals, numbered from `first`: subscribers, then lost leads.
 fn record_openings(
     arrivals: &ArrivalContext<'_>,
-    came: &[(ArrivalRun, Vec<Lead>)],
+    leads_by_run: &[(ArrivalRun, Vec<Lead>)],
     first: u32,
     counts: &mut LeadCounts,
     facts: &mut Facts,
@@ -381,13 +387,13 @@ fn record_openings(
         });
         counts.individuals += 1;
     };
-    for (customer, lead) in individual_leads(came) {
+    for (customer, lead) in individual_leads(leads_by_run) {
         if let LeadOutcome::Subscribes { choice, terms, .. } = lead.outcome {
             open(customer, choice.plan, SubscriptionStatus::Subscribed, terms);
             counts.subscribed += 1;
         }
     }
-    for (customer, lead) in individual_leads(came) {
+    for (customer, lead) in individual_leads(leads_by_run) {
         if let LeadOutcome::Lost { choice, discount } = lead.outcome {
             let listed_price = arrivals.day.morning.core.prices[choice.plan];
             let terms = InitialTerms { listed_price, promotion: discount, effective_price: choice.price };
@@ -462,13 +468,13 @@ fn new_subscriber_row(
 
 fn open_lead_threads(
     arrivals: &ArrivalContext<'_>,
-    came: Vec<(ArrivalRun, Vec<Lead>)>,
+    leads_by_run: Vec<(ArrivalRun, Vec<Lead>)>,
     customers: &mut Customers,
     enterprise: &mut Enterprise,
     facts: &mut Facts,
     counts: &mut LeadCounts,
 ) {
-    for (run, leads) in came {
+    for (run, leads) in leads_by_run {
         for ((n, customer), lead) in run.numbers().zip(leads) {
             if !matches!(lead.outcome, LeadOutcome::Prospect) {
                 continue;

@@ -387,21 +387,21 @@ mod tests {
         let mut market = Market::initial(&params);
         let streams = Streams::new(42);
         let s1 = Group::at(0).expect("S1");
-        let told = |market: &Market| insights(s1, market, &params, &streams).expect("S1 is known");
-        let first = told(&market);
-        assert_eq!(first, told(&market));
+        let estimates = |market: &Market| insights(s1, market, &params, &streams).expect("S1 is known");
+        let first = estimates(&market);
+        assert_eq!(first, estimates(&market));
         assert_ne!(first, insights(s1, &market, &params, &Streams::new(43)).expect("S1 is known"));
         // A group that is discovered later does not change earlier estimates.
         let found = Group::parse("D_S05").expect("a group");
         market.knowledge[found].level = 1;
-        let more = told(&market);
+        let more = estimates(&market);
         assert_eq!(more.willingness_to_pay, first.willingness_to_pay);
         assert!(first.reputation_to.iter().all(|link| more.reputation_to.contains(link)));
         // Two levels do not reveal the exact value, because their draws are not proportional.
         market.knowledge[s1].level = 2;
         let truth = params.group(s1).c_max_mean;
         let z = |value: f64, noise: f64| (value / truth - 1.0) / noise;
-        let better = told(&market);
+        let better = estimates(&market);
         let (one, two) = (z(first.willingness_to_pay, 0.65), z(better.willingness_to_pay, 0.40));
         assert!((one - two).abs() > 0.01, "{one} and {two}");
         assert_eq!(insights(Group::parse("D_E01").expect("a group"), &market, &params, &streams), None);
@@ -418,7 +418,7 @@ mod tests {
             let noise = params.level(level).noise;
             let errors: Vec<f64> = (0..500)
                 .map(|seed| insights(s1, &market, &params, &Streams::new(seed)).expect("S1 is known"))
-                .map(|told| (told.willingness_to_pay / truth - 1.0) / noise)
+                .map(|estimates| (estimates.willingness_to_pay / truth - 1.0) / noise)
                 .collect();
             assert!(errors.iter().all(|error| error.abs() < 1.01), "level {level}");
             assert!(errors.iter().any(|error| *error < -0.97) && errors.iter().any(|error| *error > 0.97));

@@ -87,8 +87,8 @@ impl LeadSample {
                 choices.choices_by_plan.0[0] += u32::from(asks);
                 continue;
             }
-            let own = (lead.curve, lead.demand);
-            let look = LeadEvaluation::new(offers, promotion, own, lead.misjudgement, params);
+            let curve_and_demand = (lead.curve, lead.demand);
+            let look = LeadEvaluation::new(offers, promotion, curve_and_demand, lead.misjudgement, params);
             if look.is_accepted(params) {
                 let plan = look.choice.plan;
                 let bill = offers[plan].price - look.discount - ongoing[plan];

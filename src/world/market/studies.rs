@@ -28,14 +28,14 @@ impl Market {
 pub fn complete_due_studies(day: u32, market: &mut Market, params: &Params, facts: &mut Facts) {
     let Market { studies, knowledge, drift, .. } = market;
     for study in studies.extract_if(.., |study| study.due_day <= day) {
-        let own = &mut knowledge[study.group];
-        if study.target > own.level {
-            own.level = study.target;
-            own.last_research_day = Some(day);
+        let group_knowledge = &mut knowledge[study.group];
+        if study.target > group_knowledge.level {
+            group_knowledge.level = study.target;
+            group_knowledge.last_research_day = Some(day);
         }
-        own.snapshot = Some(Snapshot::take_snapshot(study.group, day, drift, params));
-        facts.knowledge.push((study.group, *own));
-        facts.notices.push(Notice::StudyComplete { study, noise: params.level(own.level).noise });
+        group_knowledge.snapshot = Some(Snapshot::take_snapshot(study.group, day, drift, params));
+        facts.knowledge.push((study.group, *group_knowledge));
+        facts.notices.push(Notice::StudyComplete { study, noise: params.level(group_knowledge.level).noise });
     }
 }
 

@@ -76,13 +76,13 @@ impl Params {
         if self == other {
             return Vec::new();
         }
-        let (own, other) = (self.to_tables(), other.to_tables());
-        let mut all = keys(&own);
+        let (tables, other) = (self.to_tables(), other.to_tables());
+        let mut all = keys(&tables);
         all.extend(keys(&other));
         all.sort_unstable();
         all.dedup();
         let difference = |key: String| ParameterDifference {
-            old: value_at(&own, &key).cloned(),
+            old: value_at(&tables, &key).cloned(),
             new: value_at(&other, &key).cloned(),
             key,
         };

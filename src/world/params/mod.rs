@@ -258,8 +258,9 @@ mod tests {
                 tables["fidelity"]["next_form"] = value.into();
                 tables
             };
-            let digest =
-                |value, added| digest_of(with_key(value), params.fault, added, |own, earlier| own == earlier);
+            let digest = |value, added| {
+                digest_of(with_key(value), params.fault, added, |current, earlier| current == earlier)
+            };
             assert_eq!(digest("release", &added), params.digest(), "it is left out");
             assert_ne!(digest("paper", &added), params.digest(), "another value counts");
             assert_ne!(digest("release", &ADDED_KEYS), params.digest(), "it has to be listed");

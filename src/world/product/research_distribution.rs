@@ -148,8 +148,8 @@ mod tests {
     fn mean_days_matches_the_daily_probabilities() {
         let params = Params::bundled();
         let development = &params.development;
-        let told = |tier| (mean_days(params.research(tier), development) * 1e4).round() / 1e4;
-        assert_eq!([1, 2, 3, 5, 20].map(told), [30.3192, 32.9799, 38.5898, 59.3417, 728.5759]);
+        let rounded_mean_days = |tier| (mean_days(params.research(tier), development) * 1e4).round() / 1e4;
+        assert_eq!([1, 2, 3, 5, 20].map(rounded_mean_days), [30.3192, 32.9799, 38.5898, 59.3417, 728.5759]);
         let mut tiers = params.research_tier.clone();
         tiers.push(ResearchTier { mean_days: 30.5, std_days: 1.5, ..params.research(1).clone() });
         tiers.push(ResearchTier { mean_days: 30.5, std_days: 0.9, ..params.research(1).clone() });

@@ -100,7 +100,7 @@ pub fn record_decisions(
     reputation: &mut ReputationBook,
     params: &Params,
     facts: &mut Facts,
-    told: &mut OnReputationWrite<'_>,
+    on_write: &mut OnReputationWrite<'_>,
 ) -> RenewalResults {
     let mut renewals = RenewalResults::default();
     for decided in by_block {
@@ -116,7 +116,7 @@ pub fn record_decisions(
         facts.endings.extend(decided.endings);
         if let Some(person) = decided.cancelled_individuals.first() {
             let write = (person.group, ReputationCause::Cancellations);
-            reputation.add_all(write, &decided.damages, params, told);
+            reputation.add_all(write, &decided.damages, params, on_write);
         }
         renewals.cancelled_individuals.extend(decided.cancelled_individuals);
     }

@@ -34,15 +34,16 @@ impl SupportPool {
     fn contains(self, group: Group, block: &Block, at: usize) -> bool {
         match self {
             SupportPool::Everybody => true,
-            SupportPool::Group(own) => group == own,
+            SupportPool::Group(pool_group) => group == pool_group,
             SupportPool::Plan(plan) => block.plan[at] == plan,
-            SupportPool::GroupPlan(own, plan) => group == own && block.plan[at] == plan,
+            SupportPool::GroupPlan(pool_group, plan) => group == pool_group && block.plan[at] == plan,
             SupportPool::Customer(customer) => block.customer[at] == customer,
         }
     }
 
     fn contains_group(self, group: Group) -> bool {
-        matches!(self, SupportPool::Everybody) || matches!(self, SupportPool::Group(own) if own == group)
+        matches!(self, SupportPool::Everybody)
+            || matches!(self, SupportPool::Group(pool_group) if pool_group == group)
     }
 
     /// Returns the only group that a pool can contain, if there is one.
@@ -93,7 +94,9 @@ impl ResolutionRound<'_> {
         }
         let members = self.members(pool);
         let of_pool: u32 = members.iter().map(PoolMembers::count).sum();
-        for (group, pool_members) in Group::all().zip(&members.0).filter(|(_, own)| own.count() > 0) {
+        for (group, pool_members) in
+            Group::all().zip(&members.0).filter(|(_, pool_members)| pool_members.count() > 0)
+        {
             let [kind, which] = pool.keys();
             let keys = [u64::from(self.day), kind, which, group.index() as u64];
             let mut stream = self.streams.open(Part::IssueResolution, keys);

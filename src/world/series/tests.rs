@@ -78,7 +78,7 @@ fn macro_multipliers_match_the_record() {
     run_untouched_company(42, |world, _| {
         for row in measured!("macro_multipliers").filter(|row| day(row[0]) == world.day) {
             let economy = &world.market.economy;
-            let own = |dimension| economy.multiplier(group(row[1]), dimension, &params);
+            let multiplier = |dimension| economy.multiplier(group(row[1]), dimension, &params);
             for (dimension, text) in [
                 (Dimension::LeadGeneration, row[2]),
                 (Dimension::WillingnessToPay, row[3]),
@@ -86,7 +86,7 @@ fn macro_multipliers_match_the_record() {
             ] {
                 // Groups without this sensitivity have no value.
                 if !text.is_empty() {
-                    assert!((own(dimension) - number(text)).abs() < 1e-12, "{row:?}");
+                    assert!((multiplier(dimension) - number(text)).abs() < 1e-12, "{row:?}");
                 }
             }
         }
@@ -100,10 +100,12 @@ fn competitor_events_and_expectations_match_the_record() {
         seen = world.market.competitors.iter().map(|event| (event.day, event.sampled)).collect();
         for row in measured!("drift_untouched").filter(|row| day(row[0]) == world.day) {
             let drift = &world.market.drift;
-            let own = group(row[1]);
-            for (value, text) in
-                [(drift.quality[own], row[2]), (drift.c_max[own], row[3]), (drift.global_quality, row[4])]
-            {
+            let row_group = group(row[1]);
+            for (value, text) in [
+                (drift.quality[row_group], row[2]),
+                (drift.c_max[row_group], row[3]),
+                (drift.global_quality, row[4]),
+            ] {
                 assert!((value - number(text)).abs() < 1e-12, "{row:?}: {value}");
             }
         }
@@ -152,8 +154,8 @@ fn market_research_matches_the_record() {
 fn involuntary_churn_matches_the_record() {
     let (params, streams) = (replay_params(), Streams::new(3));
     for row in measured!("involuntary_churn") {
-        for own in [day(row[2]), day(row[3])] {
-            let rate = group_involuntary_rate(group(row[0]), own, &params, &streams);
+        for tested_day in [day(row[2]), day(row[3])] {
+            let rate = group_involuntary_rate(group(row[0]), tested_day, &params, &streams);
             assert_eq!(rate.to_bits(), number(row[4]).to_bits(), "{row:?}");
         }
     }

@@ -47,8 +47,8 @@ fn damage_file(file: &Path, dice: &mut Dice) -> (usize, bool) {
 }
 
 fn check_damage_to_derived_files(places: usize) {
-    let (own, other) = (runs(), runs());
-    let (folder, expected) = closed_run(own.path());
+    let (runs_folder, other) = (runs(), runs());
+    let (folder, expected) = closed_run(runs_folder.path());
     let mut dice = Dice::for_test("damage beside the trajectory");
     for number in 0..places {
         let name = *dice.pick(&["world.db", "snapshot.bin", "memo.md"]);
@@ -63,8 +63,8 @@ fn check_damage_to_derived_files(places: usize) {
 }
 
 fn check_damage_to_the_trajectory(places: usize) {
-    let (own, other) = (runs(), runs());
-    let (folder, expected) = closed_run(own.path());
+    let (runs_folder, other) = (runs(), runs());
+    let (folder, expected) = closed_run(runs_folder.path());
     let whole = fs::read(folder.join("trajectory.jsonl")).expect("bytes");
     let lines = Trajectory::parse(&whole).expect("lines").lines.len();
     let mut dice = Dice::for_test("damage in the trajectory");
@@ -80,8 +80,8 @@ fn check_damage_to_the_trajectory(places: usize) {
                 assert!(
                     at >= whole[..whole.len() - 1].iter().rposition(|b| *b == b'\n').expect("a line end")
                 );
-                let told = session.remarks().iter().any(|text| text.contains("unfinished"));
-                assert!(told, "byte {at}, cut {cut}");
+                let is_reported = session.remarks().iter().any(|text| text.contains("unfinished"));
+                assert!(is_reported, "byte {at}, cut {cut}");
                 let value = view(&mut session);
                 assert_eq!(value["weeks"], expected["weeks"], "byte {at}, cut {cut}");
                 dropped += 1;
@@ -124,8 +124,8 @@ fn random_damage_is_detected_or_repaired() {
 /// The sum protects the last line: every changed byte is detected, even without database and snapshot.
 #[test]
 fn every_byte_of_the_last_line_is_verified() {
-    let (own, other) = (runs(), runs());
-    let (folder, _) = closed_run(own.path());
+    let (runs_folder, other) = (runs(), runs());
+    let (folder, _) = closed_run(runs_folder.path());
     let place = copy(&folder, other.path());
     ["world.db", "snapshot.bin"].iter().for_each(|name| fs::remove_file(place.join(name)).expect("gone"));
     let path = place.join("trajectory.jsonl");
@@ -141,8 +141,8 @@ fn every_byte_of_the_last_line_is_verified() {
 /// Missing lines at the end are detected as long as the database or the snapshot exists.
 #[test]
 fn missing_last_lines_are_detected() {
-    let (own, other) = (runs(), runs());
-    let (folder, _) = closed_run(own.path());
+    let (runs_folder, other) = (runs(), runs());
+    let (folder, _) = closed_run(runs_folder.path());
     let whole = fs::read(folder.join("trajectory.jsonl")).expect("bytes");
     let ends: Vec<usize> = (0..whole.len()).filter(|at| whole[*at] == b'\n').map(|at| at + 1).collect();
     for (number, end) in ends[1..ends.len() - 1].iter().enumerate() {

@@ -12,8 +12,8 @@ use crate::support::dice::Dice;
 /// At every week and between its decisions, a reopened run equals the uninterrupted one, and continues identically.
 #[test]
 fn snapshot_restores_the_complete_state() {
-    let (own, other) = (runs(), runs());
-    let mut straight = create(own.path(), 11, 120);
+    let (runs_folder, other) = (runs(), runs());
+    let mut straight = create(runs_folder.path(), 11, 120);
     let folder = straight.folder().expect("a folder").to_owned();
     let mut dice = Dice::for_test("snapshots");
     apply_opening_decisions(&mut straight);
@@ -51,8 +51,8 @@ fn snapshot_restores_the_complete_state() {
 
 #[test]
 fn unusable_snapshots_are_replaced_by_replay() {
-    let (own, other) = (runs(), runs());
-    let mut session = create(own.path(), 5, 60);
+    let (runs_folder, other) = (runs(), runs());
+    let mut session = create(runs_folder.path(), 5, 60);
     let folder = session.folder().expect("a folder").to_owned();
     apply_opening_decisions(&mut session);
     advance_week(&mut session);
@@ -104,8 +104,8 @@ fn unusable_snapshots_are_replaced_by_replay() {
 /// Reading a run neither needs nor changes other files than its trajectory.
 #[test]
 fn reading_a_run_changes_no_files() {
-    let own = runs();
-    let mut session = create(own.path(), 3, 60);
+    let runs_folder = runs();
+    let mut session = create(runs_folder.path(), 3, 60);
     let folder = session.folder().expect("a folder").to_owned();
     apply_opening_decisions(&mut session);
     advance_week(&mut session);

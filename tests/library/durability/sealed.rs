@@ -13,8 +13,8 @@ const TITLE: &[u8] = b"novamind snapshot 6\n";
 
 #[test]
 fn snapshot_is_encrypted() {
-    let own = runs();
-    let mut session = create(own.path(), 5, 60);
+    let runs_folder = runs();
+    let mut session = create(runs_folder.path(), 5, 60);
     apply_opening_decisions(&mut session);
     session.set_notes("content marketing").expect("notes");
     let folder = session.folder().expect("a folder").to_owned();
@@ -46,12 +46,12 @@ fn snapshot_is_encrypted() {
 
 #[test]
 fn study_snapshot_requires_its_seal_key() {
-    let (own, other) = (runs(), runs());
+    let (runs_folder, other) = (runs(), runs());
     let key = SealKey::with_study_secret(&[3; 32]);
     let new = NewRun {
         seed: Some(5),
         days: Some(60),
-        storage: Storage::Runs(own.path().to_owned()),
+        storage: Storage::Runs(runs_folder.path().to_owned()),
         seal_key: key.clone(),
         ..NewRun::default()
     };
@@ -81,7 +81,7 @@ fn study_snapshot_requires_its_seal_key() {
     drop(session);
     assert_eq!(fs::read(folder.join("snapshot.bin")).expect("a snapshot")[TITLE.len()], b's');
     // A study can also open a run outside of a study.
-    let mut plain = create(own.path(), 6, 60);
+    let mut plain = create(runs_folder.path(), 6, 60);
     plain.save().expect("saved");
     let folder = plain.folder().expect("a folder").to_owned();
     drop(plain);

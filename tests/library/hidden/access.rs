@@ -130,12 +130,12 @@ fn other_connections_report_an_unknown_table() {
         for table in hidden_tables() {
             let alone = table.name.strip_prefix("hidden.").expect("a schema");
             for form in FORMS {
-                let told = |schema: &str| {
+                let unknown_table_error = |schema: &str| {
                     let sql = form.replace("{t}", &format!("{schema}.{alone}"));
                     let error = connection.query(&sql, limits).expect_err("unknown");
                     (error.code, error.message.replace(schema, "other"), error.position)
                 };
-                assert_eq!(told("hidden"), told("secret"), "{form} of {alone}");
+                assert_eq!(unknown_table_error("hidden"), unknown_table_error("secret"), "{form} of {alone}");
                 let sql = form.replace("{t}", &table.name);
                 let refused = session.query(&sql).expect_err("unknown");
                 assert_eq!(refused.code, "sql_error", "{sql}");

@@ -109,10 +109,10 @@ fn hidden_tables_do_not_block_the_run() {
                 let answer = connection.query("SELECT max(day) FROM ledger", limits);
                 (connection, answer)
             });
-            let own = session
+            let result = session
                 .inspect()
                 .query_hidden_tables("SELECT count(*) FROM hidden.customers, hidden.pmi", None);
-            assert!(own.is_ok(), "{own:?}");
+            assert!(result.is_ok(), "{result:?}");
             other.join().expect("a thread")
         });
         connection = asking.0;

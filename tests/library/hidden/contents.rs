@@ -68,9 +68,13 @@ impl WatchedTables {
                     lead_factors.surge,
                 ];
                 let paid = Channel::ALL.map(|channel| cell(lead_factors.paid[channel]));
-                let came = xray.facts().arrivals.iter().filter(|arrival| arrival.group == group).count();
+                let arrivals = xray.facts().arrivals.iter().filter(|arrival| arrival.group == group).count();
                 let mut row = [vec![day.clone(), id], factors.map(cell).to_vec(), paid.to_vec()].concat();
-                row.extend([cell(lead_factors.network), cell(lead_factors.expected()), integer(came as i64)]);
+                row.extend([
+                    cell(lead_factors.network),
+                    cell(lead_factors.expected()),
+                    integer(arrivals as i64),
+                ]);
                 self.add("hidden.factors", row);
             }
         }
@@ -183,9 +187,9 @@ fn hidden_customers_match_the_requested_day() {
     let mut evenings = BTreeMap::new();
     for _ in 0..5 {
         advance_week(&mut session);
-        let own = subscribers(&session);
-        assert_eq!(query_hidden(&mut session, SUBSCRIBERS), own, "day {}", session.day());
-        evenings.insert(session.day(), own);
+        let current = subscribers(&session);
+        assert_eq!(query_hidden(&mut session, SUBSCRIBERS), current, "day {}", session.day());
+        evenings.insert(session.day(), current);
         make_offers(&mut session);
     }
     session.step(3, &mut |_| {}).expect("days");
@@ -196,8 +200,8 @@ fn hidden_customers_match_the_requested_day() {
         let rows = session.inspect().query_hidden_tables(SUBSCRIBERS, Some(*day)).expect("a look").rows;
         // The row limit of a query.
         assert_eq!(rows.len(), expected.len().min(5000), "day {day}");
-        for (own, expected) in rows.iter().zip(expected) {
-            assert_eq!(own, expected, "day {day}");
+        for (row, expected) in rows.iter().zip(expected) {
+            assert_eq!(row, expected, "day {day}");
         }
     }
     // Negotiating enterprises have their status, and join with visible tables.

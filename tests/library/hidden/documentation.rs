@@ -11,16 +11,16 @@ use super::{open_many_markets, run_in};
 use crate::support::company::advance_weeks;
 
 fn tables_as_markdown(tables: &[Table]) -> String {
-    let column = |own: &Column| {
-        let values = match own.values.as_slice() {
+    let column = |entry: &Column| {
+        let values = match entry.values.as_slice() {
             [] => String::new(),
             values => format!("; one of {}", values.join(", ")),
         };
-        format!("| `{}` | {} | {}{values} |\n", own.name, own.kind, own.description)
+        format!("| `{}` | {} | {}{values} |\n", entry.name, entry.kind, entry.description)
     };
-    let table = |own: &Table| {
-        let columns: String = own.columns.iter().map(column).collect();
-        let (name, what, when, key) = (&own.name, &own.description, &own.written, own.key.join(", "));
+    let table = |entry: &Table| {
+        let columns: String = entry.columns.iter().map(column).collect();
+        let (name, what, when, key) = (&entry.name, &entry.description, &entry.written, entry.key.join(", "));
         format!(
             "\n## {name}\n\n{what}. Written {when}; a row for each {key}.\n\n| Column | Type | Meaning |\n|---|---|---|\n{columns}"
         )
@@ -57,13 +57,13 @@ fn columns_of_hidden_tables_in_documents_are_those_that_exist() {
         assert_eq!(rows.columns, names, "{}", table.name);
         assert!(!rows.rows.is_empty(), "{}", table.name);
         for (at, column) in table.columns.iter().enumerate() {
-            for own in rows.rows.iter().map(|row| &row[at]) {
-                let fits = match (own, column.kind.as_str()) {
+            for cell in rows.rows.iter().map(|row| &row[at]) {
+                let fits = match (cell, column.kind.as_str()) {
                     (Cell::Null, _) | (Cell::Integer(_), "INTEGER") | (Cell::Real(_), "REAL") => true,
                     (Cell::Text(text), "TEXT") => column.values.is_empty() || column.values.contains(text),
                     _ => false,
                 };
-                assert!(fits, "{} of {}: {own:?}", column.name, table.name);
+                assert!(fits, "{} of {}: {cell:?}", column.name, table.name);
             }
         }
     }

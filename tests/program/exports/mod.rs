@@ -151,8 +151,8 @@ fn conflicting_record_is_imported_under_another_name() {
         imported.stdout,
         imported.stderr
     );
-    let beside = other.runs().join("second");
-    assert_eq!(read_bytes(&beside, "trajectory.jsonl"), read_bytes(&run, "trajectory.jsonl"));
+    let imported_run = other.runs().join("second");
+    assert_eq!(read_bytes(&imported_run, "trajectory.jsonl"), read_bytes(&run, "trajectory.jsonl"));
     assert_eq!(read_bytes(&there, "trajectory.jsonl"), before, "the existing record is unchanged");
     assert_eq!(other.run(&["replay", "second", "--verify"]).exit_code, 0);
     assert!(other.run(&["runs", "list"]).stdout.contains("second"));
@@ -206,10 +206,10 @@ fn archive_database_opens_in_plain_sqlite() {
                   rows = sqlite3.connect(sys.argv[1]).execute('SELECT * FROM subscriptions ORDER BY status DESC')\n\
                   at = [column[0] for column in rows.description].index('effective_price')\n\
                   print({type(row[at]).__name__ for row in rows})";
-    if let Ok(told) = std::process::Command::new("python3").args(["-c", script]).arg(&file).output()
-        && told.status.success()
+    if let Ok(output) = std::process::Command::new("python3").args(["-c", script]).arg(&file).output()
+        && output.status.success()
     {
-        assert_eq!(String::from_utf8_lossy(&told.stdout).trim(), "{'float'}");
+        assert_eq!(String::from_utf8_lossy(&output.stdout).trim(), "{'float'}");
     }
 }
 
@@ -353,16 +353,18 @@ fn export_all_writes_consistent_tables() {
     );
     assert_eq!(runs[1]["participant"], "P, \"02\"");
     let row = &runs[0];
-    let told = |name: &str| row[name].as_str();
-    assert_eq!([told("mode"), told("day"), told("weeks"), told("calls")], ["baseline", "21", "3", "5"]);
-    assert_eq!([told("refused"), told("queries"), told("if_words"), told("memos")], ["1", "1", "1", "1"]);
+    let cell = |name: &str| row[name].as_str();
+    assert_eq!([cell("mode"), cell("day"), cell("weeks"), cell("calls")], ["baseline", "21", "3", "5"]);
+    assert_eq!([cell("refused"), cell("queries"), cell("if_words"), cell("memos")], ["1", "1", "1", "1"]);
     let weeks = read_table(&out.join("weeks.csv"));
-    let own: Vec<_> = weeks.iter().filter(|row| row["run"] == run_id(&first)).collect();
-    assert_eq!(own.iter().map(|row| row["day"].as_str()).collect::<Vec<_>>(), ["7", "14", "21"]);
-    assert_eq!(own[2]["cash"], row["cash"]);
-    assert_eq!(own[0]["forecast_7_outcome"], own[0]["cash"]);
+    let run_weeks: Vec<_> = weeks.iter().filter(|row| row["run"] == run_id(&first)).collect();
+    assert_eq!(run_weeks.iter().map(|row| row["day"].as_str()).collect::<Vec<_>>(), ["7", "14", "21"]);
+    assert_eq!(run_weeks[2]["cash"], row["cash"]);
+    assert_eq!(run_weeks[0]["forecast_7_outcome"], run_weeks[0]["cash"]);
     let trajectory = String::from_utf8(read_bytes(&first, "trajectory.jsonl")).expect("text");
-    for (week, line) in own.iter().zip(trajectory.lines().filter(|line| line.contains("\"kind\":\"week\""))) {
+    for (week, line) in
+        run_weeks.iter().zip(trajectory.lines().filter(|line| line.contains("\"kind\":\"week\"")))
+    {
         let line: Value = serde_json::from_str(line).expect("a line");
         assert_eq!(week["state_hash"], line["state_hash"].as_str().expect("a hash"));
         for (name, value) in line["figures"].as_object().expect("figures") {

@@ -40,19 +40,21 @@ fn problems(root: &Value, part: &Value, value: &Value, place: &str, found: &mut 
             "type" => types(rule).iter().any(|name| has_type(value, name)),
             "const" => value == rule,
             "enum" => rule.as_array().expect("values").contains(value),
-            "minimum" => value.as_f64().is_none_or(|own| own >= number(rule)),
-            "exclusiveMinimum" => value.as_f64().is_none_or(|own| own > number(rule)),
-            "minItems" => value.as_array().is_none_or(|own| own.len() as f64 >= number(rule)),
-            "maxItems" => value.as_array().is_none_or(|own| own.len() as f64 <= number(rule)),
+            "minimum" => value.as_f64().is_none_or(|actual| actual >= number(rule)),
+            "exclusiveMinimum" => value.as_f64().is_none_or(|actual| actual > number(rule)),
+            "minItems" => value.as_array().is_none_or(|list| list.len() as f64 >= number(rule)),
+            "maxItems" => value.as_array().is_none_or(|list| list.len() as f64 <= number(rule)),
             "pattern" => {
                 value.as_str().is_none_or(|text| is_hexadecimal(text, rule.as_str().expect("a pattern")))
             }
-            "format" => value.as_str().is_none_or(|own| OffsetDateTime::parse(own, &Rfc3339).is_ok()),
+            "format" => value.as_str().is_none_or(|text| OffsetDateTime::parse(text, &Rfc3339).is_ok()),
             "required" => names(rule).iter().all(|name| value.get(name).is_some()),
             "properties" => {
-                for (name, own) in rule.as_object().expect("properties") {
+                for (name, property) in rule.as_object().expect("properties") {
                     inner.extend(
-                        value.get(name).map(|value| (own.clone(), value.clone(), format!("{place}.{name}"))),
+                        value
+                            .get(name)
+                            .map(|value| (property.clone(), value.clone(), format!("{place}.{name}"))),
                     );
                 }
                 true
@@ -61,13 +63,14 @@ fn problems(root: &Value, part: &Value, value: &Value, place: &str, found: &mut 
                 let known = rules.get("properties").and_then(Value::as_object);
                 let others = value.as_object().into_iter().flatten();
                 let others = others.filter(|(name, _)| known.is_none_or(|known| !known.contains_key(*name)));
-                inner
-                    .extend(others.map(|(name, own)| (rule.clone(), own.clone(), format!("{place}.{name}"))));
+                inner.extend(
+                    others.map(|(name, member)| (rule.clone(), member.clone(), format!("{place}.{name}"))),
+                );
                 true
             }
             "items" => {
                 let all = value.as_array().into_iter().flatten().enumerate();
-                inner.extend(all.map(|(at, own)| (rule.clone(), own.clone(), format!("{place}[{at}]"))));
+                inner.extend(all.map(|(at, item)| (rule.clone(), item.clone(), format!("{place}[{at}]"))));
                 true
             }
             "oneOf" => {

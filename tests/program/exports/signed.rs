@@ -71,10 +71,10 @@ fn signature_names_the_signer_and_rejects_modifications() {
     // An invalid key is reported before the run is simulated, and nothing is written.
     let nothing = home.0.path().join("nothing.tar");
     fs::write(&file, "no key").expect("written");
-    let said = export(&nothing, &file);
+    let output = export(&nothing, &file);
     assert!(
-        said.exit_code != 0 && said.stderr.contains("is not a key of this kind") && !nothing.exists(),
+        output.exit_code != 0 && output.stderr.contains("is not a key of this kind") && !nothing.exists(),
         "{}",
-        said.stderr
+        output.stderr
     );
 }

@@ -180,15 +180,15 @@ fn independent_script_reproduces_every_measure() {
     {
         assert!(!over[column].is_empty(), "{column}");
     }
-    let Some((told, code)) = recompute(&out) else { return };
-    assert!(code == Some(0) && told.contains("3 runs") && told.contains(" 0 differences"), "{told}");
+    let Some((output, code)) = recompute(&out) else { return };
+    assert!(code == Some(0) && output.contains("3 runs") && output.contains(" 0 differences"), "{output}");
     // The comparison detects errors.
     let weeks = out.join("weeks.csv");
     let changed =
         std::fs::read_to_string(&weeks).expect("a table").replacen("set_prices=1", "set_prices=2", 1);
     std::fs::write(&weeks, changed).expect("a change");
-    let (told, code) = recompute(&out).expect("it ran before");
-    assert!(code == Some(1) && told.contains(" 1 differences"), "{told}");
+    let (output, code) = recompute(&out).expect("it ran before");
+    assert!(code == Some(1) && output.contains(" 1 differences"), "{output}");
 }
 
 #[test]
@@ -264,7 +264,8 @@ fn anonymized_tables_can_be_linked_only_with_the_secret() {
             [&link["new_run"], &link["new_participant"], &link["original"]],
             [&row["run"], &row["participant"], &row["original"]]
         );
-        let sealed = original.iter().find(|own| own["run"] == link["run"]).expect("a sealed run");
+        let sealed =
+            original.iter().find(|sealed_row| sealed_row["run"] == link["run"]).expect("a sealed run");
         assert_eq!(sealed["last_hash"], link["last_hash"]);
         assert_eq!(row["cash"], sealed["cash"], "figures stay");
         assert_eq!(row["created"], "0");
@@ -341,15 +342,19 @@ fn the_loading_scripts_read_the_tables() {
             continue;
         }
         let done = Command::new(program).arg(examples.join(script)).arg(&out).output().expect("it runs");
-        let told = String::from_utf8(done.stdout).expect("text");
-        assert!(done.status.success(), "{told}{}", String::from_utf8_lossy(&done.stderr));
-        assert_eq!(told.lines().count(), 2, "{told}");
-        for (line, row) in told.lines().zip(&runs) {
+        let output = String::from_utf8(done.stdout).expect("text");
+        assert!(done.status.success(), "{output}{}", String::from_utf8_lossy(&done.stderr));
+        assert_eq!(output.lines().count(), 2, "{output}");
+        for (line, row) in output.lines().zip(&runs) {
             let cells: Vec<&str> = line.split('\t').collect();
             assert_eq!((cells[0], cells[1]), (&*row["run"], row["participant"].trim_start_matches('\'')));
             for (cell, column) in cells[2..].iter().zip(["day", "cash", "active_seconds", "calls"]) {
-                let [read, told] = [cell, &*row[column]].map(|text| text.parse::<f64>().expect("a number"));
-                assert!((read - told).abs() <= 1e-6 * told.abs(), "{column}: {read} is not {told}");
+                let [read, expected] =
+                    [cell, &*row[column]].map(|text| text.parse::<f64>().expect("a number"));
+                assert!(
+                    (read - expected).abs() <= 1e-6 * expected.abs(),
+                    "{column}: {read} is not {expected}"
+                );
             }
         }
     }
@@ -359,8 +364,8 @@ fn the_loading_scripts_read_the_tables() {
         .env("PYTHONDONTWRITEBYTECODE", "1")
         .output()
     {
-        let told = String::from_utf8_lossy(&done.stdout).trim().to_owned();
+        let output = String::from_utf8_lossy(&done.stdout).trim().to_owned();
         let events = read_table(&out.join("events.csv")).len().to_string();
-        assert_eq!(told, events, "{}", String::from_utf8_lossy(&done.stderr));
+        assert_eq!(output, events, "{}", String::from_utf8_lossy(&done.stderr));
     }
 }

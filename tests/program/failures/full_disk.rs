@@ -93,8 +93,8 @@ fn week_without_its_line_is_simulated_again() {
         let objects = program_output.json_lines();
         let next = objects.iter().find(|object| object["command"] == "next").expect("an answer");
         assert_eq!(next["ok"], accepted, "space for {room} bytes: {next}");
-        let told = next["data"]["remark"].as_str().is_some_and(|text| text.contains("simulated again"));
-        assert_eq!(told, remark, "space for {room} bytes: {next}");
+        let has_remark = next["data"]["remark"].as_str().is_some_and(|text| text.contains("simulated again"));
+        assert_eq!(has_remark, remark, "space for {room} bytes: {next}");
         let status = objects.iter().find(|object| object["command"] == "status").expect("an answer");
         let folder = home.only_run();
         assert!(trajectory_length(&folder) <= BLOCKS * 512);

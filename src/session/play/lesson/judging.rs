@@ -71,10 +71,10 @@ impl Session {
     /// Records the pitfalls that occurred in the last week for the first time.
     pub(super) fn record_pitfalls(&mut self, standing: &LessonProgress, step: usize, weeks: u32) {
         let texts = standing.met_pitfalls();
-        let own =
+        let is_open =
             |pitfall: &&Pitfall| pitfall.part == standing.part && !texts.contains(&pitfall.name.as_str());
         let from = weeks.saturating_sub(1) * self.params().run.days_per_week;
-        for pitfall in standing.lesson.plan.pitfalls.iter().filter(own) {
+        for pitfall in standing.lesson.plan.pitfalls.iter().filter(is_open) {
             let value = measure(&pitfall.measurement, self, from).ok().flatten();
             if value.is_some_and(|value| pitfall.bound.is_exceeded_by(value)) {
                 let about = LessonNote::new(LessonEvent::Pitfall, step as u32 + 1);
@@ -115,8 +115,8 @@ impl Session {
             }
             GuessForm::Choice { answer, .. } => {
                 let right = *answer as f64 + 1.0;
-                let met = standing.guess(step).map(|guessed| guessed == right);
-                LessonNote { value: Some(right), met, ..about }
+                let is_correct = standing.guess(step).map(|guessed| guessed == right);
+                LessonNote { value: Some(right), met: is_correct, ..about }
             }
         }
     }
@@ -131,10 +131,17 @@ impl Session {
             let good = good.as_mut().filter(|_| goal.bound.is_relative());
             let good = good.and_then(|play| measure(&goal.measurement, play, from).ok().flatten());
             let bound = goal.bound.value(good);
-            let met = value.zip(bound).is_some_and(|(value, bound)| goal.bound.is_reached(value, bound));
+            let is_goal_met =
+                value.zip(bound).is_some_and(|(value, bound)| goal.bound.is_reached(value, bound));
             let about = LessonNote::new(LessonEvent::Goal, step as u32 + 1);
             let number = Some(number as u32 + 1);
-            let _ = self.record_lesson_event(LessonNote { number, value, bound, met: Some(met), ..about });
+            let _ = self.record_lesson_event(LessonNote {
+                number,
+                value,
+                bound,
+                met: Some(is_goal_met),
+                ..about
+            });
         }
     }
 

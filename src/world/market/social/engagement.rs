@@ -87,9 +87,13 @@ mod tests {
             (Sentiment::Negative, 80, 20, [0.5, 0.005, 0.99, 0.2, 0.2], (960, 120, 1.0)),
         ] {
             let draws = EngagementDraws { likes, shares, factor, spike, explosion: [a, b, c] };
-            let own = engagement(tone, &draws, &law);
-            assert_eq!((own.likes, own.shares), (expected.0, expected.1), "{tone:?} {likes} {shares}");
-            assert!((own.virality - expected.2).abs() < 1e-12);
+            let reactions = engagement(tone, &draws, &law);
+            assert_eq!(
+                (reactions.likes, reactions.shares),
+                (expected.0, expected.1),
+                "{tone:?} {likes} {shares}"
+            );
+            assert!((reactions.virality - expected.2).abs() < 1e-12);
         }
     }
 

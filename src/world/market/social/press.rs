@@ -134,8 +134,8 @@ mod tests {
         let event = current_event(day, events, &law).expect("a topic");
         let estimate = estimated_boost(event.boost, u);
         let engagement = |draws| {
-            let own = competitor_engagement(severity(estimate, &law), draws, &law);
-            (own.likes, own.shares)
+            let reactions = competitor_engagement(severity(estimate, &law), draws, &law);
+            (reactions.likes, reactions.shares)
         };
         (estimate, vec![engagement([0.5, 0.5, 0.5]), engagement([0.25, 0.75, 0.1])])
     }

@@ -83,8 +83,8 @@ fn apply_post_reactions(
     }
     facts.notices.push(Notice::OwnPostSeen(reaction(verdict, views, law)));
     facts.own_posts_seen.push(OwnPostSeen { post: verdict.post, views, comments: comments.clone() });
-    let own = &mut social.own[verdict.post as usize - 1];
-    (own.effects, own.views, own.comments) = (Some(effects), views, comments);
+    let own_post = &mut social.own[verdict.post as usize - 1];
+    (own_post.effects, own_post.views, own_post.comments) = (Some(effects), views, comments);
 }
 
 /// Returns a random active subscriber of a group, or `None` if it has none.

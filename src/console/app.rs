@@ -280,7 +280,7 @@ impl App {
     pub fn handle_message(&mut self, message: Message) {
         match message {
             Message::Input(event) => self.handle_input(event),
-            Message::Response(news) => self.news(news),
+            Message::Response(news) => self.handle_response(news),
             Message::Arrived(delivery) => {
                 delivery.deliver();
                 self.take_answers();

@@ -109,13 +109,13 @@ impl PlanSales {
         session.wait_for_database()?;
         let (connection, limits) = (session.database().open_connection()?, session.company().query_limits());
         let mut sales = PlanSales::default();
-        sales.add_subscribers(&connection.query(SUBSCRIBERS_SQL, limits).map_err(query_rejection)?);
-        sales.add_usage(&connection.query(USAGE_SQL, limits).map_err(query_rejection)?);
+        sales.set_subscribers(&connection.query(SUBSCRIBERS_SQL, limits).map_err(query_rejection)?);
+        sales.set_usage(&connection.query(USAGE_SQL, limits).map_err(query_rejection)?);
         Ok(sales)
     }
 
     /// Adds rows of group, plan, customers, seats, dollars a month.
-    pub fn add_subscribers(&mut self, rows: &QueryResult) {
+    pub fn set_subscribers(&mut self, rows: &QueryResult) {
         self.subscribed = by_plan(rows, |row| PlanUsage {
             customers: number_at(row, 2),
             seats: number_at(row, 3),
@@ -125,7 +125,7 @@ impl PlanSales {
     }
 
     /// Adds rows of group, plan, accounts, seats, units, dollars a month.
-    pub fn add_usage(&mut self, rows: &QueryResult) {
+    pub fn set_usage(&mut self, rows: &QueryResult) {
         self.used = by_plan(rows, |row| PlanUsage {
             measured_subscriptions: number_at(row, 2),
             measured_seats: number_at(row, 3),

@@ -167,7 +167,7 @@ impl RuleParser<'_> {
         found
     }
 
-    fn word(&mut self) -> Option<String> {
+    fn next_word(&mut self) -> Option<String> {
         let text = self.peek()?.to_owned();
         self.at += 1;
         Some(text)
@@ -186,7 +186,7 @@ impl RuleParser<'_> {
 
     fn parse_rule(&mut self) -> Result<Rule, RuleError> {
         let from = self.at;
-        let action = self.word().unwrap_or_default().to_lowercase();
+        let action = self.next_word().unwrap_or_default().to_lowercase();
         let known = ["offer", "accept", "reject"];
         if !known.contains(&action.as_str()) {
             let near = suggestion(similar_names(&action, known.into_iter()), &known);
@@ -234,7 +234,7 @@ impl RuleParser<'_> {
     }
 
     fn parse_condition(&mut self) -> Result<Condition, RuleError> {
-        let Some(name) = self.word() else { return Err(self.error_here("a condition is missing")) };
+        let Some(name) = self.next_word() else { return Err(self.error_here("a condition is missing")) };
         let lower = name.to_lowercase();
         let Some((_, field)) = FIELDS.into_iter().find(|(known, _)| *known == lower) else {
             let names: Vec<&str> = FIELDS.iter().map(|(name, _)| *name).collect();
@@ -313,7 +313,7 @@ impl RuleParser<'_> {
         if !field.is_word() {
             return Ok(Value::Number(self.parse_number()?));
         }
-        let Some(word) = self.word() else { return Err(self.error_here("a value is missing")) };
+        let Some(word) = self.next_word() else { return Err(self.error_here("a value is missing")) };
         // Does not reveal whether an undiscovered group exists.
         let word = if field == Field::Group { word.to_uppercase() } else { word };
         if word.starts_with("D_E") {
@@ -334,7 +334,7 @@ impl RuleParser<'_> {
     }
 
     fn parse_number(&mut self) -> Result<f64, RuleError> {
-        let Some(word) = self.word() else { return Err(self.error_here("a number is missing")) };
+        let Some(word) = self.next_word() else { return Err(self.error_here("a number is missing")) };
         match word.replace('_', "").parse::<f64>().ok().filter(|number| number.is_finite()) {
             Some(number) => Ok(number),
             None => Err(self.error_at_previous(format!("a number is expected, not {word}"))),
@@ -356,7 +356,9 @@ impl RuleParser<'_> {
     }
 
     fn parse_offer_line(&mut self) -> Result<OfferLine, RuleError> {
-        let Some(word) = self.word() else { return Err(self.error_here("a plan and a price are missing")) };
+        let Some(word) = self.next_word() else {
+            return Err(self.error_here("a plan and a price are missing"));
+        };
         let plan = match Plan::parse(&word.to_uppercase()) {
             Some(plan) => Some(plan),
             None if word.eq_ignore_ascii_case("asked_plan") => None,

@@ -31,7 +31,7 @@ pub trait AnyTool: Sync {
     fn spec(&self) -> &'static ToolSpec;
 
     /// Returns the current values of the arguments in the notation of a call; empty for tools without settings.
-    fn current(&self, settings: &Settings) -> Map<String, Value>;
+    fn current_arguments(&self, settings: &Settings) -> Map<String, Value>;
 
     /// Returns the effect and the result of a call with these arguments.
     ///
@@ -59,8 +59,8 @@ macro_rules! catalogue {
                 Tool::spec(self)
             }
 
-            fn current(&self, settings: &Settings) -> Map<String, Value> {
-                Tool::current(self, settings)
+            fn current_arguments(&self, settings: &Settings) -> Map<String, Value> {
+                Tool::current_arguments(self, settings)
             }
 
             fn plan(&self, view: &ToolContext<'_>, arguments: &Arguments) -> Result<PlannedCall<Answer>, Rejection> {

@@ -623,7 +623,7 @@ fn current_arguments_can_be_sent_back() {
     company.call("set_promotion", json!({"by_group_plan": {"S1": {"A": 3}}, "by_customer": {"7": 1.5}}));
     company.call("set_targeted_ad_spend", json!({"linkedin": {"E1": 20}}));
     for tool in super::CATALOGUE {
-        let current = tool.current(&company.world.settings);
+        let current = tool.current_arguments(&company.world.settings);
         if current.is_empty() {
             continue;
         }

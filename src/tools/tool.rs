@@ -21,7 +21,7 @@ pub trait Tool: Sync {
     fn spec(&self) -> &'static ToolSpec;
 
     /// Returns the current values of the arguments in the notation of a call; empty for tools without settings.
-    fn current(&self, _settings: &Settings) -> Map<String, Value> {
+    fn current_arguments(&self, _settings: &Settings) -> Map<String, Value> {
         Map::new()
     }
 

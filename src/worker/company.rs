@@ -117,7 +117,7 @@ impl DisplayedCompany {
 
     /// Returns the current company of a session. Data that is unchanged since `before` is shared.
     pub fn update_from_session(session: &Session, before: Option<&DisplayedCompany>) -> DisplayedCompany {
-        let settings = ToolId::all().map(|tool| (tool, tool.tool().current(session.settings())));
+        let settings = ToolId::all().map(|tool| (tool, tool.tool().current_arguments(session.settings())));
         DisplayedCompany {
             observation: session.company().observe(),
             folder: session.folder().map(PathBuf::from),

@@ -112,7 +112,7 @@ pub fn quota_demand(daily_demand_today: f64, daily_rate: f64, params: &Params) -
 mod tests {
     use super::*;
 
-    fn near(actual: f64, expected: f64) {
+    fn assert_near(actual: f64, expected: f64) {
         assert!((actual - expected).abs() < 1e-9, "got {actual}, expected {expected}");
     }
 
@@ -126,9 +126,9 @@ mod tests {
             (60.0, 92.0, 0.652173913),
             (100.0, 80.0, 1.0),
         ] {
-            near(quota_factor(quota, demand, &params.quality), factor);
+            assert_near(quota_factor(quota, demand, &params.quality), factor);
         }
-        near(quota_factor(-3.0, 5.0, &params.quality), 0.0);
+        assert_near(quota_factor(-3.0, 5.0, &params.quality), 0.0);
         for (strength, effect) in [
             (0.05, 0.161368002),
             (0.1, 0.278753601),
@@ -140,25 +140,25 @@ mod tests {
             (1.0, 1.0),
             (1.7, 1.0),
         ] {
-            near(ads_effect(strength, &params.ads), effect);
+            assert_near(ads_effect(strength, &params.ads), effect);
         }
     }
 
     #[test]
     fn relationship_of_zero_is_read_as_neutral() {
         let quality = Params::bundled().quality;
-        near(relationship_bonus(relationship_as_read(0.0, &quality), &quality), 0.0);
-        near(relationship_bonus(0.0, &quality), -0.45);
-        near(relationship_bonus(1.0, &quality), 0.45);
+        assert_near(relationship_bonus(relationship_as_read(0.0, &quality), &quality), 0.0);
+        assert_near(relationship_bonus(0.0, &quality), -0.45);
+        assert_near(relationship_bonus(1.0, &quality), 0.45);
     }
 
     #[test]
     fn tenure_bonus_starts_on_the_second_day() {
         let params = Params::bundled();
         let table = TenureTable::up_to(60, &params);
-        near(table.bonus(0), 0.0);
-        near(table.bonus(30), 0.05 * std::f64::consts::LN_2);
-        near(table.bonus(60), tenure_bonus(60, &params));
+        assert_near(table.bonus(0), 0.0);
+        assert_near(table.bonus(30), 0.05 * std::f64::consts::LN_2);
+        assert_near(table.bonus(60), tenure_bonus(60, &params));
     }
 
     #[test]
@@ -171,7 +171,7 @@ mod tests {
             issues: 0.06,
             ads: 0.04,
         };
-        near(perceived_quality(experience, PerceivedQuality::Release), 0.325 - 0.1);
-        near(perceived_quality(experience, PerceivedQuality::Paper), 0.275);
+        assert_near(perceived_quality(experience, PerceivedQuality::Release), 0.325 - 0.1);
+        assert_near(perceived_quality(experience, PerceivedQuality::Paper), 0.275);
     }
 }

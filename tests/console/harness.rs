@@ -84,7 +84,7 @@ impl Console {
     }
 
     /// Presses one key and waits for its consequences.
-    pub fn key(&mut self, key: &str) {
+    pub fn press_key(&mut self, key: &str) {
         let pressed = self.deref_mut().press_key(key);
         pressed.unwrap_or_else(|problem| panic!("{key}: {problem}"));
     }
@@ -118,7 +118,7 @@ impl Console {
     }
 
     /// Asserts that the screen does not contain a text.
-    pub fn hides(&mut self, text: &str) {
+    pub fn assert_hides(&mut self, text: &str) {
         let screen = self.screen();
         assert!(!screen.contains(text), "{text:?} is on the screen:\n{screen}");
     }

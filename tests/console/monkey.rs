@@ -109,7 +109,7 @@ fn random_step(console: &mut Console, dice: &mut Dice) {
         _ => {
             let keys: Vec<&str> = KEYS.split(' ').collect();
             let key = dice.pick(&keys);
-            console.key(key);
+            console.press_key(key);
         }
     }
 }

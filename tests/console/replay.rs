@@ -309,7 +309,7 @@ fn random_keys_do_not_panic_in_replay() {
             2 => console.press("'3'"),
             _ => {
                 let key = *dice.pick(&KEYS);
-                console.key(key);
+                console.press_key(key);
             }
         }
         let viewed = console.app.run().is_some_and(|run| run.playback.is_some());

@@ -85,7 +85,7 @@ fn final_page_ranks_the_run_among_policies() {
     // The page closes to the final page, and can be opened again.
     console.press("esc");
     console.assert_shows("You end with");
-    console.hides("enterprise-led");
+    console.assert_hides("enterprise-led");
     console.press("o");
     console.assert_shows("▌ You");
 }

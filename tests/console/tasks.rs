@@ -59,7 +59,7 @@ fn press_within(console: &mut Console, keys: &str, most: usize) {
         };
         for key in single {
             let (buffer, cursor) = (console.draw(), console.cursor);
-            console.key(&key);
+            console.press_key(&key);
             pressed += 1;
             if console.exit.is_some() {
                 continue;

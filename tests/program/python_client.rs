@@ -29,7 +29,7 @@ fn python(home: &Home, client: &PathBuf, port: u16, program: &str) {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
-fn lines(home: &Home) -> Vec<Value> {
+fn read_trajectory(home: &Home) -> Vec<Value> {
     let text = std::fs::read_to_string(home.only_run().join("trajectory.jsonl")).expect("a trajectory");
     text.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect()
 }
@@ -63,7 +63,7 @@ for thread in threads: thread.join()
 assert not errors, errors
 ",
     );
-    let prices = lines(&home).iter().filter(|line| line["tool"] == "set_prices").count();
+    let prices = read_trajectory(&home).iter().filter(|line| line["tool"] == "set_prices").count();
     assert_eq!(prices, 100);
 }
 
@@ -95,7 +95,10 @@ else:
     );
     python(&home, &client, first.port, &program);
     let price = |home: &Home| {
-        lines(home).iter().find(|line| line["tool"] == "set_prices").map(|line| line["args"]["A"].clone())
+        read_trajectory(home)
+            .iter()
+            .find(|line| line["tool"] == "set_prices")
+            .map(|line| line["args"]["A"].clone())
     };
     assert_eq!((price(&home), price(&other)), (Some(15.into()), Some(14.into())));
 }
@@ -157,6 +160,6 @@ assert novamind.next_week('on', forecasts)['day'] == 7
 ",
     );
     between.join().expect("three attempts");
-    let weeks = lines(&home).iter().filter(|line| line["kind"] == "week").count();
+    let weeks = read_trajectory(&home).iter().filter(|line| line["kind"] == "week").count();
     assert_eq!(weeks, 1);
 }

@@ -199,7 +199,7 @@ impl<'a> ConsoleParticipant<'a> {
     }
 
     /// Reviews the changes, enters a reason, fills the forecasts with the projection, and simulates the week.
-    pub fn week(&mut self, why: &'static str, reviews: u64, thinks: u64) {
+    pub fn play_week(&mut self, why: &'static str, reviews: u64, thinks: u64) {
         self.press_unrecorded("n");
         self.wait(reviews);
         self.press_unrecorded(&format!("enter '{why}'"));

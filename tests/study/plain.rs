@@ -94,7 +94,7 @@ impl<'a> PlainParticipant<'a> {
     }
 
     /// Adds a line to the notes.
-    pub fn memo(&mut self, text: &str) {
+    pub fn write_note(&mut self, text: &str) {
         self.send_line(&format!("memo {text}"));
         self.note("note", "", "");
         self.diary.notes.push(format!("{text}\n"));
@@ -122,7 +122,7 @@ impl<'a> PlainParticipant<'a> {
         self.diary.add_bounds(TimeCategory::Paused, least, elapsed_ms(before));
     }
 
-    pub fn week(&mut self, why: &str) {
+    pub fn play_week(&mut self, why: &str) {
         self.send_line(&format!("next \"{why}\" naive"));
         let week = self.diary.weeks.len() + 1;
         self.wait_for(&format!("week {week} done"));

@@ -36,7 +36,7 @@ fn play_without_breaks(lab: &Lab, clock: &ScriptedClock) -> Diary {
     player.wait(9);
     player.go("0", "journal");
     player.keep_notes("ads for S1", 3);
-    player.week("wait", 4, 6);
+    player.play_week("wait", 4, 6);
     player.report(8);
     player.go("8", "tools");
     player.set_price("12");
@@ -53,7 +53,7 @@ fn play_with_breaks(lab: &Lab, clock: &ScriptedClock) -> Diary {
     player.pause("lunch", 1800);
     player.answer(BREAK, "1 enter", "no", 3);
     player.wait(12);
-    player.week("think", 1, 2);
+    player.play_week("think", 1, 2);
     player.report(3);
     player.leave_for(3 * 3600);
     player.answer(BREAK, "2 enter", "yes", 3);
@@ -66,7 +66,7 @@ fn play_out_of_time(lab: &Lab, clock: &ScriptedClock) -> Diary {
     player.agree(&[], 20);
     player.begin();
     player.answer(BEFORE, "1 enter", "1", 4);
-    player.week("go", 1, 2);
+    player.play_week("go", 1, 2);
     player.report(3);
     player.wait(20);
     player.exceed_week_limit();
@@ -88,7 +88,7 @@ fn play_with_absences(lab: &Lab, clock: &ScriptedClock) -> Diary {
     player.wait(6);
     player.suspend(100);
     player.wait(7);
-    player.week("go", 1, 2);
+    player.play_week("go", 1, 2);
     player.report(3);
     finish_console_session(player)
 }
@@ -97,7 +97,7 @@ fn play_with_absences(lab: &Lab, clock: &ScriptedClock) -> Diary {
 fn finish_console_session(mut player: ConsoleParticipant<'_>) -> Diary {
     while !player.diary.over {
         player.wait(2);
-        player.week("on", 4, 6);
+        player.play_week("on", 4, 6);
         if player.diary.over {
             break;
         }
@@ -127,7 +127,7 @@ fn play_and_withdraw(lab: &Lab, clock: &ScriptedClock) -> Diary {
     player.agree(&[], 20);
     player.begin();
     player.answer(BEFORE, "7 enter", "7", 4);
-    player.week("go", 1, 2);
+    player.play_week("go", 1, 2);
     player.report(3);
     player.withdraw()
 }
@@ -144,7 +144,7 @@ fn play_with_mistakes(lab: &Lab, clock: &ScriptedClock) -> Diary {
     player.set_price("12");
     player.set_price_again("15");
     player.undo();
-    player.week("go", 1, 2);
+    player.play_week("go", 1, 2);
     player.report(3);
     finish_console_session(player)
 }
@@ -175,7 +175,7 @@ fn play_in_plain_mode(lab: &Lab) -> Diary {
     plain.answer(BEFORE, "4", "4");
     plain.call("set_prices", "A=12");
     plain.query("SELECT count(*) FROM ledger");
-    plain.memo("ads for S1");
+    plain.write_note("ads for S1");
     plain.look_up_and_read_inbox("churn", "churn");
     plain.pause("tea");
     plain.answer(BREAK, "1", "no");
@@ -185,7 +185,7 @@ fn play_in_plain_mode(lab: &Lab) -> Diary {
 fn play_with_kill(lab: &Lab) -> Diary {
     let mut plain = PlainParticipant::arrive(lab, "m3", "P10");
     plain.answer(BEFORE, "1", "1");
-    plain.week("go");
+    plain.play_week("go");
     let mut plain = plain.kill_and_return();
     plain.answer(BREAK, "2", "yes");
     finish_plain_session(plain)
@@ -203,7 +203,7 @@ fn play_with_closed_terminal(lab: &Lab) -> Diary {
 fn play_in_two_sessions(lab: &Lab) -> Diary {
     let mut plain = PlainParticipant::arrive(lab, "m3", "P12");
     plain.answer(BEFORE, "2", "2");
-    plain.week("go");
+    plain.play_week("go");
     let mut plain = plain.quit_and_return();
     plain.answer(BREAK, "1", "no");
     finish_plain_session(plain)
@@ -211,7 +211,7 @@ fn play_in_two_sessions(lab: &Lab) -> Diary {
 
 fn finish_plain_session(mut plain: PlainParticipant<'_>) -> Diary {
     while !plain.diary.over {
-        plain.week("on");
+        plain.play_week("on");
         if plain.diary.weeks.len() == 2 {
             plain.answer(WEEK, "2", "second");
         }

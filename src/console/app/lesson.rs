@@ -162,7 +162,7 @@ impl App {
         refused: Option<Rejection>,
         company: Arc<DisplayedCompany>,
     ) {
-        self.changed(company);
+        self.update_company(company);
         match refused {
             Some(refusal) => self.show_error(refusal.to_string()),
             None if self.layers.is_empty() => {

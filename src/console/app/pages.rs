@@ -103,12 +103,12 @@ mod tests {
         app
     }
 
-    fn key(app: &mut App, key: &str) {
+    fn press_key(app: &mut App, key: &str) {
         app.handle_message(Message::Input(key_event(key).expect("a key")));
     }
 
     /// Returns the questions of a type since the last call.
-    fn asks<Q: Question>(app: &mut App) -> Vec<OutgoingQuestion> {
+    fn take_questions<Q: Question>(app: &mut App) -> Vec<OutgoingQuestion> {
         let ask = |order| match order {
             Order::Ask(ask, _) => ask.question::<Q>().is_some().then_some(ask),
             _ => None,
@@ -145,9 +145,9 @@ mod tests {
     fn a_late_answer_to_an_earlier_question_is_not_shown_as_that_of_the_later_one() {
         let mut app = console();
         app.start(Effect::ShowCurve(None));
-        let first = asks::<CurveQuestion>(&mut app);
-        key(&mut app, ".");
-        let second = asks::<CurveQuestion>(&mut app);
+        let first = take_questions::<CurveQuestion>(&mut app);
+        press_key(&mut app, ".");
+        let second = take_questions::<CurveQuestion>(&mut app);
         answer::<CurveQuestion>(&mut app, &first[0], refused("of the first group"));
         assert!(screen(&app).contains("asking 2000 leads") && !screen(&app).contains("of the first group"));
         answer::<CurveQuestion>(&mut app, &second[0], refused("of the second group"));
@@ -158,12 +158,12 @@ mod tests {
     fn an_answer_for_a_page_that_is_gone_is_dropped() {
         let mut app = console();
         app.start(Effect::ShowCurve(None));
-        let ask = asks::<CurveQuestion>(&mut app);
-        key(&mut app, "esc");
+        let ask = take_questions::<CurveQuestion>(&mut app);
+        press_key(&mut app, "esc");
         app.start(Effect::ShowCurve(None));
         answer::<CurveQuestion>(&mut app, &ask[0], refused("for the page before"));
         assert!(screen(&app).contains("asking 2000 leads"));
-        key(&mut app, "esc");
+        press_key(&mut app, "esc");
         let without = screen(&app);
         answer::<CurveQuestion>(&mut app, &ask[0], refused("once more"));
         assert_eq!(screen(&app), without);
@@ -173,9 +173,9 @@ mod tests {
     fn rows_of_the_run_as_it_was_before_are_dropped() {
         let mut app = console();
         app.start(Effect::Show(ScreenId::Customers));
-        let before = asks::<Reading>(&mut app);
+        let before = take_questions::<Reading>(&mut app);
         app.handle_message(Message::Response(Response::RunChanged(new_company().into())));
-        let after = asks::<Reading>(&mut app);
+        let after = take_questions::<Reading>(&mut app);
         let question = |ask: &OutgoingQuestion| ask.question::<Reading>().copied();
         let outgoing_question =
             after.iter().find(|ask| question(ask) == question(&before[0])).expect("asked again");
@@ -189,17 +189,17 @@ mod tests {
     fn a_page_whose_question_crashed_waits_no_longer() {
         let mut app = console();
         app.start(Effect::ShowCurve(None));
-        let ask = asks::<CurveQuestion>(&mut app);
+        let ask = take_questions::<CurveQuestion>(&mut app);
         answer::<CurveQuestion>(&mut app, &ask[0], None);
         assert!(screen(&app).contains("not answered") && !screen(&app).contains("asking 2000 leads"));
-        key(&mut app, "esc");
+        press_key(&mut app, "esc");
         app.start(Effect::RunSql("SELECT 1".to_owned()));
-        let ask = asks::<Query>(&mut app);
+        let ask = take_questions::<Query>(&mut app);
         assert!(app.is_waiting());
         answer::<Query>(&mut app, &ask[0], None);
         assert!(!app.is_waiting() && screen(&app).contains("not answered"));
         app.start(Effect::RunSql("SELECT 2".to_owned()));
-        let ask = asks::<Query>(&mut app);
+        let ask = take_questions::<Query>(&mut app);
         answer::<Query>(&mut app, &ask[0], Some(Ok((QueryResult::default(), std::time::Duration::ZERO))));
         assert!(!app.is_waiting());
     }
@@ -208,10 +208,10 @@ mod tests {
     fn an_answer_is_kept_for_a_page_that_another_one_covers() {
         let mut app = console();
         app.start(Effect::ShowCurve(None));
-        let ask = asks::<CurveQuestion>(&mut app);
+        let ask = take_questions::<CurveQuestion>(&mut app);
         app.start(Effect::ShowText("over".to_owned(), "the curve".to_owned()));
         answer::<CurveQuestion>(&mut app, &ask[0], refused("it came meanwhile"));
-        key(&mut app, "esc");
+        press_key(&mut app, "esc");
         assert!(screen(&app).contains("it came meanwhile"));
     }
 }

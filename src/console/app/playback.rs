@@ -224,7 +224,7 @@ impl App {
             viewer.playing = false;
         }
         if let Some(company) = company {
-            self.changed(company);
+            self.update_company(company);
         }
         match problem {
             Some(problem) => self.show_error(problem),

@@ -27,7 +27,7 @@ use novamind_worker::question::Pending;
 use novamind_worker::request::Request;
 
 impl App {
-    pub(super) fn news(&mut self, news: Response) {
+    pub(super) fn handle_response(&mut self, news: Response) {
         match news {
             Response::Runs(done, list) => {
                 match done {
@@ -40,13 +40,13 @@ impl App {
                     self.follow(effects);
                 }
             }
-            Response::ClassRead(read) => self.class_was_read(*read),
+            Response::ClassRead(read) => self.handle_class_read(*read),
             Response::HandoutOpened(label) => self.resume_command = as_student(&self.resume_command, &label),
-            Response::Opened(company) => self.opened(company, None),
+            Response::Opened(company) => self.show_opened_run(company, None),
             Response::PlaybackOpened(company, place) => {
-                self.opened(company, Some(PlaybackViewer::new(*place)))
+                self.show_opened_run(company, Some(PlaybackViewer::new(*place)))
             }
-            Response::RunChanged(company) => self.changed(company),
+            Response::RunChanged(company) => self.update_company(company),
             Response::SeekResult(arrival) => self.handle_arrival(*arrival, true),
             Response::PlaybackAdvanced(arrival) => self.handle_arrival(*arrival, false),
             Response::NotOpened(problem, instead) => {
@@ -65,8 +65,8 @@ impl App {
                     (days.current, days.figures) = (day, simulated_day);
                 }
             }
-            Response::WeekAdvanced(week, company) => self.advanced(week, company),
-            Response::DebugDaysSimulated(ran, company) => self.ran(ran, company),
+            Response::WeekAdvanced(week, company) => self.handle_week_result(week, company),
+            Response::DebugDaysSimulated(ran, company) => self.handle_debug_run(ran, company),
             Response::Closed(problem) => self.on_run_closed(problem),
             Response::Crashed(words) => {
                 let saved = self.run().map_or(String::new(), |run| match &run.company.folder {
@@ -98,13 +98,13 @@ impl App {
                     run.database_error = Some(problem);
                 }
             }
-            Response::DatabaseCurrent => self.database_whole(),
+            Response::DatabaseCurrent => self.handle_database_complete(),
             Response::NotesSaved(kept, company) => {
                 match kept {
                     Ok(()) => self.show_status("notes saved"),
                     Err(refusal) => self.show_error(refusal.to_string()),
                 }
-                self.changed(company);
+                self.update_company(company);
             }
             Response::RunReportReady(story) => self.set_run_report(&story),
             Response::ReportFilesReady(files) => {
@@ -127,7 +127,7 @@ impl App {
             Response::ToolCalled(tool, answer, company) => {
                 // The saving label stays if the run was left in the meantime.
                 self.busy = self.busy.take().filter(|busy| !busy.is_script());
-                self.changed(company.clone());
+                self.update_company(company.clone());
                 match answer {
                     Ok(_) => self.show_status(format!("{tool}: done")),
                     Err(refusal) => self.show_error(format!("{tool}: {refusal}")),
@@ -135,7 +135,7 @@ impl App {
                 ScreenId::Tools
             }
             Response::SettingRestored(what, changes, company) => {
-                self.changed(company.clone());
+                self.update_company(company.clone());
                 match changes {
                     Ok(changes) => self.show_status(format!("{what}: {}", in_words(changes))),
                     Err(refusal) => self.show_error(refusal.message.clone()),
@@ -144,7 +144,7 @@ impl App {
             }
             _ => return,
         };
-        self.tell_screens(|screens, here, look| {
+        self.update_screens(|screens, here, look| {
             let mut effects = screens.get_mut(screen).handle_response(&news, look);
             if matches!(news, Response::ToolCalled(..)) && here != screen {
                 effects.extend(screens.get_mut(here).handle_response(&news, look));
@@ -154,7 +154,10 @@ impl App {
     }
 
     /// Updates screens and follows the effects that they return.
-    fn tell_screens(&mut self, tell: impl FnOnce(&mut Screens, ScreenId, &ScreenContext<'_>) -> Vec<Effect>) {
+    fn update_screens(
+        &mut self,
+        tell: impl FnOnce(&mut Screens, ScreenId, &ScreenContext<'_>) -> Vec<Effect>,
+    ) {
         let Stage::Run(run) = &mut self.stage else { return };
         let company = run.company.clone();
         let look = ScreenContext { company: &company, keys: &self.keys, page_rows: self.page_rows };
@@ -171,7 +174,7 @@ impl App {
         if let Stage::Menu(menu) = &mut self.stage {
             menu.take_answers();
         }
-        self.tell_screens(|screens, _, look| {
+        self.update_screens(|screens, _, look| {
             let take = |id| screens.get_mut(id).take_answers(look);
             ScreenId::ALL.into_iter().flat_map(take).collect()
         });
@@ -191,7 +194,7 @@ impl App {
         let answers: Vec<_> = run.requested_readings.values_mut().filter_map(Pending::try_take).collect();
         for (reading, answer) in answers {
             match answer {
-                Ok(rows) => self.tell_screens(|screens, _, look| {
+                Ok(rows) => self.update_screens(|screens, _, look| {
                     for id in ScreenId::ALL {
                         let screen = screens.get_mut(id);
                         if screen.readings().contains(&reading) {
@@ -206,7 +209,7 @@ impl App {
         }
     }
 
-    fn opened(&mut self, company: Arc<DisplayedCompany>, viewer: Option<PlaybackViewer>) {
+    fn show_opened_run(&mut self, company: Arc<DisplayedCompany>, viewer: Option<PlaybackViewer>) {
         self.busy = None;
         // After taking over a playback, the user stays on the current screen.
         let here =
@@ -259,7 +262,7 @@ impl App {
         self.reset_drafts();
         self.time_limit = super::time_limits::TimeLimitState::default();
         self.attach_to_run();
-        self.renew();
+        self.refresh_readings();
         // In a study, the final questions come first.
         if over && !self.has_participant() {
             self.show_end();
@@ -293,15 +296,15 @@ impl App {
         }
     }
 
-    pub(super) fn changed(&mut self, company: Arc<DisplayedCompany>) {
+    pub(super) fn update_company(&mut self, company: Arc<DisplayedCompany>) {
         if let Stage::Run(run) = &mut self.stage {
             run.set_company(company);
             run.requested_readings.clear();
         }
-        self.renew();
+        self.refresh_readings();
     }
 
-    fn database_whole(&mut self) {
+    fn handle_database_complete(&mut self) {
         if let Stage::Run(run) = &mut self.stage {
             run.database_error = None;
             run.requested_readings.clear();
@@ -310,7 +313,7 @@ impl App {
         self.request_screen_data();
     }
 
-    pub(super) fn renew(&mut self) {
+    pub(super) fn refresh_readings(&mut self) {
         if let Stage::Run(run) = &mut self.stage {
             let company = run.company.clone();
             let look = ScreenContext { company: &company, keys: &self.keys, page_rows: self.page_rows };
@@ -321,14 +324,18 @@ impl App {
         self.request_screen_data();
     }
 
-    fn advanced(&mut self, week: Result<Box<WeekResult>, Rejection>, company: Arc<DisplayedCompany>) {
+    fn handle_week_result(
+        &mut self,
+        week: Result<Box<WeekResult>, Rejection>,
+        company: Arc<DisplayedCompany>,
+    ) {
         self.busy = None;
         let now = self.stopwatch.elapsed();
         let before = self.run().and_then(|run| run.company.lesson.clone());
         if let Stage::Run(run) = &mut self.stage {
             run.resume_view_timer(now);
         }
-        self.changed(company);
+        self.update_company(company);
         let week = match week {
             Ok(week) => week,
             Err(refusal) => {
@@ -367,7 +374,7 @@ impl App {
 }
 
 impl App {
-    fn ran(&mut self, ran: Result<DebugRunResult, Rejection>, company: Arc<DisplayedCompany>) {
+    fn handle_debug_run(&mut self, ran: Result<DebugRunResult, Rejection>, company: Arc<DisplayedCompany>) {
         self.busy = None;
         let now = self.stopwatch.elapsed();
         if let Stage::Run(run) = &mut self.stage {
@@ -376,7 +383,7 @@ impl App {
                 run.screens.xray.show_run_result(ran);
             }
         }
-        self.changed(company);
+        self.update_company(company);
         match ran {
             Ok(ran) => {
                 self.show_status(ran.lines.first().cloned().unwrap_or_default());
@@ -390,7 +397,7 @@ impl App {
 }
 
 impl App {
-    fn class_was_read(&mut self, read: Result<(CollectedClass, ClassDisplayOptions), String>) {
+    fn handle_class_read(&mut self, read: Result<(CollectedClass, ClassDisplayOptions), String>) {
         self.busy = None;
         let Stage::Menu(menu) = &mut self.stage else { return };
         match read {

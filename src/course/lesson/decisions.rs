@@ -60,7 +60,7 @@ impl WeekDecisions {
     /// Returns the decisions in force when the week starts.
     pub(super) fn from_session(session: &Session) -> WeekDecisions {
         let setting = |tool: ToolId| {
-            let current = tool.tool().current(session.settings());
+            let current = tool.tool().current_arguments(session.settings());
             (tool.spec().kind == ToolKind::Setting && !current.is_empty()).then_some((tool, current))
         };
         let settings: BTreeMap<ToolId, Map<String, Value>> = ToolId::all().filter_map(setting).collect();

@@ -208,7 +208,7 @@ fn scale_settings(
     opening: &BranchStart<'_>,
     moves: &[RecordedStep],
 ) {
-    let mut in_force = tool.tool().current(opening.settings);
+    let mut in_force = tool.tool().current_arguments(opening.settings);
     if tool == ToolId::SetPrices {
         // A plan without a price keeps no price.
         in_force.retain(|_, price| price.as_f64() != Some(0.0));

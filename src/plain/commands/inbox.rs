@@ -39,7 +39,7 @@ struct ThreadSelection {
 
 impl Interpreter {
     /// `inbox`, `inbox all`, `inbox NUMBER`.
-    pub(super) fn inbox(&mut self, arguments: &[Argument]) -> Result<CommandResponse, ParseError> {
+    pub(super) fn run_inbox(&mut self, arguments: &[Argument]) -> Result<CommandResponse, ParseError> {
         match arguments {
             [] => Ok(self.list_threads(&ThreadSelection::default())),
             [Argument { key: None, value: Value::String(word), .. }] if word == "all" => {

@@ -45,7 +45,7 @@ impl Interpreter {
     }
 
     /// `guess ANSWER`
-    pub(super) fn guess(&mut self, arguments: &[Argument]) -> Result<CommandResponse, ParseError> {
+    pub(super) fn run_guess(&mut self, arguments: &[Argument]) -> Result<CommandResponse, ParseError> {
         let [only] = arguments else {
             return Err(argument_error(arguments, "guess takes one answer, for example guess 12000"));
         };
@@ -64,7 +64,7 @@ impl Interpreter {
     }
 
     /// `hint`
-    pub(super) fn hint(&mut self) -> CommandResponse {
+    pub(super) fn run_hint(&mut self) -> CommandResponse {
         match take_hint(&mut self.session) {
             Ok(text) => CommandResponse::success("hint", text.clone(), json!({ "hint": text })),
             Err(refusal) => CommandResponse::rejected("hint", refusal),

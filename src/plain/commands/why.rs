@@ -15,7 +15,7 @@ use novamind_session::identifiers::Group;
 use novamind_tools::Rejection;
 
 impl Interpreter {
-    pub(super) fn why(&mut self, words: &str, column: usize) -> Result<CommandResponse, ParseError> {
+    pub(super) fn run_why(&mut self, words: &str, column: usize) -> Result<CommandResponse, ParseError> {
         if let Err(refusal) = cause_analysis_folder(&self.session) {
             return Ok(CommandResponse::rejected("why", refusal));
         }

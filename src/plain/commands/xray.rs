@@ -47,12 +47,12 @@ impl Interpreter {
         let (view, rest) = parse_view(arguments)?;
         let shown = match view {
             "leads" => self.lead_equation(rest)?,
-            "quality" => self.quality(rest)?,
-            "satisfaction" => self.satisfaction(rest)?,
-            "reputation" => self.reputation(rest)?,
-            "spillover" => self.spillover(rest)?,
-            "rivals" => self.competitors(rest)?,
-            "drift" => self.drift(rest)?,
+            "quality" => self.show_quality(rest)?,
+            "satisfaction" => self.show_satisfaction(rest)?,
+            "reputation" => self.show_reputation(rest)?,
+            "spillover" => self.show_spillover(rest)?,
+            "rivals" => self.show_competitors(rest)?,
+            "drift" => self.show_drift(rest)?,
             "streams" => self.streams(rest)?,
             _ => return Err(unknown_view(view, &arguments[0])),
         };

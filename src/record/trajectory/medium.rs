@@ -27,7 +27,7 @@ pub(super) struct NamedFile {
 
 impl NamedFile {
     /// Wraps an open file.
-    pub(super) fn open(file: File) -> io::Result<NamedFile> {
+    pub(super) fn from_open_file(file: File) -> io::Result<NamedFile> {
         let names = count_links(&file.metadata()?);
         Ok(NamedFile { file, link_count: names })
     }

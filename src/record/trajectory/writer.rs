@@ -65,7 +65,7 @@ impl TrajectoryWriter {
     /// The file exists, or cannot be created. The file is removed if its folder cannot be synced.
     pub fn create(path: &Path) -> Result<TrajectoryWriter, RunError> {
         let file = File::options().create_new(true).read(true).append(true).open(path);
-        let file = file.and_then(NamedFile::open).map_err(RunError::io(path))?;
+        let file = file.and_then(NamedFile::from_open_file).map_err(RunError::io(path))?;
         sync_folder(parent_folder(path)).inspect_err(|_| drop(std::fs::remove_file(path)))?;
         let file = Some(RefCell::new(SyncedFile::new(Box::new(file), 0)));
         Ok(TrajectoryWriter { file, path: path.to_owned(), ..TrajectoryWriter::in_memory() })
@@ -92,8 +92,9 @@ impl TrajectoryWriter {
     /// # Errors
     /// The file cannot be written or synced.
     pub fn resume(path: &Path, read: &Trajectory) -> Result<TrajectoryWriter, RunError> {
-        let mut file =
-            open_regular_file_for_write(path).and_then(NamedFile::open).map_err(RunError::io(path))?;
+        let mut file = open_regular_file_for_write(path)
+            .and_then(NamedFile::from_open_file)
+            .map_err(RunError::io(path))?;
         file.truncate(read.length).and_then(|()| file.sync()).map_err(RunError::io(path))?;
         Ok(TrajectoryWriter {
             file: Some(RefCell::new(SyncedFile::new(Box::new(file), read.length))),

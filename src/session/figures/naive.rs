@@ -206,7 +206,7 @@ pub fn hindcasts(weeks: &[WeekFigures], horizon: u32, bands: &ErrorBands) -> Vec
     let mut made: Vec<Hindcast> = Vec::new();
     for before in 0..weeks.len() {
         let Some(due) = due_week(weeks, before, horizon) else { break };
-        let pace = CashRate::from_weeks(committed_per_day(&weeks[before]), &weeks[..before]);
+        let pace = CashRate::from_weeks(committed_costs_per_day(&weeks[before]), &weeks[..before]);
         let stage = GrowthStage::from_weeks(&weeks[..before]);
         let point = cash_before(&weeks[before]) + pace.net_per_day() * f64::from(horizon);
         let bought: f64 = weeks[before + 1..=due].iter().map(purchases).sum();
@@ -244,7 +244,7 @@ fn purchases(week: &WeekFigures) -> f64 {
 }
 
 /// Returns the costs that the settings of a week committed to, dollars a day.
-fn committed_per_day(week: &WeekFigures) -> f64 {
+fn committed_costs_per_day(week: &WeekFigures) -> f64 {
     let kinds = [Category::Capacity, Category::Operations, Category::Development, Category::Advertising];
     -kinds.iter().map(|category| week.booked.total_of(*category)).sum::<f64>()
         / f64::from(week.days_run.max(1))

@@ -73,9 +73,9 @@ fn restoring_arguments(
     restored: &Settings,
 ) -> Result<Map<String, Value>, Rejection> {
     let tool = id.tool();
-    let mut arguments = tool.current(restored);
+    let mut arguments = tool.current_arguments(restored);
     if id == ToolId::SetPrices {
-        let held = tool.current(now);
+        let held = tool.current_arguments(now);
         arguments.retain(|plan, price| held.get(plan) != Some(price));
         if let Some((plan, _)) = arguments.iter().find(|(_, price)| price.as_f64() == Some(0.0)) {
             let message = format!(

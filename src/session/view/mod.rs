@@ -53,7 +53,9 @@ impl<'a> CompanyView<'a> {
 
     /// Returns the current values of a tool's arguments, as a call would send them.
     pub fn current_arguments(&self, tool: impl AsRef<str>) -> Map<String, Value> {
-        find(tool.as_ref()).map(|tool| tool.current(&self.simulation.world.settings)).unwrap_or_default()
+        find(tool.as_ref())
+            .map(|tool| tool.current_arguments(&self.simulation.world.settings))
+            .unwrap_or_default()
     }
 
     /// Runs a read-only tool without recording the call, for panes that refresh continuously. Returns `None` if the

@@ -60,7 +60,7 @@ impl Tool for SetTargetedDevSpend {
         &SPEC
     }
 
-    fn current(&self, settings: &Settings) -> Map<String, Value> {
+    fn current_arguments(&self, settings: &Settings) -> Map<String, Value> {
         Map::from_iter([(
             "targeted_spend".to_owned(),
             to_json(&settings.targeted_development.targeted_spend),

@@ -124,7 +124,7 @@ impl Tool for SetTargetedOpsSpend {
         &SPEC
     }
 
-    fn current(&self, settings: &Settings) -> Map<String, Value> {
+    fn current_arguments(&self, settings: &Settings) -> Map<String, Value> {
         match to_json(&settings.targeted_operations) {
             Value::Object(map) => map,
             _ => Map::new(),

@@ -62,7 +62,7 @@ impl Tool for SetCapacityTier {
         &SPEC
     }
 
-    fn current(&self, settings: &Settings) -> Map<String, Value> {
+    fn current_arguments(&self, settings: &Settings) -> Map<String, Value> {
         Map::from_iter([("tier".to_owned(), Value::from(settings.core.capacity_tier))])
     }
 

@@ -80,7 +80,7 @@ impl Tool for SetAdsStrength {
         &SPEC
     }
 
-    fn current(&self, settings: &Settings) -> Map<String, Value> {
+    fn current_arguments(&self, settings: &Settings) -> Map<String, Value> {
         let ads = &settings.ads_strength;
         Map::from_iter([
             ("global_strength".to_owned(), json_number(ads.global)),

@@ -91,7 +91,7 @@ impl Tool for SetDailySpend {
         &SPEC
     }
 
-    fn current(&self, settings: &Settings) -> Map<String, Value> {
+    fn current_arguments(&self, settings: &Settings) -> Map<String, Value> {
         Map::from_iter([
             ("operations".to_owned(), json_number(settings.core.operations)),
             ("development".to_owned(), json_number(settings.core.development)),

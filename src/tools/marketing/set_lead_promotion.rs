@@ -93,7 +93,7 @@ impl Tool for SetLeadPromotion {
         &SPEC
     }
 
-    fn current(&self, settings: &Settings) -> Map<String, Value> {
+    fn current_arguments(&self, settings: &Settings) -> Map<String, Value> {
         let promotion = &settings.lead_promotion;
         Map::from_iter([
             ("global_promotion".to_owned(), json_number(promotion.global)),

@@ -107,7 +107,7 @@ impl Tool for SetTargetedAdSpend {
         &SPEC
     }
 
-    fn current(&self, settings: &Settings) -> Map<String, Value> {
+    fn current_arguments(&self, settings: &Settings) -> Map<String, Value> {
         Map::from_iter([("targeted_spend".to_owned(), to_json(&settings.targeted_ads.targeted_spend))])
     }
 

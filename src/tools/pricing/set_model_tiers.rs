@@ -54,7 +54,7 @@ impl Tool for SetModelTiers {
         &SPEC
     }
 
-    fn current(&self, settings: &Settings) -> Map<String, Value> {
+    fn current_arguments(&self, settings: &Settings) -> Map<String, Value> {
         plan_values_json(|plan| Value::from(settings.core.tiers[plan]))
     }
 

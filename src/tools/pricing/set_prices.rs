@@ -54,7 +54,7 @@ impl Tool for SetPrices {
         &SPEC
     }
 
-    fn current(&self, settings: &Settings) -> Map<String, Value> {
+    fn current_arguments(&self, settings: &Settings) -> Map<String, Value> {
         plan_values_json(|plan| json_number(settings.core.prices[plan]))
     }
 

@@ -94,7 +94,7 @@ impl Tool for SetPromotion {
         &SPEC
     }
 
-    fn current(&self, settings: &Settings) -> Map<String, Value> {
+    fn current_arguments(&self, settings: &Settings) -> Map<String, Value> {
         let promotion = &settings.promotion;
         Map::from_iter([
             ("global_promotion".to_owned(), json_number(promotion.global)),

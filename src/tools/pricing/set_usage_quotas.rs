@@ -78,7 +78,7 @@ impl Tool for SetUsageQuotas {
         &SPEC
     }
 
-    fn current(&self, settings: &Settings) -> Map<String, Value> {
+    fn current_arguments(&self, settings: &Settings) -> Map<String, Value> {
         plan_values_json(|plan| json_number(settings.core.quotas[plan].units()))
     }
 

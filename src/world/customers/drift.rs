@@ -136,7 +136,7 @@ mod tests {
     use crate::market::economy::tests::economy_at;
     use crate::test_kit::subscriber;
 
-    fn near(actual: f64, expected: f64) {
+    fn assert_near(actual: f64, expected: f64) {
         assert!((actual - expected).abs() < 6e-9, "got {actual}, expected {expected}");
     }
 
@@ -173,13 +173,13 @@ mod tests {
             ("D_S09", row(95.0, 0.2, 0.7, 0.2, 1.0), [95.2854136360, 0.2048560980, 0.7169963430, 0.2, 1.0]),
         ] {
             let (after, _) = drifted(id, before, 90, 45.0);
-            near(after.c_max, c_max);
-            near(after.q_min, q_min);
-            near(after.q_max, q_max);
-            near(after.steepness_left, steepness);
-            near(after.seats, seats);
+            assert_near(after.c_max, c_max);
+            assert_near(after.q_min, q_min);
+            assert_near(after.q_max, q_max);
+            assert_near(after.steepness_left, steepness);
+            assert_near(after.seats, seats);
         }
-        near(drifted("S1", row(10.2, 0.1, 0.5, 1.0, 1.0), 90, 45.0).0.c_max, 10.0);
+        assert_near(drifted("S1", row(10.2, 0.1, 0.5, 1.0, 1.0), 90, 45.0).0.c_max, 10.0);
         let (_, totals) = drifted("S1", subscriber(1), 90, 45.0);
         for (id, quality, c_max) in [
             ("S1", 0.0, 0.03),
@@ -189,8 +189,8 @@ mod tests {
             ("D_E08", 0.0075, 0.0),
         ] {
             let group = Group::parse(id).expect("a group");
-            near(totals.quality[group], quality);
-            near(totals.c_max[group], c_max);
+            assert_near(totals.quality[group], quality);
+            assert_near(totals.c_max[group], c_max);
         }
         assert_eq!(totals.global_quality, 0.0);
     }
@@ -205,14 +205,14 @@ mod tests {
 
     #[test]
     fn compound_rate_matches_one_application() {
-        near(compound_rate(0.002, &Params::bundled().drift), 0.0617729231);
+        assert_near(compound_rate(0.002, &Params::bundled().drift), 0.0617729231);
         let (x, _) = drifted("S1", row(50.0, 0.10, 0.55, 1.2, 1.0), 90, 45.0);
-        near(x.c_max, 47.0853976979);
-        near(x.q_max, 0.583975108);
+        assert_near(x.c_max, 47.0853976979);
+        assert_near(x.q_max, 0.583975108);
         let (after, _) = drifted("D_S06", row(60.0, 0.2, 0.6, 2.0, 1.0), 90, 45.0);
-        near(after.c_max, 56.84316043);
-        near(after.q_min, 0.2188053750);
-        near(after.steepness_left, 2.036314961);
+        assert_near(after.c_max, 56.84316043);
+        assert_near(after.q_min, 0.2188053750);
+        assert_near(after.steepness_left, 2.036314961);
         let moved = Curve { c_max: 10.0, ..subscriber_curve() }.with_drift(0.08, 2.0, 15.0);
         assert_eq!((moved.c_max, moved.q_min), (15.0, 0.18));
         let moved = subscriber_curve().with_drift(0.08, 2.0, 15.0);
@@ -226,7 +226,7 @@ mod tests {
     #[test]
     fn seats_drift_with_the_economy() {
         for (id, first) in [("E1", 99.1039040602), ("E2", 101.2069860543), ("E3", 100.9039259842)] {
-            near(drifted(id, row(60.0, 0.5, 0.9, 1.0, 100.0), 90, 50.0).0.seats, first);
+            assert_near(drifted(id, row(60.0, 0.5, 0.9, 1.0, 100.0), 90, 50.0).0.seats, first);
         }
         let (e1, _) = drifted("E1", row(60.0, 0.5, 0.9, 1.0, 99.1039040602), 120, 42.0);
         assert!((e1.seats - 98.3650330978).abs() < 1e-8, "{}", e1.seats);

@@ -43,7 +43,7 @@ impl TestRun {
         TestRun { world, params, streams: Streams::new(11), facts }
     }
 
-    fn day(&mut self) -> (DayFigures, DayTrace) {
+    fn simulate_day(&mut self) -> (DayFigures, DayTrace) {
         step_day(&mut self.world, &self.params, &self.streams, &mut self.facts)
     }
 
@@ -55,10 +55,10 @@ impl TestRun {
     ) -> (TestRun, DayFigures, DayTrace) {
         let mut play = TestRun::new(params.clone());
         for _ in 0..days {
-            play.day();
+            play.simulate_day();
         }
         change(&mut play.params);
-        let (figures, trace) = play.day();
+        let (figures, trace) = play.simulate_day();
         (play, figures, trace)
     }
 
@@ -73,7 +73,7 @@ fn mean(rows: &[Subscriber], value: impl Fn(&Subscriber) -> f64) -> f64 {
 }
 
 /// Sets the outage probability to 1 or 0.
-fn outage(params: &mut Params, certain: bool) {
+fn set_outage_probability(params: &mut Params, certain: bool) {
     let chance = if certain { 1.0 } else { 0.0 };
     params.operations.base_outage_prob = chance;
     params.operations.ops_outage_min_prob = chance;
@@ -82,7 +82,7 @@ fn outage(params: &mut Params, certain: bool) {
 #[test]
 fn outage_affects_issues_satisfaction_and_reputation() {
     let params = Params::bundled();
-    let of = |certain| TestRun::day_after(40, &params, |params| outage(params, certain));
+    let of = |certain| TestRun::day_after(40, &params, |params| set_outage_probability(params, certain));
     let ((quiet, calm, _), (broken, down, _)) = (of(false), of(true));
     assert!(!calm.outage && calm.downtime_minutes == 0 && down.outage && down.downtime_minutes > 0);
     assert_eq!(calm.total_usage, down.total_usage, "all other conditions are equal");
@@ -125,7 +125,8 @@ fn outage_increases_churn_only_if_the_penalty_applies_everywhere() {
         params.fidelity.service_penalty = penalty;
         // A penalty large enough to affect decisions.
         params.quality.service_outage_weight = 0.5;
-        let (play, figures, _) = TestRun::day_after(44, &params, |params| outage(params, certain));
+        let (play, figures, _) =
+            TestRun::day_after(44, &params, |params| set_outage_probability(params, certain));
         let ended = play.facts.endings.iter().filter(|ending| !ending.group.is_enterprise());
         assert_eq!(ended.count() as u32, figures.cancellations);
         figures.cancellations
@@ -143,7 +144,7 @@ fn overload_increases_churn_on_the_same_day() {
         // A penalty large enough to affect decisions.
         params.quality.service_overload_weight = 0.5;
         let (_, figures, _) = TestRun::day_after(44, &params, |params| {
-            outage(params, false);
+            set_outage_probability(params, false);
             params.capacity_tier.iter_mut().for_each(|tier| tier.capacity_units = capacity_units);
         });
         (figures.overload, figures.cancellations)
@@ -166,7 +167,7 @@ fn calendar_factors_apply_by_day() {
     let mut play = TestRun::new(params);
     let s1 = Group::at(0).expect("S1");
     for day in 1..=64usize {
-        let (_, trace) = play.day();
+        let (_, trace) = play.simulate_day();
         let expected = calendar.weekly[day % 7] * calendar.monthly[day % 30];
         assert_eq!(trace.leads[s1].calendar, expected, "leads of day {day}");
     }
@@ -220,7 +221,7 @@ fn measure_effects(params: Params) -> (f64, usize, f64) {
     let (mut factor, mut gave_up) = (0.0, 0);
     // Seats drift on day 90, using the economy of the day before.
     for _ in 0..90 {
-        factor = play.day().1.leads[Group::at(0).expect("S1")].economy;
+        factor = play.simulate_day().1.leads[Group::at(0).expect("S1")].economy;
         let price = |ending: &&SubscriptionEnded| matches!(ending.cause, EndCause::Price | EndCause::Quality);
         gave_up += play.facts.endings.iter().filter(price).count();
     }
@@ -255,7 +256,7 @@ fn day_figures_match_the_facts() {
             play.world.settings.core.prices = ByPlan([5.0, 20.0, 45.0]);
         }
         let cash = play.world.finance.cash;
-        let (figures, _) = play.day();
+        let (figures, _) = play.simulate_day();
         let facts = &play.facts;
         let service = facts.service.expect("a day of service");
         assert_eq!(figures.day, day);

@@ -113,7 +113,7 @@ pub(super) mod tests {
     pub(in crate::enterprise) const K: Curve =
         Curve { steepness_left: 1.0, steepness_right: 2.0, c_max: 60.0, q_min: 0.5, q_max: 0.95 };
 
-    fn near(actual: f64, expected: f64) {
+    fn assert_near(actual: f64, expected: f64) {
         assert!((actual - expected).abs() < 1e-9, "got {actual}, expected {expected}");
     }
 
@@ -156,7 +156,7 @@ pub(super) mod tests {
             (0.94, 54.2041588054),
             (1.0, 60.0),
         ] {
-            near(highest_price(quality, &K, &params), highest);
+            assert_near(highest_price(quality, &K, &params), highest);
         }
         let below_the_jump = highest_price(0.725, &K, &params);
         assert!(below_the_jump < 30.0 && below_the_jump > 29.9999);
@@ -179,17 +179,17 @@ pub(super) mod tests {
         let offer_evaluator = evaluator(0.72, 0.80, 0.88);
         let three = offers(&[(Plan::A, 30.0), (Plan::B, 35.0), (Plan::C, 50.0)]);
         assert_eq!(offer_evaluator.respond(&three, 1, &params), OfferResponse::Accept(1));
-        near(surplus(0.80, 35.0, &K, &params), 0.067249831);
+        assert_near(surplus(0.80, 35.0, &K, &params), 0.067249831);
         for (price, missing) in [(44.0, -0.018921704), (50.0, -0.114254451)] {
             assert_eq!(
                 offer_evaluator.respond(&offers(&[(Plan::B, price)]), 1, &params),
                 OfferResponse::Counter(0, 35.41)
             );
-            near(surplus(0.80, price, &K, &params), missing);
+            assert_near(surplus(0.80, price, &K, &params), missing);
         }
         let gift = offers(&[(Plan::B, 1.0)]);
         assert_eq!(offer_evaluator.respond(&gift, 6, &params), OfferResponse::Silence);
-        near(surplus(0.80, 1.0, &K, &params), 0.280110073);
+        assert_near(surplus(0.80, 1.0, &K, &params), 0.280110073);
         assert_eq!(offer_evaluator.respond(&gift, 5, &params), OfferResponse::Accept(0));
         assert_eq!(
             offer_evaluator.respond(&offers(&[(Plan::B, 35.0), (Plan::B, 35.0)]), 1, &params),
@@ -207,11 +207,11 @@ pub(super) mod tests {
         let params = Params::bundled();
         let dear = offers(&[(Plan::B, 100_000.0)]);
         assert_eq!(evaluator(0.9, 0.96, 1.0).respond(&dear, 1, &params), OfferResponse::Accept(0));
-        near(surplus(0.96, 100_000.0, &K, &params), 0.01);
+        assert_near(surplus(0.96, 100_000.0, &K, &params), 0.01);
         assert_eq!(evaluator(0.9, 0.95, 1.0).respond(&dear, 1, &params), OfferResponse::Counter(0, 49.50));
         let weak = evaluator(0.5, 0.6, 0.7);
         assert_eq!(weak.respond(&offers(&[(Plan::A, 1.0)]), 1, &params), OfferResponse::Silence);
-        near(surplus(0.5, 1.0, &K, &params), -0.019889927);
+        assert_near(surplus(0.5, 1.0, &K, &params), -0.019889927);
     }
 
     #[test]
@@ -239,7 +239,7 @@ pub(super) mod tests {
         let OfferResponse::Counter(1, price) = offer_evaluator.respond(&dear, 1, &params) else {
             panic!("a counter-offer")
         };
-        near(price, counter_price(60.0, 0.75, 1, &params));
+        assert_near(price, counter_price(60.0, 0.75, 1, &params));
         params.fidelity.deal_price_ceiling = false;
         assert_eq!(offer_evaluator.respond(&dear, 1, &params), OfferResponse::Accept(1));
     }

@@ -19,7 +19,7 @@ fn lead(delay: f64, turns: u32) -> NegotiationKit {
     kit
 }
 
-fn days(kit: &mut NegotiationKit, days: std::ops::RangeInclusive<u32>) -> Vec<EnterpriseDayResult> {
+fn run_days(kit: &mut NegotiationKit, days: std::ops::RangeInclusive<u32>) -> Vec<EnterpriseDayResult> {
     days.map(|day| kit.run_day(day)).collect()
 }
 
@@ -35,7 +35,7 @@ fn accepted_offer_activates_the_lead() {
     assert_eq!((letters[0].reply_day, letters[0].turn, letters[0].relationship), (3, 1, None));
     assert_eq!(turns(&kit), [(Sender::Agent, 1)]);
     assert_eq!(kit.facts.turns[0].seats, 1);
-    assert!(days(&mut kit, 1..=2).iter().all(|day| day.new_seats == 0));
+    assert!(run_days(&mut kit, 1..=2).iter().all(|day| day.new_seats == 0));
     assert!(kit.facts.turns.is_empty());
     assert_eq!(kit.run_day(3).new_seats, 100);
     assert_eq!(turns(&kit), [(Sender::Customer, 2), (Sender::System, 3)]);
@@ -56,7 +56,7 @@ fn accepted_offer_activates_the_lead() {
 #[test]
 fn lead_is_lost_by_silence_or_timeout() {
     let mut kit = lead(3.0, 6);
-    days(&mut kit, 1..=6);
+    run_days(&mut kit, 1..=6);
     assert!(kit.facts.endings.is_empty());
     kit.run_day(7);
     let ending = kit.facts.endings[0];
@@ -71,11 +71,11 @@ fn lead_is_lost_by_silence_or_timeout() {
 
     let mut kit = lead(3.0, 2);
     kit.send_offer(&[(Plan::B, 59.0)]);
-    days(&mut kit, 1..=3);
+    run_days(&mut kit, 1..=3);
     assert_eq!(kit.facts.notices, [Notice::CounterOffer { customer: 2 }]);
     kit.run_day(4);
     kit.send_offer(&[(Plan::B, 59.0)]);
-    days(&mut kit, 5..=7);
+    run_days(&mut kit, 5..=7);
     assert_eq!(kit.facts.notices, [Notice::LeadSilent]);
     assert_eq!((kit.facts.endings[0].day, kit.facts.endings[0].cause), (7, EndCause::LeadSilent));
     for day in 8..=14 {
@@ -99,12 +99,12 @@ fn dead_threads_do_not_reappear_if_disabled() {
     let mut kit = lead(3.0, 2);
     kit.params.fidelity.reappearing_threads = false;
     kit.send_offer(&[(Plan::B, 59.0)]);
-    days(&mut kit, 1..=4);
+    run_days(&mut kit, 1..=4);
     kit.send_offer(&[(Plan::B, 59.0)]);
-    days(&mut kit, 5..=7);
+    run_days(&mut kit, 5..=7);
     assert_eq!(kit.facts.notices, [Notice::LeadSilent]);
     assert!(kit.enterprise.threads.is_empty() && kit.enterprise.companies.is_empty());
-    days(&mut kit, 8..=12);
+    run_days(&mut kit, 8..=12);
     assert!(kit.facts.notices.is_empty());
 }
 
@@ -132,7 +132,7 @@ fn unanswered_threat_loses_the_subscriber() {
     let opened = kit.run_day(5);
     assert!(opened.suspended.is_empty(), "a thread suspends from the day after");
     assert_eq!(kit.enterprise.threads[0].kind, ThreadKind::ChurnPrevention);
-    for run in days(&mut kit, 6..=11) {
+    for run in run_days(&mut kit, 6..=11) {
         assert_eq!(run.suspended.iter().copied().collect::<Vec<u32>>(), [2]);
     }
     assert_eq!(kit.customers.groups[kit.group].active_count(), 1);
@@ -167,7 +167,7 @@ fn settled_threat_suspends_payment_until_it_ends() {
     assert!(suspended(&kit.run_day(30)));
     kit.product.shared_bonus = 0.6;
     kit.send_offer(&[(Plan::B, 30.0)]);
-    let runs = days(&mut kit, 31..=33);
+    let runs = run_days(&mut kit, 31..=33);
     assert!(runs.iter().all(suspended), "including the day on which it is settled");
     assert_eq!(kit.facts.notices, [Notice::DealWon { price: 30.0 }]);
     let deal = kit.facts.deals[0];
@@ -186,7 +186,7 @@ fn promotion_lowers_the_deal_price() {
     let mut kit = lead(2.0, 6);
     kit.settings.promotion.global = 4.0;
     kit.send_offer(&[(Plan::B, 35.0)]);
-    days(&mut kit, 1..=2);
+    run_days(&mut kit, 1..=2);
     let row = kit.customers.groups[kit.group].row(1).expect("a subscriber");
     assert_eq!((row.listed_price, row.promotion, row.effective_price), (35.0, 4.0, 31.0));
     assert_eq!(row.effective_price * row.seats, 3100.0);
@@ -204,7 +204,7 @@ fn failed_renegotiation_loses_the_customer() {
     // A product below the minimum quality at every price.
     kit.product.shared_bonus = 0.1;
     kit.morning.product.0.iter_mut().for_each(|product| *product = 0.3);
-    let runs = days(&mut kit, 5..=7);
+    let runs = run_days(&mut kit, 5..=7);
     assert!(runs[2].lost[0].kind == ThreadKind::Renegotiation);
     assert_eq!(kit.facts.endings[0].cause, EndCause::QualityChange);
     assert_eq!(kit.facts.endings[0].day, 7);
@@ -219,12 +219,12 @@ fn repeated_offers_use_turns_and_only_the_newest_is_answered() {
     kit.send_offer(&[(Plan::B, 59.0)]);
     let offer_messages = kit.send_offer(&[(Plan::B, 20.0)]);
     assert_eq!((offer_messages[0].turn, offer_messages[0].relationship), (2, None));
-    days(&mut kit, 1..=3);
+    run_days(&mut kit, 1..=3);
     assert_eq!(turns(&kit), [(Sender::Customer, 3), (Sender::System, 4)]);
     let mut kit = lead(3.0, 2);
     kit.send_offer(&[(Plan::B, 59.0)]);
     kit.send_offer(&[(Plan::B, 20.0)]);
-    days(&mut kit, 1..=3);
+    run_days(&mut kit, 1..=3);
     // Turn 2 of 2: silence, whatever is offered. The reply to the first message is still due and is silence too.
     assert_eq!(kit.facts.notices.first(), Some(&Notice::LeadSilent));
 }
@@ -233,7 +233,7 @@ fn repeated_offers_use_turns_and_only_the_newest_is_answered() {
 fn late_reply_lowers_relationship_once() {
     let mut kit = lead(3.0, 9);
     kit.send_offer(&[(Plan::B, 59.0)]);
-    days(&mut kit, 1..=7);
+    run_days(&mut kit, 1..=7);
     let letters = kit.send_offer(&[(Plan::B, 44.0)]);
     // The counter-offer arrived on day 3: four days, three of them late.
     let relationship = letters[0].relationship.expect("a late answer");
@@ -259,7 +259,7 @@ fn parallel_renegotiations_are_answered_separately() {
     assert_eq!((letters[0].thread + 1, letters[1].starts_thread), (letters[1].thread, true));
     kit.facts.start_day(4);
     kit.enterprise.send_offers(&letters, 4, &mut kit.customers, &mut kit.facts);
-    days(&mut kit, 5..=7);
+    run_days(&mut kit, 5..=7);
     assert_eq!(kit.facts.deals.len(), 2);
     assert_eq!(kit.customers.groups[kit.group].active_count(), 1);
     assert!(kit.enterprise.threads.is_empty());
@@ -271,7 +271,7 @@ fn two_offers_in_one_call_share_a_turn_number() {
     let proposal =
         super::messages::OfferDraft { customer: 2, offerings: vec![Offering { plan: Plan::B, price: 59.0 }] };
     kit.send_offer(&[(Plan::B, 59.0)]);
-    days(&mut kit, 1..=7);
+    run_days(&mut kit, 1..=7);
     let letters = kit.enterprise.resolve_offers(
         &[proposal.clone(), proposal],
         7,
@@ -306,7 +306,7 @@ fn threatening_customer_with_two_turns_always_leaves() {
     kit.enterprise.companies[0].negotiator.max_negotiation_turns = 2;
     kit.run_day(4);
     kit.send_offer(&[(Plan::B, 1.0)]);
-    let runs = days(&mut kit, 5..=7);
+    let runs = run_days(&mut kit, 5..=7);
     assert_eq!(runs[2].lost.len(), 1);
     assert_eq!(kit.facts.endings[0].day, 7);
 }
@@ -315,7 +315,7 @@ fn threatening_customer_with_two_turns_always_leaves() {
 fn free_and_negative_prices_are_accepted() {
     let mut kit = lead(2.0, 6);
     kit.send_offer(&[(Plan::B, -5.0)]);
-    days(&mut kit, 1..=2);
+    run_days(&mut kit, 1..=2);
     let row: Subscriber = kit.customers.groups[kit.group].row(1).expect("a subscriber");
     assert_eq!((row.listed_price, row.effective_price), (-5.0, 0.0));
 }

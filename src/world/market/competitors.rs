@@ -204,7 +204,7 @@ pub fn copy_group_bank(
 mod tests {
     use super::*;
 
-    fn near(actual: f64, expected: f64) {
+    fn assert_near(actual: f64, expected: f64) {
         assert!((actual - expected).abs() < 1e-12, "got {actual}, expected {expected}");
     }
 
@@ -245,58 +245,58 @@ mod tests {
     #[test]
     fn event_sizes_grow_and_copying_reduces_the_bank() {
         let (small, _, class) = event(60, 0.02, 0.0, 0.5);
-        near(small.boost, 0.027547974413646);
+        assert_near(small.boost, 0.027547974413646);
         assert_eq!(class, Severity::Minor);
         let mut drift = DriftTotals::default();
         raise_expectations(small.boost, &mut drift, &Params::bundled());
-        near(drift.quality[group("S1")], 0.004132196162047);
-        near(drift.quality[group("S2")], 0.001652878464819);
-        near(drift.quality[group("D_S08")], 0.009641791044776);
+        assert_near(drift.quality[group("S1")], 0.004132196162047);
+        assert_near(drift.quality[group("S2")], 0.001652878464819);
+        assert_near(drift.quality[group("D_S08")], 0.009641791044776);
         let (moderate, bank, class) = event(300, 0.02, 0.1, 0.5);
-        near(moderate.boost, 0.058251599147122);
+        assert_near(moderate.boost, 0.058251599147122);
         assert!(!moderate.by_feedback && bank == 0.1 && class == Severity::Moderate);
         let (copied, bank, class) = event(300, 0.02, 0.5, 0.5);
-        near(copied.boost, 0.175);
-        near(bank, 0.325);
+        assert_near(copied.boost, 0.175);
+        assert_near(bank, 0.325);
         assert!(copied.by_feedback && class == Severity::Major);
         let (huge, _, class) = event(300, 5.0, 0.0, 0.0);
-        near(huge.boost, 0.503170942164179);
+        assert_near(huge.boost, 0.503170942164179);
         assert_eq!(class, Severity::Transformative);
-        near(event(300, 0.0001, 0.0, 0.0).0.boost, 0.005750525053305);
-        near(event(470, 0.02, 0.0, 0.0).0.boost, 0.08);
+        assert_near(event(300, 0.0001, 0.0, 0.0).0.boost, 0.005750525053305);
+        assert_near(event(470, 0.02, 0.0, 0.0).0.boost, 0.08);
     }
 
     #[test]
     fn targeted_banks_are_copied_separately() {
         let params = Params::bundled();
         let (event, bank, _) = event(200, 0.03, 1.0, 0.25);
-        near(event.boost, 0.275);
-        near(bank, 0.725);
+        assert_near(event.boost, 0.275);
+        assert_near(bank, 0.725);
         let (mut product, mut drift) = (Product::initial(&params), DriftTotals::default());
         product.group_bank[group("D_E03")] = 0.1;
         product.group_bank[group("S1")] = 0.4;
         raise_expectations(event.boost, &mut drift, &params);
         copy_group_bank(group("D_E03"), 0.05, &mut product, &mut drift, &params.competitor);
         copy_group_bank(group("S1"), 0.08, &mut product, &mut drift, &params.competitor);
-        near(drift.quality[group("S1")], 0.07325);
-        near(product.group_bank[group("D_E03")], 0.095);
-        near(product.group_bank[group("S1")], 0.368);
+        assert_near(drift.quality[group("S1")], 0.07325);
+        assert_near(product.group_bank[group("D_E03")], 0.095);
+        assert_near(product.group_bank[group("S1")], 0.368);
     }
 
     #[test]
     fn event_sizes_are_clamped_before_scaling() {
         let params = Params::bundled();
         let law = &params.competitor;
-        near(sampled_boost(0.01, 250, 500, law), 0.02592750533049);
-        near(sampled_boost(0.01, 470, 500, law), 0.04);
-        near(sampled_boost(5.0, 470, 500, law), 0.69103125);
-        near(sampled_boost(1e-9, 470, 500, law), 0.0078975);
-        near(sampled_boost(0.01, 467, 497, law), 0.04);
+        assert_near(sampled_boost(0.01, 250, 500, law), 0.02592750533049);
+        assert_near(sampled_boost(0.01, 470, 500, law), 0.04);
+        assert_near(sampled_boost(5.0, 470, 500, law), 0.69103125);
+        assert_near(sampled_boost(1e-9, 470, 500, law), 0.0078975);
+        assert_near(sampled_boost(0.01, 467, 497, law), 0.04);
         let mut bank = 1.0;
         let event = resolve_event(60, sampled_boost(0.01, 60, 500, law), 0.35, &mut bank, &params);
         assert!(event.by_feedback);
-        near(event.boost, 0.35);
-        near(bank, 0.65);
+        assert_near(event.boost, 0.35);
+        assert_near(bank, 0.65);
     }
 
     #[test]

@@ -167,7 +167,7 @@ pub(crate) mod tests {
         Economy { pmi, started: true, ..Economy::initial(&Params::bundled()) }
     }
 
-    fn near(actual: f64, expected: f64) {
+    fn assert_near(actual: f64, expected: f64) {
         assert!((actual - expected).abs() < 5e-10, "got {actual}, expected {expected}");
     }
 
@@ -187,11 +187,11 @@ pub(crate) mod tests {
             step(day, &mut economy, false, &params, &streams, &mut facts);
             readings.extend(facts.readings.iter().map(|reading| (day, *reading)));
             match day {
-                1 => near(economy.pmi, 49.250007889),
-                2 => near(economy.pmi, 49.131839323),
-                10 => near(economy.pmi, 48.250782805),
-                30 => near(economy.pmi, 46.520458736),
-                31 => near(economy.pmi, 46.450702501),
+                1 => assert_near(economy.pmi, 49.250007889),
+                2 => assert_near(economy.pmi, 49.131839323),
+                10 => assert_near(economy.pmi, 48.250782805),
+                30 => assert_near(economy.pmi, 46.520458736),
+                31 => assert_near(economy.pmi, 46.450702501),
                 _ => {}
             }
         }
@@ -232,7 +232,7 @@ pub(crate) mod tests {
             ("D_E06", LeadGeneration, 70.0, 1.78),
             ("S2", SeatCount, 70.0, 1.0),
         ] {
-            near(multiplier(id, dimension, pmi), expected);
+            assert_near(multiplier(id, dimension, pmi), expected);
         }
     }
 

@@ -154,7 +154,7 @@ mod tests {
         Group::parse(id).expect("a group")
     }
 
-    fn near(actual: f64, expected: f64) {
+    fn assert_near(actual: f64, expected: f64) {
         assert!((actual - expected).abs() <= 1e-9 * expected.abs(), "got {actual}, expected {expected}");
     }
 
@@ -198,25 +198,25 @@ mod tests {
             ("E3", 0.9997840920872, 0.94, 1.0, 0.0, 1.719662, 2.222183244442),
         ] {
             let factors = lead_factors(group(id), &context);
-            near(factors.saturation, saturation);
-            near(factors.economy, economy);
-            near(factors.social, social);
-            near(factors.paid.iter().sum::<f64>(), paid);
-            near(factors.network, network);
-            near(factors.expected(), expected);
+            assert_near(factors.saturation, saturation);
+            assert_near(factors.economy, economy);
+            assert_near(factors.social, social);
+            assert_near(factors.paid.iter().sum::<f64>(), paid);
+            assert_near(factors.network, network);
+            assert_near(factors.expected(), expected);
         }
     }
 
     #[test]
     fn saturation_decreases_with_market_share() {
         let law = Params::bundled().leads;
-        near(saturation(136_000, market_cap(272_000.0, 0.2, 0, &law), &law), 0.75);
-        near(saturation(136_000, market_cap(272_000.0, 0.2, 250, &law), &law), 0.806611990129);
-        near(saturation(600, market_cap(1190.0, 0.14, 100, &law), &law), 0.764215155299);
+        assert_near(saturation(136_000, market_cap(272_000.0, 0.2, 0, &law), &law), 0.75);
+        assert_near(saturation(136_000, market_cap(272_000.0, 0.2, 250, &law), &law), 0.806611990129);
+        assert_near(saturation(600, market_cap(1190.0, 0.14, 100, &law), &law), 0.764215155299);
         assert_eq!(saturation(140, market_cap(136.0, 0.1, 0, &law), &law), 0.0);
         assert_eq!(saturation(0, 0.0, &law), 1.0);
-        near(market_cap(272_000.0, 0.2, 365, &law), 326_400.0);
-        near(market_cap(136.0, 0.1, 500, &law), 154.630136986301);
+        assert_near(market_cap(272_000.0, 0.2, 365, &law), 326_400.0);
+        assert_near(market_cap(136.0, 0.1, 500, &law), 154.630136986301);
     }
 
     #[test]
@@ -239,7 +239,7 @@ mod tests {
                 ads: &ads,
                 params: &params,
             };
-            near(lead_factors(group("S1"), &context).expected(), expected);
+            assert_near(lead_factors(group("S1"), &context).expected(), expected);
         }
     }
 

@@ -43,7 +43,7 @@ pub fn complete_due_studies(day: u32, market: &mut Market, params: &Params, fact
 mod tests {
     use super::*;
 
-    fn near(actual: f64, expected: f64) {
+    fn assert_near(actual: f64, expected: f64) {
         assert!((actual - expected).abs() < 1e-6, "got {actual}, expected {expected}");
     }
 
@@ -66,17 +66,17 @@ mod tests {
         assert_eq!(market.knowledge[s1].level, 1);
         complete_due_studies(3, &mut market, &params, &mut facts);
         let snapshot = market.knowledge[s1].snapshot.expect("a snapshot");
-        near(snapshot.c_max, 50.5);
-        near(snapshot.q_min, 0.25);
-        near(snapshot.market_cap, 272_447.123_288);
+        assert_near(snapshot.c_max, 50.5);
+        assert_near(snapshot.q_min, 0.25);
+        assert_near(snapshot.market_cap, 272_447.123_288);
         assert_eq!((market.knowledge[s1].level, market.knowledge[s1].last_research_day), (2, Some(3)));
 
         order(&mut market, "S1", 2, 7, &params);
         complete_due_studies(10, &mut market, &params, &mut facts);
         let snapshot = market.knowledge[s1].snapshot.expect("a snapshot");
-        near(snapshot.c_max, 50.5);
-        near(snapshot.q_min, 0.25);
-        near(snapshot.market_cap, 273_490.410_959);
+        assert_near(snapshot.c_max, 50.5);
+        assert_near(snapshot.q_min, 0.25);
+        assert_near(snapshot.market_cap, 273_490.410_959);
         assert_eq!((market.knowledge[s1].level, market.knowledge[s1].last_research_day), (2, Some(3)));
         assert_eq!(facts.notices.len(), 2);
         assert!(market.studies.is_empty());

@@ -294,7 +294,7 @@ fn check_channels(params: &Params) -> Checked {
 mod tests {
     use super::*;
 
-    fn near(actual: f64, expected: f64) {
+    fn assert_near(actual: f64, expected: f64) {
         assert!(
             (actual - expected).abs() < 1e-9 * expected.abs().max(1.0),
             "got {actual}, expected {expected}"
@@ -305,17 +305,17 @@ mod tests {
     fn sums_over_groups_and_channels_match_the_release() {
         let params = Params::bundled();
         let sum = |value: fn(&super::super::GroupParams) -> f64| params.group.iter().map(value).sum::<f64>();
-        near(sum(|group| group.c_max_mean), 2495.0);
-        near(sum(|group| group.q_min_mean), 11.37);
-        near(sum(|group| group.usage_demand_mean), 3780.0);
-        near(sum(|group| group.base_market_cap), 1_208_492.0);
-        near(sum(|group| group.involuntary_churn_mean), 0.682);
-        near(sum(|group| group.competitor_reactivity_q_bias), 2.69);
+        assert_near(sum(|group| group.c_max_mean), 2495.0);
+        assert_near(sum(|group| group.q_min_mean), 11.37);
+        assert_near(sum(|group| group.usage_demand_mean), 3780.0);
+        assert_near(sum(|group| group.base_market_cap), 1_208_492.0);
+        assert_near(sum(|group| group.involuntary_churn_mean), 0.682);
+        assert_near(sum(|group| group.competitor_reactivity_q_bias), 2.69);
         let yields = params.starting_yields();
         for (channel, expected) in
             Channel::ALL.into_iter().zip([1542.4206, 1475.0535, 1745.3058, 1567.6017, 2286.498])
         {
-            near(yields[channel].iter().sum(), expected);
+            assert_near(yields[channel].iter().sum(), expected);
         }
     }
 
@@ -323,7 +323,7 @@ mod tests {
     fn network_sums_match_the_release() {
         let params = Params::bundled();
         let pairs = || Group::all().flat_map(|source| Group::all().map(move |target| (source, target)));
-        near(pairs().map(|(source, target)| params.referral_rate(source, target)).sum(), 0.46369999);
-        near(pairs().map(|(source, target)| params.reputation_weight(source, target)).sum(), 75.194);
+        assert_near(pairs().map(|(source, target)| params.referral_rate(source, target)).sum(), 0.46369999);
+        assert_near(pairs().map(|(source, target)| params.reputation_weight(source, target)).sum(), 75.194);
     }
 }

@@ -93,7 +93,7 @@ mod tests {
     use crate::settings::{PerCustomer, PerGroup};
     use crate::test_kit::subscriber;
 
-    fn near(actual: f64, expected: f64) {
+    fn assert_near(actual: f64, expected: f64) {
         assert!((actual - expected).abs() < 1e-9, "got {actual}, expected {expected}");
     }
 
@@ -107,14 +107,14 @@ mod tests {
             by_customer: PerCustomer::from([(5, 0.3)]),
         };
         let load = AdLoad::new(&setting, &params);
-        near(load.for_customer(e1, 1), 0.447158031);
-        near(load.for_customer(s1, 1), 0.568201724);
-        near(load.for_customer(s1, 5), 0.806179974);
-        near(load.for_customer(e1, 5), 0.740362689);
-        near(load.for_group(s1), 0.568201724);
+        assert_near(load.for_customer(e1, 1), 0.447158031);
+        assert_near(load.for_customer(s1, 1), 0.568201724);
+        assert_near(load.for_customer(s1, 5), 0.806179974);
+        assert_near(load.for_customer(e1, 5), 0.740362689);
+        assert_near(load.for_group(s1), 0.568201724);
         let full =
             AdsStrength { global: 0.8, by_group: PerGroup::from([(s1, 0.7)]), ..AdsStrength::default() };
-        near(AdLoad::new(&full, &params).for_customer(s1, 1), 1.0);
+        assert_near(AdLoad::new(&full, &params).for_customer(s1, 1), 1.0);
     }
 
     #[test]
@@ -124,7 +124,7 @@ mod tests {
         let mut customers = Customers::default();
         let mut facts = Facts::default();
         (1..=5).for_each(|n| customers.groups[Group::at(0).expect("S1")].activate(subscriber(n)));
-        near(record_ad_revenue(&customers, &AdLoad::new(&setting, &params), &mut facts), 0.111501440);
+        assert_near(record_ad_revenue(&customers, &AdLoad::new(&setting, &params), &mut facts), 0.111501440);
         assert_eq!(facts.ads_revenue.len(), 5);
     }
 
@@ -140,6 +140,6 @@ mod tests {
             record_ad_revenue(&customers, &load, &mut Facts::default())
         };
         assert_eq!(earned(2.9), earned(2.0));
-        near(earned(3.0), 1.5 * earned(2.9));
+        assert_near(earned(3.0), 1.5 * earned(2.9));
     }
 }

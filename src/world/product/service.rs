@@ -87,7 +87,7 @@ pub fn observe_service(
 mod tests {
     use super::*;
 
-    fn near(actual: f64, expected: f64) {
+    fn assert_near(actual: f64, expected: f64) {
         assert!((actual - expected).abs() < 1e-10, "got {actual}, expected {expected}");
     }
 
@@ -100,11 +100,14 @@ mod tests {
             (10_000, 50_000.0, 2_000.0, 0.0, 0.001),
             (240_000, 200_000.0, 1_000.0, 0.2, 0.00730810529),
         ] {
-            near(overload(usage, capacity, &operations), o);
-            near(outage_probability(spend, overload(usage, capacity, &operations), &operations), probability);
+            assert_near(overload(usage, capacity, &operations), o);
+            assert_near(
+                outage_probability(spend, overload(usage, capacity, &operations), &operations),
+                probability,
+            );
         }
-        near(p95_latency(0.5, 1.0, &operations), 630.0);
-        near(error_rate(0.5, 1.0, &operations), 0.009);
+        assert_near(p95_latency(0.5, 1.0, &operations), 630.0);
+        assert_near(error_rate(0.5, 1.0, &operations), 0.009);
     }
 
     #[test]
@@ -117,10 +120,13 @@ mod tests {
             (100_000, 500.0, 0.0551819162),
             (50_000, 100.0, 0.0245619226),
         ] {
-            near(outage_probability(spend, overload(usage, 50_000.0, &operations), &operations), probability);
+            assert_near(
+                outage_probability(spend, overload(usage, 50_000.0, &operations), &operations),
+                probability,
+            );
         }
-        near(p95_latency(0.5, 0.0, &operations), 580.0);
-        near(error_rate(0.5, 0.0, &operations), 0.008);
+        assert_near(p95_latency(0.5, 0.0, &operations), 580.0);
+        assert_near(error_rate(0.5, 0.0, &operations), 0.008);
     }
 
     #[test]

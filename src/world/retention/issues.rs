@@ -2,7 +2,7 @@
 //! (`docs/mechanics/retention/issues.md`).
 //!
 //! Everything is decided from the values at the start of the day. Issues are found before the satisfaction update and
-//! settled after it, by block in the sweeps of [`crate::day`]; in between, the operations budget is allocated.
+//! settled after it, by block in the sweeps of [`crate::simulate_day`]; in between, the operations budget is allocated.
 
 use super::support_pools::ResolutionRound;
 use crate::canonical::canonical;
@@ -229,7 +229,7 @@ mod tests {
     use crate::random::Streams;
     use crate::test_kit::subscriber;
 
-    fn near(actual: f64, expected: f64) {
+    fn assert_near(actual: f64, expected: f64) {
         assert!((actual - expected).abs() < 1e-12, "got {actual}, expected {expected}");
     }
 
@@ -244,8 +244,8 @@ mod tests {
             (1.2, 1.0, 0.0, 0.23),
             (0.2, 100.0, 0.4, 0.4),
         ] {
-            near(issue_probability(satisfaction, false, seats, &issues), quiet);
-            near(issue_probability(satisfaction, true, seats, &issues), outage);
+            assert_near(issue_probability(satisfaction, false, seats, &issues), quiet);
+            assert_near(issue_probability(satisfaction, true, seats, &issues), outage);
         }
     }
 
@@ -263,18 +263,18 @@ mod tests {
         let mean = |base, spend, group, of_group, of_pool| {
             mean_resolved(base, spend, group, of_group, of_pool, &params.issues)
         };
-        near(mean(2.0, 10.0, e1, 1, 4), 0.75);
-        near(mean(2.0, 10.0, s1, 3, 4), 6.0);
-        near(mean(0.0, 20.0, s1, 3, 3), 12.0);
-        near(mean(0.0, 5.0, e1, 1, 1), 0.5);
-        near(mean(0.0, 7.0, e1, 1, 4), 0.175);
-        near(mean(0.0, 7.0, s1, 3, 4), 3.15);
-        near(mean(0.0, 11.0, s1, 3, 3), 6.6);
-        near(mean(0.0, 2.0, s1, 1, 1), 1.2);
-        near(relationship_after_solution(0.5, 1, false, &params), 0.9);
-        near(relationship_after_solution(0.8, 2, false, &params), 1.0);
-        near(relationship_after_solution(0.5, 3, false, &params), 0.5);
-        near(relationship_after_solution(0.5, 1, true, &params), 0.5);
+        assert_near(mean(2.0, 10.0, e1, 1, 4), 0.75);
+        assert_near(mean(2.0, 10.0, s1, 3, 4), 6.0);
+        assert_near(mean(0.0, 20.0, s1, 3, 3), 12.0);
+        assert_near(mean(0.0, 5.0, e1, 1, 1), 0.5);
+        assert_near(mean(0.0, 7.0, e1, 1, 4), 0.175);
+        assert_near(mean(0.0, 7.0, s1, 3, 4), 3.15);
+        assert_near(mean(0.0, 11.0, s1, 3, 3), 6.6);
+        assert_near(mean(0.0, 2.0, s1, 1, 1), 1.2);
+        assert_near(relationship_after_solution(0.5, 1, false, &params), 0.9);
+        assert_near(relationship_after_solution(0.8, 2, false, &params), 1.0);
+        assert_near(relationship_after_solution(0.5, 3, false, &params), 0.5);
+        assert_near(relationship_after_solution(0.5, 1, true, &params), 0.5);
     }
 
     #[test]
@@ -286,7 +286,7 @@ mod tests {
         }
         assert!(relationship < 1e-12, "{relationship}");
         relationship = relationship_after_waiting(0.0, &params.issues, &params.quality);
-        near(relationship, 0.49);
+        assert_near(relationship, 0.49);
     }
 
     fn company_with_issues(count: u32) -> Customers {
@@ -325,7 +325,7 @@ mod tests {
         for block in &s1.blocks {
             for at in 0..block.len() {
                 let expected = if block.open_issue_days[at] == 0 { 0.9 } else { 0.49 };
-                near(block.relationship[at], expected);
+                assert_near(block.relationship[at], expected);
                 assert_eq!(block.issue[at] == 0, block.open_issue_days[at] == 0);
             }
         }

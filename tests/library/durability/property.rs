@@ -16,7 +16,7 @@ use crate::support::dice::Dice;
 
 const WEEKS: usize = 10;
 
-fn number(session: &mut Session, sql: &str) -> f64 {
+fn query_number(session: &mut Session, sql: &str) -> f64 {
     match session.query(sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}")).rows[0][0] {
         Cell::Integer(number) => number as f64,
         Cell::Real(number) => number,
@@ -26,16 +26,16 @@ fn number(session: &mut Session, sql: &str) -> f64 {
 
 fn check_invariants(session: &mut Session, seed: u64) {
     let cash = *session.cash_by_day().last().expect("a day");
-    let ledger = number(session, "SELECT SUM(amount) FROM ledger");
-    let scale = number(session, "SELECT SUM(ABS(amount)) FROM ledger");
+    let ledger = query_number(session, "SELECT SUM(amount) FROM ledger");
+    let scale = query_number(session, "SELECT SUM(ABS(amount)) FROM ledger");
     assert!((cash - ledger).abs() <= 1e-9 * scale, "game {seed}: cash {cash}, ledger {ledger}");
     let lost =
         "SELECT COUNT(*) FROM subscriptions WHERE customer_id NOT IN (SELECT customer_id FROM customers)";
-    assert_eq!(number(session, lost), 0.0, "game {seed}");
+    assert_eq!(query_number(session, lost), 0.0, "game {seed}");
     let twice = "SELECT COUNT(*) FROM (SELECT customer_id FROM subscriptions WHERE status = 'subscribed' \
                  GROUP BY customer_id HAVING COUNT(*) > 1)";
-    assert_eq!(number(session, twice), 0.0, "game {seed}");
-    let subscribed = number(
+    assert_eq!(query_number(session, twice), 0.0, "game {seed}");
+    let subscribed = query_number(
         session,
         "SELECT COUNT(*) FROM subscriptions JOIN customers USING (customer_id) \
          WHERE status = 'subscribed' AND customer_type = 'small'",
@@ -43,13 +43,13 @@ fn check_invariants(session: &mut Session, seed: u64) {
     assert_eq!(subscribed, f64::from(session.company().observe().subscribers), "game {seed}");
     let odd =
         "SELECT COUNT(*) FROM service_day WHERE error_rate < 0 OR error_rate > 1 OR total_usage_units < 0";
-    assert_eq!(number(session, odd), 0.0, "game {seed}");
+    assert_eq!(query_number(session, odd), 0.0, "game {seed}");
     // Latency has no minimum, so its noise of 50 ms can make it negative, but not by eight standard deviations.
     let latency = "SELECT COUNT(*) FROM service_day WHERE p95_ms IS NULL OR ABS(p95_ms - 180 \
                    - 800 * MAX(0, 1.0 * total_usage_units / capacity_units - 1)) > 400";
-    assert_eq!(number(session, latency), 0.0, "game {seed}");
+    assert_eq!(query_number(session, latency), 0.0, "game {seed}");
     let issues = "SELECT COUNT(*) FROM issues WHERE days_open < 0";
-    assert_eq!(number(session, issues), 0.0, "game {seed}");
+    assert_eq!(query_number(session, issues), 0.0, "game {seed}");
 }
 
 /// Returns the state of a run folder, simulated from its first line on a number of threads.

@@ -29,7 +29,7 @@ fn resolve<'a>(root: &'a Value, part: &'a Value) -> &'a Value {
 }
 
 /// Validates a value against a part of the schema. Supports exactly the keywords that the schema uses.
-fn problems(root: &Value, part: &Value, value: &Value, place: &str, found: &mut Vec<String>) {
+fn validate(root: &Value, part: &Value, value: &Value, place: &str, found: &mut Vec<String>) {
     let rules = resolve(root, part).as_object().expect("a schema is an object");
     let mut wrong = |what: String| found.push(format!("{place}: {what}"));
     let number = |rule: &Value| rule.as_f64().expect("a number");
@@ -76,7 +76,7 @@ fn problems(root: &Value, part: &Value, value: &Value, place: &str, found: &mut 
             "oneOf" => {
                 let fits = rule.as_array().expect("choices").iter().filter(|choice| {
                     let mut against = Vec::new();
-                    problems(root, choice, value, place, &mut against);
+                    validate(root, choice, value, place, &mut against);
                     against.is_empty()
                 });
                 fits.count() == 1
@@ -88,7 +88,7 @@ fn problems(root: &Value, part: &Value, value: &Value, place: &str, found: &mut 
         }
     }
     for (part, value, place) in inner {
-        problems(root, &part, &value, &place, found);
+        validate(root, &part, &value, &place, found);
     }
 }
 
@@ -126,10 +126,10 @@ fn line_problems(root: &Value, line: &Value) -> Vec<String> {
     let kind = line["kind"].as_str().unwrap_or_default();
     let Some(part) = root.pointer(&format!("/$defs/{kind}")) else { return vec![format!("no kind {kind}")] };
     let mut found = Vec::new();
-    problems(root, part, line, kind, &mut found);
+    validate(root, part, line, kind, &mut found);
     if found.is_empty() {
         // The complete schema must give the same result.
-        problems(root, root, line, "line", &mut found);
+        validate(root, root, line, "line", &mut found);
     }
     found
 }

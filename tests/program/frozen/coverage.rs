@@ -86,7 +86,7 @@ impl Help {
 }
 
 /// Collects every command without subcommands, and its forms with each of their values.
-fn expected(home: &Home, path: &[&str], found: &mut BTreeSet<String>) {
+fn collect_expected(home: &Home, path: &[&str], found: &mut BTreeSet<String>) {
     let program_output = home.run(&[path, &["--help"]].concat());
     assert_eq!(program_output.exit_code, 0, "{path:?}: {}", program_output.stderr);
     let help = Help::read(&program_output.stdout);
@@ -103,12 +103,12 @@ fn expected(home: &Home, path: &[&str], found: &mut BTreeSet<String>) {
         }
     }
     for command in &help.commands {
-        expected(home, &[path, &[command]].concat(), found);
+        collect_expected(home, &[path, &[command]].concat(), found);
     }
 }
 
 /// Collects the command of a case, and its forms with their values.
-fn covered(arguments: &[String], commands: &BTreeSet<String>, found: &mut BTreeSet<String>) {
+fn collect_covered(arguments: &[String], commands: &BTreeSet<String>, found: &mut BTreeSet<String>) {
     let mut name = String::new();
     for word in arguments.iter().take_while(|word| !word.starts_with('-')) {
         let longer = if name.is_empty() { word.clone() } else { format!("{name} {word}") };
@@ -129,11 +129,11 @@ fn covered(arguments: &[String], commands: &BTreeSet<String>, found: &mut BTreeS
 #[test]
 fn every_command_and_form_of_output_has_a_case() {
     let (home, mut wanted, mut found) = (Home::new(), BTreeSet::new(), BTreeSet::new());
-    expected(&home, &[], &mut wanted);
+    collect_expected(&home, &[], &mut wanted);
     assert!(wanted.len() > 100 && wanted.contains("query --format csv"), "{wanted:?}");
     let all = groups().iter().flat_map(|group| cases(group)).collect::<Vec<_>>();
     for case in &all {
-        covered(&case.arguments(), &wanted, &mut found);
+        collect_covered(&case.arguments(), &wanted, &mut found);
     }
     let exceptions: BTreeSet<String> = EXCEPTIONS.iter().map(|(name, _)| (*name).to_owned()).collect();
     let missing: Vec<&String> =

@@ -189,7 +189,7 @@ fn draw_curve(
         canvas.draw_text(Rect { x: to, width: 1, ..published_row }, "◆", role);
     }
     let counts: Vec<(u16, usize)> =
-        (plot.left()..plot.right()).map(|x| (x, count_matching(view.news, |day| column(day) == x))).collect();
+        (plot.left()..plot.right()).map(|x| (x, count_competitor_news(view.news, |day| column(day) == x))).collect();
     let most = counts.iter().map(|(_, count)| *count).max().unwrap_or(0).max(1);
     for (x, count) in counts.into_iter().filter(|(_, count)| *count > 0) {
         let level = (count * NEWS_SYMBOLS.len()).div_ceil(most) - 1;
@@ -197,7 +197,7 @@ fn draw_curve(
     }
 }
 
-fn count_matching(news: &[CompetitorNews], holds: impl Fn(u32) -> bool) -> usize {
+fn count_competitor_news(news: &[CompetitorNews], holds: impl Fn(u32) -> bool) -> usize {
     news.iter().filter(|item| item.competitor.is_some() && holds(item.post.day)).count()
 }
 

@@ -31,7 +31,7 @@ fn confirm_and_call(screen: &mut Market, session: &mut Session, action: Action) 
     (text.clone(), effects)
 }
 
-fn week(session: &mut Session) {
+fn advance_week(session: &mut Session) {
     let forecasts = session.company().naive_forecasts();
     session.advance("as planned", &forecasts, Via::Form, &mut |_| {}).expect("a week");
 }
@@ -52,7 +52,7 @@ fn study_is_confirmed_ordered_and_shown_while_running() {
     let company = DisplayedCompany::from_session(&session);
     let text = screen_text(&screen, &company, 120, 37);
     assert!(text.contains("→2 due day 10") && text.contains("study to level 2 due on day 10"), "{text}");
-    week(&mut session);
+    advance_week(&mut session);
     let company = DisplayedCompany::from_session(&session);
     let screen: Market = loaded_screen(&mut session, &company);
     let text = screen_text(&screen, &company, 200, 57);

@@ -120,8 +120,8 @@ impl ScreenState for Product {
         match reading {
             Reading::Service => self.days = model::parse_service_days(rows),
             Reading::Research => self.projects = model::projects(rows),
-            Reading::Subscribers => self.sales.add_subscribers(rows),
-            Reading::Usage => self.sales.add_usage(rows),
+            Reading::Subscribers => self.sales.set_subscribers(rows),
+            Reading::Usage => self.sales.set_usage(rows),
             Reading::OpenIssues => self.issues = Some(model::issues(rows)),
             _ => {}
         }

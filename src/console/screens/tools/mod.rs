@@ -200,8 +200,8 @@ impl ScreenState for Tools {
     fn apply_rows(&mut self, reading: Reading, rows: &QueryResult, _: &ScreenContext<'_>) {
         match reading {
             Reading::LeadsByChannel => self.leads = ChannelLeads::from_rows(rows),
-            Reading::Subscribers => self.sales.add_subscribers(rows),
-            Reading::Usage => self.sales.add_usage(rows),
+            Reading::Subscribers => self.sales.set_subscribers(rows),
+            Reading::Usage => self.sales.set_usage(rows),
             _ => {}
         }
     }

@@ -33,7 +33,7 @@ fn view_response<T>(
 
 impl Interpreter {
     /// `xray quality GROUP [DAY]`
-    pub(super) fn quality(&mut self, arguments: &[Argument]) -> ViewResult {
+    pub(super) fn show_quality(&mut self, arguments: &[Argument]) -> ViewResult {
         let (group, day) = parse_group_view("quality", arguments)?;
         Ok(view_response(
             self.session.inspect().quality_equation(group, day),
@@ -43,27 +43,27 @@ impl Interpreter {
     }
 
     /// `xray satisfaction GROUP [DAY]`
-    pub(super) fn satisfaction(&mut self, arguments: &[Argument]) -> ViewResult {
+    pub(super) fn show_satisfaction(&mut self, arguments: &[Argument]) -> ViewResult {
         let (group, day) = parse_group_view("satisfaction", arguments)?;
         let seen = self.session.inspect().satisfaction_equation(group, day);
         Ok(view_response(seen, describe_satisfaction, satisfaction_to_json))
     }
 
     /// `xray reputation GROUP [DAY]`
-    pub(super) fn reputation(&mut self, arguments: &[Argument]) -> ViewResult {
+    pub(super) fn show_reputation(&mut self, arguments: &[Argument]) -> ViewResult {
         let (group, day) = parse_group_view("reputation", arguments)?;
         let seen = self.session.inspect().reputation_equation(group, day);
         Ok(view_response(seen, describe_reputation, reputation_to_json))
     }
 
     /// `xray spillover [DAY]`
-    pub(super) fn spillover(&mut self, arguments: &[Argument]) -> ViewResult {
+    pub(super) fn show_spillover(&mut self, arguments: &[Argument]) -> ViewResult {
         let day = parse_optional_day("spillover", arguments)?;
         Ok(view_response(self.session.inspect().spillover(day), describe_spillover, spillover_to_json))
     }
 
     /// `xray rivals [DAY]`
-    pub(super) fn competitors(&mut self, arguments: &[Argument]) -> ViewResult {
+    pub(super) fn show_competitors(&mut self, arguments: &[Argument]) -> ViewResult {
         let day = parse_optional_day("rivals", arguments)?;
         Ok(view_response(
             self.session.inspect().competitor_state(day),
@@ -73,7 +73,7 @@ impl Interpreter {
     }
 
     /// `xray drift [DAY]`
-    pub(super) fn drift(&mut self, arguments: &[Argument]) -> ViewResult {
+    pub(super) fn show_drift(&mut self, arguments: &[Argument]) -> ViewResult {
         let day = parse_optional_day("drift", arguments)?;
         Ok(view_response(self.session.inspect().drift_state(day), describe_drift, drift_to_json))
     }

@@ -421,7 +421,7 @@ impl App {
                 self.orders.push(Order::Ask(ask, self.busy.is_some()));
             }
         }
-        let asks = self.with_screen(|screen, look| screen.request_data(look)).unwrap_or_default();
+        let asks = self.with_screen(|screen, context| screen.request_data(context)).unwrap_or_default();
         self.follow(asks);
         self.request_hidden_values();
     }
@@ -429,7 +429,7 @@ impl App {
     fn with_screen<T>(&mut self, work: impl FnOnce(&mut dyn Screen, &ScreenContext<'_>) -> T) -> Option<T> {
         let Stage::Run(run) = &mut self.stage else { return None };
         let company = run.company.clone();
-        let look = ScreenContext { company: &company, keys: &self.keys, page_rows: self.page_rows };
-        Some(work(run.screens.get_mut(run.screen), &look))
+        let context = ScreenContext { company: &company, keys: &self.keys, page_rows: self.page_rows };
+        Some(work(run.screens.get_mut(run.screen), &context))
     }
 }

@@ -101,10 +101,10 @@ fn draw_pending_keys(app: &App, canvas: &mut Canvas<'_>, area: Rect) {
 
 fn draw_run(app: &App, run: &Run, canvas: &mut Canvas<'_>, area: Rect) {
     if let (true, Some(viewer)) = (app.is_projected, &run.playback) {
-        let look = ScreenContext { company: &run.company, keys: &app.keys, page_rows: app.page_rows };
+        let context = ScreenContext { company: &run.company, keys: &app.keys, page_rows: app.page_rows };
         let body = Rect { height: area.height - 1, ..area };
-        super::projector::draw(canvas, body, viewer, &look);
-        return draw_layers(app, run, canvas, body, &look);
+        super::projector::draw(canvas, body, viewer, &context);
+        return draw_layers(app, run, canvas, body, &context);
     }
     draw_header(app, canvas, Rect { height: 1, ..area }, &run.company);
     draw_tabs(app, run, canvas, Rect { y: area.y + 1, height: 1, ..area });
@@ -119,7 +119,7 @@ fn draw_run(app: &App, run: &Run, canvas: &mut Canvas<'_>, area: Rect) {
     let strip = u16::from(run.playback.is_some());
     let below = tour.as_ref().map_or(0, |(_, height)| *height) + strip;
     let body = Rect { height: body.height.saturating_sub(below), ..body };
-    let look = ScreenContext { company: &run.company, keys: &app.keys, page_rows: app.page_rows };
+    let screen_context = ScreenContext { company: &run.company, keys: &app.keys, page_rows: app.page_rows };
     canvas.zoomed = run.zoomed;
     let decisions_width =
         run.playback.as_ref().filter(|_| !run.zoomed).map_or(0, |viewer| viewer.columns(body));
@@ -127,8 +127,8 @@ fn draw_run(app: &App, run: &Run, canvas: &mut Canvas<'_>, area: Rect) {
     let decisions_width = if lesson.is_some() { super::lesson::TASK_WIDTH } else { decisions_width };
     let screen = Rect { width: body.width - decisions_width, ..body };
     canvas.stale = is_stale(run);
-    canvas.breadcrumbs = run.breadcrumb_titles(&look);
-    run.screens.get(run.screen).draw(canvas, screen, &look);
+    canvas.breadcrumbs = run.breadcrumb_titles(&screen_context);
+    run.screens.get(run.screen).draw(canvas, screen, &screen_context);
     canvas.stale = false;
     canvas.breadcrumbs.clear();
     if let Some(page) = lesson {
@@ -136,7 +136,7 @@ fn draw_run(app: &App, run: &Run, canvas: &mut Canvas<'_>, area: Rect) {
             canvas,
             Rect { x: screen.right(), width: decisions_width, ..body },
             page,
-            &look,
+            &screen_context,
         );
     }
     if let Some(viewer) = &run.playback {
@@ -144,25 +144,25 @@ fn draw_run(app: &App, run: &Run, canvas: &mut Canvas<'_>, area: Rect) {
         let page = canvas.page_rows;
         if decisions_width > 0 {
             let decisions_area = Rect { x: screen.right(), width: decisions_width, ..body };
-            viewer.draw_decisions(canvas, decisions_area, &look, EntryFilter::All);
+            viewer.draw_decisions(canvas, decisions_area, &screen_context, EntryFilter::All);
         }
         canvas.page_rows = page;
         viewer.draw_status_line(canvas, Rect { y: body.bottom(), height: 1, ..area });
     }
-    draw_layers(app, run, canvas, body, &look);
+    draw_layers(app, run, canvas, body, &screen_context);
     if let Some((tour, height)) = tour {
         tour.draw(canvas, Rect { y: body.bottom(), height, ..area }, &app.keys, &run.company.numbers);
     }
 }
 
-fn draw_layers(app: &App, run: &Run, canvas: &mut Canvas<'_>, body: Rect, look: &ScreenContext<'_>) {
+fn draw_layers(app: &App, run: &Run, canvas: &mut Canvas<'_>, body: Rect, context: &ScreenContext<'_>) {
     for layer in app.layers.iter() {
         // The screen below a dialog is visible but not clickable.
         canvas.clicks.clear();
         canvas.cursor = None;
         match layer {
-            Layer::NextWeek => super::dialogs::Dialog::draw(&run.next_week, canvas, body, look),
-            Layer::Dialog(dialog) => dialog.draw(canvas, body, look),
+            Layer::NextWeek => super::dialogs::Dialog::draw(&run.next_week, canvas, body, context),
+            Layer::Dialog(dialog) => dialog.draw(canvas, body, context),
         }
     }
 }

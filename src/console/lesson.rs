@@ -42,17 +42,17 @@ pub fn closed_reason(screen: ScreenId, company: &DisplayedCompany) -> Option<Str
 }
 
 /// Draws the task next to the screen. The lesson page shows all of it.
-pub fn draw_side_task(canvas: &mut Canvas<'_>, area: Rect, page: &LessonStatus, look: &ScreenContext<'_>) {
+pub fn draw_side_task(canvas: &mut Canvas<'_>, area: Rect, page: &LessonStatus, context: &ScreenContext<'_>) {
     canvas.clear(area, Role::Text);
     let note = format!("week {} of {}", (page.weeks.0 + 1).min(page.weeks.1), page.weeks.1);
     let inside = canvas.draw_pane_frame(area, "Lesson", &note, false);
     let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
-    let lines = lines_of(page, look, (inside.width as usize, TaskPlace::SidePane));
+    let lines = lines_of(page, context, (inside.width as usize, TaskPlace::SidePane));
     let cut = lines.len() > inside.height as usize;
     draw_lines(canvas, inside, &lines, 0);
     let keys = match cut {
-        true => format!("{} for more", look.hint(Action::LessonPage)),
-        false => look.hints(&[Action::LessonPage, Action::Lesson]),
+        true => format!("{} for more", context.hint(Action::LessonPage)),
+        false => context.hints(&[Action::LessonPage, Action::Lesson]),
     };
     canvas.draw_pane_keys(area, &keys);
 }
@@ -94,7 +94,7 @@ pub enum TaskPlace {
 /// Formats the task as lines of a width.
 pub fn lines_of(
     page: &LessonStatus,
-    look: &ScreenContext<'_>,
+    context: &ScreenContext<'_>,
     (width, place): (usize, TaskPlace),
 ) -> Vec<(String, Role)> {
     let mut lines = StyledLines { width, lines: Vec::new() };
@@ -116,7 +116,7 @@ pub fn lines_of(
         push_outcome(&mut lines, page.question.as_ref(), &page.goals);
         push_pitfalls(&mut lines, page);
         lines.push_blank();
-        lines.push_text(&next_steps_text(page, look, place), Role::Key);
+        lines.push_text(&next_steps_text(page, context, place), Role::Key);
         return lines.lines;
     }
     // Goals come first, because small windows truncate the end.
@@ -129,26 +129,26 @@ pub fn lines_of(
     lines.push_text(&unwrap_paragraphs(&page.text), Role::Text);
     if let Some(question) = &page.question {
         lines.push_blank();
-        push_question(&mut lines, question, look);
+        push_question(&mut lines, question, context);
     }
     push_pitfalls(&mut lines, page);
-    push_hints(&mut lines, page, look);
-    push_available_features(&mut lines, look);
+    push_hints(&mut lines, page, context);
+    push_available_features(&mut lines, context);
     lines.lines
 }
 
-fn next_steps_text(page: &LessonStatus, look: &ScreenContext<'_>, place: TaskPlace) -> String {
+fn next_steps_text(page: &LessonStatus, context: &ScreenContext<'_>, place: TaskPlace) -> String {
     if place == TaskPlace::SidePane {
-        let key = look.keys.label(Action::NextWeek).unwrap_or_default();
+        let key = context.keys.label(Action::NextWeek).unwrap_or_default();
         return match page.next_part {
             Some(_) => format!("This part has ended: {key} opens the page with the next part."),
             None => format!("The lesson has ended: {key} opens the debrief."),
         };
     }
-    let again = look.hint(Action::TryAgain);
-    let debrief = look.hint(Action::Debrief);
+    let again = context.hint(Action::TryAgain);
+    let debrief = context.hint(Action::Debrief);
     match page.next_part {
-        Some(_) => format!("This part has ended: {}, {again}, {debrief}.", look.hint(Action::NextPart)),
+        Some(_) => format!("This part has ended: {}, {again}, {debrief}.", context.hint(Action::NextPart)),
         None => format!("The lesson has ended: {debrief}, {again}."),
     }
 }
@@ -165,7 +165,7 @@ fn unwrap_paragraphs(text: &str) -> String {
     joined.collect::<Vec<_>>().join("\n\n")
 }
 
-fn push_question(lines: &mut StyledLines, question: &LessonQuestion, look: &ScreenContext<'_>) {
+fn push_question(lines: &mut StyledLines, question: &LessonQuestion, context: &ScreenContext<'_>) {
     lines.push_text(&format!("Your guess: {}", question.text), Role::Strong);
     match question.guess {
         Some(_) => {
@@ -175,7 +175,7 @@ fn push_question(lines: &mut StyledLines, question: &LessonQuestion, look: &Scre
             for (at, choice) in question.choices.iter().enumerate() {
                 lines.push_text(&format!("{}) {choice}", at + 1), Role::Text);
             }
-            lines.push_text(&format!("{} asks for your guess", look.hint(Action::NextWeek)), Role::Key);
+            lines.push_text(&format!("{} asks for your guess", context.hint(Action::NextWeek)), Role::Key);
         }
     }
 }
@@ -217,7 +217,7 @@ fn push_pitfalls(lines: &mut StyledLines, page: &LessonStatus) {
     }
 }
 
-fn push_hints(lines: &mut StyledLines, page: &LessonStatus, look: &ScreenContext<'_>) {
+fn push_hints(lines: &mut StyledLines, page: &LessonStatus, context: &ScreenContext<'_>) {
     lines.push_blank();
     for (at, hint) in page.hints.iter().enumerate() {
         lines.push_text(&format!("Hint {}: {hint}", at + 1), Role::Text);
@@ -225,21 +225,21 @@ fn push_hints(lines: &mut StyledLines, page: &LessonStatus, look: &ScreenContext
     let count = format!("hints {}/{}", page.hints.len(), page.hint_count);
     let more = page.hints.len() < page.hint_count;
     let keys = || {
-        let key = |action| look.keys.label(action).unwrap_or_default();
+        let key = |action| context.keys.label(action).unwrap_or_default();
         format!(" · {} {} shows one", key(Action::LessonPage), key(Action::NextHint))
     };
     lines.push_text(&if more { count + &keys() } else { count }, Role::Dim);
 }
 
-fn push_available_features(lines: &mut StyledLines, look: &ScreenContext<'_>) {
-    let Some(lesson) = look.company.running_lesson() else { return };
+fn push_available_features(lines: &mut StyledLines, context: &ScreenContext<'_>) {
+    let Some(lesson) = context.company.running_lesson() else { return };
     lines.push_blank();
     if let Some(tools) = &lesson.tools {
         let names: Vec<&str> = tools.iter().map(|tool| tool.name()).collect();
         lines.push_text(&format!("Tools in this lesson: {}.", names.join(", ")), Role::Dim);
     }
     if lesson.screens.is_some() {
-        let is_closed = |screen: &ScreenId| closed_reason(*screen, look.company).is_some();
+        let is_closed = |screen: &ScreenId| closed_reason(*screen, context.company).is_some();
         let closed = ScreenId::ALL.into_iter().filter(is_closed);
         let closed: Vec<&str> = closed.map(|screen| screen.action().entry().title).collect();
         if !closed.is_empty() {

@@ -18,7 +18,7 @@ const MAX_FIGURE_LETTERS: u16 = 7;
 const SINGLE_ROW_WIDTH: u16 = 4 * (MAX_FIGURE_LETTERS * LETTER_WIDTH_POINTS + 1);
 
 /// Draws the view.
-pub fn draw(canvas: &mut Canvas<'_>, area: Rect, viewer: &PlaybackViewer, look: &ScreenContext<'_>) {
+pub fn draw(canvas: &mut Canvas<'_>, area: Rect, viewer: &PlaybackViewer, context: &ScreenContext<'_>) {
     let size = match area.width >= 2 * SINGLE_ROW_WIDTH - 36 && area.height >= 30 {
         true => PointSize::Large,
         false => PointSize::Small,
@@ -27,7 +27,7 @@ pub fn draw(canvas: &mut Canvas<'_>, area: Rect, viewer: &PlaybackViewer, look: 
     // Label and digits.
     let tall = size.rows() + 1;
     let gap = u16::from(area.height >= 24);
-    for (at, (label, figure, role)) in (0u16..).zip(headline_figures(look.company)) {
+    for (at, (label, figure, role)) in (0u16..).zip(headline_figures(context.company)) {
         let place = Rect {
             x: area.x + at % columns_per_row * (area.width / columns_per_row),
             y: area.y + at / columns_per_row * (tall + gap),
@@ -50,9 +50,9 @@ pub fn draw(canvas: &mut Canvas<'_>, area: Rect, viewer: &PlaybackViewer, look: 
     let used = 4 / columns_per_row * (tall + gap);
     let below = Rect { y: area.y + used, height: area.height.saturating_sub(used), ..area };
     let left = Rect { width: below.width * 3 / 5, ..below };
-    draw_cash(canvas, left, look.company);
+    draw_cash(canvas, left, context.company);
     let right = Rect { x: left.right(), width: below.width - left.width, ..below };
-    viewer.draw_decisions(canvas, right, look, EntryFilter::Decisions);
+    viewer.draw_decisions(canvas, right, context, EntryFilter::Decisions);
 }
 
 fn headline_figures(company: &DisplayedCompany) -> [(&'static str, String, Role); 4] {

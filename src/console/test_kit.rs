@@ -42,10 +42,10 @@ pub fn query_readings(session: &mut Session, screen: &dyn Screen) -> Vec<(Readin
 pub fn loaded_screen<S: Screen + Default>(session: &mut Session, company: &DisplayedCompany) -> S {
     let mut screen = S::default();
     let keys = KeyBindings::bundled();
-    let look = ScreenContext { company, keys: &keys, page_rows: 5 };
-    screen.on_company_change(&look);
+    let context = ScreenContext { company, keys: &keys, page_rows: 5 };
+    screen.on_company_change(&context);
     for (reading, rows) in query_readings(session, &screen) {
-        screen.apply_rows(reading, &rows, &look);
+        screen.apply_rows(reading, &rows, &context);
     }
     screen
 }

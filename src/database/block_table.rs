@@ -226,7 +226,7 @@ unsafe impl<'vtab, K: BlockTableDefinition> VTab<'vtab> for BlockTable<K> {
             info.constraint_usage(*at).set_argv_index(argument);
         }
         let plan: String = handled.iter().map(|(_, letter)| letter).collect();
-        let share = |letters: &[char], factor: f64| if plan.contains(letters) { factor } else { 1.0 };
+        let share = |characters: &[char], factor: f64| if plan.contains(characters) { factor } else { 1.0 };
         let rows = 1e7
             * share(&['='], 0.02)
             * share(&['>', 'g', '<', 'l'], 0.3)

@@ -33,18 +33,18 @@ fn bundled_policy_numbers() -> PolicyNumbers {
     let best = |group| best_starting_channel(Group::parse(group).expect("a group"), &params).id();
     let channels = ["S1", "S3"].map(|group| (group, best(group))).to_vec();
     let mut found = PolicyNumbers { sets: Vec::new(), development: Vec::new(), ads: Vec::new(), channels };
-    let mut books = vec![];
+    let mut price_books = vec![];
     for (name, _) in novamind_assets::policies() {
         let policy = Policy::find(name, &Configuration::bundled()).expect(name);
         let Some(routine) = policy.rule_based else { continue };
-        books.push(routine.price_book.clone());
+        price_books.push(routine.price_book.clone());
         let (s1, s3) = routine.spend.budgets();
         for (group, budget) in [("S1", s1), ("S3", s3)] {
             found.development.push((group, budget.development));
             found.ads.push((group, budget.ads));
         }
     }
-    for book in books.iter().map(PriceBook::prices_tiers_and_quotas) {
+    for book in price_books.iter().map(PriceBook::prices_tiers_and_quotas) {
         let (prices, _, quotas) = book;
         found.sets.push([prices.a, prices.b, prices.c]);
         found.sets.push([quotas.a, quotas.b, quotas.c].map(|quota| quota as f64));

@@ -182,19 +182,19 @@ mod tests {
     #[test]
     fn database_figures_match_week_figures() {
         let session = test_kit::play_weeks(5);
-        let books = DatabaseFigures::load(&session);
-        assert_eq!(books.missing, Vec::<String>::new());
+        let figures = DatabaseFigures::load(&session);
+        assert_eq!(figures.missing, Vec::<String>::new());
         let seen = session.company().observe();
-        let people = books.groups.iter().filter(|book| !book.group.is_enterprise());
+        let people = figures.groups.iter().filter(|book| !book.group.is_enterprise());
         let last: f64 = people.filter_map(|book| book.active.last()).sum();
         assert!(last > 0.0);
         assert_eq!(last, f64::from(seen.subscribers));
         for (at, week) in session.weeks().iter().enumerate() {
-            let people = books.groups.iter().filter(|book| !book.group.is_enterprise());
+            let people = figures.groups.iter().filter(|book| !book.group.is_enterprise());
             let then: f64 = people.map(|book| book.active[at + 1]).sum();
             assert_eq!(then, f64::from(week.individual_subscribers), "week {}", at + 1);
         }
-        let total: f64 = books.totals_by_category().values().sum::<f64>() + session.cash_by_day()[0];
+        let total: f64 = figures.totals_by_category().values().sum::<f64>() + session.cash_by_day()[0];
         assert!((total - seen.cash).abs() < 0.01, "{total} is not {}", seen.cash);
         let connection = session.database().open_connection().expect("a connection");
         let sql = format!(
@@ -202,11 +202,15 @@ mod tests {
         );
         for row in connection.query(&sql, session.company().query_limits()).expect("the ledger").rows {
             let (week, category) = (number_at(&row, 0) as u32, text_at(&row, 1));
-            let booked = books.ledger.get(&week).and_then(|week| week.get(category)).copied().unwrap_or(0.0);
+            let booked =
+                figures.ledger.get(&week).and_then(|week| week.get(category)).copied().unwrap_or(0.0);
             assert!((booked - number_at(&row, 2)).abs() < 0.01, "week {week}: {category} {booked}");
         }
         assert!(
-            books.channels.iter().any(|row| row.channel == "content_marketing" && row.spend == 5.0 * 5250.0)
+            figures
+                .channels
+                .iter()
+                .any(|row| row.channel == "content_marketing" && row.spend == 5.0 * 5250.0)
         );
         assert!(session.company().query_history().is_empty(), "reports record no queries");
     }
@@ -214,9 +218,9 @@ mod tests {
     #[test]
     fn cancellations_count_in_the_week_of_the_last_day() {
         let session = test_kit::play_weeks(9);
-        let books = DatabaseFigures::load(&session);
+        let figures = DatabaseFigures::load(&session);
         let mut left_before_the_end = 0;
-        for book in books.groups.iter().filter(|book| !book.group.is_enterprise()) {
+        for book in figures.groups.iter().filter(|book| !book.group.is_enterprise()) {
             let mut active = 0.0;
             for (at, week) in session.company().group_weeks().iter().enumerate() {
                 let group_week = &week[book.group];

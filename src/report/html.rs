@@ -178,13 +178,13 @@ mod tests {
 
     #[test]
     fn user_text_is_escaped() {
-        let story = RunReport::from_session(&test_kit::play_weeks(3));
-        let html = report_to_html(&story);
+        let report = RunReport::from_session(&test_kit::play_weeks(3));
+        let html = report_to_html(&report);
         assert!(
             html.contains("Ada &lt;ada@example.org&gt;") && html.contains("NovaMind &lt;opens&gt; today")
         );
         assert!(html.contains("otherwise we go back | &lt;b&gt;B&lt;/b&gt;") && !html.contains("<b>"));
-        let markdown = report_to_markdown(&story);
+        let markdown = report_to_markdown(&report);
         assert!(markdown.contains("otherwise we go back \\| \\<b\\>B\\</b\\>"), "{markdown}");
         assert!(markdown.contains("\\*three\\* plans \\& fair"), "{markdown}");
         assert_eq!(escape_html("<a b=\"c\">'&\u{7}\n"), "&lt;a b=&quot;c&quot;&gt;&#39;&amp; ");
@@ -205,8 +205,8 @@ mod tests {
     fn the_same_run_gives_the_same_report_but_for_its_name() {
         let reports = |session: novamind_session::Session| {
             let id = session.manifest().id.clone();
-            let story = RunReport::from_session(&session);
-            (report_to_markdown(&story).replace(&id, "RUN"), report_to_html(&story).replace(&id, "RUN"))
+            let report = RunReport::from_session(&session);
+            (report_to_markdown(&report).replace(&id, "RUN"), report_to_html(&report).replace(&id, "RUN"))
         };
         assert_eq!(reports(test_kit::finished_run()), reports(test_kit::finished_run()));
     }

@@ -63,13 +63,13 @@ pub use run_report::RunReport;
 pub use week::WeekReport;
 
 /// Returns the report on a run as Markdown.
-pub fn report_to_markdown(story: &RunReport) -> String {
-    markdown::to_markdown(&outline::report_page(story))
+pub fn report_to_markdown(report: &RunReport) -> String {
+    markdown::to_markdown(&outline::report_page(report))
 }
 
 /// Returns the report on a run as one self-contained HTML page without scripts.
-pub fn report_to_html(story: &RunReport) -> String {
-    html::to_html(&outline::report_page(story))
+pub fn report_to_html(report: &RunReport) -> String {
+    html::to_html(&outline::report_page(report))
 }
 
 /// Returns the debrief of a lesson as Markdown.
@@ -83,13 +83,13 @@ pub fn debrief_to_html(debrief: &Debrief) -> String {
 }
 
 /// Returns the card of a run as text of 80 columns.
-pub fn card_to_text(story: &RunReport) -> String {
-    card::to_text(story)
+pub fn card_to_text(report: &RunReport) -> String {
+    card::to_text(report)
 }
 
 /// Returns the card of a run as a self-contained SVG of 1200 by 630.
-pub fn card_to_svg(story: &RunReport) -> String {
-    card::to_svg(story)
+pub fn card_to_svg(report: &RunReport) -> String {
+    card::to_svg(report)
 }
 
 /// Returns the session summary for the experimenter as Markdown.

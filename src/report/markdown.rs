@@ -141,18 +141,19 @@ fn sparkline_between(values: &[f64], [least, most]: [f64; 2]) -> String {
 /// Escapes text for Markdown: one line, without markup.
 pub fn escape(text: &str) -> String {
     let flat: Vec<&str> = text.split_whitespace().collect();
-    let letters: Vec<char> = flat.join(" ").chars().filter(|letter| !is_control_or_bidi(*letter)).collect();
-    let mut safe = String::with_capacity(letters.len());
-    for (at, letter) in letters.iter().enumerate() {
+    let characters: Vec<char> =
+        flat.join(" ").chars().filter(|letter| !is_control_or_bidi(*letter)).collect();
+    let mut safe = String::with_capacity(characters.len());
+    for (at, letter) in characters.iter().enumerate() {
         let inside_word = |at: Option<usize>| {
-            at.and_then(|at| letters.get(at)).is_some_and(|character| character.is_alphanumeric())
+            at.and_then(|at| characters.get(at)).is_some_and(|character| character.is_alphanumeric())
         };
         let marks = match letter {
             '\\' | '`' | '*' | '[' | ']' | '<' | '>' | '|' | '~' | '&' => true,
             // Names of tools and channels are easier to read unescaped.
             '_' => !(inside_word(at.checked_sub(1)) && inside_word(at.checked_add(1))),
             '#' | '-' | '+' | '=' => {
-                at == 0 && letters.get(1).is_none_or(|next| !next.is_ascii_digit() && *next != '$')
+                at == 0 && characters.get(1).is_none_or(|next| !next.is_ascii_digit() && *next != '$')
             }
             _ => false,
         };

@@ -11,25 +11,25 @@ use novamind_base::formatting::{capitalize, grouped_number, percent, signed_doll
 use novamind_record::trajectory::record::RunEndReason;
 use novamind_session::ModelStamp;
 
-pub fn report_page(story: &RunReport) -> Page {
-    let seen = &story.observation;
+pub fn report_page(report: &RunReport) -> Page {
+    let seen = &report.observation;
     let mut blocks = Vec::new();
-    if let Some(ruin) = &story.bankruptcy {
-        blocks.extend(bankruptcy_blocks(ruin));
+    if let Some(bankruptcy) = &report.bankruptcy {
+        blocks.extend(bankruptcy_blocks(bankruptcy));
     }
-    blocks.push(Block::Facts(result_facts(story)));
-    blocks.extend(story.database.missing.iter().map(|what| Block::Warning(format!("Not included: {what}"))));
+    blocks.push(Block::Facts(result_facts(report)));
+    blocks.extend(report.database.missing.iter().map(|what| Block::Warning(format!("Not included: {what}"))));
     blocks.push(Block::Heading("Cash"));
-    blocks.extend(charts::cash_chart(story));
-    blocks.extend(charts::income_and_cost_chart(story));
-    if story.shows_published() {
-        blocks.extend(ranking_blocks(story));
+    blocks.extend(charts::cash_chart(report));
+    blocks.extend(charts::income_and_cost_chart(report));
+    if report.shows_published() {
+        blocks.extend(ranking_blocks(report));
     }
-    blocks.extend(highlight_blocks(story));
-    blocks.extend(customer_blocks(story));
-    blocks.extend(forecast_blocks(story));
-    blocks.extend(behavior_blocks(&story.measures, story.shows_published()));
-    blocks.extend(decision_blocks(story));
+    blocks.extend(highlight_blocks(report));
+    blocks.extend(customer_blocks(report));
+    blocks.extend(forecast_blocks(report));
+    blocks.extend(behavior_blocks(&report.measures, report.shows_published()));
+    blocks.extend(decision_blocks(report));
     let mut tags = vec![
         format!("run {}", seen.run),
         format!("{} days", format_whole(f64::from(seen.last_day))),
@@ -38,32 +38,32 @@ pub fn report_page(story: &RunReport) -> Page {
     ];
     tags.extend(seen.seed.map(|seed| format!("seed {seed}")));
     tags.extend(seen.voice.iter().map(ModelStamp::describe));
-    tags.extend(story.origin.iter().map(describe_origin));
+    tags.extend(report.origin.iter().map(describe_origin));
     tags.extend(seen.participant.iter().map(|who| format!("played by {who}")));
     Page {
         title: format!("NovaMind · run {}", seen.run),
-        headline: story.headline(),
+        headline: report.headline(),
         tags,
         blocks,
         footer: format!(
             "Recorded by NovaMind console {}. All figures are visible to players; the run can be replayed to the same \
              state from its trajectory.",
-            story.version
+            report.version
         ),
     }
 }
 
-fn result_facts(story: &RunReport) -> Vec<NamedValue> {
-    let seen = &story.observation;
+fn result_facts(report: &RunReport) -> Vec<NamedValue> {
+    let seen = &report.observation;
     let score = match (seen.ended, seen.score) {
-        (_, Some(score)) => NamedValue::new("Score", format_money(score), describe_rank(story)),
+        (_, Some(score)) => NamedValue::new("Score", format_money(score), describe_rank(report)),
         (Some(RunEndReason::Abandoned), None) => NamedValue::new("Score", "none", "abandoned"),
         (_, None) => NamedValue::new("Cash", format_money(seen.cash), describe_cash_change(seen)),
     };
-    let lived = story.measures.survival_days;
+    let lived = report.measures.survival_days;
     let last_day = format_whole(f64::from(seen.last_day));
-    let most = story.weeks.iter().map(|week| week.individual_subscribers).max().unwrap_or(0);
-    let seats = story.weeks.iter().map(|week| week.enterprise_seats).max().unwrap_or(0);
+    let most = report.weeks.iter().map(|week| week.individual_subscribers).max().unwrap_or(0);
+    let seats = report.weeks.iter().map(|week| week.enterprise_seats).max().unwrap_or(0);
     // The runway from committed settings and recent weeks' income and usage, not from the change since the start.
     let runway = match (seen.ended, seen.whole_runway_weeks()) {
         (Some(_), _) => String::new(),
@@ -72,7 +72,7 @@ fn result_facts(story: &RunReport) -> Vec<NamedValue> {
             format!("at current costs and income, cash lasts {}", pluralize(weeks, "week"))
         }
     };
-    let change = signed_dollars(seen.cash - story.start_cash);
+    let change = signed_dollars(seen.cash - report.start_cash);
     vec![
         score,
         NamedValue::new("Days", format_whole(f64::from(lived)), format!("of {last_day}")),
@@ -95,9 +95,9 @@ fn result_facts(story: &RunReport) -> Vec<NamedValue> {
     ]
 }
 
-fn describe_rank(story: &RunReport) -> String {
-    match story.ranking.rank {
-        Some(rank) => format!("rank {rank} of {}", story.ranking.entries.len()),
+fn describe_rank(report: &RunReport) -> String {
+    match report.ranking.rank {
+        Some(rank) => format!("rank {rank} of {}", report.ranking.entries.len()),
         None => String::new(),
     }
 }
@@ -123,8 +123,8 @@ fn bankruptcy_blocks(ruin: &Bankruptcy) -> Vec<Block> {
     blocks
 }
 
-fn ranking_blocks(story: &RunReport) -> Vec<Block> {
-    let standing = &story.ranking;
+fn ranking_blocks(report: &RunReport) -> Vec<Block> {
+    let standing = &report.ranking;
     let most = standing.entries.iter().map(|place| place.cash).fold(1.0, f64::max);
     let bar = |place: &super::ranking::RankedRun| Bar {
         name: place.name.clone(),
@@ -151,8 +151,8 @@ fn ranking_blocks(story: &RunReport) -> Vec<Block> {
     blocks
 }
 
-fn highlight_blocks(story: &RunReport) -> Vec<Block> {
-    if story.highlights.is_empty() {
+fn highlight_blocks(report: &RunReport) -> Vec<Block> {
+    if report.highlights.is_empty() {
         return Vec::new();
     }
     let row = |one: &super::highlights::Highlight| vec![one.day.to_string(), one.text.clone()];
@@ -160,17 +160,17 @@ fn highlight_blocks(story: &RunReport) -> Vec<Block> {
         Block::Heading("Highlights"),
         Block::Table(Table {
             columns: vec![("day", true), ("event", false)],
-            rows: story.highlights.iter().map(row).collect(),
+            rows: report.highlights.iter().map(row).collect(),
         }),
     ]
 }
 
-fn customer_blocks(story: &RunReport) -> Vec<Block> {
+fn customer_blocks(report: &RunReport) -> Vec<Block> {
     let mut blocks = vec![Block::Heading("Customers")];
     let before = blocks.len();
-    blocks.extend(charts::subscriber_chart(story));
-    blocks.extend(charts::group_chart(story));
-    if !story.database.groups.is_empty() {
+    blocks.extend(charts::subscriber_chart(report));
+    blocks.extend(charts::group_chart(report));
+    if !report.database.groups.is_empty() {
         let row = |book: &super::database_figures::GroupHistory| {
             let now = book.active.last().copied().unwrap_or(0.0);
             let most = book.active.iter().copied().fold(0.0, f64::max);
@@ -196,7 +196,7 @@ fn customer_blocks(story: &RunReport) -> Vec<Block> {
                 ("seats billed", true),
                 ("billed a month", true),
             ],
-            rows: story.database.groups.iter().map(row).collect(),
+            rows: report.database.groups.iter().map(row).collect(),
         }));
     }
     if blocks.len() == before {
@@ -205,14 +205,14 @@ fn customer_blocks(story: &RunReport) -> Vec<Block> {
     blocks
 }
 
-fn forecast_blocks(story: &RunReport) -> Vec<Block> {
+fn forecast_blocks(report: &RunReport) -> Vec<Block> {
     let mut blocks = vec![Block::Heading("Forecasts")];
-    let scored: Vec<_> = story.measures.forecasts.iter().filter(|score| score.scored > 0).collect();
+    let scored: Vec<_> = report.measures.forecasts.iter().filter(|score| score.scored > 0).collect();
     if scored.is_empty() {
         blocks.push(Block::Text("No forecast has come due yet.".to_owned()));
         return blocks;
     }
-    if !story.shows_calibration() {
+    if !report.shows_calibration() {
         let due: u32 = scored.iter().map(|score| score.scored).sum();
         let text =
             format!("{} came due. Scores are shown when the run has ended.", pluralize(due, "forecast"));
@@ -242,14 +242,14 @@ fn forecast_blocks(story: &RunReport) -> Vec<Block> {
         "Coverage: share of 95 % intervals that contain the outcome; the aim is 95 %. Error and width are relative to the outcome."
             .to_owned(),
     ));
-    let (naive, all) = story.measures.filled_naively;
+    let (naive, all) = report.measures.filled_naively;
     if naive > 0 {
         blocks.push(Block::Note(format!(
             "In {naive} of {}, at least one forecast was naive.",
             pluralize(all, "week")
         )));
     }
-    blocks.extend(charts::forecast_charts(story));
+    blocks.extend(charts::forecast_charts(report));
     blocks
 }
 
@@ -333,12 +333,12 @@ fn behavior_blocks(measures: &BehaviorMeasures, published: bool) -> Vec<Block> {
     blocks
 }
 
-fn decision_blocks(story: &RunReport) -> Vec<Block> {
+fn decision_blocks(report: &RunReport) -> Vec<Block> {
     let mut blocks = vec![Block::Heading("Decisions by week")];
-    if story.decision_periods.is_empty() {
+    if report.decision_periods.is_empty() {
         blocks.push(Block::Text("No week has run yet.".to_owned()));
     }
-    for chapter in &story.decision_periods {
+    for chapter in &report.decision_periods {
         let weeks = match chapter.last_week == chapter.week {
             true => format!("Week {}", chapter.week),
             false => format!("Weeks {} to {}", chapter.week, chapter.last_week),

@@ -159,17 +159,17 @@ fn line_start(bare: &str, indent: usize) -> Option<MarkdownBlock> {
 
 /// Returns the characters of a text without marks, each with its style.
 fn styled_chars(text: &str) -> Vec<(char, TextStyle)> {
-    let letters: Vec<char> = text.chars().collect();
+    let characters: Vec<char> = text.chars().collect();
     let mut found = Vec::new();
     let mut at = 0;
-    while at < letters.len() {
-        let rest = &letters[at..];
+    while at < characters.len() {
+        let rest = &characters[at..];
         if rest[0] == '\\' && rest.get(1).is_some_and(char::is_ascii_punctuation) {
             found.push((rest[1], TextStyle::Text));
             at += 2;
             continue;
         }
-        let before = at.checked_sub(1).map(|before| letters[before]);
+        let before = at.checked_sub(1).map(|before| characters[before]);
         match emphasized_span(rest, before) {
             Some((inner, taken)) => {
                 found.extend(inner.iter().map(|letter| (*letter, TextStyle::Strong)));

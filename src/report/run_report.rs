@@ -61,13 +61,13 @@ impl RunReport {
         let seen = session.company().observe();
         let start_cash = session.manifest().cash;
         let (weeks, journal) = (session.weeks(), session.journal());
-        let books = DatabaseFigures::load(session);
+        let figures = DatabaseFigures::load(session);
         let ruin = (seen.ended == Some(RunEndReason::Bankruptcy)).then(|| Bankruptcy {
             day: seen.day,
-            costs: cost_shares(&books.totals_by_category()),
+            costs: cost_shares(&figures.totals_by_category()),
             turning_points: describe_turning_points(weeks),
         });
-        let measures = BehaviorMeasures::from_session(session, &books.channels);
+        let measures = BehaviorMeasures::from_session(session, &figures.channels);
         RunReport {
             version: session.manifest().version.clone(),
             start_cash,
@@ -76,12 +76,12 @@ impl RunReport {
             ranking: rank_score(seen.score, &seen),
             forecasts: filed_forecasts(journal, session.cash_by_day()),
             decision_periods: decision_periods(session.company().decisions(), journal, start_cash),
-            highlights: highlights(weeks, session.cash_by_day(), &books.outages, seen.ended),
+            highlights: highlights(weeks, session.cash_by_day(), &figures.outages, seen.ended),
             measures,
             bankruptcy: ruin,
             rules: session.rules(),
             origin: session.folder().and_then(branch_origin),
-            database: books,
+            database: figures,
             observation: seen,
         }
     }
@@ -131,31 +131,34 @@ mod tests {
 
     #[test]
     fn finished_run_has_score_rank_and_measures() {
-        let story = RunReport::from_session(&test_kit::finished_run());
-        assert!(story.headline().starts_with("Day 35. You end with $"), "{}", story.headline());
-        assert!(story.observation.score.is_some());
+        let report = RunReport::from_session(&test_kit::finished_run());
+        assert!(report.headline().starts_with("Day 35. You end with $"), "{}", report.headline());
+        assert!(report.observation.score.is_some());
         assert_eq!(
-            (story.ranking.rank, story.ranking.describe().as_str()),
+            (report.ranking.rank, report.ranking.describe().as_str()),
             (None, "not ranked: 35 days instead of 500")
         );
-        assert_eq!(story.measures.survival_days, 35);
-        assert_eq!(story.forecasts.len(), 5 * 4);
-        assert_eq!(story.forecasts.iter().filter(|filed| filed.outcome.is_some()).count(), 5 + 2);
-        assert!(story.measures.channels.as_ref().is_some_and(|skill| skill.groups[0].tried == 2));
-        assert_eq!(story.measures.targeted_development, Some(6000.0 / 6200.0));
-        assert_eq!(story.bankruptcy, None);
+        assert_eq!(report.measures.survival_days, 35);
+        assert_eq!(report.forecasts.len(), 5 * 4);
+        assert_eq!(report.forecasts.iter().filter(|filed| filed.outcome.is_some()).count(), 5 + 2);
+        assert!(report.measures.channels.as_ref().is_some_and(|skill| skill.groups[0].tried == 2));
+        assert_eq!(report.measures.targeted_development, Some(6000.0 / 6200.0));
+        assert_eq!(report.bankruptcy, None);
     }
 
     #[test]
     fn bankrupt_run_lists_costs() {
-        let story = RunReport::from_session(&test_kit::bankrupt_run());
-        let ruin = story.bankruptcy.as_ref().expect("a bankruptcy");
-        assert_eq!((ruin.day, story.measures.survival_days), (story.observation.day, story.observation.day));
+        let report = RunReport::from_session(&test_kit::bankrupt_run());
+        let ruin = report.bankruptcy.as_ref().expect("a bankruptcy");
+        assert_eq!(
+            (ruin.day, report.measures.survival_days),
+            (report.observation.day, report.observation.day)
+        );
         assert_eq!(ruin.costs[0].name, "development and R&D");
         let shares: f64 = ruin.costs.iter().map(|cost| cost.share).sum();
         assert!((shares - 1.0).abs() < 1e-9 && !ruin.turning_points.is_empty());
-        assert!(story.headline().contains("bankrupt"));
-        assert_eq!(story.highlights.last().map(|last| last.text.as_str()), Some("bankrupt"));
+        assert!(report.headline().contains("bankrupt"));
+        assert_eq!(report.highlights.last().map(|last| last.text.as_str()), Some("bankrupt"));
     }
 
     #[test]

@@ -262,11 +262,12 @@ pub fn difference_line(
 }
 
 /// Describes a run in the tree of related runs.
-pub fn related_run_line(kin: &RelatedRun, text: &str) -> String {
-    let run = &kin.run;
+pub fn related_run_line(related_run: &RelatedRun, text: &str) -> String {
+    let run = &related_run.run;
     let mark = if run.id == text { " (this run)" } else { "" };
-    let left = kin.branched_in_week.map_or(String::new(), |week| format!(" · branched in week {week}"));
-    let change = match (&kin.first_change, kin.branched_in_week) {
+    let left =
+        related_run.branched_in_week.map_or(String::new(), |week| format!(" · branched in week {week}"));
+    let change = match (&related_run.first_change, related_run.branched_in_week) {
         (Some(change), Some(_)) => format!(", first change {}", describe_first_change(change)),
         (None, Some(_)) => ", same decisions as its parent".to_owned(),
         _ => String::new(),
@@ -274,7 +275,7 @@ pub fn related_run_line(kin: &RelatedRun, text: &str) -> String {
     let end = run.ended.map_or(String::new(), |ended| format!(", {}", ended.id()));
     format!(
         "{}{}{mark}{left}{change} · day {} of {}, cash {}{end}",
-        "  ".repeat(kin.depth),
+        "  ".repeat(related_run.depth),
         run.id,
         run.day,
         run.days,

@@ -115,13 +115,13 @@ pub struct ThreadContext {
 
 impl ThreadContext {
     /// Collects the fields of a waiting thread.
-    pub fn new(waiting: &WaitingThread, letters: &RequestedPlans, market: &PlanEconomics) -> ThreadContext {
+    pub fn new(waiting: &WaitingThread, plans: &RequestedPlans, market: &PlanEconomics) -> ThreadContext {
         let only = || match waiting.last_offer.as_slice() {
             [(plan, _)] if waiting.asked.is_some() => Some(*plan),
             _ => None,
         };
         ThreadContext {
-            asked_plan: letters.0.get(&waiting.thread).copied().or_else(only),
+            asked_plan: plans.0.get(&waiting.thread).copied().or_else(only),
             required_quota: market.required_usage(waiting.group, waiting.seats),
             waiting: waiting.clone(),
         }
@@ -132,12 +132,12 @@ impl ThreadContext {
     /// # Errors
     /// Returns an error if the database cannot be read.
     pub fn read_all(session: &mut Session) -> Result<(Vec<ThreadContext>, PlanEconomics), Rejection> {
-        let letters = RequestedPlans::from_rows(&session.query_unrecorded(LAST_MESSAGES_SQL)?);
+        let plans = RequestedPlans::from_rows(&session.query_unrecorded(LAST_MESSAGES_SQL)?);
         let usage = SeatUsage::from_rows(&session.query_unrecorded(SEAT_USAGE_SQL)?);
         let market = PlanEconomics::from_session(session, usage);
         let waiting = session.company().observe().waiting;
         let threads =
-            waiting.iter().map(|waiting_thread| ThreadContext::new(waiting_thread, &letters, &market));
+            waiting.iter().map(|waiting_thread| ThreadContext::new(waiting_thread, &plans, &market));
         Ok((threads.collect(), market))
     }
 

@@ -18,13 +18,13 @@ pub fn find<'a>(typed: &str, all: impl Iterator<Item = (&'a str, &'a str)>) -> V
     let pattern = Pattern::parse(typed, CaseMatching::Smart, Normalization::Smart);
     let mut matcher = Matcher::new(Config::DEFAULT);
     let mut scored: Vec<(u32, usize, Vec<u32>)> = Vec::new();
-    let mut letters = Vec::new();
+    let mut characters = Vec::new();
     for (at, (title, doc)) in all.enumerate() {
         let mut places = Vec::new();
-        let title = Utf32Str::new(title, &mut letters);
+        let title = Utf32Str::new(title, &mut characters);
         if let Some(score) = pattern.indices(title, &mut matcher, &mut places) {
             scored.push((score * 2 + 1, at, places));
-        } else if let Some(score) = pattern.score(Utf32Str::new(doc, &mut letters), &mut matcher) {
+        } else if let Some(score) = pattern.score(Utf32Str::new(doc, &mut characters), &mut matcher) {
             scored.push((score, at, Vec::new()));
         }
     }

@@ -145,7 +145,7 @@ impl Theme {
     /// Returns the style of a role.
     pub fn style(&self, role: Role) -> Style {
         let looks = &self.styles;
-        let look = match role {
+        let role_style = match role {
             Role::Text => looks.text,
             Role::Dim => looks.dim,
             Role::Strong => looks.strong,
@@ -170,7 +170,7 @@ impl Theme {
             Role::Number => looks.number,
             Role::Comment => looks.comment,
         };
-        look.style()
+        role_style.style()
     }
 }
 

@@ -79,15 +79,15 @@ pub fn notice_text(notice: &Notice, party: Option<NoticeCustomer>) -> String {
 }
 
 /// Returns the notice about a post of the player: views, start of the text, tone, strongest reactions.
-pub fn reaction_text(content: &str, reaction: &Reaction, law: &CeoPosts) -> String {
-    let shown = law.notification_preview_chars as usize;
+pub fn reaction_text(content: &str, reaction: &Reaction, posts: &CeoPosts) -> String {
+    let shown = posts.notification_preview_chars as usize;
     let mut preview: String = content.chars().take(shown).collect();
     if content.chars().count() > shown {
         preview.push_str("...");
     }
     let tone = match reaction.mean {
-        mean if mean > law.notification_sentiment_threshold => "positive",
-        mean if mean < -law.notification_sentiment_threshold => "negative",
+        mean if mean > posts.notification_sentiment_threshold => "positive",
+        mean if mean < -posts.notification_sentiment_threshold => "negative",
         _ => "neutral",
     };
     let strongest: Vec<String> = reaction
@@ -168,16 +168,16 @@ mod tests {
 
     #[test]
     fn a_reaction_names_views_beginning_tone_and_groups() {
-        let law = novamind_world::params::Params::bundled().ceo_posts;
+        let posts = novamind_world::params::Params::bundled().ceo_posts;
         let group = |id| novamind_world::identifiers::Group::parse(id).expect("a group");
         let strongest = [Some((group("S3"), 0.87)), Some((group("S1"), -0.45)), Some((group("E1"), 0.02))];
         let mut reaction = Reaction { post: 1, views: 1840, mean: 0.2, strongest };
         assert_eq!(
-            reaction_text("Quotas doubled.", &reaction, &law),
+            reaction_text("Quotas doubled.", &reaction, &posts),
             "Your post was seen 1,840 times: \"Quotas doubled.\". Reaction positive; strongest S3 +0.9, S1 -0.5, E1 +0.0"
         );
         (reaction.mean, reaction.views) = (-0.11, 1);
-        let long = reaction_text(&"ü".repeat(81), &reaction, &law);
+        let long = reaction_text(&"ü".repeat(81), &reaction, &posts);
         assert!(long.starts_with("Your post was seen 1 time: "), "{long}");
         assert!(long.contains(&format!("\"{}...\"", "ü".repeat(80))) && long.contains("negative"), "{long}");
     }

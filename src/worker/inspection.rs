@@ -211,13 +211,13 @@ fn run_inspection(
         }
         InspectionQuestion::Customer(customer, day) => {
             match session.inspect().customer_view(*customer, Some(*day))? {
-                CustomerView::Individual(lens) => {
-                    let days = lens.days.iter().map(|individual_day| individual_day.satisfaction).collect();
-                    let day = lens.day_shown().map_or(lens.signup.day, |day_shown| day_shown.day);
-                    let found = result_with_curve(describe_individual(&lens), SATISFACTION_PREFIX, days);
+                CustomerView::Individual(view) => {
+                    let days = view.days.iter().map(|individual_day| individual_day.satisfaction).collect();
+                    let day = view.day_shown().map_or(view.signup.day, |day_shown| day_shown.day);
+                    let found = result_with_curve(describe_individual(&view), SATISFACTION_PREFIX, days);
                     return Ok(InspectionAnswer { day: Some(day), ..found });
                 }
-                CustomerView::Enterprise(lens) => describe_enterprise(&lens),
+                CustomerView::Enterprise(enterprise_view) => describe_enterprise(&enterprise_view),
             }
         }
         InspectionQuestion::Breakpoints(work) => return run_breakpoint_command(session, work),

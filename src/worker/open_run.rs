@@ -86,10 +86,10 @@ impl OpenRun<'_> {
     }
 
     pub(super) fn render_report_files(&mut self) -> Response {
-        let story = RunReport::from_session(self.session);
+        let run_report = RunReport::from_session(self.session);
         Response::ReportFilesReady(vec![
-            ("report.md", report_to_markdown(&story)),
-            ("report.html", report_to_html(&story)),
+            ("report.md", report_to_markdown(&run_report)),
+            ("report.html", report_to_html(&run_report)),
         ])
     }
 }

@@ -114,13 +114,13 @@ impl SessionThread {
             ActiveRun::Live(session) => (session.can_inspect(), session.day()),
             ActiveRun::Playback(playback) => (playback.can_inspect(), playback.session().day()),
         };
-        let look = match is_allowed {
+        let inspection = match is_allowed {
             true => Some(CurveInspection::record(self.inspection_session(false)?, group, day)?),
             false => None,
         };
         let session = self.active_run.as_mut().ok_or_else(none_open)?.session();
-        match look {
-            Some(look) => Ok(CurveExplorer::from_true_values(session, &look)),
+        match inspection {
+            Some(curve_inspection) => Ok(CurveExplorer::from_true_values(session, &curve_inspection)),
             None => CurveExplorer::from_estimates(session, group),
         }
     }

@@ -47,7 +47,7 @@ impl SessionThread {
                 self.start_participant(&label, refused)
             }
             StudyRequest::Agree(consent_given) => {
-                self.with_study(|desk| desk.consent = Some(consent_given.given_now()));
+                self.with_study(|active_study| active_study.consent = Some(consent_given.given_now()));
                 self.send_next_step();
             }
             StudyRequest::Decline => {
@@ -84,17 +84,17 @@ impl SessionThread {
     }
 
     fn with_study(&mut self, work: impl FnOnce(&mut ActiveStudy)) {
-        if let Some(desk) = &mut self.study {
-            work(desk);
+        if let Some(study) = &mut self.study {
+            work(study);
         }
     }
 
     fn start_participant(&mut self, label: &str, refused: u32) {
-        let Some(desk) = &mut self.study else { return };
-        (desk.participant, desk.consent, desk.due_questions) = (None, None, Vec::new());
-        match ParticipantSession::start(desk.study.clone(), &self.runs_folder, label, refused) {
+        let Some(study) = &mut self.study else { return };
+        (study.participant, study.consent, study.due_questions) = (None, None, Vec::new());
+        match ParticipantSession::start(study.study.clone(), &self.runs_folder, label, refused) {
             Ok(visit) => {
-                desk.participant = Some(visit);
+                study.participant = Some(visit);
                 self.send_next_step();
             }
             Err(problem) => {
@@ -113,10 +113,10 @@ impl SessionThread {
     }
 
     fn open_participant_run(&mut self) {
-        let Some(desk) = &self.study else { return };
-        let Some(visit) = &desk.participant else { return };
-        let begin = |practice: bool| visit.create_run(practice, desk.consent.clone(), &self.configuration);
-        let opened = desk.next_step().and_then(|step| match step {
+        let Some(study) = &self.study else { return };
+        let Some(visit) = &study.participant else { return };
+        let begin = |practice: bool| visit.create_run(practice, study.consent.clone(), &self.configuration);
+        let opened = study.next_step().and_then(|step| match step {
             Some(NextStep::Practice { unfinished: None, .. }) => begin(true),
             Some(NextStep::Session(None)) => begin(false),
             Some(
@@ -130,24 +130,25 @@ impl SessionThread {
     }
 
     fn record_answers(&mut self, answers: &[GivenAnswer]) {
-        let (Some(desk), Some(ActiveRun::Live(session))) = (&mut self.study, &mut self.active_run) else {
+        let (Some(active_study), Some(ActiveRun::Live(session))) = (&mut self.study, &mut self.active_run)
+        else {
             return;
         };
         for GivenAnswer { due, value, shown_ms: for_ms, changes } in answers {
             due.record_answer(session, value, *for_ms, *changes);
         }
-        desk.due_questions = desk.study.due_questions(session);
-        let due = desk.due_questions.clone();
+        active_study.due_questions = active_study.study.due_questions(session);
+        let due = active_study.due_questions.clone();
         self.send_response(Response::Study(StudyResponse::AnswersRecorded(due)));
     }
 
     pub(super) fn report_due_questions(&mut self) {
-        let (Some(desk), Some(ActiveRun::Live(session))) = (&mut self.study, &self.active_run) else {
+        let (Some(active_study), Some(ActiveRun::Live(session))) = (&mut self.study, &self.active_run) else {
             return;
         };
-        let due = desk.study.due_questions(session);
-        if due != desk.due_questions {
-            desk.due_questions.clone_from(&due);
+        let due = active_study.study.due_questions(session);
+        if due != active_study.due_questions {
+            active_study.due_questions.clone_from(&due);
             self.send_response(Response::Study(StudyResponse::QuestionsDue(due)));
         }
     }
@@ -155,8 +156,11 @@ impl SessionThread {
     /// Erases the participant's data; none of their runs is open.
     fn erase_participant(&mut self) {
         self.queries.disconnect();
-        let erased =
-            self.study.as_ref().and_then(|desk| desk.participant.as_ref()).map(ParticipantSession::withdraw);
+        let erased = self
+            .study
+            .as_ref()
+            .and_then(|study| study.participant.as_ref())
+            .map(ParticipantSession::withdraw);
         match erased {
             Some(Err(problem)) => {
                 self.send_response(Response::Study(StudyResponse::Failed(problem.to_string())))

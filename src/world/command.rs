@@ -138,8 +138,8 @@ impl World {
                     .book(LedgerEntry { category: Category::GroupResearch, amount: -cost, note }, facts);
                 self.market.studies.push(study);
             }
-            ResolvedCommand::SendDeals(letters) => {
-                self.enterprise.send_offers(&letters, self.day, &mut self.customers, facts);
+            ResolvedCommand::SendDeals(messages) => {
+                self.enterprise.send_offers(&messages, self.day, &mut self.customers, facts);
             }
             ResolvedCommand::RejectDeals(threads) => {
                 self.enterprise.reject_threads(&threads, self.day, facts)

@@ -96,10 +96,11 @@ impl ReputationBook {
 
     /// Adds a change, clamps the result to 0..=1 and applies the minimum.
     pub fn add(&mut self, group: Group, change: f64, params: &Params) {
-        let law = &params.reputation;
-        let moved = (self.values[group] + change).clamp(law.reputation_clamp_min, law.reputation_clamp_max);
+        let reputation = &params.reputation;
+        let moved = (self.values[group] + change)
+            .clamp(reputation.reputation_clamp_min, reputation.reputation_clamp_max);
         let has_floor = !params.has_fault(Fault::ReputationWithoutFloor);
-        self.values[group] = if has_floor { moved.max(law.reputation_floor) } else { moved };
+        self.values[group] = if has_floor { moved.max(reputation.reputation_floor) } else { moved };
     }
 
     /// Adds changes in order and reports the result to `on_write`.
@@ -118,22 +119,22 @@ impl ReputationBook {
 
 /// Returns the contribution of one subscriber: 0.0005 S, doubled if S is negative.
 #[inline]
-pub fn contribution(satisfaction: f64, law: &Reputation) -> f64 {
-    let weight = if satisfaction < 0.0 { law.negative_satisfaction_multiplier } else { 1.0 };
-    law.base_rep_per_customer * weight * satisfaction
+pub fn contribution(satisfaction: f64, reputation: &Reputation) -> f64 {
+    let weight = if satisfaction < 0.0 { reputation.negative_satisfaction_multiplier } else { 1.0 };
+    reputation.base_rep_per_customer * weight * satisfaction
 }
 
 /// Returns the change of a group's reputation from today's contributions, before the threshold: (sum / m)
 /// log2(m), m = max(count, 2).
-pub fn unrounded_daily_change(mood: &ReputationContribution, law: &Reputation) -> f64 {
-    let size = f64::from(mood.count.max(law.min_group_size));
+pub fn unrounded_daily_change(mood: &ReputationContribution, reputation: &Reputation) -> f64 {
+    let size = f64::from(mood.count.max(reputation.min_group_size));
     mood.sum / size * libm::log2(size)
 }
 
 /// Returns the change that is applied, or `None` if it is below the threshold.
-pub fn daily_change(mood: &ReputationContribution, law: &Reputation) -> Option<f64> {
-    let change = unrounded_daily_change(mood, law);
-    (change.abs() >= law.daily_delta_min_abs).then_some(change)
+pub fn daily_change(mood: &ReputationContribution, reputation: &Reputation) -> Option<f64> {
+    let change = unrounded_daily_change(mood, reputation);
+    (change.abs() >= reputation.daily_delta_min_abs).then_some(change)
 }
 
 /// The spillover of a group's change to another known group.
@@ -157,32 +158,33 @@ pub struct SpilloverEffect {
 
 /// Returns the spillover of a group's change to another group.
 pub fn spillover_effect(change: f64, from: Group, to: Group, params: &Params) -> SpilloverEffect {
-    let law = &params.reputation;
+    let reputation = &params.reputation;
     let weight = params.reputation_weight(from, to);
-    let (source_change, factor) = (change, law.cross_group_spillover_factor);
+    let (source_change, factor) = (change, reputation.cross_group_spillover_factor);
     let change = change * weight * factor;
     let change = if params.has_fault(Fault::SpillOverReversed) { -change } else { change };
-    let counts = weight > 0.0 && change.abs() > law.cross_delta_min_abs;
+    let counts = weight > 0.0 && change.abs() > reputation.cross_delta_min_abs;
     SpilloverEffect { from, to, source_change, weight, factor, change, counts }
 }
 
 /// Returns the scale of a single event in a group of this many subscribers: log2(k) / k, k = max(count, 2).
-pub fn event_scale(subscribers: u32, law: &Reputation) -> f64 {
-    let size = f64::from(subscribers.max(law.event_scale_min_group_size));
+pub fn event_scale(subscribers: u32, reputation: &Reputation) -> f64 {
+    let size = f64::from(subscribers.max(reputation.event_scale_min_group_size));
     libm::log2(size) / size
 }
 
 /// Returns the damage by an individual's cancellation: 0.000375 (0.5 + U) (1 + 20 min(S, 0)^2) log2(k) / k.
-pub fn cancel_damage(satisfaction: f64, subscribers: u32, u: f64, law: &Reputation) -> f64 {
+pub fn cancel_damage(satisfaction: f64, subscribers: u32, u: f64, reputation: &Reputation) -> f64 {
     let bad = satisfaction.min(0.0);
-    event_damage(subscribers, u, law) * (1.0 + law.cancel_negative_satisfaction_coef * bad * bad)
+    event_damage(subscribers, u, reputation)
+        * (1.0 + reputation.cancel_negative_satisfaction_coef * bad * bad)
 }
 
 /// Returns the damage by a lost enterprise: the same without the satisfaction term.
-pub fn event_damage(subscribers: u32, u: f64, law: &Reputation) -> f64 {
-    law.reputation_quality_cancel_damage
-        * (law.cancel_damage_noise_offset + u)
-        * event_scale(subscribers, law)
+pub fn event_damage(subscribers: u32, u: f64, reputation: &Reputation) -> f64 {
+    reputation.reputation_quality_cancel_damage
+        * (reputation.cancel_damage_noise_offset + u)
+        * event_scale(subscribers, reputation)
 }
 
 /// Changes reputations by today's contributions; each change spills over to the other known groups by their weights.
@@ -193,9 +195,9 @@ pub fn apply_contributions(
     params: &Params,
     on_write: &mut OnReputationWrite<'_>,
 ) {
-    let law = &params.reputation;
+    let reputation = &params.reputation;
     for group in Group::all().filter(|group| moods[*group].count > 0) {
-        let Some(change) = daily_change(&moods[group], law) else { continue };
+        let Some(change) = daily_change(&moods[group], reputation) else { continue };
         book.add_all((group, ReputationCause::Contributions(moods[group])), &[change], params, on_write);
         if !is_known(group) {
             continue;
@@ -203,7 +205,7 @@ pub fn apply_contributions(
         for other in Group::all().filter(|other| *other != group && is_known(*other)) {
             let spill = spillover_effect(change, group, other, params);
             if spill.counts {
-                let (weight, factor) = (spill.weight, law.cross_group_spillover_factor);
+                let (weight, factor) = (spill.weight, reputation.cross_group_spillover_factor);
                 let cause = ReputationCause::Spillover(Spillover { source: group, change, weight, factor });
                 book.add_all((other, cause), &[spill.change], params, on_write);
             }
@@ -288,7 +290,7 @@ mod tests {
     #[test]
     fn cancellation_damage_is_larger_in_small_groups() {
         let params = Params::bundled();
-        let law = &params.reputation;
+        let reputation = &params.reputation;
         for (count, scale) in [
             (0, 0.5),
             (1, 0.5),
@@ -299,31 +301,31 @@ mod tests {
             (5000, 0.00245754248),
             (100_000, 0.000166096405),
         ] {
-            assert!((event_scale(count, law) - scale).abs() < 1e-11, "{count}");
+            assert!((event_scale(count, reputation) - scale).abs() < 1e-11, "{count}");
         }
         for (satisfaction, count, u, damage) in [
             (-0.3, 1000, 0.5, 1.046407350e-5),
             (0.2, 1000, 0.5, 3.737169107e-6),
             (-1.0, 50, 0.0, 4.444536749e-4),
         ] {
-            assert!((cancel_damage(satisfaction, count, u, law) / damage - 1.0).abs() < 1e-9);
+            assert!((cancel_damage(satisfaction, count, u, reputation) / damage - 1.0).abs() < 1e-9);
         }
         let mut book = ReputationBook::initial(&params);
-        book.add(group("S1"), -cancel_damage(-0.3, 10, 0.25, law), &params);
+        book.add(group("S1"), -cancel_damage(-0.3, 10, 0.25, reputation), &params);
         assert_book(&book, &[("S1", 0.499738398)]);
     }
 
     #[test]
     fn lost_enterprise_damage_ignores_satisfaction() {
-        let law = Params::bundled().reputation;
+        let reputation = Params::bundled().reputation;
         for (count, low, middle) in [
             (1, 9.375e-5, 1.875e-4),
             (2, 9.375e-5, 1.875e-4),
             (10, 6.228615178e-5, 1.245723036e-4),
             (100, 1.245723036e-5, 2.491446071e-5),
         ] {
-            assert!((event_damage(count, 0.0, &law) / low - 1.0).abs() < 1e-9);
-            assert!((event_damage(count, 0.5, &law) / middle - 1.0).abs() < 1e-9);
+            assert!((event_damage(count, 0.0, &reputation) / low - 1.0).abs() < 1e-9);
+            assert!((event_damage(count, 0.5, &reputation) / middle - 1.0).abs() < 1e-9);
         }
     }
 }

@@ -9,11 +9,11 @@ use super::harness::Console;
 #[track_caller]
 fn assert_role(console: &mut Console, words: &str, role: Role) {
     let buffer = console.draw();
-    let letters: Vec<char> = words.chars().collect();
+    let characters: Vec<char> = words.chars().collect();
     let symbol = |x: u16, y: u16| buffer[(x, y)].symbol().chars().next().unwrap_or(' ');
     let stands = |x: u16, y: u16| {
-        let room = usize::from(buffer.area.width - x) >= letters.len();
-        room && letters.iter().enumerate().all(|(at, letter)| symbol(x + at as u16, y) == *letter)
+        let room = usize::from(buffer.area.width - x) >= characters.len();
+        room && characters.iter().enumerate().all(|(at, letter)| symbol(x + at as u16, y) == *letter)
     };
     let mut places = (0..buffer.area.height).flat_map(|y| (0..buffer.area.width).map(move |x| (x, y)));
     let place = places.find(|(x, y)| stands(*x, *y));

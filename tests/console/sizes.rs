@@ -86,16 +86,16 @@ impl Words {
     fn read(&mut self, screen: &str, width: u16, roomy: bool, place: &str) {
         for line in screen.lines() {
             let mut begin = 0;
-            let letters: Vec<char> = line.chars().collect();
-            while begin < letters.len() {
-                if !letters[begin].is_alphabetic() {
+            let characters: Vec<char> = line.chars().collect();
+            while begin < characters.len() {
+                if !characters[begin].is_alphabetic() {
                     begin += 1;
                     continue;
                 }
-                let end = (begin..letters.len()).find(|at| !letters[*at].is_alphabetic());
-                let end = end.unwrap_or(letters.len());
-                let word: String = letters[begin..end].iter().collect();
-                let border = letters.get(end).is_some_and(|next| "│┃║▐▌█".contains(*next));
+                let end = (begin..characters.len()).find(|at| !characters[*at].is_alphabetic());
+                let end = end.unwrap_or(characters.len());
+                let word: String = characters[begin..end].iter().collect();
+                let border = characters.get(end).is_some_and(|next| "│┃║▐▌█".contains(*next));
                 if roomy || !(border || end == usize::from(width)) {
                     self.whole.insert(word);
                 } else if word.len() > 2 {

@@ -260,8 +260,8 @@ fn breakpoint_within_a_week_writes_a_step_line() {
         .iter()
         .filter_map(|line| match &line.record {
             Record::Step(closing) => Some(format!("step {}", closing.days_run)),
-            Record::Activity(Activity::Inspection(look)) => {
-                Some(format!("{} {} {}", look.what, look.which, look.shown_day))
+            Record::Activity(Activity::Inspection(inspection)) => {
+                Some(format!("{} {} {}", inspection.what, inspection.which, inspection.shown_day))
             }
             _ => None,
         })

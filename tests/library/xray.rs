@@ -25,8 +25,8 @@ fn s2() -> Group {
 
 fn inspections(lines: &Trajectory) -> Vec<(String, String)> {
     let look = |record: &Record| match record {
-        Record::Activity(Activity::Inspection(look)) => {
-            Some((look.what.clone(), format!("{} {}", look.which, look.shown_day)))
+        Record::Activity(Activity::Inspection(inspection)) => {
+            Some((inspection.what.clone(), format!("{} {}", inspection.which, inspection.shown_day)))
         }
         _ => None,
     };
@@ -157,7 +157,7 @@ fn lead_equation_yields_the_expectation_of_the_draw() {
 
 fn individual_view(session: &mut Session, customer: u32, day: Option<u32>) -> IndividualView {
     match session.inspect().customer_view(customer, day).expect("a look") {
-        CustomerView::Individual(lens) => *lens,
+        CustomerView::Individual(view) => *view,
         CustomerView::Enterprise(_) => panic!("customer {customer} is an enterprise"),
     }
 }
@@ -186,10 +186,10 @@ fn customer_view_matches_the_tables() {
     for status in ["lost", "cancelled", "subscribed"] {
         for row in known.iter().filter(|row| word(&row[4]) == status).step_by(17).take(12) {
             let customer = whole(&row[0]).expect("a customer");
-            let lens = individual_view(&mut session, customer, None);
-            assert_eq!(lens.signup.signed_up, status != "lost", "customer {customer}");
-            assert_eq!(Some(lens.signup.day), whole(&row[2]), "customer {customer}");
-            let left = lens
+            let view = individual_view(&mut session, customer, None);
+            assert_eq!(view.signup.signed_up, status != "lost", "customer {customer}");
+            assert_eq!(Some(view.signup.day), whole(&row[2]), "customer {customer}");
+            let left = view
                 .days
                 .iter()
                 .find(|individual_day| matches!(individual_day.outcome, SubscriberOutcome::Cancels(_)));
@@ -199,11 +199,11 @@ fn customer_view_matches_the_tables() {
             );
             if status == "subscribed" {
                 assert_eq!(
-                    lens.day_shown().map(|individual_day| individual_day.day),
-                    Some(last_day).filter(|_| lens.signup.day < last_day)
+                    view.day_shown().map(|individual_day| individual_day.day),
+                    Some(last_day).filter(|_| view.signup.day < last_day)
                 );
             }
-            for individual_day in lens.days.iter().filter(|individual_day| individual_day.is_due) {
+            for individual_day in view.days.iter().filter(|individual_day| individual_day.is_due) {
                 let stays = !matches!(
                     individual_day.outcome,
                     SubscriberOutcome::Cancels(EndCause::Price | EndCause::Quality)
@@ -215,7 +215,7 @@ fn customer_view_matches_the_tables() {
                     individual_day.day
                 );
             }
-            if let (Some(since), Some(shown)) = (lens.issue_opened_on(), lens.day_shown()) {
+            if let (Some(since), Some(shown)) = (view.issue_opened_on(), view.day_shown()) {
                 let sql = format!(
                     "SELECT max(open_day) FROM issues WHERE customer_id = {customer} AND open_day <= {}",
                     shown.day
@@ -224,10 +224,10 @@ fn customer_view_matches_the_tables() {
                 *seen.entry("with an issue").or_insert(0) += 1;
             }
             // The result for an earlier day is a prefix.
-            let shown = lens.signup.day + 1;
+            let shown = view.signup.day + 1;
             if shown <= last_day {
                 let earlier = individual_view(&mut session, customer, Some(shown));
-                assert!(earlier.days.len() <= 1 && earlier.days.len() <= lens.days.len());
+                assert!(earlier.days.len() <= 1 && earlier.days.len() <= view.days.len());
             }
             *seen.entry(status).or_insert(0) += 1;
         }
@@ -303,12 +303,12 @@ fn enterprise_view_predicts_recorded_answers() {
         let [customer, thread, day] = [0, 1, 2].map(|at| whole(&turn[at]));
         let Cell::Text(text) = &turn[3] else { panic!("{turn:?}") };
         let value: Value = serde_json::from_str(text).expect("JSON");
-        let CustomerView::Enterprise(lens) =
+        let CustomerView::Enterprise(view) =
             session.inspect().customer_view(customer, Some(day)).expect("a look")
         else {
             panic!("a company")
         };
-        let thread_day = lens
+        let thread_day = view
             .threads_of_day()
             .find(|enterprise_thread_day| enterprise_thread_day.thread == thread)
             .expect("its thread");

@@ -99,7 +99,7 @@ impl<'a> ConsoleParticipant<'a> {
     }
 
     fn note(&mut self, kind: &'static str, what: &str, which: &str, for_ms: Option<u64>) {
-        let deed = ExpectedLine {
+        let line = ExpectedLine {
             at: self.since(self.began),
             week: self.diary.week(),
             kind,
@@ -107,7 +107,7 @@ impl<'a> ConsoleParticipant<'a> {
             which: which.to_owned(),
             for_ms,
         };
-        self.diary.lines.push(deed);
+        self.diary.lines.push(line);
     }
 
     /// Enters unknown labels, then the correct one; reads the consent text and agrees.

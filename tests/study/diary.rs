@@ -95,7 +95,7 @@ impl Diary {
     }
 
     pub fn count(&self, kind: &str) -> usize {
-        self.lines.iter().filter(|deed| deed.kind == kind).count()
+        self.lines.iter().filter(|line| line.kind == kind).count()
     }
 }
 

@@ -53,7 +53,7 @@ pub fn compare_tables(lab: &Lab, diaries: &[Diary]) {
 fn compare_events(diary: &Diary, rows: &[&Row]) {
     let texts: Vec<String> = rows.iter().map(|row| event_text(row, diary.is_real_time)).collect();
     let done: Vec<String> =
-        diary.lines.iter().map(|deed| expected_event_text(deed, diary.is_real_time)).collect();
+        diary.lines.iter().map(|line| expected_event_text(line, diary.is_real_time)).collect();
     let different = texts.iter().zip(&done).find(|(text, done)| text != done);
     assert_eq!(different, None, "{}: the table differs from the diary", diary.label);
     assert_eq!(texts.len(), done.len(), "{}", diary.label);
@@ -61,7 +61,7 @@ fn compare_events(diary: &Diary, rows: &[&Row]) {
 
 fn compare_run_row(diary: &Diary, row: &Row) {
     let deeds =
-        |part: fn(&ExpectedLine) -> bool| diary.lines.iter().filter(|deed| part(deed)).count().to_string();
+        |part: fn(&ExpectedLine) -> bool| diary.lines.iter().filter(|line| part(line)).count().to_string();
     let number = diary.label[1..].parse::<u64>().expect("a number");
     let text = |text: &str| text.to_owned();
     let expected = [
@@ -75,7 +75,10 @@ fn compare_run_row(diary: &Diary, row: &Row) {
         ("ended", text("horizon")),
         ("weeks", diary.weeks.len().to_string()),
         ("weeks_filled_naively", diary.weeks.iter().filter(|(_, naive)| *naive).count().to_string()),
-        ("weeks_filed_at_limit", deeds(|deed| deed.kind == "limit" && deed.which == "filed_naively")),
+        (
+            "weeks_filed_at_limit",
+            deeds(|expected_line| expected_line.kind == "limit" && expected_line.which == "filed_naively"),
+        ),
         ("calls", deeds(|deed| deed.kind == "call")),
         ("undone", deeds(|deed| deed.kind == "call" && deed.which == "palette")),
         ("queries", deeds(|deed| deed.kind == "query")),
@@ -159,7 +162,7 @@ fn compare_weeks(diary: &Diary, rows: &[&Row]) {
         let recorded = |column: &str| cell_ms(row, column);
         let from_diary = |spent| diary.time.get(&(week, spent)).copied().unwrap_or_default();
         let count = |kind: &str| {
-            diary.lines.iter().filter(|deed| deed.week == week && deed.kind == kind).count().to_string()
+            diary.lines.iter().filter(|line| line.week == week && line.kind == kind).count().to_string()
         };
         assert_eq!(row["week"], week.to_string());
         assert_eq!((&row["calls"], &row["queries"]), (&count("call"), &count("query")), "{}", diary.label);
@@ -219,10 +222,10 @@ fn event_text(row: &Row, real: bool) -> String {
 }
 
 /// Describes an action of the script in the same format.
-fn expected_event_text(deed: &ExpectedLine, real: bool) -> String {
-    let for_ms = deed.for_ms.map(|ms| ms.to_string()).unwrap_or_default();
-    let at = if real { String::new() } else { (deed.at as f64 / 1e3).to_string() };
-    format!("{at} week {}: {} {} {} {for_ms}", deed.week, deed.kind, deed.what, deed.which)
+fn expected_event_text(line: &ExpectedLine, real: bool) -> String {
+    let for_ms = line.for_ms.map(|ms| ms.to_string()).unwrap_or_default();
+    let at = if real { String::new() } else { (line.at as f64 / 1e3).to_string() };
+    format!("{at} week {}: {} {} {} {for_ms}", line.week, line.kind, line.what, line.which)
 }
 
 /// Checks that the anonymized tables contain the same runs.

@@ -21,8 +21,8 @@ pub fn run_folder(runs: &Path) -> PathBuf {
 /// Returns the x-ray views with object and day, in the order of the lines.
 pub fn inspections(lines: &Trajectory) -> Vec<String> {
     let look = |record: &Record| match record {
-        Record::Activity(Activity::Inspection(look)) => {
-            Some(format!("{} {} {}", look.what, look.which, look.shown_day))
+        Record::Activity(Activity::Inspection(inspection)) => {
+            Some(format!("{} {} {}", inspection.what, inspection.which, inspection.shown_day))
         }
         _ => None,
     };

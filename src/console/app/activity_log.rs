@@ -218,12 +218,12 @@ impl App {
 
     fn open_object(&self) -> Option<(&'static str, String)> {
         let run = self.run()?;
-        let look = crate::context::ScreenContext {
+        let screen_context = crate::context::ScreenContext {
             company: &run.company,
             keys: &self.keys,
             page_rows: self.page_rows,
         };
-        run.screens.get(run.screen).open_object(&look)
+        run.screens.get(run.screen).open_object(&screen_context)
     }
 
     fn record_help_term(&mut self) {

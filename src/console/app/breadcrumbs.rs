@@ -18,7 +18,7 @@ pub struct Breadcrumb {
 
 impl Run {
     /// Returns the titles of the breadcrumbs, and of the open item if it covers its list.
-    pub fn breadcrumb_titles(&self, look: &ScreenContext<'_>) -> Vec<String> {
+    pub fn breadcrumb_titles(&self, context: &ScreenContext<'_>) -> Vec<String> {
         let mut path = Vec::new();
         for stop in &self.breadcrumbs {
             path.push(stop.screen.action().entry().title.to_owned());
@@ -31,7 +31,7 @@ impl Run {
         if self.breadcrumbs.last().is_none_or(|stop| screen.escape_depth() > stop.escape_depth) {
             path.push(self.screen.action().entry().title.to_owned());
         }
-        path.extend(screen.open_item_title(look));
+        path.extend(screen.open_item_title(context));
         path
     }
 
@@ -49,12 +49,12 @@ impl App {
         }
         let Stage::Run(run) = &mut self.stage else { return };
         let company = run.company.clone();
-        let look = ScreenContext { company: &company, keys: &self.keys, page_rows: self.page_rows };
+        let context = ScreenContext { company: &company, keys: &self.keys, page_rows: self.page_rows };
         let from = run.screens.get(run.screen);
         let mut stop = Breadcrumb {
             screen: run.screen,
             pane: from.focused_index(),
-            open_item: from.open_item_title(&look),
+            open_item: from.open_item_title(&context),
             escape_depth: 0,
         };
         prepare(run);

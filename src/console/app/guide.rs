@@ -16,7 +16,7 @@ use novamind_worker::request::Request;
 impl App {
     /// Explains the selected figure, or the screen if no figure is selected.
     pub(super) fn open_explanation(&mut self) {
-        let figure = self.with_screen(|screen, look| screen.figure(look)).flatten();
+        let figure = self.with_screen(|screen, context| screen.figure(context)).flatten();
         let Stage::Run(run) = &mut self.stage else { return };
         let numbers = run.company.numbers.clone();
         let dialog = match figure {
@@ -98,9 +98,9 @@ impl App {
         let Stage::Run(run) = &mut self.stage else { return };
         let Some(tour) = &mut run.tour else { return };
         let filing = matches!(self.layers.top(), Some(Layer::NextWeek)).then(|| run.next_week.step_number());
-        let look = ScreenContext { company: &run.company, keys: &self.keys, page_rows: self.page_rows };
+        let context = ScreenContext { company: &run.company, keys: &self.keys, page_rows: self.page_rows };
         let group_open =
-            run.screen == ScreenId::Customers && run.screens.customers.open_item_title(&look).is_some();
+            run.screen == ScreenId::Customers && run.screens.customers.open_item_title(&context).is_some();
         let facts = TourFacts {
             company: &run.company,
             screen: run.screen,

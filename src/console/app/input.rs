@@ -127,25 +127,28 @@ impl App {
                     self.follow(effects);
                 }
                 Stage::Run(_) => {
-                    let effects =
-                        self.with_screen(|screen, look| screen.handle_key(key, look)).unwrap_or_default();
+                    let effects = self
+                        .with_screen(|screen, context| screen.handle_key(key, context))
+                        .unwrap_or_default();
                     self.follow(effects);
                 }
             }
         } else {
-            self.update_dialog(|dialog, look| dialog.handle_key(key, look));
+            self.update_dialog(|dialog, screen_context| dialog.handle_key(key, screen_context));
         }
     }
 
     fn paste(&mut self, text: &str) {
         if !self.layers.is_empty() {
-            return self.update_dialog(|dialog, look| dialog.paste(text, look));
+            return self.update_dialog(|dialog, context| dialog.paste(text, context));
         }
         match &mut self.stage {
             Stage::Menu(menu) => menu.paste(text),
             Stage::Study(page) => page.paste(text),
             Stage::Run(_) => {
-                let effects = self.with_screen(|screen, look| screen.paste(text, look)).unwrap_or_default();
+                let effects = self
+                    .with_screen(|screen, screen_context| screen.paste(text, screen_context))
+                    .unwrap_or_default();
                 self.follow(effects);
             }
         }
@@ -173,7 +176,7 @@ impl App {
                 }
             }
             Some(Click::Row(_, row)) if !self.layers.is_empty() => {
-                self.update_dialog(|dialog, look| dialog.handle_click(row, look));
+                self.update_dialog(|dialog, context| dialog.handle_click(row, context));
             }
             Some(Click::Row(pane, row)) => self.handle_row_click(pane, row),
             Some(Click::Pane(pane)) if self.layers.is_empty() => {
@@ -188,9 +191,9 @@ impl App {
             let effects = menu.handle_click(row);
             return self.follow(effects);
         }
-        let clicked = self.with_screen(|screen, look| {
+        let clicked = self.with_screen(|screen, context| {
             screen.set_focus(pane);
-            screen.handle_click(pane, row, look)
+            screen.handle_click(pane, row, context)
         });
         self.follow(clicked.unwrap_or_default());
     }
@@ -214,7 +217,7 @@ impl App {
             return self.open_dialog(help);
         }
         if !self.layers.is_empty() {
-            return self.update_dialog(|dialog, look| dialog.handle_action(action, look));
+            return self.update_dialog(|dialog, context| dialog.handle_action(action, context));
         }
         if let Some(busy) = self.busy.as_mut().filter(|busy| busy.is_script())
             && SCRIPT_STOP_ACTIONS.contains(&action)
@@ -242,7 +245,9 @@ impl App {
         if self.go_back_to_breadcrumb(action) {
             return;
         }
-        let effects = self.with_screen(|screen, look| screen.handle_action(action, look)).unwrap_or_default();
+        let effects = self
+            .with_screen(|screen, screen_context| screen.handle_action(action, screen_context))
+            .unwrap_or_default();
         self.follow(effects);
     }
 
@@ -252,10 +257,10 @@ impl App {
     ) {
         let Stage::Run(run) = &mut self.stage else { return };
         let company = run.company.clone();
-        let look = ScreenContext { company: &company, keys: &self.keys, page_rows: self.page_rows };
+        let context = ScreenContext { company: &company, keys: &self.keys, page_rows: self.page_rows };
         let outcome = match self.layers.top_mut() {
-            Some(Layer::NextWeek) => work(&mut run.next_week, &look),
-            Some(Layer::Dialog(dialog)) => work(dialog.as_mut(), &look),
+            Some(Layer::NextWeek) => work(&mut run.next_week, &context),
+            Some(Layer::Dialog(dialog)) => work(dialog.as_mut(), &context),
             None => return,
         };
         if outcome.closes {
@@ -331,10 +336,10 @@ impl App {
 
     fn open_help(&mut self) {
         let Stage::Run(run) = &self.stage else { return };
-        let look = ScreenContext { company: &run.company, keys: &self.keys, page_rows: self.page_rows };
+        let context = ScreenContext { company: &run.company, keys: &self.keys, page_rows: self.page_rows };
         let replay = run.playback.is_some();
         let help =
-            HelpDialog::new(run.screen, &run.screens.get(run.screen).pane_keys(&look), replay, &self.keys);
+            HelpDialog::new(run.screen, &run.screens.get(run.screen).pane_keys(&context), replay, &self.keys);
         self.open_dialog(help);
     }
 
@@ -355,7 +360,7 @@ impl App {
     }
 
     fn selected_figure(&mut self) -> Option<Figure> {
-        let found = self.with_screen(|screen, look| screen.figure(look)).flatten();
+        let found = self.with_screen(|screen, context| screen.figure(context)).flatten();
         if found.is_none() {
             self.show_error("no figure selected; choose a pane with tab and a row with the arrows");
         }

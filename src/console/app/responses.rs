@@ -106,7 +106,7 @@ impl App {
                 }
                 self.update_company(company);
             }
-            Response::RunReportReady(story) => self.set_run_report(&story),
+            Response::RunReportReady(report) => self.set_run_report(&report),
             Response::ReportFilesReady(files) => {
                 self.write(files.into_iter().map(|(name, text)| (name, text.into_bytes())).collect());
             }
@@ -144,10 +144,10 @@ impl App {
             }
             _ => return,
         };
-        self.update_screens(|screens, here, look| {
-            let mut effects = screens.get_mut(screen).handle_response(&news, look);
+        self.update_screens(|screens, here, context| {
+            let mut effects = screens.get_mut(screen).handle_response(&news, context);
             if matches!(news, Response::ToolCalled(..)) && here != screen {
-                effects.extend(screens.get_mut(here).handle_response(&news, look));
+                effects.extend(screens.get_mut(here).handle_response(&news, context));
             }
             effects
         });
@@ -160,9 +160,9 @@ impl App {
     ) {
         let Stage::Run(run) = &mut self.stage else { return };
         let company = run.company.clone();
-        let look = ScreenContext { company: &company, keys: &self.keys, page_rows: self.page_rows };
+        let context = ScreenContext { company: &company, keys: &self.keys, page_rows: self.page_rows };
         let focus = run.screens.get(run.screen).focused_index();
-        let effects = tell(&mut run.screens, run.screen, &look);
+        let effects = tell(&mut run.screens, run.screen, &context);
         // A zoomed pane keeps the focus: it shows the answer.
         if run.zoomed && run.screens.get(run.screen).focused_index() != focus {
             run.screens.get_mut(run.screen).set_focus(focus);
@@ -174,8 +174,8 @@ impl App {
         if let Stage::Menu(menu) = &mut self.stage {
             menu.take_answers();
         }
-        self.update_screens(|screens, _, look| {
-            let take = |id| screens.get_mut(id).take_answers(look);
+        self.update_screens(|screens, _, context| {
+            let take = |id| screens.get_mut(id).take_answers(context);
             ScreenId::ALL.into_iter().flat_map(take).collect()
         });
         for layer in self.layers.iter_mut() {
@@ -194,11 +194,11 @@ impl App {
         let answers: Vec<_> = run.requested_readings.values_mut().filter_map(Pending::try_take).collect();
         for (reading, answer) in answers {
             match answer {
-                Ok(rows) => self.update_screens(|screens, _, look| {
+                Ok(rows) => self.update_screens(|screens, _, context| {
                     for id in ScreenId::ALL {
                         let screen = screens.get_mut(id);
                         if screen.readings().contains(&reading) {
-                            screen.apply_rows(reading, &rows, look);
+                            screen.apply_rows(reading, &rows, context);
                         }
                     }
                     Vec::new()
@@ -276,22 +276,22 @@ impl App {
             return;
         }
         let Stage::Run(run) = &self.stage else { return };
-        let story = run.story.clone();
-        if story.is_none() {
+        let report = run.story.clone();
+        if report.is_none() {
             self.follow(vec![Effect::Request(Request::BuildRunReport)]);
         }
-        let page = FinalPage::new(story);
+        let page = FinalPage::new(report);
         let page = if self.has_participant() { page.for_participant() } else { page };
         self.push_layer(Layer::Dialog(Box::new(page)));
     }
 
-    fn set_run_report(&mut self, story: &Arc<RunReport>) {
+    fn set_run_report(&mut self, report: &Arc<RunReport>) {
         if let Stage::Run(run) = &mut self.stage {
-            run.story = Some(story.clone());
+            run.story = Some(report.clone());
         }
         for layer in self.layers.iter_mut() {
             if let Layer::Dialog(dialog) = layer {
-                dialog.set_story(story);
+                dialog.set_story(report);
             }
         }
     }
@@ -316,9 +316,9 @@ impl App {
     pub(super) fn refresh_readings(&mut self) {
         if let Stage::Run(run) = &mut self.stage {
             let company = run.company.clone();
-            let look = ScreenContext { company: &company, keys: &self.keys, page_rows: self.page_rows };
+            let context = ScreenContext { company: &company, keys: &self.keys, page_rows: self.page_rows };
             for id in ScreenId::ALL {
-                run.screens.get_mut(id).on_company_change(&look);
+                run.screens.get_mut(id).on_company_change(&context);
             }
         }
         self.request_screen_data();

@@ -58,8 +58,8 @@ impl CausesDialog {
     }
 
     /// Asks the same question for another week, if that week has a previous one.
-    fn change_week(&self, week: u32, look: &ScreenContext<'_>) -> DialogResponse {
-        let last = look.company.weeks.len() as u32;
+    fn change_week(&self, week: u32, context: &ScreenContext<'_>) -> DialogResponse {
+        let last = context.company.weeks.len() as u32;
         if !(2..=last).contains(&week) {
             return DialogResponse::stay();
         }
@@ -121,10 +121,10 @@ impl Dialog for CausesDialog {
         }
     }
 
-    fn handle_action(&mut self, action: Action, look: &ScreenContext<'_>) -> DialogResponse {
+    fn handle_action(&mut self, action: Action, context: &ScreenContext<'_>) -> DialogResponse {
         match action {
-            Action::Left => return self.change_week(self.week.saturating_sub(1), look),
-            Action::Right => return self.change_week(self.week + 1, look),
+            Action::Left => return self.change_week(self.week.saturating_sub(1), context),
+            Action::Right => return self.change_week(self.week + 1, context),
             Action::Close | Action::Cancel => return DialogResponse::close(),
             Action::Open | Action::Confirm => return self.open_source(),
             Action::Down => self.select(self.selected + 1),
@@ -148,7 +148,7 @@ impl Dialog for CausesDialog {
         if again { self.open_source() } else { DialogResponse::stay() }
     }
 
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         let width = MAX_PAGE_WIDTH.min(area.width.saturating_sub(2));
         let inner = width.saturating_sub(4) as usize;
         let (title, text, role) = match &self.answer {
@@ -195,11 +195,11 @@ impl Dialog for CausesDialog {
             canvas.draw_line(row, &line);
             canvas.register_click(row, Click::Row(0, at));
         }
-        let label = |action| look.keys.label(action).unwrap_or_default();
+        let label = |action| context.keys.label(action).unwrap_or_default();
         let weeks = format!("{} {} change week", label(Action::Left), label(Action::Right));
         let keys = match self.causes() {
-            Some(_) => format!("{} · {weeks} · {}", look.hint(Action::Open), look.hint(Action::Close)),
-            None => format!("{weeks} · {}", look.hint(Action::Close)),
+            Some(_) => format!("{} · {weeks} · {}", context.hint(Action::Open), context.hint(Action::Close)),
+            None => format!("{weeks} · {}", context.hint(Action::Close)),
         };
         canvas.draw_pane_keys(dialog_area, &keys);
     }

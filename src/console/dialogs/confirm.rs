@@ -53,12 +53,12 @@ impl Dialog for ConfirmDialog {
         self.answer_actions()
     }
 
-    fn handle_action(&mut self, action: Action, look: &ScreenContext<'_>) -> DialogResponse {
+    fn handle_action(&mut self, action: Action, context: &ScreenContext<'_>) -> DialogResponse {
         match (action, &mut self.alternative) {
             (Action::Confirm, _) => DialogResponse::confirm_with(std::mem::take(&mut self.effects)),
             // Tells a user who mistook the key that nothing happened.
             (Action::Cancel, _) => {
-                let yes = look.keys.label(Action::Confirm).unwrap_or_default();
+                let yes = context.keys.label(Action::Confirm).unwrap_or_default();
                 let text = format!("{}: cancelled; {yes} confirms", self.title);
                 DialogResponse::cancel_with(vec![Effect::Say(text)])
             }
@@ -69,7 +69,7 @@ impl Dialog for ConfirmDialog {
         }
     }
 
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         let lines = wrap(&self.text, 56);
         let dialog_area = centered_rect(area, 60, lines.len() as u16 + 4);
         canvas.clear(dialog_area, Role::Text);
@@ -85,7 +85,7 @@ impl Dialog for ConfirmDialog {
         };
         for (at, action) in self.answer_actions().into_iter().enumerate() {
             let place = Rect { x: row.x + at as u16 * 14, width: 12.min(row.width), ..row };
-            canvas.draw_text(place.intersection(row), &look.hint(action), Role::Key);
+            canvas.draw_text(place.intersection(row), &context.hint(action), Role::Key);
             canvas.register_click(place, Click::Command(action.into()));
         }
     }

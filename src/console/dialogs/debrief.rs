@@ -76,8 +76,8 @@ impl Dialog for DebriefPage {
         DEBRIEF_ACTIONS.to_vec()
     }
 
-    fn hints_in_context(&self, look: &ScreenContext<'_>) -> Vec<Action> {
-        let page = look.company.lesson.as_ref();
+    fn hints_in_context(&self, context: &ScreenContext<'_>) -> Vec<Action> {
+        let page = context.company.lesson.as_ref();
         let is_there = |action: &Action| match action {
             Action::NextPart => page.is_some_and(|page| page.next_part.is_some()),
             Action::Opponents => page.is_some_and(|page| page.has_opponents),
@@ -86,8 +86,8 @@ impl Dialog for DebriefPage {
         DEBRIEF_ACTIONS.into_iter().filter(is_there).collect()
     }
 
-    fn handle_action(&mut self, action: Action, look: &ScreenContext<'_>) -> DialogResponse {
-        let page = look.company.lesson.as_ref();
+    fn handle_action(&mut self, action: Action, context: &ScreenContext<'_>) -> DialogResponse {
+        let page = context.company.lesson.as_ref();
         match action {
             Action::ToMenu => return DialogResponse::confirm_with(vec![Effect::Do(Action::LeaveRun)]),
             Action::StayInRun | Action::Close => return DialogResponse::close(),
@@ -106,7 +106,7 @@ impl Dialog for DebriefPage {
                 return DialogResponse::stay_with(vec![Effect::Complain(text)]);
             }
             other => {
-                self.scroll.handle_action(other, look.page_rows as usize);
+                self.scroll.handle_action(other, context.page_rows as usize);
             }
         }
         DialogResponse::stay()
@@ -116,12 +116,12 @@ impl Dialog for DebriefPage {
         self.debrief = Some(found.clone());
     }
 
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         let dialog_area = centered_rect(area, MAX_PAGE_WIDTH.min(area.width), 50.min(area.height));
         canvas.clear(dialog_area, Role::Text);
         let inside = canvas.draw_pane_frame(dialog_area, "Debrief", "", true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
-        canvas.draw_pane_keys(dialog_area, &look.hints(&self.hints_in_context(look)));
+        canvas.draw_pane_keys(dialog_area, &context.hints(&self.hints_in_context(context)));
         let debrief = match self.debrief.as_ref().map(|found| found.as_ref().as_ref()) {
             None => return canvas.draw_text(inside, "simulating the good and the bad play …", Role::Warning),
             Some(Err(refusal)) => return canvas.draw_text(inside, &refusal.message, Role::Bad),
@@ -145,7 +145,7 @@ impl Dialog for DebriefPage {
         canvas.page_rows = words.height.max(1);
         draw_lines(canvas, words, &lines, from);
         if from < last {
-            let key = look.keys.label(Action::Down).unwrap_or_default();
+            let key = context.keys.label(Action::Down).unwrap_or_default();
             let more = format!(" {key}: {} more ", pluralize((last - from) as u32, "line"));
             let above = Rect {
                 x: dialog_area.x + 2,

@@ -23,11 +23,11 @@ enum Link {
 }
 
 impl Link {
-    fn title(self, look: &ScreenContext<'_>) -> (String, &'static str) {
+    fn title(self, context: &ScreenContext<'_>) -> (String, &'static str) {
         match self {
             Link::Subject(subject) => (subject.title(), subject.kind()),
             Link::Screen(action) => {
-                let key = look.keys.label(action).map_or(String::new(), |key| format!(" ({key})"));
+                let key = context.keys.label(action).map_or(String::new(), |key| format!(" ({key})"));
                 (format!("{}{key}", action.entry().title), "go to")
             }
         }
@@ -155,14 +155,14 @@ impl ExplainDialog {
         }
     }
 
-    fn key_hints(&self, look: &ScreenContext<'_>) -> String {
-        let mut keys = vec![look.hint(Action::Open)];
+    fn key_hints(&self, context: &ScreenContext<'_>) -> String {
+        let mut keys = vec![context.hint(Action::Open)];
         if self.pages.len() > 1 {
-            keys.push(look.hint(Action::Back));
+            keys.push(context.hint(Action::Back));
         } else if self.has_source_rows {
-            keys.push(look.hint(Action::Rows));
+            keys.push(context.hint(Action::Rows));
         }
-        keys.push(look.hint(Action::Close));
+        keys.push(context.hint(Action::Close));
         keys.join(" · ")
     }
 }
@@ -185,8 +185,8 @@ impl Dialog for ExplainDialog {
         vec![Action::Open, first, Action::Close]
     }
 
-    fn handle_action(&mut self, action: Action, look: &ScreenContext<'_>) -> DialogResponse {
-        let page = look.page_rows.max(1) as usize;
+    fn handle_action(&mut self, action: Action, context: &ScreenContext<'_>) -> DialogResponse {
+        let page = context.page_rows.max(1) as usize;
         match action {
             Action::Open => return self.follow_link(),
             Action::Back | Action::Left if self.pages.len() > 1 => {
@@ -215,7 +215,7 @@ impl Dialog for ExplainDialog {
         self.follow_link()
     }
 
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         let page = self.page();
         let width = area.width.saturating_sub(4).min(100);
         let text = lines_of(page, width.saturating_sub(4) as usize);
@@ -244,15 +244,15 @@ impl Dialog for ExplainDialog {
         }
         let picture =
             Rect { y: above.bottom(), height: for_picture.min(inside.height - above.height), ..inside };
-        term_picture::draw(canvas, picture, &page.term, look.company);
+        term_picture::draw(canvas, picture, &page.term, context.company);
         let below = Rect { y: picture.bottom(), height: inside.bottom() - picture.bottom(), ..inside };
-        self.draw_links(canvas, below, look);
-        canvas.draw_pane_keys(dialog_area, &self.key_hints(look));
+        self.draw_links(canvas, below, context);
+        canvas.draw_pane_keys(dialog_area, &self.key_hints(context));
     }
 }
 
 impl ExplainDialog {
-    fn draw_links(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    fn draw_links(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         let page = self.page();
         if page.links.is_empty() || area.height < 2 {
             return;
@@ -266,7 +266,7 @@ impl ExplainDialog {
             if at == page.selected {
                 canvas.clear(row, Role::Selection);
             }
-            let (title, kind) = link.title(look);
+            let (title, kind) = link.title(context);
             canvas.draw_text(Rect { width: 9.min(row.width), ..row }, kind, role(Role::Dim));
             let place = Rect { x: row.x + 10, width: row.width.saturating_sub(10), ..row };
             canvas.draw_text(place, &title, role(Role::Text));

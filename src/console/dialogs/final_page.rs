@@ -72,8 +72,8 @@ pub struct FinalPage {
 
 impl FinalPage {
     /// Opens the page of a finished run.
-    pub fn new(story: Option<Arc<RunReport>>) -> FinalPage {
-        FinalPage { story, is_study: false }
+    pub fn new(report: Option<Arc<RunReport>>) -> FinalPage {
+        FinalPage { story: report, is_study: false }
     }
 
     /// Makes it lead to the next page of a study.
@@ -99,16 +99,16 @@ impl Dialog for FinalPage {
         self.actions().to_vec()
     }
 
-    fn handle_action(&mut self, action: Action, look: &ScreenContext<'_>) -> DialogResponse {
+    fn handle_action(&mut self, action: Action, context: &ScreenContext<'_>) -> DialogResponse {
         match action {
-            Action::ReplayFromStart => open_replay(look.company, SeekTarget::First),
+            Action::ReplayFromStart => open_replay(context.company, SeekTarget::First),
             Action::WhatIf => DialogResponse::confirm_with(vec![Effect::Do(Action::Branches)]),
-            Action::Opponents if !hides_result(look.company) => {
+            Action::Opponents if !hides_result(context.company) => {
                 DialogResponse::stay_with(vec![Effect::ShowOpponents])
             }
             Action::ToMenu => DialogResponse::confirm_with(vec![Effect::Do(Action::LeaveRun)]),
             Action::StayInRun | Action::Continue => DialogResponse::close(),
-            Action::WriteRunCard if !hides_result(look.company) => self.write_card(),
+            Action::WriteRunCard if !hides_result(context.company) => self.write_card(),
             Action::WriteRunReport => {
                 DialogResponse::stay_with(vec![Effect::Request(Request::RenderReportFiles)])
             }
@@ -116,16 +116,16 @@ impl Dialog for FinalPage {
         }
     }
 
-    fn set_story(&mut self, story: &Arc<RunReport>) {
-        self.story = Some(story.clone());
+    fn set_story(&mut self, report: &Arc<RunReport>) {
+        self.story = Some(report.clone());
     }
 
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
-        let company = look.company;
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
+        let company = context.company;
         let dialog_area = centered_rect(area, MAX_PAGE_WIDTH.min(area.width), 42.min(area.height));
         canvas.clear(dialog_area, Role::Text);
         if hides_result(company) {
-            return self.draw_without_result(canvas, area, look);
+            return self.draw_without_result(canvas, area, context);
         }
         let inside = canvas.draw_pane_frame(dialog_area, &headline(company), "", true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
@@ -143,15 +143,15 @@ impl Dialog for FinalPage {
             let below = Rect { y: inside.y + used, height: inside.height.saturating_sub(used), ..inside };
             draw_cash(canvas, below, company);
         }
-        canvas.draw_pane_keys(dialog_area, &look.hints(self.actions()));
+        canvas.draw_pane_keys(dialog_area, &context.hints(self.actions()));
     }
 }
 
 impl FinalPage {
-    fn draw_without_result(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    fn draw_without_result(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         canvas.clear(area, Role::Text);
         let dialog_area = centered_rect(area, 60, 6);
-        let practice = look.company.study.as_ref().is_some_and(|study| study.practice);
+        let practice = context.company.study.as_ref().is_some_and(|study| study.practice);
         let (title, text) = match practice {
             true => ("The practice has ended", "It does not count. The session comes next."),
             false => ("The run has ended", "This study does not show the result."),
@@ -159,16 +159,16 @@ impl FinalPage {
         let inside = canvas.draw_pane_frame(dialog_area, title, "", true);
         let row = Rect { x: inside.x + 1, y: inside.y + 1, width: inside.width.saturating_sub(2), height: 1 };
         canvas.draw_text(row.intersection(inside), text, Role::Text);
-        canvas.draw_pane_keys(dialog_area, &look.hints(self.actions()));
+        canvas.draw_pane_keys(dialog_area, &context.hints(self.actions()));
     }
 
     fn write_card(&self) -> DialogResponse {
-        let Some(story) = &self.story else {
+        let Some(report) = &self.story else {
             return DialogResponse::stay_with(vec![Effect::Complain(
                 "the ledger is still being read".to_owned(),
             )]);
         };
-        let files = [("card.txt", card_to_text(story)), ("card.svg", card_to_svg(story))];
+        let files = [("card.txt", card_to_text(report)), ("card.svg", card_to_svg(report))];
         DialogResponse::stay_with(
             files.map(|(name, text)| Effect::Write(name.to_owned(), text.into_bytes())).to_vec(),
         )
@@ -196,7 +196,7 @@ impl FinalPage {
             parts.push(ranking_lines(canvas, &standing, width, best, roomy));
         }
         parts.push(match &self.story {
-            Some(story) => facts(canvas, &story.measures, width, roomy, published),
+            Some(report) => facts(canvas, &report.measures, width, roomy, published),
             None => vec![TextLine::from(canvas.span("reading the ledger …", Role::Dim))],
         });
         if roomy
@@ -224,17 +224,17 @@ impl FinalPage {
         width: u16,
         roomy: bool,
     ) -> Option<Vec<TextLine<'a>>> {
-        let ruin = self.story.as_ref()?.bankruptcy.as_ref()?;
-        let texts = wrap(&ruin.turning_points.join(" "), width as usize);
+        let bankruptcy = self.story.as_ref()?.bankruptcy.as_ref()?;
+        let texts = wrap(&bankruptcy.turning_points.join(" "), width as usize);
         let mut lines: Vec<TextLine<'a>> =
             texts.into_iter().map(|line| TextLine::from(canvas.span(line, Role::Text))).collect();
-        if ruin.costs.is_empty() {
+        if bankruptcy.costs.is_empty() {
             return Some(lines);
         }
         lines.push(TextLine::from(canvas.span("Where the money went", Role::Header)));
         let room = (width as usize).saturating_sub(NAME_WIDTH + 20).min(40);
-        let most = ruin.costs.iter().map(|cost| cost.share).fold(0.0, f64::max);
-        for cost in ruin.costs.iter().take(if roomy { 6 } else { 3 }) {
+        let most = bankruptcy.costs.iter().map(|cost| cost.share).fold(0.0, f64::max);
+        for cost in bankruptcy.costs.iter().take(if roomy { 6 } else { 3 }) {
             let bar = "█".repeat((cost.share / most * room as f64).round() as usize);
             lines.push(TextLine::from(vec![
                 canvas.span(format!("{:<NAME_WIDTH$}", cost.name), Role::Dim),
@@ -250,7 +250,7 @@ impl FinalPage {
 
     /// Draws the cash curve with the highlights below.
     fn draw_curve_and_highlights(&self, canvas: &mut Canvas<'_>, area: Rect, company: &DisplayedCompany) {
-        let highlights = self.story.as_ref().map_or(&[][..], |story| story.highlights.as_slice());
+        let highlights = self.story.as_ref().map_or(&[][..], |report| report.highlights.as_slice());
         let list = (highlights.len() as u16 + 2).min(area.height / 2);
         let [above, below] = Layout::vertical([Constraint::Fill(1), Constraint::Length(list)]).areas(area);
         draw_cash(canvas, above, company);

@@ -80,14 +80,14 @@ impl Dialog for GlossaryDialog {
         }
     }
 
-    fn handle_action(&mut self, action: Action, look: &ScreenContext<'_>) -> DialogResponse {
+    fn handle_action(&mut self, action: Action, context: &ScreenContext<'_>) -> DialogResponse {
         // The wheel moves the selection.
         let action = match action {
             Action::ScrollUp => Action::Up,
             Action::ScrollDown => Action::Down,
             other => other,
         };
-        if self.table.handle_action(action, look.page_rows) {
+        if self.table.handle_action(action, context.page_rows) {
             return DialogResponse::stay();
         }
         match action {
@@ -120,7 +120,7 @@ impl Dialog for GlossaryDialog {
         if before == self.table.selected() { self.open_term() } else { DialogResponse::stay() }
     }
 
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         let dialog_area =
             centered_rect(area, area.width.saturating_sub(4).min(130), area.height.saturating_sub(2));
         canvas.clear(dialog_area, Role::Text);
@@ -140,19 +140,19 @@ impl Dialog for GlossaryDialog {
         self.table.draw(canvas, list, true, 0);
         if self.table.visible_rows().is_empty() && list.height > 1 {
             let row = Rect { y: list.y + 1, height: 1, ..list };
-            let text = format!("no term contains {}", look.hint(Action::Discard));
+            let text = format!("no term contains {}", context.hint(Action::Discard));
             canvas.draw_text(row, &text, Role::Dim);
         }
         let below = Rect { y: list.bottom(), height: for_text, ..inside };
         if let Some(term) = self.selected() {
-            self.draw_term(canvas, below, term, look);
+            self.draw_term(canvas, below, term, context);
         }
-        canvas.draw_pane_keys(dialog_area, &look.hints(&self.hints()));
+        canvas.draw_pane_keys(dialog_area, &context.hints(&self.hints()));
     }
 }
 
 impl GlossaryDialog {
-    fn draw_term(&self, canvas: &mut Canvas<'_>, area: Rect, term: &Term, look: &ScreenContext<'_>) {
+    fn draw_term(&self, canvas: &mut Canvas<'_>, area: Rect, term: &Term, context: &ScreenContext<'_>) {
         if area.is_empty() {
             return;
         }
@@ -169,7 +169,12 @@ impl GlossaryDialog {
         {
             canvas.draw_text(row, &line, Role::Text);
         }
-        term_picture::draw(canvas, Rect { x: words.right(), width: taken, ..rest }, &term.id, look.company);
+        term_picture::draw(
+            canvas,
+            Rect { x: words.right(), width: taken, ..rest },
+            &term.id,
+            context.company,
+        );
     }
 }
 

@@ -156,8 +156,8 @@ impl Dialog for HelpDialog {
         vec![Action::Filter, Action::Close]
     }
 
-    fn handle_action(&mut self, action: Action, look: &ScreenContext<'_>) -> DialogResponse {
-        if self.table.handle_action(action, look.page_rows) {
+    fn handle_action(&mut self, action: Action, context: &ScreenContext<'_>) -> DialogResponse {
+        if self.table.handle_action(action, context.page_rows) {
             return DialogResponse::stay();
         }
         match action {
@@ -178,7 +178,7 @@ impl Dialog for HelpDialog {
         DialogResponse::stay()
     }
 
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         let dialog_area =
             centered_rect(area, area.width.saturating_sub(4).min(110), area.height.saturating_sub(2));
         canvas.clear(dialog_area, Role::Text);
@@ -189,7 +189,7 @@ impl Dialog for HelpDialog {
             true,
             0,
         );
-        canvas.draw_pane_keys(dialog_area, &look.hints(&[Action::Filter, Action::Close]));
+        canvas.draw_pane_keys(dialog_area, &context.hints(&[Action::Filter, Action::Close]));
     }
 }
 

@@ -44,8 +44,8 @@ impl LessonDialog {
         }
     }
 
-    fn open_question<'a>(&self, look: &ScreenContext<'a>) -> Option<&'a LessonQuestion> {
-        let question = look.company.lesson.as_ref()?.question.as_ref()?;
+    fn open_question<'a>(&self, context: &ScreenContext<'a>) -> Option<&'a LessonQuestion> {
+        let question = context.company.lesson.as_ref()?.question.as_ref()?;
         (self.answer.is_some() && question.guess.is_none()).then_some(question)
     }
 
@@ -125,7 +125,7 @@ impl LessonDialog {
         canvas: &mut Canvas<'_>,
         area: Rect,
         question: &LessonQuestion,
-        look: &ScreenContext<'_>,
+        context: &ScreenContext<'_>,
     ) {
         let Some(answer) = &self.answer else { return };
         let width = MAX_PAGE_WIDTH.min(area.width);
@@ -170,7 +170,7 @@ impl LessonDialog {
         if let (Some(problem), Some(row)) = (&answer.problem, rows.next()) {
             canvas.draw_text(row, &format!("! {problem}"), Role::Bad);
         }
-        canvas.draw_pane_keys(dialog_area, &look.hints(&[Action::Commit, Action::Discard]));
+        canvas.draw_pane_keys(dialog_area, &context.hints(&[Action::Commit, Action::Discard]));
     }
 }
 
@@ -198,13 +198,13 @@ impl Dialog for LessonDialog {
         }
     }
 
-    fn hints_in_context(&self, look: &ScreenContext<'_>) -> Vec<Action> {
-        look.company.lesson.as_ref().map_or_else(|| self.hints(), |page| self.actions(page))
+    fn hints_in_context(&self, context: &ScreenContext<'_>) -> Vec<Action> {
+        context.company.lesson.as_ref().map_or_else(|| self.hints(), |page| self.actions(page))
     }
 
-    fn handle_action(&mut self, action: Action, look: &ScreenContext<'_>) -> DialogResponse {
-        let Some(page) = &look.company.lesson else { return DialogResponse::close() };
-        if let Some(question) = self.open_question(look) {
+    fn handle_action(&mut self, action: Action, context: &ScreenContext<'_>) -> DialogResponse {
+        let Some(page) = &context.company.lesson else { return DialogResponse::close() };
+        if let Some(question) = self.open_question(context) {
             return self.handle_answer_action(action, question);
         }
         self.answer = None;
@@ -242,14 +242,14 @@ impl Dialog for LessonDialog {
             Action::LessonWeek => return DialogResponse::confirm_with(vec![Effect::Do(Action::NextWeek)]),
             Action::Cancel | Action::Close => return DialogResponse::close(),
             other => {
-                self.scroll.handle_action(other, look.page_rows as usize);
+                self.scroll.handle_action(other, context.page_rows as usize);
             }
         }
         DialogResponse::stay()
     }
 
-    fn handle_key(&mut self, key: &KeyEvent, look: &ScreenContext<'_>) -> DialogResponse {
-        let Some(question) = self.open_question(look) else { return DialogResponse::stay() };
+    fn handle_key(&mut self, key: &KeyEvent, context: &ScreenContext<'_>) -> DialogResponse {
+        let Some(question) = self.open_question(context) else { return DialogResponse::stay() };
         let count = question.choices.len();
         let Some(answer) = &mut self.answer else { return DialogResponse::stay() };
         answer.problem = None;
@@ -273,16 +273,16 @@ impl Dialog for LessonDialog {
         DialogResponse::stay()
     }
 
-    fn paste(&mut self, text: &str, look: &ScreenContext<'_>) -> DialogResponse {
-        let asks_number = self.open_question(look).is_some_and(|question| question.choices.is_empty());
+    fn paste(&mut self, text: &str, context: &ScreenContext<'_>) -> DialogResponse {
+        let asks_number = self.open_question(context).is_some_and(|question| question.choices.is_empty());
         if let Some(answer) = self.answer.as_mut().filter(|_| asks_number) {
             answer.number.insert(text.trim());
         }
         DialogResponse::stay()
     }
 
-    fn handle_click(&mut self, row: usize, look: &ScreenContext<'_>) -> DialogResponse {
-        let Some(question) = self.open_question(look) else { return DialogResponse::stay() };
+    fn handle_click(&mut self, row: usize, context: &ScreenContext<'_>) -> DialogResponse {
+        let Some(question) = self.open_question(context) else { return DialogResponse::stay() };
         let Some(answer) = &mut self.answer else { return DialogResponse::stay() };
         if answer.choice == row {
             return self.submit_answer(question);
@@ -291,13 +291,14 @@ impl Dialog for LessonDialog {
         DialogResponse::stay()
     }
 
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
-        let Some(page) = &look.company.lesson else { return };
-        if let Some(question) = self.open_question(look).filter(|_| self.closes_after_answer) {
-            return self.draw_answer(canvas, area, question, look);
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
+        let Some(page) = &context.company.lesson else { return };
+        if let Some(question) = self.open_question(context).filter(|_| self.closes_after_answer) {
+            return self.draw_answer(canvas, area, question, context);
         }
         let widest_area = centered_rect(area, MAX_PAGE_WIDTH.min(area.width), area.height);
-        let lines = lines_of(page, look, (widest_area.width.saturating_sub(4) as usize, TaskPlace::FullPage));
+        let lines =
+            lines_of(page, context, (widest_area.width.saturating_sub(4) as usize, TaskPlace::FullPage));
         let dialog_area = centered_rect(area, widest_area.width, (lines.len() as u16).saturating_add(2));
         canvas.clear(dialog_area, Role::Text);
         let note = format!("week {} of {}", (page.weeks.0 + 1).min(page.weeks.1), page.weeks.1);
@@ -308,9 +309,9 @@ impl Dialog for LessonDialog {
         draw_lines(canvas, inside, &lines, from);
         let cut = lines.len() > inside.height as usize;
         let keys = self.actions(page).into_iter().filter(|action| cut || *action != Action::ScrollDown);
-        canvas.draw_pane_keys(dialog_area, &look.hints(&keys.collect::<Vec<_>>()));
-        if let Some(question) = self.open_question(look) {
-            self.draw_answer(canvas, area, question, look);
+        canvas.draw_pane_keys(dialog_area, &context.hints(&keys.collect::<Vec<_>>()));
+        if let Some(question) = self.open_question(context) {
+            self.draw_answer(canvas, area, question, context);
         }
     }
 }

@@ -111,7 +111,7 @@ pub trait Dialog {
     }
 
     /// Handles an action of its scopes.
-    fn handle_action(&mut self, action: Action, look: &ScreenContext<'_>) -> DialogResponse;
+    fn handle_action(&mut self, action: Action, context: &ScreenContext<'_>) -> DialogResponse;
 
     /// Handles a key without an action.
     fn handle_key(&mut self, _: &KeyEvent, _: &ScreenContext<'_>) -> DialogResponse {

@@ -59,12 +59,12 @@ impl Dialog for OpponentsPage {
         }
     }
 
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         let dialog_area = centered_rect(area, PAGE_SIZE.0.min(area.width), PAGE_SIZE.1.min(area.height));
         canvas.clear(dialog_area, Role::Text);
         let inside = canvas.draw_pane_frame(dialog_area, "Opponents", "", true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
-        canvas.draw_pane_keys(dialog_area, &look.hints(&self.hints()));
+        canvas.draw_pane_keys(dialog_area, &context.hints(&self.hints()));
         let width = inside.width as usize;
         let (role, text) = match &self.result {
             None => (Role::Warning, "simulating the strong policies from day 0 …".to_owned()),
@@ -75,7 +75,7 @@ impl Dialog for OpponentsPage {
             wrap(&text, width).into_iter().map(|line| TextLine::from(canvas.span(line, role))).collect();
         if let Some(Ok(opponents)) = &self.result {
             lines.push(TextLine::default());
-            lines.extend(ranked(canvas, look.company, opponents, width));
+            lines.extend(ranked(canvas, context.company, opponents, width));
         }
         canvas.draw_lines(inside, &lines);
     }

@@ -57,7 +57,7 @@ impl Dialog for PauseReasonDialog {
         DialogResponse::stay()
     }
 
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         let dialog_area = centered_rect(area, 64, 6);
         canvas.clear(dialog_area, Role::Text);
         let inside = canvas.draw_pane_frame(dialog_area, "Stop the clock", "", true);
@@ -67,6 +67,6 @@ impl Dialog for PauseReasonDialog {
         if self.is_rejected_empty {
             canvas.draw_text(Rect { y: row.y + 2, ..row }, "! a reason is required", Role::Bad);
         }
-        canvas.draw_pane_keys(dialog_area, &look.hints(&[Action::Commit, Action::Discard]));
+        canvas.draw_pane_keys(dialog_area, &context.hints(&[Action::Commit, Action::Discard]));
     }
 }

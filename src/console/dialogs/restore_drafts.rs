@@ -46,7 +46,7 @@ impl Dialog for RestoreDraftsDialog {
         }
     }
 
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         let room = usize::from(area.height.saturating_sub(5)).max(1);
         let each = (room / self.texts.len().max(1)).saturating_sub(1).max(1);
         let width = usize::from(area.width.min(MAX_PAGE_WIDTH).saturating_sub(4)).max(8);
@@ -60,8 +60,8 @@ impl Dialog for RestoreDraftsDialog {
         canvas.clear(dialog_area, Role::Text);
         let inside = canvas.draw_pane_frame(dialog_area, "Unsent text", "", true);
         canvas.draw_lines(Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside }, &lines);
-        let restore = look.keys.label(Action::RestoreDrafts).unwrap_or_default();
-        let drop = look.keys.label(Action::DiscardDrafts).unwrap_or_default();
+        let restore = context.keys.label(Action::RestoreDrafts).unwrap_or_default();
+        let drop = context.keys.label(Action::DiscardDrafts).unwrap_or_default();
         canvas.draw_pane_keys(dialog_area, &format!("{restore} restore · {drop} discard"));
     }
 }

@@ -65,16 +65,16 @@ impl Dialog for RetryStepDialog {
         DialogResponse::stay()
     }
 
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         let mut lines = wrap(&self.text(), 56);
         if self.last_step > 0 {
             lines.push(String::new());
             let keys = [Action::ScrollUp, Action::ScrollDown]
-                .map(|action| look.keys.label(action).unwrap_or_default());
+                .map(|action| context.keys.label(action).unwrap_or_default());
             lines.push(format!("{} {}  another step", keys[0], keys[1]));
         }
         lines.push(String::new());
-        lines.push(look.hints(&[Action::Confirm, Action::Cancel]));
+        lines.push(context.hints(&[Action::Confirm, Action::Cancel]));
         let dialog_area = centered_rect(area, 60, lines.len() as u16 + 2);
         canvas.clear(dialog_area, Role::Text);
         let inside = canvas.draw_pane_frame(dialog_area, "Try again", "", true);

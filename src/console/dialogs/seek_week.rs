@@ -75,7 +75,7 @@ impl Dialog for SeekWeekDialog {
         DialogResponse::stay()
     }
 
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         let dialog_area = centered_rect(area, 56, 6);
         canvas.clear(dialog_area, Role::Text);
         let inside = canvas.draw_pane_frame(dialog_area, "Go to week", &format!("0 to {}", self.weeks), true);
@@ -93,7 +93,7 @@ impl Dialog for SeekWeekDialog {
             Some(problem) => canvas.draw_text(below, problem, Role::Bad),
             None => canvas.draw_text(below, "shows the end of that week", Role::Dim),
         }
-        canvas.draw_pane_keys(dialog_area, &look.hints(&[Action::Commit, Action::Discard]));
+        canvas.draw_pane_keys(dialog_area, &context.hints(&[Action::Commit, Action::Discard]));
     }
 }
 

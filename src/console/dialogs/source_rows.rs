@@ -72,7 +72,7 @@ impl Dialog for SourceRowsDialog {
         vec![Action::OpenInSql, Action::CopyQuery, Action::Sort, Action::Filter, Action::Close]
     }
 
-    fn handle_action(&mut self, action: Action, look: &ScreenContext<'_>) -> DialogResponse {
+    fn handle_action(&mut self, action: Action, context: &ScreenContext<'_>) -> DialogResponse {
         match action {
             Action::OpenInSql => {
                 let effects = vec![Effect::EditSql(self.sql.clone()), Effect::Do(Action::RunQuery)];
@@ -82,7 +82,7 @@ impl Dialog for SourceRowsDialog {
             Action::Open => return DialogResponse::stay_with(self.show_cell().into_iter().collect()),
             _ => {}
         }
-        if self.table.handle_action(action, look.page_rows) {
+        if self.table.handle_action(action, context.page_rows) {
             return DialogResponse::stay();
         }
         match action {
@@ -116,7 +116,7 @@ impl Dialog for SourceRowsDialog {
         DialogResponse::stay()
     }
 
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         let dialog_area =
             centered_rect(area, area.width.saturating_sub(4).min(140), area.height.saturating_sub(2));
         canvas.clear(dialog_area, Role::Text);
@@ -138,6 +138,6 @@ impl Dialog for SourceRowsDialog {
             Some(Ok(_)) => self.table.draw(canvas, below, true, 0),
         }
         let keys = [Action::OpenInSql, Action::CopyQuery, Action::Sort, Action::Filter, Action::Close];
-        canvas.draw_pane_keys(dialog_area, &look.hints(&keys));
+        canvas.draw_pane_keys(dialog_area, &context.hints(&keys));
     }
 }

@@ -63,7 +63,7 @@ impl Dialog for TakeOverDialog {
         if again { self.confirm_branch() } else { DialogResponse::stay() }
     }
 
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         let text = format!(
             "A new run starts here, on day {} before week {}, with everything done so far. The recorded run does not change.",
             self.day, self.week
@@ -88,8 +88,8 @@ impl Dialog for TakeOverDialog {
             canvas.draw_text(row, &format!("{mark} {:<8} {}", mode.id(), mode.purpose()), role);
             canvas.register_click(row, Click::Row(0, at));
         }
-        let key = look.keys.label(Action::Open).unwrap_or_default();
-        canvas.draw_pane_keys(dialog_area, &format!("{key} start · {}", look.hint(Action::Close)));
+        let key = context.keys.label(Action::Open).unwrap_or_default();
+        canvas.draw_pane_keys(dialog_area, &format!("{key} start · {}", context.hint(Action::Close)));
     }
 }
 

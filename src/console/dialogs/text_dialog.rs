@@ -37,14 +37,14 @@ impl Dialog for TextDialog {
         vec![Action::ScrollDown, Action::Cancel]
     }
 
-    fn handle_action(&mut self, action: Action, look: &ScreenContext<'_>) -> DialogResponse {
+    fn handle_action(&mut self, action: Action, context: &ScreenContext<'_>) -> DialogResponse {
         let last = self.text.lines().count().saturating_sub(1);
         match action {
             Action::Cancel | Action::Close => return DialogResponse::close(),
             Action::ScrollUp => self.first_line = self.first_line.saturating_sub(1),
             Action::ScrollDown => self.first_line = (self.first_line + 1).min(last),
-            Action::PageUp => self.first_line = self.first_line.saturating_sub(look.page_rows as usize),
-            Action::PageDown => self.first_line = (self.first_line + look.page_rows as usize).min(last),
+            Action::PageUp => self.first_line = self.first_line.saturating_sub(context.page_rows as usize),
+            Action::PageDown => self.first_line = (self.first_line + context.page_rows as usize).min(last),
             Action::First => self.first_line = 0,
             Action::Last => self.first_line = last,
             _ => {}
@@ -52,7 +52,7 @@ impl Dialog for TextDialog {
         DialogResponse::stay()
     }
 
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         let width = area.width.saturating_sub(6).clamp(1, 110);
         let lines = wrap(&self.text, width as usize);
         let dialog_area = centered_rect(area, width + 4, (lines.len() as u16).saturating_add(2));
@@ -68,7 +68,11 @@ impl Dialog for TextDialog {
         let more = lines.len() > inside.height as usize;
         canvas.draw_pane_keys(
             dialog_area,
-            &if more { look.hints(&[Action::ScrollDown, Action::Cancel]) } else { look.hint(Action::Cancel) },
+            &if more {
+                context.hints(&[Action::ScrollDown, Action::Cancel])
+            } else {
+                context.hint(Action::Cancel)
+            },
         );
     }
 }

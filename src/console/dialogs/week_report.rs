@@ -41,19 +41,19 @@ impl WeekReportDialog {
         WeekReportDialog { remark, selected: 0 }
     }
 
-    fn select(&mut self, to: usize, look: &ScreenContext<'_>) -> DialogResponse {
-        self.selected = to.min(usize::from(look.page_rows).saturating_sub(1));
+    fn select(&mut self, to: usize, context: &ScreenContext<'_>) -> DialogResponse {
+        self.selected = to.min(usize::from(context.page_rows).saturating_sub(1));
         DialogResponse::stay()
     }
 
-    fn figure(&self, look: &ScreenContext<'_>) -> Option<Figure> {
+    fn figure(&self, context: &ScreenContext<'_>) -> Option<Figure> {
         let name = match self.selected.checked_sub(1) {
             None => METRICS.first()?.name,
-            Some(at) => look.company.last_week.as_ref()?.moved_figures.get(at)?.name,
+            Some(at) => context.company.last_week.as_ref()?.moved_figures.get(at)?.name,
         };
         let figure = WeekFigure::parse_label(name)?;
         let metric = METRICS.iter().find(|metric| WeekFigure::parse_label(metric.name) == Some(figure))?;
-        Some(figures::figure(metric, 0, look.company))
+        Some(figures::figure(metric, 0, context.company))
     }
 }
 
@@ -76,31 +76,31 @@ impl Dialog for WeekReportDialog {
         action == Action::NextWeek
     }
 
-    fn handle_action(&mut self, action: Action, look: &ScreenContext<'_>) -> DialogResponse {
+    fn handle_action(&mut self, action: Action, context: &ScreenContext<'_>) -> DialogResponse {
         match action {
             Action::Cancel | Action::Report => DialogResponse::close(),
             Action::NextWeek => DialogResponse::confirm_with(vec![Effect::Do(action)]),
-            Action::ScrollUp => self.select(self.selected.saturating_sub(1), look),
-            Action::ScrollDown => self.select(self.selected + 1, look),
+            Action::ScrollUp => self.select(self.selected.saturating_sub(1), context),
+            Action::ScrollDown => self.select(self.selected + 1, context),
             Action::Why => {
-                DialogResponse::stay_with(self.figure(look).map(Effect::AskWhy).into_iter().collect())
+                DialogResponse::stay_with(self.figure(context).map(Effect::AskWhy).into_iter().collect())
             }
             Action::Rows => {
-                DialogResponse::stay_with(self.figure(look).map(Effect::ShowRows).into_iter().collect())
+                DialogResponse::stay_with(self.figure(context).map(Effect::ShowRows).into_iter().collect())
             }
             _ => DialogResponse::stay(),
         }
     }
 
-    fn handle_click(&mut self, row: usize, look: &ScreenContext<'_>) -> DialogResponse {
-        self.select(row, look)
+    fn handle_click(&mut self, row: usize, context: &ScreenContext<'_>) -> DialogResponse {
+        self.select(row, context)
     }
 
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
-        let Some(week_report) = &look.company.last_week else { return };
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
+        let Some(week_report) = &context.company.last_week else { return };
         let width = MAX_PAGE_WIDTH.min(area.width);
         let (lines, places) =
-            self.lines(canvas, week_report, look, width.saturating_sub(4), area.height.saturating_sub(2));
+            self.lines(canvas, week_report, context, width.saturating_sub(4), area.height.saturating_sub(2));
         canvas.page_rows = places.len().max(1) as u16;
         let dialog_area = centered_rect(area, width, lines.len() as u16 + 2);
         canvas.clear(dialog_area, Role::Text);
@@ -113,14 +113,14 @@ impl Dialog for WeekReportDialog {
             let row = Rect { y: inside.y + *place as u16, height: 1, ..inside };
             canvas.register_click(row, Click::Row(0, at));
         }
-        let close = look.hint(Action::Cancel);
+        let close = context.hint(Action::Cancel);
         // The change of the first week has no explanation: there is no previous week.
-        let why = match look.company.can_explain_causes() && look.company.weeks.len() > 1 {
-            true => format!(" · {}", look.hint(Action::Why)),
+        let why = match context.company.can_explain_causes() && context.company.weeks.len() > 1 {
+            true => format!(" · {}", context.hint(Action::Why)),
             false => String::new(),
         };
         let again =
-            look.keys.label(Action::Report).map_or(String::new(), |key| format!(" · {key} reopens it"));
+            context.keys.label(Action::Report).map_or(String::new(), |key| format!(" · {key} reopens it"));
         canvas.draw_pane_keys(dialog_area, &format!("{close}{why}{again}"));
     }
 }
@@ -132,15 +132,15 @@ impl WeekReportDialog {
         &self,
         canvas: &Canvas<'_>,
         week_report: &WeekReport,
-        look: &ScreenContext<'_>,
+        context: &ScreenContext<'_>,
         width: u16,
         height: u16,
     ) -> (Vec<Line<'a>>, Vec<usize>) {
         let height = height as usize;
         let head = self.header_section(canvas, week_report, width, if height >= 26 { 4 } else { 1 });
-        let needs = &look.company.action_items;
-        let notices = &look.company.notices;
-        let news = news_section(canvas, week_report, width, look);
+        let needs = &context.company.action_items;
+        let notices = &context.company.notices;
+        let news = news_section(canvas, week_report, width, context);
         let decided = decisions_section(canvas, week_report, width, if height >= 26 { 6 } else { 2 });
         // Headings and blank lines between five sections.
         let airy = height >= 24;
@@ -148,7 +148,7 @@ impl WeekReportDialog {
         let room = height.saturating_sub(fixed);
         let shown_needs = needs.len().min((room / 5).max(1)).max(1);
         let coming =
-            next_steps_section(canvas, &needs[..shown_needs.min(needs.len())], width, height >= 26, look);
+            next_steps_section(canvas, &needs[..shown_needs.min(needs.len())], width, height >= 26, context);
         let taken = coming.len() + usize::from(!notices.is_empty());
         let (moves, starts) = self.moves_section(canvas, week_report, width, room.saturating_sub(taken));
         let left = room.saturating_sub(coming.len() + moves.len());
@@ -156,7 +156,7 @@ impl WeekReportDialog {
             head,
             decided,
             with_heading(canvas, &moves_heading(week_report), moves),
-            news.into_iter().chain(notices_section(canvas, look.company, width, left.min(8))).collect(),
+            news.into_iter().chain(notices_section(canvas, context.company, width, left.min(8))).collect(),
             with_heading(canvas, "Action needed", coming),
         ];
         let (mut lines, mut places) = (Vec::new(), vec![0]);
@@ -354,7 +354,7 @@ fn news_section<'a>(
     canvas: &Canvas<'_>,
     week_report: &WeekReport,
     width: u16,
-    look: &ScreenContext<'_>,
+    context: &ScreenContext<'_>,
 ) -> Section<'a> {
     let kinds: [(u32, &str, &str, Option<ScreenId>); 6] = [
         (week_report.week.threads_opened, "thread", "threads", Some(ScreenId::Inbox)),
@@ -381,7 +381,7 @@ fn news_section<'a>(
         let last = found.get(at + 1).is_none_or(|next| next.3 != *screen);
         let key = screen
             .filter(|_| last)
-            .and_then(|screen| look.keys.label(screen.action()))
+            .and_then(|screen| context.keys.label(screen.action()))
             .map_or(String::new(), |key| format!(" [{key}]"));
         if used + text.width() + key.width() > width as usize {
             lines.push(vec![canvas.span("   ", Role::Text)]);
@@ -434,21 +434,24 @@ fn next_steps_section<'a>(
     needs: &[ActionItem],
     width: u16,
     roomy: bool,
-    look: &ScreenContext<'_>,
+    context: &ScreenContext<'_>,
 ) -> Section<'a> {
-    if needs.is_empty() && !look.company.is_running() {
-        let (page, others) =
-            (look.keys.label(Action::NextWeek).unwrap_or_default(), [Action::Branches, Action::WriteReport]);
-        let text = format!("  the run has ended: {page} final page · {}", look.hints(&others));
+    if needs.is_empty() && !context.company.is_running() {
+        let (page, others) = (
+            context.keys.label(Action::NextWeek).unwrap_or_default(),
+            [Action::Branches, Action::WriteReport],
+        );
+        let text = format!("  the run has ended: {page} final page · {}", context.hints(&others));
         return vec![Line::from(canvas.span(text, Role::Dim))];
     }
     if needs.is_empty() {
-        let key = look.keys.label(Action::NextWeek).unwrap_or_default();
+        let key = context.keys.label(Action::NextWeek).unwrap_or_default();
         let text = format!("  nothing needs attention; {key} starts the next week");
         return vec![Line::from(canvas.span(text, Role::Dim))];
     }
     let lines = |need: &ActionItem| {
-        let key = look.keys.label(screen_of(need).action()).map_or(String::new(), |key| format!(" [{key}]"));
+        let key =
+            context.keys.label(screen_of(need).action()).map_or(String::new(), |key| format!(" [{key}]"));
         let (sign, role) = if need.is_urgent { ("!", Role::Warning) } else { ("·", Role::Text) };
         let room = (width as usize).saturating_sub(4 + key.width());
         let proposed = wrap(&need.describe(), room);

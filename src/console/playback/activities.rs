@@ -65,9 +65,11 @@ pub(super) fn activity_summary(activity: &Activity) -> (String, Role) {
         Activity::Answer(answer) if answer.value.is_null() => format!("{}: no answer", answer.id),
         Activity::Answer(answer) => format!("{}: {}", answer.id, answer.value),
         Activity::Lesson(note) => novamind_report::lesson::describe_note(note),
-        Activity::ExternalRead(look) => format!("read by another program: {} {}", look.command, look.detail),
-        Activity::Inspection(look) => {
-            format!("x-ray of day {}: {} {}", look.shown_day, look.what, look.which)
+        Activity::ExternalRead(external_read) => {
+            format!("read by another program: {} {}", external_read.command, external_read.detail)
+        }
+        Activity::Inspection(inspection) => {
+            format!("x-ray of day {}: {} {}", inspection.shown_day, inspection.what, inspection.which)
         }
     };
     (text, Role::Dim)

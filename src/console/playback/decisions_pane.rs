@@ -45,7 +45,7 @@ impl PlaybackViewer {
         &self,
         canvas: &mut Canvas<'_>,
         area: Rect,
-        look: &ScreenContext<'_>,
+        context: &ScreenContext<'_>,
         entry_filter: EntryFilter,
     ) {
         let chapter = &self.position.chapter;
@@ -63,7 +63,9 @@ impl PlaybackViewer {
                 next = Some(rows.len());
             }
             for (part, (text, role)) in
-                super::entry_text::entry_summary(entry, &look.company.company_names).into_iter().enumerate()
+                super::entry_text::entry_summary(entry, &context.company.company_names)
+                    .into_iter()
+                    .enumerate()
             {
                 let mark = match (part, done) {
                     (0, true) => "✓ ",
@@ -90,7 +92,7 @@ impl PlaybackViewer {
             canvas.draw_text(row, text, *role);
         }
         let [back, on, whole] = [Action::LineBack, Action::LineForward, Action::DecisionsInFull]
-            .map(|action| look.keys.label(action).unwrap_or_default());
+            .map(|action| context.keys.label(action).unwrap_or_default());
         canvas.draw_pane_keys(area, &format!("{back} {on} single actions · {whole} in full"));
         canvas.register_click(area, Click::Command(Action::DecisionsInFull.into()));
     }

@@ -73,9 +73,9 @@ pub trait Pane<S> {
     }
 
     /// Runs an action.
-    fn handle_action(&self, screen: &mut S, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_action(&self, screen: &mut S, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         if let Some(table) = self.table_mut(screen) {
-            table.handle_action(action, look.page_rows);
+            table.handle_action(action, context.page_rows);
         }
         Vec::new()
     }
@@ -102,11 +102,15 @@ pub trait Pane<S> {
     }
 
     /// Handles a click on a row; a second click on the same row opens it.
-    fn handle_click(&self, screen: &mut S, row: usize, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_click(&self, screen: &mut S, row: usize, context: &ScreenContext<'_>) -> Vec<Effect> {
         let Some(table) = self.table_mut(screen) else { return Vec::new() };
         let before = table.selected();
         table.select_visible_row(row);
-        if before == table.selected() { self.handle_action(screen, Action::Open, look) } else { Vec::new() }
+        if before == table.selected() {
+            self.handle_action(screen, Action::Open, context)
+        } else {
+            Vec::new()
+        }
     }
 
     /// Returns the texts of its border for an area.
@@ -115,17 +119,23 @@ pub trait Pane<S> {
     }
 
     /// Draws the inside of the pane.
-    fn draw(&self, screen: &S, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>);
+    fn draw(
+        &self,
+        screen: &S,
+        canvas: &mut Canvas<'_>,
+        placement: PanePlacement,
+        context: &ScreenContext<'_>,
+    );
 
     /// Draws the pane with its border. Panes with more than one box override this.
     fn draw_with_border(
         &self,
         screen: &S,
         canvas: &mut Canvas<'_>,
-        seat: PanePlacement,
-        look: &ScreenContext<'_>,
+        placement: PanePlacement,
+        context: &ScreenContext<'_>,
     ) {
-        draw_framed(self, screen, canvas, seat, look);
+        draw_framed(self, screen, canvas, placement, context);
     }
 }
 
@@ -137,15 +147,15 @@ pub fn draw_framed<S>(
     pane: &(impl Pane<S> + ?Sized),
     screen: &S,
     canvas: &mut Canvas<'_>,
-    seat: PanePlacement,
-    look: &ScreenContext<'_>,
+    placement: PanePlacement,
+    context: &ScreenContext<'_>,
 ) {
-    let border = pane.border(screen, seat.area, look);
-    let inside = canvas.draw_pane_frame(seat.area, &border.title, &border.note, seat.focused);
-    if (seat.focused || border.shows_keys_always) && !border.keys.is_empty() {
-        canvas.draw_pane_keys(seat.area, &border.keys);
+    let border = pane.border(screen, placement.area, context);
+    let inside = canvas.draw_pane_frame(placement.area, &border.title, &border.note, placement.focused);
+    if (placement.focused || border.shows_keys_always) && !border.keys.is_empty() {
+        canvas.draw_pane_keys(placement.area, &border.keys);
     }
-    pane.draw(screen, canvas, PanePlacement { area: inside, ..seat }, look);
+    pane.draw(screen, canvas, PanePlacement { area: inside, ..placement }, context);
 }
 
 /// A screen made of panes.
@@ -177,7 +187,7 @@ pub trait PaneScreen: ScreenState + Sized + 'static {
     }
 
     /// Lays out the panes and draws each with [`draw_pane`].
-    fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>);
+    fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>);
 }
 
 /// Draws a pane and makes it clickable.
@@ -186,15 +196,15 @@ pub fn draw_pane<S: PaneScreen>(
     name: S::PaneId,
     canvas: &mut Canvas<'_>,
     area: Rect,
-    look: &ScreenContext<'_>,
+    context: &ScreenContext<'_>,
 ) {
     if area.is_empty() {
         return;
     }
     let number = pane_index(screen, name);
     canvas.register_click(area, Click::Pane(number));
-    let seat = PanePlacement { area, focused: screen.focused_pane() == name, index: number };
-    S::pane(name).draw_with_border(screen, canvas, seat, look);
+    let placement = PanePlacement { area, focused: screen.focused_pane() == name, index: number };
+    S::pane(name).draw_with_border(screen, canvas, placement, context);
 }
 
 fn pane_index<S: PaneScreen>(screen: &S, name: S::PaneId) -> usize {
@@ -218,9 +228,9 @@ impl<S: PaneScreen> Screen for S {
         active_pane(self).hints(self)
     }
 
-    fn pane_keys(&self, look: &ScreenContext<'_>) -> Vec<PaneKeys> {
+    fn pane_keys(&self, context: &ScreenContext<'_>) -> Vec<PaneKeys> {
         let keys = |pane: &'static dyn Pane<S>| PaneKeys {
-            title: pane.border(self, TYPICAL_AREA, look).title,
+            title: pane.border(self, TYPICAL_AREA, context).title,
             scopes: pane.scopes(self),
             hints: pane.hints(self),
         };
@@ -252,49 +262,49 @@ impl<S: PaneScreen> Screen for S {
         usize::from(self.overlay().is_some()) + usize::from(filtered) + self.own_escape_depth()
     }
 
-    fn figure(&self, look: &ScreenContext<'_>) -> Option<Figure> {
-        active_pane(self).figure(self, look)
+    fn figure(&self, context: &ScreenContext<'_>) -> Option<Figure> {
+        active_pane(self).figure(self, context)
     }
 
-    fn handle_action(&mut self, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_action(&mut self, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         if let Some(over) = self.overlay() {
-            return over.handle_action(self, action, look);
+            return over.handle_action(self, action, context);
         }
-        match self.handle_screen_action(action, look) {
+        match self.handle_screen_action(action, context) {
             Some(effects) => effects,
-            None => active_pane(self).handle_action(self, action, look),
+            None => active_pane(self).handle_action(self, action, context),
         }
     }
 
-    fn handle_key(&mut self, key: &KeyEvent, look: &ScreenContext<'_>) -> Vec<Effect> {
-        active_pane(self).handle_key(self, key, look)
+    fn handle_key(&mut self, key: &KeyEvent, context: &ScreenContext<'_>) -> Vec<Effect> {
+        active_pane(self).handle_key(self, key, context)
     }
 
-    fn paste(&mut self, text: &str, look: &ScreenContext<'_>) -> Vec<Effect> {
-        active_pane(self).paste(self, text, look)
+    fn paste(&mut self, text: &str, context: &ScreenContext<'_>) -> Vec<Effect> {
+        active_pane(self).paste(self, text, context)
     }
 
-    fn handle_click(&mut self, pane: usize, row: usize, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_click(&mut self, pane: usize, row: usize, context: &ScreenContext<'_>) -> Vec<Effect> {
         // Panes below the overlay are visible but not clickable.
         if self.overlay().is_some() && pane < Screen::pane_count(self) {
             return Vec::new();
         }
         self.set_focus(pane);
-        active_pane(self).handle_click(self, row, look)
+        active_pane(self).handle_click(self, row, context)
     }
 
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         if canvas.zoomed {
-            draw_pane(self, self.focused_pane(), canvas, area, look);
+            draw_pane(self, self.focused_pane(), canvas, area, context);
         } else {
-            self.draw_panes(canvas, area, look);
+            self.draw_panes(canvas, area, context);
         }
         if let Some(over) = self.overlay() {
             over.draw(
                 self,
                 canvas,
                 PanePlacement { area, focused: true, index: Screen::pane_count(self) },
-                look,
+                context,
             );
         }
     }

@@ -188,7 +188,7 @@ impl Dialog for QuestionPage {
         DialogResponse::stay()
     }
 
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         let draft = self.current_draft();
         canvas.clear(area, Role::Text);
         let note = format!("question {} of {}", self.current + 1, self.drafts.len());
@@ -202,7 +202,7 @@ impl Dialog for QuestionPage {
             Some(problem) => canvas.draw_text(last, &format!("! {problem}"), Role::Bad),
             None => canvas.draw_text(last, &answer_hint(draft), Role::Dim),
         }
-        canvas.draw_pane_keys(area, &self.key_hints(look));
+        canvas.draw_pane_keys(area, &self.key_hints(context));
     }
 }
 
@@ -237,8 +237,8 @@ impl QuestionPage {
         }
     }
 
-    fn key_hints(&self, look: &ScreenContext<'_>) -> String {
-        let key = |action| look.keys.label(action).unwrap_or_default();
+    fn key_hints(&self, context: &ScreenContext<'_>) -> String {
+        let key = |action| context.keys.label(action).unwrap_or_default();
         let last = self.current + 1 == self.drafts.len();
         let on = match self.current_draft().input {
             // Enter inserts a line break.
@@ -250,7 +250,7 @@ impl QuestionPage {
         if matches!(self.current_draft().input, AnswerInput::Text(_)) {
             words.push("enter new line".to_owned());
         }
-        words.extend(self.leave_hint(look.keys).map(|key| format!("{key} leaves")));
+        words.extend(self.leave_hint(context.keys).map(|key| format!("{key} leaves")));
         words.join(" · ")
     }
 

@@ -43,16 +43,16 @@ impl CurveExplorer {
         if !run.can_inspect() {
             return CurveExplorer::from_estimates(run, group);
         }
-        let look = CurveInspection::record(run, group, run.day())?;
-        Ok(CurveExplorer::from_true_values(run, &look))
+        let inspection = CurveInspection::record(run, group, run.day())?;
+        Ok(CurveExplorer::from_true_values(run, &inspection))
     }
 
     /// Returns the explorer of the true traits of a group at the current moment of the run.
     pub fn from_true_values(
         run: &Session,
-        CurveInspection { group, inspection: look }: &CurveInspection,
+        CurveInspection { group, inspection: permit }: &CurveInspection,
     ) -> CurveExplorer {
-        let inside = look.hidden_state(run);
+        let inside = permit.hidden_state(run);
         let (world, params) = (inside.world(), inside.params());
         let market = (world.market.drift.expectation(*group), params.clone());
         let product = world.product.quality(*group, params);

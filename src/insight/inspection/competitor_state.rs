@@ -60,12 +60,12 @@ impl Inspector<'_> {
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
     pub fn competitor_state(&mut self, day: Option<u32>) -> Result<CompetitorState, Rejection> {
-        let look = InspectionPermit::start(self.run, "rivals", "", day)?;
-        let day = look.day();
-        let seen = self.hidden_day(&look, day)?;
+        let permit = InspectionPermit::start(self.run, "rivals", "", day)?;
+        let day = permit.day();
+        let seen = self.hidden_day(&permit, day)?;
         let QualityBanks { shared_bonus, shared, group_bonus, group_banks: values } = seen.banks;
-        let inside = look.hidden_state(self.run);
-        let law = &inside.params().competitor;
+        let inside = permit.hidden_state(self.run);
+        let competitor = &inside.params().competitor;
         let events = inside.world().market.competitors.iter().copied();
         let moves = events.take_while(|event| event.day <= day);
         let improved = Group::all().filter(|group| group_bonus[*group] != 0.0 || values[*group] != 0.0);
@@ -75,7 +75,7 @@ impl Inspector<'_> {
             shared_bank: shared,
             group_banks: improved.map(|group| (group, group_bonus[group], values[group])).collect(),
             common_expectation: seen.market.drift.global_quality,
-            moves: moves.map(|event| (event, severity(event.boost, law))).collect(),
+            moves: moves.map(|event| (event, severity(event.boost, competitor))).collect(),
             next_move: next_competitor_move(inside, day, &values),
         })
     }

@@ -21,11 +21,11 @@ impl Inspector<'_> {
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `customer_not_found`, `not_possible`, `not_readable`, `not_saved`.
     pub fn customer_view(&mut self, customer: u32, day: Option<u32>) -> Result<CustomerView, Rejection> {
-        let (look, found, arrival) = InspectionPermit::start_for_customer(self.run, customer, day)?;
+        let (permit, found, arrival) = InspectionPermit::start_for_customer(self.run, customer, day)?;
         match found.0.is_enterprise() {
-            true => EnterpriseView::new(self.run, &look, customer, found.0).map(CustomerView::Enterprise),
-            false => IndividualView::new(self.run, &look, customer, found, arrival)
-                .map(|lens| CustomerView::Individual(Box::new(lens))),
+            true => EnterpriseView::new(self.run, &permit, customer, found.0).map(CustomerView::Enterprise),
+            false => IndividualView::new(self.run, &permit, customer, found, arrival)
+                .map(|view| CustomerView::Individual(Box::new(view))),
         }
     }
 }

@@ -34,7 +34,7 @@ impl Inspector<'_> {
     /// # Errors
     /// `not_in_this_mode`, `not_possible`, `not_readable`, `not_saved`.
     pub fn replay_days(&mut self, tell: &mut dyn FnMut(&DayReport<'_>)) -> Result<(), Rejection> {
-        let look = InspectionPermit::start_at_current_state(self.run, "metrics", "days", self.run.day())?;
-        look.replay(self.run, Arc::new(NoObserver))?.advance(self.run, |_| true, tell)
+        let permit = InspectionPermit::start_at_current_state(self.run, "metrics", "days", self.run.day())?;
+        permit.replay(self.run, Arc::new(NoObserver))?.advance(self.run, |_| true, tell)
     }
 }

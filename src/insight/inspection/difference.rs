@@ -135,10 +135,10 @@ impl Inspector<'_> {
             InspectionPermit::resolve_day(self.run, Some(one))?,
             InspectionPermit::resolve_day(self.run, Some(other))?,
         );
-        let look =
+        let permit =
             InspectionPermit::start(self.run, "difference", &format!("{one} {other}"), Some(one.max(other)))?;
         let album = Arc::new(DayEndRecorder::for_days(&[one, other]));
-        look.replay_until(self.run, one.max(other), album.clone())?;
+        permit.replay_until(self.run, one.max(other), album.clone())?;
         let first = album.take(one).ok_or_else(day_not_reached)?;
         if one == other {
             return Ok(DayDifference::between((one, other), &first, &first));
@@ -168,9 +168,9 @@ impl Inspector<'_> {
         let names = (which(run), which(other));
         let own_look = InspectionPermit::start_at_current_state(run, "difference", &names.1, shown)?;
         let other_look = InspectionPermit::start_at_current_state(other, "difference", &names.0, shown)?;
-        let fingerprints = |run: &Session, look: &InspectionPermit| {
+        let fingerprints = |run: &Session, permit: &InspectionPermit| {
             let seen = Arc::new(StateHashRecorder::with_ends(day.as_slice()));
-            look.replay_until(run, last_day, seen.clone()).map(|()| seen)
+            permit.replay_until(run, last_day, seen.clone()).map(|()| seen)
         };
         let (hash_recorder, others) = (fingerprints(run, &own_look)?, fingerprints(other, &other_look)?);
         let (days, other_days) = (hash_recorder.part_hashes_by_day(), others.part_hashes_by_day());
@@ -183,13 +183,13 @@ impl Inspector<'_> {
         let Some(day) = day.or(first_day) else {
             return Ok(RunDifference { last_day, first_day, difference: None });
         };
-        let moment = |run: &Session, look: &InspectionPermit, seen: &StateHashRecorder| {
+        let moment = |run: &Session, inspection_permit: &InspectionPermit, seen: &StateHashRecorder| {
             // A requested day was recorded during the simulation.
             if let Some(end) = seen.take(day) {
                 return Ok(end);
             }
             let album = Arc::new(DayEndRecorder::for_days(&[day]));
-            look.replay_until(run, day, album.clone())?;
+            inspection_permit.replay_until(run, day, album.clone())?;
             album.take(day).ok_or_else(day_not_reached)
         };
         let difference = DayDifference::between(

@@ -42,10 +42,10 @@ impl Inspector<'_> {
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
     pub fn drift_state(&mut self, day: Option<u32>) -> Result<DriftState, Rejection> {
-        let look = InspectionPermit::start(self.run, "drift", "", day)?;
-        let day = look.day();
-        let seen = self.hidden_day(&look, day)?;
-        let (params, days) = (look.hidden_state(self.run).params(), self.run.manifest().days);
+        let permit = InspectionPermit::start(self.run, "drift", "", day)?;
+        let day = permit.day();
+        let seen = self.hidden_day(&permit, day)?;
+        let (params, days) = (permit.hidden_state(self.run).params(), self.run.manifest().days);
         let group = |group: Group| GroupDriftState {
             group,
             is_known: seen.known_groups[group],

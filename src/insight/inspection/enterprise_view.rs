@@ -34,13 +34,13 @@ impl EnterpriseView {
     /// Returns an enterprise on a simulated day.
     pub(super) fn new(
         run: &Session,
-        look: &InspectionPermit,
+        permit: &InspectionPermit,
         customer: u32,
         group: Group,
     ) -> Result<EnterpriseView, Rejection> {
-        let day = look.day();
+        let day = permit.day();
         let diary = Arc::new(EnterpriseRecorder { customer, days: Mutex::default() });
-        look.replay_until(run, day, diary.clone())?;
+        permit.replay_until(run, day, diary.clone())?;
         let days = std::mem::take(&mut *diary.days.lock().unwrap_or_else(PoisonError::into_inner));
         let days = days.into_iter().filter(|thread_day| thread_day.day <= day).collect();
         Ok(EnterpriseView { customer, group, day, days })

@@ -16,9 +16,9 @@ impl Inspector<'_> {
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
     pub fn quality_equation(&mut self, group: Group, day: Option<u32>) -> Result<QualityEquation, Rejection> {
-        let look = InspectionPermit::start(self.run, "quality", group.id(), day)?;
-        let day = look.day();
-        self.hidden_day(&look, day).map(|seen| QualityEquation::new(group, day, &seen.quality))
+        let permit = InspectionPermit::start(self.run, "quality", group.id(), day)?;
+        let day = permit.day();
+        self.hidden_day(&permit, day).map(|seen| QualityEquation::new(group, day, &seen.quality))
     }
 
     /// Returns the satisfaction equation of a group on a day, by default the last one. Records the inspection.
@@ -30,16 +30,16 @@ impl Inspector<'_> {
         group: Group,
         day: Option<u32>,
     ) -> Result<SatisfactionEquation, Rejection> {
-        let look = InspectionPermit::start(self.run, "satisfaction", group.id(), day)?;
-        let day = look.day();
-        let seen = self.hidden_day(&look, day)?;
+        let permit = InspectionPermit::start(self.run, "satisfaction", group.id(), day)?;
+        let day = permit.day();
+        let seen = self.hidden_day(&permit, day)?;
         let evening = &seen.groups[group];
         let evening = (evening.active, evening.satisfaction_moments.map(|(satisfaction, _)| satisfaction));
         let yesterday = match day {
             1 => None,
-            day => Some(self.hidden_day(&look, day - 1)?.satisfaction[group]),
+            day => Some(self.hidden_day(&permit, day - 1)?.satisfaction[group]),
         };
-        let evenings = self.values_of_recent_days(&look, group, day, |day_end| {
+        let evenings = self.values_of_recent_days(&permit, group, day, |day_end| {
             day_end.satisfaction_moments.map(|(satisfaction, _)| satisfaction)
         })?;
         Ok(SatisfactionEquation::new(group, day, seen.satisfaction[group], evening, yesterday, evenings))
@@ -54,22 +54,22 @@ impl Inspector<'_> {
         group: Group,
         day: Option<u32>,
     ) -> Result<ReputationEquation, Rejection> {
-        let look = InspectionPermit::start(self.run, "reputation", group.id(), day)?;
-        let day = look.day();
-        let evenings = self.values_of_recent_days(&look, group, day, |day_end| day_end.reputation)?;
-        self.hidden_day(&look, day)
+        let permit = InspectionPermit::start(self.run, "reputation", group.id(), day)?;
+        let day = permit.day();
+        let evenings = self.values_of_recent_days(&permit, group, day, |day_end| day_end.reputation)?;
+        self.hidden_day(&permit, day)
             .map(|seen| ReputationEquation::new(group, day, &seen.reputation, evenings))
     }
 
     /// Returns a value of a group at the end of a day and of up to 27 days before it.
     fn values_of_recent_days<T>(
         &mut self,
-        look: &InspectionPermit,
+        permit: &InspectionPermit,
         group: Group,
         day: u32,
         read: impl Fn(&GroupDayEnd) -> T,
     ) -> Result<Vec<T>, Rejection> {
-        let diary = self.all_hidden_days(look, self.cache.hidden_days.keeps_threads())?;
+        let diary = self.all_hidden_days(permit, self.cache.hidden_days.keeps_threads())?;
         let first = (day + 1).saturating_sub(WINDOW_DAYS).max(1);
         let evening = |day| diary.with_day(day, |seen| read(&seen.groups[group]));
         Ok((first..=day).filter_map(evening).collect())
@@ -80,8 +80,8 @@ impl Inspector<'_> {
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
     pub fn spillover(&mut self, day: Option<u32>) -> Result<Spillover, Rejection> {
-        let look = InspectionPermit::start(self.run, "spillover", "", day)?;
-        let day = look.day();
-        self.hidden_day(&look, day).map(|seen| Spillover::new(day, &seen.known_groups, seen.reputation))
+        let permit = InspectionPermit::start(self.run, "spillover", "", day)?;
+        let day = permit.day();
+        self.hidden_day(&permit, day).map(|seen| Spillover::new(day, &seen.known_groups, seen.reputation))
     }
 }

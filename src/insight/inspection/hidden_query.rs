@@ -27,7 +27,7 @@ impl Inspector<'_> {
         sql: &str,
         day: Option<u32>,
     ) -> Result<QueryResult, Rejection> {
-        let look = InspectionPermit::start(self.run, "sql", sql, day)?;
+        let permit = InspectionPermit::start(self.run, "sql", sql, day)?;
         // After an error, the next inspection rebuilds the tables.
         let mut tables = self.take_hidden_tables()?;
         let named = tables.connection().hidden_tables_in(sql);
@@ -36,8 +36,8 @@ impl Inspector<'_> {
             self.cache.hidden_days.keeps_threads() || named.iter().any(|table| table.name == THREADS_TABLE);
         for table in named {
             match table.name.as_str() {
-                CUSTOMERS_TABLE => self.fill_customers(&look, &mut tables, ticket, table)?,
-                _ => self.fill_days(&look, &mut tables, ticket, table, keeps_threads)?,
+                CUSTOMERS_TABLE => self.fill_customers(&permit, &mut tables, ticket, table)?,
+                _ => self.fill_days(&permit, &mut tables, ticket, table, keeps_threads)?,
             }
         }
         let limits = self.run.company().query_limits();
@@ -75,12 +75,12 @@ impl Inspector<'_> {
 
     fn fill_customers(
         &self,
-        look: &InspectionPermit,
+        permit: &InspectionPermit,
         tables: &mut HiddenTables,
         ticket: QueryTicket,
         table: &Table,
     ) -> Result<(), Rejection> {
-        let (now, day) = (look.hidden_state(self.run).world(), look.day());
+        let (now, day) = (permit.hidden_state(self.run).world(), permit.day());
         let is_now = day == now.day;
         let wanted = if is_now { CustomersSnapshot::current(now) } else { CustomersSnapshot::DayEnd(day) };
         if tables.shows_customers(wanted) {
@@ -88,14 +88,14 @@ impl Inspector<'_> {
         }
         let shown = match is_now {
             true => tables.fill_customers(ticket, table, wanted, now),
-            false => tables.fill_customers(ticket, table, wanted, &look.world_at_end_of(self.run, day)?),
+            false => tables.fill_customers(ticket, table, wanted, &permit.world_at_end_of(self.run, day)?),
         };
         shown.map_err(query_rejection)
     }
 
     fn fill_days(
         &mut self,
-        look: &InspectionPermit,
+        permit: &InspectionPermit,
         tables: &mut HiddenTables,
         ticket: QueryTicket,
         table: &'static Table,
@@ -105,7 +105,7 @@ impl Inspector<'_> {
         if !tables.is_missing_day(table, day) {
             return Ok(());
         }
-        let diary = self.all_hidden_days(look, keeps_threads)?;
+        let diary = self.all_hidden_days(permit, keeps_threads)?;
         tables.fill_to(day, ticket, table, &diary).map_err(query_rejection)
     }
 }

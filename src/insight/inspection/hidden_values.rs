@@ -54,11 +54,11 @@ impl Inspector<'_> {
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
     pub fn hidden_values(&mut self, day: Option<u32>) -> Result<HiddenValues, Rejection> {
-        let look = InspectionPermit::start(self.run, "values", "", day)?;
-        let day = look.day();
-        let seen = self.hidden_day(&look, day)?;
+        let permit = InspectionPermit::start(self.run, "values", "", day)?;
+        let day = permit.day();
+        let seen = self.hidden_day(&permit, day)?;
         let group_banks = seen.banks.group_banks;
-        let next_drift = next_drift_day(day, &look.hidden_state(self.run).params().drift);
+        let next_drift = next_drift_day(day, &permit.hidden_state(self.run).params().drift);
         Ok(HiddenValues {
             day,
             groups: ByGroup::from_fn(|group| true_group_values(group, &seen)),
@@ -67,7 +67,7 @@ impl Inspector<'_> {
                 .map(|group| (group, group_banks[group]))
                 .filter(|(_, bank)| *bank != 0.0)
                 .collect(),
-            next_competitor_move: next_competitor_move(look.hidden_state(self.run), day, &group_banks),
+            next_competitor_move: next_competitor_move(permit.hidden_state(self.run), day, &group_banks),
             common_expectation: seen.market.drift.global_quality,
             next_drift_day: Some(next_drift).filter(|next| *next <= self.run.manifest().days),
             pmi: seen.market.pmi,

@@ -149,10 +149,16 @@ impl DayObserver for IndividualRecorder {
             return;
         }
         let params = arrivals.day.params;
-        let look = evaluate_individual(arrivals, factors, self.group, self.number_in_group);
+        let evaluation = evaluate_individual(arrivals, factors, self.group, self.number_in_group);
         let plans = ByPlan::from_fn(|plan| {
-            let offered = evaluate_offer(&look.offers[plan], plan, look.discount, look.demand, params);
-            LeadPlanTerms { offered, required: required_quality(offered.price, &look.curve, params) }
+            let offered = evaluate_offer(
+                &evaluation.offers[plan],
+                plan,
+                evaluation.discount,
+                evaluation.demand,
+                params,
+            );
+            LeadPlanTerms { offered, required: required_quality(offered.price, &evaluation.curve, params) }
         });
         let mut pages = self.lock();
         pages.last_bill = Some(ByPlan::from_fn(|plan| plans[plan].offered.price));
@@ -160,10 +166,10 @@ impl DayObserver for IndividualRecorder {
             day: self.arrival_day,
             source: Source::Organic,
             plans,
-            plan: look.choice.plan,
-            quality_noise: look.noise,
-            curve: look.curve,
-            signed_up: look.is_accepted(params),
+            plan: evaluation.choice.plan,
+            quality_noise: evaluation.noise,
+            curve: evaluation.curve,
+            signed_up: evaluation.is_accepted(params),
         });
     }
 

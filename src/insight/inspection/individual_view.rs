@@ -53,14 +53,14 @@ impl IndividualView {
     /// Returns an individual on a simulated day.
     pub(super) fn new(
         run: &Session,
-        look: &InspectionPermit,
+        permit: &InspectionPermit,
         customer: u32,
         found: (Group, u32),
         arrival: u32,
     ) -> Result<IndividualView, Rejection> {
-        let day = look.day();
+        let day = permit.day();
         let diary = Arc::new(IndividualRecorder::new(customer, found, arrival));
-        look.replay_until(run, day, diary.clone())?;
+        permit.replay_until(run, day, diary.clone())?;
         let pages = diary.take_record();
         let Some(first) = pages.signup else {
             return Err(Rejection::new(

@@ -50,10 +50,10 @@ impl Inspector<'_> {
     /// `not_possible`, `not_readable`.
     pub(super) fn hidden_days(
         &mut self,
-        look: &InspectionPermit,
+        permit: &InspectionPermit,
         days: impl IntoIterator<Item = u32>,
     ) -> Result<Vec<HiddenDay>, Rejection> {
-        let diary = self.all_hidden_days(look, self.cache.hidden_days.keeps_threads())?;
+        let diary = self.all_hidden_days(permit, self.cache.hidden_days.keeps_threads())?;
         Ok(days.into_iter().filter_map(|day| diary.day(day)).collect())
     }
 
@@ -61,8 +61,8 @@ impl Inspector<'_> {
     ///
     /// # Errors
     /// `not_possible`, `not_readable`.
-    pub(super) fn hidden_day(&mut self, look: &InspectionPermit, day: u32) -> Result<HiddenDay, Rejection> {
-        let seen = self.hidden_days(look, [day])?.pop();
+    pub(super) fn hidden_day(&mut self, permit: &InspectionPermit, day: u32) -> Result<HiddenDay, Rejection> {
+        let seen = self.hidden_days(permit, [day])?.pop();
         seen.ok_or_else(|| Rejection::new("not_readable", format!("day {day} could not be re-simulated")))
     }
 
@@ -73,7 +73,7 @@ impl Inspector<'_> {
     /// `not_possible`, `not_readable`.
     pub(super) fn all_hidden_days(
         &mut self,
-        look: &InspectionPermit,
+        permit: &InspectionPermit,
         with_threads: bool,
     ) -> Result<Arc<HiddenDayRecorder>, Rejection> {
         let kept =
@@ -86,7 +86,7 @@ impl Inspector<'_> {
                 } else {
                     HiddenDayRecorder::default()
                 });
-                look.replay(self.run, self.cache.hidden_days.clone())?
+                permit.replay(self.run, self.cache.hidden_days.clone())?
             }
         };
         // After an error, the next inspection restarts the re-simulation.

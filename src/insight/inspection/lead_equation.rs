@@ -149,10 +149,10 @@ impl Inspector<'_> {
     /// # Errors
     /// `not_in_this_mode`, `day_unknown`, `not_possible`, `not_readable`, `not_saved`.
     pub fn lead_equations(&mut self, group: Group, day: Option<u32>) -> Result<Vec<LeadEquation>, Rejection> {
-        let look = InspectionPermit::start(self.run, "leads", group.id(), day)?;
-        let day = look.day();
+        let permit = InspectionPermit::start(self.run, "leads", group.id(), day)?;
+        let day = permit.day();
         let first = (day + 1).saturating_sub(WINDOW_DAYS).max(1);
-        let seen = self.hidden_days(&look, first..=day)?;
+        let seen = self.hidden_days(&permit, first..=day)?;
         Ok((first..).zip(&seen).map(|(day, seen)| LeadEquation::new(group, day, seen)).collect())
     }
 }

@@ -186,9 +186,9 @@ impl Inspector<'_> {
             return Err(Rejection::for_field("draws", "out_of_range", message));
         }
         let day = self.run.day() + 1;
-        let look = InspectionPermit::start_at_current_state(self.run, "streams", part.id(), day)?;
-        let streams = next_streams(look.hidden_state(self.run), part, day, count);
-        let replays = look.hidden_state(self.run).params().replayed_series().is_some();
+        let permit = InspectionPermit::start_at_current_state(self.run, "streams", part.id(), day)?;
+        let streams = next_streams(permit.hidden_state(self.run), part, day, count);
+        let replays = permit.hidden_state(self.run).params().replayed_series().is_some();
         Ok(NextDraws {
             part,
             day,

@@ -85,15 +85,15 @@ impl ReputationDay {
         market: &Market,
         params: &Params,
     ) {
-        let law = &params.reputation;
+        let reputation = &params.reputation;
         self.thresholds = ChangeThresholds {
-            subscriber_contribution: law.daily_delta_min_abs,
-            spillover: law.cross_delta_min_abs,
+            subscriber_contribution: reputation.daily_delta_min_abs,
+            spillover: reputation.cross_delta_min_abs,
         };
         self.after = ByGroup::from_fn(|group| market.reputation.get(group));
         for group in Group::all().filter(|group| moods[*group].count > 0) {
-            let (mood, change) = (&moods[group], daily_change(&moods[group], law));
-            let called = unrounded_daily_change(mood, law);
+            let (mood, change) = (&moods[group], daily_change(&moods[group], reputation));
+            let called = unrounded_daily_change(mood, reputation);
             self.contributions[group] = SubscriberContribution {
                 subscribers: mood.count,
                 requested_change: called,

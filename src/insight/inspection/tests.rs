@@ -105,8 +105,8 @@ impl DayObserver for WorldObserver {
 fn run_and_days(place: &Path) -> (Session, Vec<ObservedDay>) {
     let mut session = recorded_run(place);
     let used = Arc::new(WorldObserver::default());
-    let look = InspectionPermit::start(&mut session, "metrics", "days", None).expect("a look");
-    look.replay_until(&session, look.day(), used.clone()).expect("it is simulated again");
+    let permit = InspectionPermit::start(&mut session, "metrics", "days", None).expect("a look");
+    permit.replay_until(&session, permit.day(), used.clone()).expect("it is simulated again");
     let days = std::mem::take(&mut *used.days.lock().expect("a lock"));
     assert_eq!(days.len(), 119);
     (session, days)
@@ -257,8 +257,9 @@ fn competitor_and_drift_state_match_the_world_and_next_move_occurs() {
         let coming = last.iter().find(|event| event.day > day);
         assert_eq!(rivals.next_move.as_ref().and_then(|next| next.outcome), coming.copied());
         // The fixed next move equals the simulated one.
-        let look = InspectionPermit::start(&mut session, "streams", "rivals", None).expect("a look");
-        let (params, streams) = (look.hidden_state(&session).params(), look.hidden_state(&session).streams());
+        let permit = InspectionPermit::start(&mut session, "streams", "rivals", None).expect("a look");
+        let (params, streams) =
+            (permit.hidden_state(&session).params(), permit.hidden_state(&session).streams());
         let last_event = used.events.last().map(|event| event.day);
         let decided = next_move(day, 119, last_event, params, streams);
         let decided_move = decided.map(|next| (next.day, next.sampled, next.u));

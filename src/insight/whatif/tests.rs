@@ -285,7 +285,14 @@ fn related_runs_name_branch_week_and_first_change() {
         let tree = related_runs(runs.path(), id);
         let tree_rows: Vec<_> = tree
             .iter()
-            .map(|kin| (kin.run.id.clone(), kin.depth, kin.branched_in_week, kin.first_change.clone()))
+            .map(|related_run| {
+                (
+                    related_run.run.id.clone(),
+                    related_run.depth,
+                    related_run.branched_in_week,
+                    related_run.first_change.clone(),
+                )
+            })
             .collect();
         assert_eq!(
             tree_rows,

@@ -23,11 +23,11 @@ pub fn advertising_cost(group: Group, premises: &BoundAssumptions, params: &Para
 
 /// Returns the mean cost per customer up to a market share relative to the first customer: yields fall as the market fills.
 fn saturation_factor(taken: f64, params: &Params) -> f64 {
-    let law = &params.leads;
+    let leads = &params.leads;
     let cost = |step: u32| {
         let share = taken * (f64::from(step) + 0.5) / f64::from(INTEGRATION_STEPS);
-        let left = law.saturation_base - libm::pow(share, law.saturation_exponent);
-        1.0 / left.max(law.saturation_floor)
+        let left = leads.saturation_base - libm::pow(share, leads.saturation_exponent);
+        1.0 / left.max(leads.saturation_floor)
     };
     (0..INTEGRATION_STEPS).map(cost).sum::<f64>() / f64::from(INTEGRATION_STEPS)
 }

@@ -57,11 +57,11 @@ impl BoundAccount {
             }
             AccountLine::MarketResearch => {
                 let unknown = Group::all().filter(|group| !group.is_initially_known()).count();
-                let law = &params.market_research;
+                let research = &params.market_research;
                 format!(
                     "{} attempts find {unknown} groups on average; the published figure pays for {}",
-                    grouped_number(unknown as f64 / law.market_research_discover_prob, 1),
-                    grouped_number(1e6 * line.published_millions() / law.discovery_cost_level_1, 0)
+                    grouped_number(unknown as f64 / research.market_research_discover_prob, 1),
+                    grouped_number(1e6 * line.published_millions() / research.discovery_cost_level_1, 0)
                 )
             }
             AccountLine::GroupResearch => format!(

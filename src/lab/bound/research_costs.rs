@@ -7,8 +7,8 @@ use novamind_world::params::Params;
 /// Returns the mean cost of market research until every group is found, dollars.
 pub fn market_research_cost(params: &Params) -> f64 {
     let unknown = Group::all().filter(|group| !group.is_initially_known()).count() as f64;
-    let law = &params.market_research;
-    unknown * law.discovery_cost_level_1 / law.market_research_discover_prob
+    let research = &params.market_research;
+    unknown * research.discovery_cost_level_1 / research.market_research_discover_prob
 }
 
 /// Returns the cost of a study of every found group, dollars.

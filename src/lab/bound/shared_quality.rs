@@ -26,9 +26,9 @@ pub struct SharedQualityPath {
 /// Returns the R&D gain on a day: the tiers that finish on it, at mean duration and mean gain.
 fn research_gain_on(day: u32, premises: &BoundAssumptions, params: &Params) -> f64 {
     let done = |tier: &u8| {
-        let law = params.research(*tier);
+        let research_tier = params.research(*tier);
         let least = f64::from(params.development.rd_min_duration_days);
-        premises.research_day + law.mean_days.max(least) as u32 == day
+        premises.research_day + research_tier.mean_days.max(least) as u32 == day
     };
     (1..=premises.research_tiers).filter(done).map(|tier| params.research(tier).mean_quality_boost).sum()
 }

@@ -26,9 +26,10 @@ pub fn widest_gap(
 
 /// Returns T0, the spending that closes a gap, dollars a day: scale (exp(gap / (counted share, mean age, gain)) - 1).
 pub fn min_spending(gap: f64, premises: &BoundAssumptions, params: &Params) -> f64 {
-    let law = &params.development;
-    let counted = premises.counted_gain * premises.mean_spending_age() * law.targeted_dev_improvement_coef;
-    law.targeted_dev_spend_scale * libm::expm1(gap / counted)
+    let development = &params.development;
+    let counted =
+        premises.counted_gain * premises.mean_spending_age() * development.targeted_dev_improvement_coef;
+    development.targeted_dev_spend_scale * libm::expm1(gap / counted)
 }
 
 #[cfg(test)]

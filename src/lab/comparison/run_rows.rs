@@ -94,9 +94,9 @@ mod tests {
 
     #[test]
     fn thirty_runs_fit_a_terminal_sorted_by_result() {
-        let books = thirty_runs();
+        let logbooks = thirty_runs();
         for width in [80, 100, 120, 200] {
-            let text = comparison_to_text(&compare_runs(&books), width);
+            let text = comparison_to_text(&compare_runs(&logbooks), width);
             assert!(text.lines().all(|line| line.chars().count() <= width), "{width}:\n{text}");
             let row = |cash: [&str; 2]| {
                 let has_cash = |line: &str| line.split_whitespace().any(|word| cash.contains(&word));
@@ -108,10 +108,10 @@ mod tests {
 
     #[test]
     fn two_runs_are_side_by_side_if_they_fit() {
-        let books = &thirty_runs()[..2];
-        let wide = comparison_to_text(&compare_runs(books), 400);
+        let logbooks = &thirty_runs()[..2];
+        let wide = comparison_to_text(&compare_runs(logbooks), 400);
         assert!(wide.contains("Decisions") && wide.contains("cash on day 7"), "{wide}");
-        let narrow = comparison_to_text(&compare_runs(books), 80);
+        let narrow = comparison_to_text(&compare_runs(logbooks), 80);
         assert!(!narrow.contains("cash on day") && narrow.contains("at day 14"), "{narrow}");
     }
 

@@ -274,13 +274,13 @@ mod tests {
         Moments::from_weighted((0..steps).map(|step| (value(at(step)), 1.0)))
     }
 
-    fn assert_moments(law: &DrawDistribution, value: impl Fn(f64) -> f64) {
-        let (exact, summed) = (law.moments(), numeric_moments(value));
+    fn assert_moments(distribution: &DrawDistribution, value: impl Fn(f64) -> f64) {
+        let (exact, summed) = (distribution.moments(), numeric_moments(value));
         assert!(
             (exact.mean - summed.mean).abs() < 2e-4 * exact.std.max(1e-6),
-            "{law:?}: {exact:?} {summed:?}"
+            "{distribution:?}: {exact:?} {summed:?}"
         );
-        assert!((exact.std / summed.std - 1.0).abs() < 2e-3, "{law:?}: {exact:?} {summed:?}");
+        assert!((exact.std / summed.std - 1.0).abs() < 2e-3, "{distribution:?}: {exact:?} {summed:?}");
     }
 
     #[test]
@@ -288,13 +288,14 @@ mod tests {
         use novamind_world::random::inverse_normal;
         let infinite = f64::INFINITY;
         for (least, most) in [(-infinite, infinite), (15.0, infinite), (-infinite, 60.0), (30.0, 70.0)] {
-            let law = DrawDistribution::Normal { mean: 50.0, std: 32.4, min: least, max: most };
-            assert_moments(&law, |p| (50.0 + 32.4 * inverse_normal(p)).clamp(least, most));
+            let distribution = DrawDistribution::Normal { mean: 50.0, std: 32.4, min: least, max: most };
+            assert_moments(&distribution, |p| (50.0 + 32.4 * inverse_normal(p)).clamp(least, most));
         }
         for (rounding, least) in [(RoundingMode::Nearest, 2.0), (RoundingMode::Down, 30.0)] {
-            let law = DrawDistribution::RoundedNormal { mean: 23.0, std: 30.0, rounding, min: least };
+            let draw_distribution =
+                DrawDistribution::RoundedNormal { mean: 23.0, std: 30.0, rounding, min: least };
             let whole = |x: f64| if rounding == RoundingMode::Nearest { x.round() } else { x.trunc() };
-            assert_moments(&law, |p| whole(23.0 + 30.0 * inverse_normal(p)).max(least));
+            assert_moments(&draw_distribution, |p| whole(23.0 + 30.0 * inverse_normal(p)).max(least));
         }
         for (offset, least, most) in [(0.2, 0.2, 6.0), (0.8, 0.5, 7.0), (0.1, 0.9, infinite)] {
             let law = DrawDistribution::Exponential { mean: 2.0, offset, min: least, max: most };
@@ -324,12 +325,12 @@ mod tests {
 
     #[test]
     fn parameters_show_the_limits() {
-        let law = DrawDistribution::Normal { mean: 50.0, std: 32.4, min: 15.0, max: f64::INFINITY };
+        let distribution = DrawDistribution::Normal { mean: 50.0, std: 32.4, min: 15.0, max: f64::INFINITY };
         assert_eq!(
-            (law.name(), law.describe_parameters().as_str()),
+            (distribution.name(), distribution.describe_parameters().as_str()),
             ("normal", "mean 50, sd 32.4, at least 15")
         );
-        let law = DrawDistribution::Discrete(vec![(10.0, 1.0), (30.0, 3.0)]);
-        assert_eq!(law.describe_parameters(), "10 25.0%, 30 75.0%");
+        let draw_distribution = DrawDistribution::Discrete(vec![(10.0, 1.0), (30.0, 3.0)]);
+        assert_eq!(draw_distribution.describe_parameters(), "10 25.0%, 30 75.0%");
     }
 }

@@ -37,9 +37,10 @@ fn unknown_groups() -> Vec<Group> {
 
 /// Returns a figure of a surge, with its probability set to 1.
 fn example_surge(luck: &DrawContext, n: u64, figure: fn(u32, f64) -> f64) -> f64 {
-    let law = novamind_world::params::DemandSurge { probability: 1.0, ..luck.params.demand_surge.clone() };
+    let demand_surge =
+        novamind_world::params::DemandSurge { probability: 1.0, ..luck.params.demand_surge.clone() };
     let day = n as u32;
-    draw_surge(day, &law, &luck.streams)
+    draw_surge(day, &demand_surge, &luck.streams)
         .map_or(f64::NAN, |surge| figure(surge.end_day - day, surge.multiplier))
 }
 

@@ -16,7 +16,7 @@ impl DrawDistribution {
         let mut many = |draw: &dyn Fn(&mut ChaCha8Rng) -> f64| (0..count).map(|_| draw(&mut rng)).collect();
         match self {
             DrawDistribution::Normal { mean, std, min: least, max: most } => match Normal::new(*mean, *std) {
-                Ok(law) => many(&|rng| law.sample(rng).clamp(*least, *most)),
+                Ok(normal) => many(&|rng| normal.sample(rng).clamp(*least, *most)),
                 Err(_) => Vec::new(),
             },
             DrawDistribution::RoundedNormal { mean, std, rounding, min: least } => {
@@ -34,13 +34,13 @@ impl DrawDistribution {
             }
             DrawDistribution::Exponential { mean, offset, min: least, max: most } => {
                 match Exp::new(1.0 / mean) {
-                    Ok(law) => many(&|rng| (law.sample(rng) + offset).clamp(*least, *most)),
+                    Ok(exp) => many(&|rng| (exp.sample(rng) + offset).clamp(*least, *most)),
                     Err(_) => Vec::new(),
                 }
             }
             DrawDistribution::LogNormal { mu, sigma, min: least, max: most, factor } => {
                 match LogNormal::new(*mu, *sigma) {
-                    Ok(law) => many(&|rng| factor * law.sample(rng).clamp(*least, *most)),
+                    Ok(log_normal) => many(&|rng| factor * log_normal.sample(rng).clamp(*least, *most)),
                     Err(_) => Vec::new(),
                 }
             }
@@ -53,7 +53,7 @@ impl DrawDistribution {
             }
             DrawDistribution::Bernoulli(p) => many(&|rng| f64::from(u8::from(rng.random::<f64>() < *p))),
             DrawDistribution::Poisson(mean) => match Poisson::new(*mean) {
-                Ok(law) => many(&|rng| law.sample(rng)),
+                Ok(poisson) => many(&|rng| poisson.sample(rng)),
                 Err(_) => many(&|_| 0.0),
             },
             DrawDistribution::Discrete(values) => {

@@ -26,23 +26,23 @@ pub fn all_distributions_report(luck: &DrawContext, draws: u64) -> LabReport {
         Column::number("std", "sd", Measure::Number(4)),
         Column::number("exact_std", "exact", Measure::Number(4)),
     ];
-    let mut laws = LabTable::new("laws", "Moments of the draws and exact moments", columns);
+    let mut table = LabTable::new("laws", "Moments of the draws and exact moments", columns);
     let columns = ["name", "parameters", "source"].map(|name| Column::text(name, name));
     let mut sources = LabTable::new("parameters", "Parameters and their sources", columns.into());
     for world_draw in world_draws() {
         let Some((member, name)) = world_draw.family.members(&luck.params).into_iter().next() else {
             continue;
         };
-        let (law, drawn) =
+        let (draw_distribution, drawn) =
             ((world_draw.distribution)(&luck.params, member), world_draw.draws(luck, member, draws));
-        let (sample, exact) = (SampleStatistics::from_values(&drawn), law.moments());
+        let (sample, exact) = (SampleStatistics::from_values(&drawn), draw_distribution.moments());
         let shown =
             if name.is_empty() { world_draw.name.to_owned() } else { format!("{} {name}", world_draw.name) };
         let number =
             |value: f64| CellValue::NumberWithMeasure(value, Measure::Number(decimals_for_spread(exact.std)));
-        laws.rows.push(vec![
+        table.rows.push(vec![
             CellValue::text(&shown),
-            CellValue::text(law.name()),
+            CellValue::text(draw_distribution.name()),
             CellValue::text(small_histogram(&Histogram::from_draws(&drawn, SMALL_HISTOGRAM_WIDTH))),
             number(sample.mean),
             number(exact.mean),
@@ -51,13 +51,13 @@ pub fn all_distributions_report(luck: &DrawContext, draws: u64) -> LabReport {
         ]);
         sources.rows.push(vec![
             CellValue::text(shown),
-            CellValue::text(law.describe_parameters()),
+            CellValue::text(draw_distribution.describe_parameters()),
             CellValue::text(describe_source(world_draw)),
         ]);
     }
     let mut exhibit = LabReport::with_table(
         format!("Every distribution of the simulator, {} draws of each", grouped_number(draws as f64, 0)),
-        laws,
+        table,
     );
     exhibit.tables.push(sources);
     exhibit
@@ -91,7 +91,7 @@ pub fn distribution_report(
     luck: &DrawContext,
     draws: u64,
 ) -> LabReport {
-    let law = (world_draw.distribution)(&luck.params, member);
+    let distribution = (world_draw.distribution)(&luck.params, member);
     let drawn = world_draw.draws(luck, member, draws);
     let columns = vec![
         Column::text("who", "source"),
@@ -103,9 +103,9 @@ pub fn distribution_report(
         Column::number("most", "most", Measure::Number(4)),
     ];
     let mut table = LabTable::new("moments", "", columns);
-    table.rows.push(moment_row("simulator", &drawn, &law));
-    table.rows.push(moment_row("rand_distr", &law.reference_draws(draws), &law));
-    let Moments { mean, std } = law.moments();
+    table.rows.push(moment_row("simulator", &drawn, &distribution));
+    table.rows.push(moment_row("rand_distr", &distribution.reference_draws(draws), &distribution));
+    let Moments { mean, std } = distribution.moments();
     let exact =
         [CellValue::text("exact"), CellValue::Missing, CellValue::number(mean), CellValue::number(std)];
     table.rows.push(
@@ -115,7 +115,11 @@ pub fn distribution_report(
     let mut exhibit =
         LabReport::with_table(format!("{}{of}: {}", world_draw.name, world_draw.description), table);
     exhibit.graphs.push(histogram_graph(world_draw, &Histogram::from_draws(&drawn, HISTOGRAM_BINS)));
-    exhibit.notes.push(format!("Distribution: {}, {}.", law.name(), law.describe_parameters()));
+    exhibit.notes.push(format!(
+        "Distribution: {}, {}.",
+        distribution.name(),
+        distribution.describe_parameters()
+    ));
     exhibit.notes.push(format!("Parameters: {}.", describe_source(world_draw)));
     let members: Vec<String> = world_draw
         .family
@@ -130,8 +134,8 @@ pub fn distribution_report(
     exhibit
 }
 
-fn moment_row(who: &str, drawn: &[f64], law: &DrawDistribution) -> Vec<CellValue> {
-    let (sample, exact) = (SampleStatistics::from_values(drawn), law.moments());
+fn moment_row(who: &str, drawn: &[f64], distribution: &DrawDistribution) -> Vec<CellValue> {
+    let (sample, exact) = (SampleStatistics::from_values(drawn), distribution.moments());
     let error = exact.std / (sample.count.max(1) as f64).sqrt();
     let off = (error > 0.0).then(|| (sample.mean - exact.mean) / error);
     vec![

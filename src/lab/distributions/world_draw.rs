@@ -51,7 +51,11 @@ impl DrawFamily {
             DrawFamily::Enterprises => groups(&|group| group.is_enterprise()),
             DrawFamily::ResearchTiers => {
                 let tiers = params.research_tier.iter();
-                tiers.map(|law| (usize::from(law.tier), format!("tier {}", law.tier))).collect()
+                tiers
+                    .map(|research_tier| {
+                        (usize::from(research_tier.tier), format!("tier {}", research_tier.tier))
+                    })
+                    .collect()
             }
         }
     }

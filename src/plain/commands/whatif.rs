@@ -242,7 +242,7 @@ impl Interpreter {
             );
         };
         let tree = related_runs(runs, id);
-        let lines: Vec<String> = tree.iter().map(|kin| related_run_line(kin, id)).collect();
+        let lines: Vec<String> = tree.iter().map(|related_run| related_run_line(related_run, id)).collect();
         let one = |kin: &novamind_insight::RelatedRun| {
             json!({
                 "run": kin.run.id, "depth": kin.depth, "left_in_week": kin.branched_in_week,

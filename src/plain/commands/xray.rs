@@ -110,15 +110,15 @@ impl Interpreter {
             }
         };
         Ok(match shown {
-            Ok(CustomerView::Individual(lens)) => {
-                let lines = describe_individual(&lens);
-                let data = customer_to_json(&lens, &lines[1]);
+            Ok(CustomerView::Individual(view)) => {
+                let lines = describe_individual(&view);
+                let data = customer_to_json(&view, &lines[1]);
                 CommandResponse::success("lens", lines.join("\n"), data)
             }
-            Ok(CustomerView::Enterprise(lens)) => CommandResponse::success(
+            Ok(CustomerView::Enterprise(enterprise_view)) => CommandResponse::success(
                 "lens",
-                describe_enterprise(&lens).join("\n"),
-                enterprise_to_json(&lens),
+                describe_enterprise(&enterprise_view).join("\n"),
+                enterprise_to_json(&enterprise_view),
             ),
             Err(refusal) => CommandResponse::rejected("lens", refusal),
         })

@@ -34,17 +34,17 @@ struct Card {
     source: String,
 }
 
-pub fn to_text(story: &RunReport) -> String {
-    text::to_text(&Card::from_report(story))
+pub fn to_text(report: &RunReport) -> String {
+    text::to_text(&Card::from_report(report))
 }
 
-pub fn to_svg(story: &RunReport) -> String {
-    svg::draw(&Card::from_report(story))
+pub fn to_svg(report: &RunReport) -> String {
+    svg::draw(&Card::from_report(report))
 }
 
 impl Card {
-    fn from_report(story: &RunReport) -> Card {
-        let (highest, lowest) = (highest_cash(&story.cash_by_day), lowest_cash(&story.cash_by_day));
+    fn from_report(report: &RunReport) -> Card {
+        let (highest, lowest) = (highest_cash(&report.cash_by_day), lowest_cash(&report.cash_by_day));
         let fact = |value: String, name: String| LabeledFigure { value, name };
         let mut turning_points = Vec::new();
         if let Some((day, cash)) = highest {
@@ -53,48 +53,48 @@ impl Card {
         if let Some((day, cash)) = lowest {
             turning_points.push(fact(format_money(cash), format!("lowest cash, day {day}")));
         }
-        if let Some(week) = peak_week(&story.weeks, |week| week.individual_subscribers) {
+        if let Some(week) = peak_week(&report.weeks, |week| week.individual_subscribers) {
             let count = format_whole(f64::from(week.individual_subscribers));
             turning_points.push(fact(count, format!("peak subscribers, day {}", week.day)));
         }
-        let last = story.weeks.last().copied().unwrap_or_default();
-        let grew = story.weeks.iter().filter(|week: &&WeekFigures| week.cash_change > 0.0).count();
+        let last = report.weeks.last().copied().unwrap_or_default();
+        let grew = report.weeks.iter().filter(|week: &&WeekFigures| week.cash_change > 0.0).count();
         Card {
-            headline: headline(story),
-            rank: story.ranking.rank.map(|_| story.ranking.describe()),
-            cash_by_day: story.cash_by_day.clone(),
+            headline: headline(report),
+            rank: report.ranking.rank.map(|_| report.ranking.describe()),
+            cash_by_day: report.cash_by_day.clone(),
             marks: [highest, lowest].into_iter().flatten().map(|(day, _)| day).collect(),
             turning_points,
             numbers: [
                 fact(
                     format_whole(f64::from(last.individual_subscribers)),
-                    format!("subscribers, day {}", story.observation.day),
+                    format!("subscribers, day {}", report.observation.day),
                 ),
                 fact(
                     format_whole(f64::from(last.enterprise_seats)),
-                    format!("seats, day {}", story.observation.day),
+                    format!("seats, day {}", report.observation.day),
                 ),
-                fact(format!("{grew} of {}", story.weeks.len()), "weeks that raised cash".to_owned()),
+                fact(format!("{grew} of {}", report.weeks.len()), "weeks that raised cash".to_owned()),
             ],
-            voice: describe_voice(story),
-            source: describe_source(story),
+            voice: describe_voice(report),
+            source: describe_source(report),
         }
     }
 }
 
-fn headline(story: &RunReport) -> String {
-    let (day, cash) = (story.observation.day, format_money(story.observation.cash));
-    match story.observation.ended {
+fn headline(report: &RunReport) -> String {
+    let (day, cash) = (report.observation.day, format_money(report.observation.cash));
+    match report.observation.ended {
         Some(RunEndReason::Horizon) => format!("{cash} after {day} days"),
         Some(RunEndReason::Bankruptcy) => format!("Bankrupt on day {day}"),
         Some(RunEndReason::Abandoned) => format!("Abandoned on day {day} with {cash}, without a score"),
         Some(RunEndReason::Lesson) => format!("{cash} at the end of the lesson on day {day}"),
-        None => format!("{cash} on day {day} of {}", story.observation.last_day),
+        None => format!("{cash} on day {day} of {}", report.observation.last_day),
     }
 }
 
-fn describe_voice(story: &RunReport) -> Option<&'static str> {
-    let model = story.observation.voice.as_ref()?;
+fn describe_voice(report: &RunReport) -> Option<&'static str> {
+    let model = report.observation.voice.as_ref()?;
     Some(match (model.words, model.judge) {
         (true, true) => "A language model worded customers' posts and judged the player's posts.",
         (_, false) => "A language model worded customers' posts.",
@@ -102,11 +102,11 @@ fn describe_voice(story: &RunReport) -> Option<&'static str> {
     })
 }
 
-fn describe_source(story: &RunReport) -> String {
-    let seed = story.observation.seed.map_or(String::new(), |seed| format!(" · seed {seed}"));
-    let changed = if story.observation.has_own_parameters { " · changed parameters" } else { "" };
-    let scenario: String = escape_control_characters(&story.observation.scenario).chars().take(24).collect();
-    format!("scenario {scenario}{seed}{changed} · version {}", escape_control_characters(&story.version))
+fn describe_source(report: &RunReport) -> String {
+    let seed = report.observation.seed.map_or(String::new(), |seed| format!(" · seed {seed}"));
+    let changed = if report.observation.has_own_parameters { " · changed parameters" } else { "" };
+    let scenario: String = escape_control_characters(&report.observation.scenario).chars().take(24).collect();
+    format!("scenario {scenario}{seed}{changed} · version {}", escape_control_characters(&report.version))
 }
 
 #[cfg(test)]
@@ -135,8 +135,8 @@ mod tests {
     #[test]
     fn card_figures_match_the_database() {
         let mut session = test_kit::finished_run();
-        let story = RunReport::from_session(&session);
-        let card = Card::from_report(&story);
+        let report = RunReport::from_session(&session);
+        let card = Card::from_report(&report);
         let cash = cash_of_ledger(&mut session, 35);
         assert_eq!(card.cash_by_day.len(), cash.len());
         for (day, (shown, booked)) in card.cash_by_day.iter().zip(&cash).enumerate() {
@@ -190,22 +190,22 @@ mod tests {
 
     #[test]
     fn user_text_is_escaped() {
-        let mut story = RunReport::from_session(&test_kit::finished_run());
-        story.observation.scenario = "<script>\u{1b}[31m\u{202e}&".to_owned();
-        story.version = "\u{1b}]0;x\u{7}".to_owned();
-        let text = to_text(&story);
+        let mut report = RunReport::from_session(&test_kit::finished_run());
+        report.observation.scenario = "<script>\u{1b}[31m\u{202e}&".to_owned();
+        report.version = "\u{1b}]0;x\u{7}".to_owned();
+        let text = to_text(&report);
         assert!(!text.contains('\u{1b}') && !text.contains('\u{202e}') && !text.contains('\u{7}'), "{text}");
         assert!(text.lines().all(|line| line.width() <= 80), "{text}");
-        let svg = to_svg(&story);
+        let svg = to_svg(&report);
         assert!(svg.contains("&lt;script&gt;") && !svg.contains("<script"), "{svg}");
     }
 
     #[test]
     fn card_shows_a_rank_only_for_comparable_runs() {
-        let mut story = RunReport::from_session(&test_kit::finished_run());
-        assert!(!to_text(&story).contains("rank"));
-        (story.observation.last_day, story.observation.seed) = (500, Some(42));
-        story.ranking = crate::ranking::rank_score(Some(14_208_331.0), &story.observation);
-        assert!(to_text(&story).contains("rank 2 of 18") && to_svg(&story).contains("rank 2 of 18"));
+        let mut report = RunReport::from_session(&test_kit::finished_run());
+        assert!(!to_text(&report).contains("rank"));
+        (report.observation.last_day, report.observation.seed) = (500, Some(42));
+        report.ranking = crate::ranking::rank_score(Some(14_208_331.0), &report.observation);
+        assert!(to_text(&report).contains("rank 2 of 18") && to_svg(&report).contains("rank 2 of 18"));
     }
 }

@@ -6,11 +6,11 @@ use novamind_session::OfferResponse;
 use novamind_session::identifiers::Plan;
 
 /// Describes its open threads on a day: perceived quality, acceptance limits and the answer it would give.
-pub fn describe_enterprise(lens: &EnterpriseView) -> Vec<String> {
-    let EnterpriseView { customer, group, day, days } = lens;
+pub fn describe_enterprise(view: &EnterpriseView) -> Vec<String> {
+    let EnterpriseView { customer, group, day, days } = view;
     let mut lines = vec![format!("enterprise {customer} · {group} · day {day}")];
     let before = lines.len();
-    lens.threads_of_day().for_each(|thread_day| lines.extend(describe_thread(thread_day)));
+    view.threads_of_day().for_each(|thread_day| lines.extend(describe_thread(thread_day)));
     if lines.len() == before {
         lines.push(match days.last() {
             Some(last) => format!("no thread was open on day {day}; the last one was on day {}", last.day),

@@ -14,11 +14,11 @@ pub const SATISFACTION_PREFIX: &str = "satisfaction:";
 const SATISFACTION_STEP_DAYS: usize = 7;
 
 /// Describes the headline, curve, plans today and at the last bill, satisfaction and events.
-pub fn describe_individual(lens: &IndividualView) -> Vec<String> {
-    let first = &lens.signup;
+pub fn describe_individual(view: &IndividualView) -> Vec<String> {
+    let first = &view.signup;
     let arrival = format!("arrived on day {} through {}", first.day, first.source.id());
-    let mut lines = vec![format!("customer {} · {} · {arrival}", lens.customer, lens.group), headline(lens)];
-    let Some(individual_day) = lens.day_shown() else {
+    let mut lines = vec![format!("customer {} · {} · {arrival}", view.customer, view.group), headline(view)];
+    let Some(individual_day) = view.day_shown() else {
         lines.extend(describe_signup(first));
         return clean_up_numbers(lines);
     };
@@ -34,18 +34,18 @@ pub fn describe_individual(lens: &IndividualView) -> Vec<String> {
     ));
     lines.push(format!("plans on day {}, * current:", individual_day.day));
     lines.extend(plan_rows(&individual_day.weighed_decision, individual_day.plan));
-    if let Some(bill) = lens.last_bill() {
+    if let Some(bill) = view.last_bill() {
         lines.push(format!("plans at the last bill, day {}:", bill.day));
         lines.extend(plan_rows(&bill.weighed_decision, bill.plan));
     }
-    lines.push(satisfaction_line(lens));
-    lines.extend(event_lines(lens));
+    lines.push(satisfaction_line(view));
+    lines.extend(event_lines(view));
     clean_up_numbers(lines)
 }
 
 /// Describes the outcome of a day and the terms that would have changed it.
-fn headline(lens: &IndividualView) -> String {
-    let Some(individual_day) = lens.day_shown() else { return signup_headline(lens) };
+fn headline(view: &IndividualView) -> String {
+    let Some(individual_day) = view.day_shown() else { return signup_headline(view) };
     let WeighedDecision { choice, plans, decisive_terms: turning, .. } = &individual_day.weighed_decision;
     let day = individual_day.day;
     match (individual_day.outcome, choice) {
@@ -56,13 +56,13 @@ fn headline(lens: &IndividualView) -> String {
         (SubscriberOutcome::Cancels(_), _) => {
             format!(
                 "cancelled on day {day}: no plan is acceptable; {}",
-                describe_retaining_terms(turning, lens)
+                describe_retaining_terms(turning, view)
             )
         }
         (_, None) => {
             format!(
                 "day {day} is not a billing day; no plan would be acceptable: {}",
-                describe_retaining_terms(turning, lens)
+                describe_retaining_terms(turning, view)
             )
         }
         (outcome, Some(best)) => {
@@ -74,16 +74,16 @@ fn headline(lens: &IndividualView) -> String {
             format!(
                 "{what}: plan {best} has the largest surplus, {:.4}; {}",
                 plans[*best].surplus,
-                describe_cancelling_terms(turning, lens)
+                describe_cancelling_terms(turning, view)
             )
         }
     }
 }
 
-fn describe_retaining_terms(turning: &[DecisiveTerm], lens: &IndividualView) -> String {
+fn describe_retaining_terms(turning: &[DecisiveTerm], view: &IndividualView) -> String {
     let turned = |without: &DecisiveTerm| {
         let (plan, surplus) = without.plan?;
-        Some(format!("without {}, plan {plan} would be, by {surplus:.4}", describe_term(without.term, lens)))
+        Some(format!("without {}, plan {plan} would be, by {surplus:.4}", describe_term(without.term, view)))
     };
     match turning.iter().find_map(turned) {
         Some(text) => text,
@@ -91,17 +91,17 @@ fn describe_retaining_terms(turning: &[DecisiveTerm], lens: &IndividualView) -> 
     }
 }
 
-fn describe_cancelling_terms(turning: &[DecisiveTerm], lens: &IndividualView) -> String {
-    let terms: Vec<String> = turning.iter().map(|without| describe_term(without.term, lens)).collect();
+fn describe_cancelling_terms(turning: &[DecisiveTerm], view: &IndividualView) -> String {
+    let terms: Vec<String> = turning.iter().map(|without| describe_term(without.term, view)).collect();
     match terms.is_empty() {
         true => "no single term is decisive".to_owned(),
         false => format!("no plan would be acceptable without {}", terms.join(", or without ")),
     }
 }
 
-fn describe_term(term: DecisionTerm, lens: &IndividualView) -> String {
+fn describe_term(term: DecisionTerm, view: &IndividualView) -> String {
     match term {
-        DecisionTerm::Issue => match lens.issue_opened_on() {
+        DecisionTerm::Issue => match view.issue_opened_on() {
             Some(since) => format!("the issue open since day {since}"),
             None => "an issue".to_owned(),
         },
@@ -154,8 +154,8 @@ fn plan_rows(weighed: &WeighedDecision, current_plan: Plan) -> Vec<String> {
     indented_table(&head, &Plan::ALL.map(row))
 }
 
-fn signup_headline(lens: &IndividualView) -> String {
-    let SignupDecision { day, plan, plans, quality_noise: noise, signed_up, curve, .. } = &lens.signup;
+fn signup_headline(view: &IndividualView) -> String {
+    let SignupDecision { day, plan, plans, quality_noise: noise, signed_up, curve, .. } = &view.signup;
     let plan_terms = &plans[*plan];
     let seen = plan_terms.offered.quality * noise;
     if *signed_up {
@@ -196,8 +196,8 @@ fn describe_signup(first: &SignupDecision) -> Vec<String> {
 }
 
 /// Lists satisfaction every seventh day, back from the inspected day.
-fn satisfaction_line(lens: &IndividualView) -> String {
-    let listed = lens.days.iter().rev().step_by(SATISFACTION_STEP_DAYS).take(12);
+fn satisfaction_line(view: &IndividualView) -> String {
+    let listed = view.days.iter().rev().step_by(SATISFACTION_STEP_DAYS).take(12);
     let mut listed: Vec<String> = listed
         .map(|individual_day| format!("day {} {:.3}", individual_day.day, individual_day.satisfaction))
         .collect();
@@ -205,11 +205,11 @@ fn satisfaction_line(lens: &IndividualView) -> String {
     format!("{SATISFACTION_PREFIX} {}", listed.join(", "))
 }
 
-fn event_lines(lens: &IndividualView) -> Vec<String> {
-    let first = &lens.signup;
+fn event_lines(view: &IndividualView) -> Vec<String> {
+    let first = &view.signup;
     let mut lines = vec![format!("day {}: signed up for plan {}", first.day, first.plan)];
     let mut waited = 0;
-    for individual_day in &lens.days {
+    for individual_day in &view.days {
         let is_new =
             individual_day.open_issue_days > 0 && (waited == 0 || individual_day.open_issue_days <= waited);
         if waited > 0 && (individual_day.open_issue_days == 0 || is_new) {

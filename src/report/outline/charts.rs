@@ -9,28 +9,28 @@ use novamind_session::ScoredForecast;
 const MAX_GROUPS: usize = 6;
 
 /// Charts cash by day, with the last forecasts until they are due.
-pub fn cash_chart(story: &RunReport) -> Option<Block> {
+pub fn cash_chart(report: &RunReport) -> Option<Block> {
     let points: Vec<(f64, f64)> =
-        story.cash_by_day.iter().enumerate().map(|(day, cash)| (day as f64, *cash)).collect();
+        report.cash_by_day.iter().enumerate().map(|(day, cash)| (day as f64, *cash)).collect();
     if points.len() < 2 {
         return None;
     }
     // Cash on day 0 includes that day's purchases; the range also includes the starting cash.
-    let low = story.cash_by_day.iter().copied().fold(story.start_cash, f64::min);
-    let high = story.cash_by_day.iter().copied().fold(story.start_cash, f64::max);
+    let low = report.cash_by_day.iter().copied().fold(report.start_cash, f64::min);
+    let high = report.cash_by_day.iter().copied().fold(report.start_cash, f64::max);
     let mut curves = vec![Curve { name: "cash".to_owned(), points }];
-    let fan = pending_forecast_fan(story);
+    let fan = pending_forecast_fan(report);
     let band = fan.map(|(band, expected)| {
         curves.push(expected);
         band
     });
     let summary = format!(
         "Cash starts at {}, ranges from {} to {}, and is {} on day {}.",
-        format_money(story.start_cash),
+        format_money(report.start_cash),
         format_money(low),
         format_money(high),
-        format_money(story.observation.cash),
-        story.observation.day
+        format_money(report.observation.cash),
+        report.observation.day
     );
     let reach = (high - low).max(1.0);
     Some(Block::Chart(Chart {
@@ -44,12 +44,12 @@ pub fn cash_chart(story: &RunReport) -> Option<Block> {
 }
 
 /// Returns the open forecasts as a fan from today's cash, and the predicted values; `None` after the end of the run.
-fn pending_forecast_fan(story: &RunReport) -> Option<(Band, Curve)> {
-    let filed_last = story.forecasts.last().filter(|_| story.observation.ended.is_none())?.day;
-    let (day, cash) = (f64::from(story.observation.day), story.observation.cash);
+fn pending_forecast_fan(report: &RunReport) -> Option<(Band, Curve)> {
+    let filed_last = report.forecasts.last().filter(|_| report.observation.ended.is_none())?.day;
+    let (day, cash) = (f64::from(report.observation.day), report.observation.cash);
     let open = || {
-        let last = story.forecasts.iter().filter(move |filed| filed.day == filed_last);
-        last.filter(|filed| filed.due_day() > story.observation.day)
+        let last = report.forecasts.iter().filter(move |filed| filed.day == filed_last);
+        last.filter(|filed| filed.due_day() > report.observation.day)
     };
     let (mut band, mut expected) = (vec![(day, cash, cash)], vec![(day, cash)]);
     band.extend(open().map(|filed| (f64::from(filed.due_day()), filed.forecast.lower, filed.forecast.upper)));
@@ -60,10 +60,10 @@ fn pending_forecast_fan(story: &RunReport) -> Option<(Band, Curve)> {
     })
 }
 
-fn cash_by_category(story: &RunReport) -> Vec<StackSeries> {
-    let weeks: Vec<u32> = story.database.ledger.keys().copied().filter(|week| *week > 0).collect();
+fn cash_by_category(report: &RunReport) -> Vec<StackSeries> {
+    let weeks: Vec<u32> = report.database.ledger.keys().copied().filter(|week| *week > 0).collect();
     let of = |week: u32, held: &[&str]| -> f64 {
-        let amounts = story.database.ledger.get(&week);
+        let amounts = report.database.ledger.get(&week);
         amounts.map_or(0.0, |amounts| held.iter().filter_map(|name| amounts.get(*name)).sum())
     };
     let part = |(name, held): &(&str, &[&str])| StackSeries {
@@ -74,10 +74,10 @@ fn cash_by_category(story: &RunReport) -> Vec<StackSeries> {
     parts.filter(|part| part.values.iter().any(|value| *value != 0.0)).collect()
 }
 
-pub fn income_and_cost_chart(story: &RunReport) -> Option<Block> {
+pub fn income_and_cost_chart(report: &RunReport) -> Option<Block> {
     let at: Vec<f64> =
-        story.database.ledger.keys().filter(|week| **week > 0).map(|week| f64::from(*week)).collect();
-    let parts = cash_by_category(story);
+        report.database.ledger.keys().filter(|week| **week > 0).map(|week| f64::from(*week)).collect();
+    let parts = cash_by_category(report);
     if at.is_empty() || parts.is_empty() {
         return None;
     }
@@ -100,12 +100,12 @@ pub fn income_and_cost_chart(story: &RunReport) -> Option<Block> {
     }))
 }
 
-pub fn subscriber_chart(story: &RunReport) -> Option<Block> {
-    if story.weeks.len() < 2 {
+pub fn subscriber_chart(report: &RunReport) -> Option<Block> {
+    if report.weeks.len() < 2 {
         return None;
     }
     let through = |figure: fn(&novamind_record::figures::WeekFigures) -> u32| -> Vec<(f64, f64)> {
-        story.weeks.iter().map(|week| (f64::from(week.day) / 7.0, f64::from(figure(week)))).collect()
+        report.weeks.iter().map(|week| (f64::from(week.day) / 7.0, f64::from(figure(week)))).collect()
     };
     let mut curves =
         vec![Curve { name: "subscribers".to_owned(), points: through(|week| week.individual_subscribers) }];
@@ -141,9 +141,9 @@ fn last_point(points: &[(f64, f64)]) -> f64 {
 }
 
 /// Charts the customers of the largest groups by week, if there are several.
-pub fn group_chart(story: &RunReport) -> Option<Block> {
+pub fn group_chart(report: &RunReport) -> Option<Block> {
     let weight = |active: &[f64]| active.iter().copied().fold(0.0, f64::max);
-    let mut largest: Vec<_> = story
+    let mut largest: Vec<_> = report
         .database
         .groups
         .iter()
@@ -174,13 +174,13 @@ pub fn group_chart(story: &RunReport) -> Option<Block> {
     }))
 }
 
-pub fn forecast_charts(story: &RunReport) -> Vec<Block> {
-    let horizons = story.measures.forecasts.iter().map(|score| score.horizon_days);
-    horizons.filter_map(|horizon| forecast_chart(story, horizon)).collect()
+pub fn forecast_charts(report: &RunReport) -> Vec<Block> {
+    let horizons = report.measures.forecasts.iter().map(|score| score.horizon_days);
+    horizons.filter_map(|horizon| forecast_chart(report, horizon)).collect()
 }
 
-fn forecast_chart(story: &RunReport, horizon: u32) -> Option<Block> {
-    let due: Vec<&ScoredForecast> = story
+fn forecast_chart(report: &RunReport, horizon: u32) -> Option<Block> {
+    let due: Vec<&ScoredForecast> = report
         .forecasts
         .iter()
         .filter(|filed| filed.forecast.horizon_days == horizon && filed.outcome.is_some())

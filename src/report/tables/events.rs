@@ -182,12 +182,12 @@ impl EventRow {
                 event.value = note.value.map(|value| json_number(value).to_string()).unwrap_or_default();
                 event.text = crate::lesson::describe_note(note);
             }
-            Activity::ExternalRead(look) => {
-                (event.what, event.text) = (look.command.clone(), look.detail.clone())
+            Activity::ExternalRead(read) => {
+                (event.what, event.text) = (read.command.clone(), read.detail.clone())
             }
-            Activity::Inspection(look) => {
-                (event.what, event.which) = (look.what.clone(), look.which.clone());
-                event.value = look.shown_day.to_string();
+            Activity::Inspection(inspection) => {
+                (event.what, event.which) = (inspection.what.clone(), inspection.which.clone());
+                event.value = inspection.shown_day.to_string();
             }
         }
         event

@@ -145,7 +145,7 @@ impl Transcript {
     }
 
     fn add_line(&mut self, line: &Line, session: &mut Session) {
-        let deed = match &line.record {
+        let transcript_action = match &line.record {
             Record::Call(call) => {
                 let mut extra = context::call_metadata(call.via, call.took_ms);
                 extra.extend(context::reversal_field(call.reversal));
@@ -196,7 +196,12 @@ impl Transcript {
             }
             Record::Start(_) | Record::Branch(_) | Record::Unknown(_) => return,
         };
-        self.steps.push(TranscriptStep { seq: line.seq, day: line.day, at: line.at.clone(), action: deed });
+        self.steps.push(TranscriptStep {
+            seq: line.seq,
+            day: line.day,
+            at: line.at.clone(),
+            action: transcript_action,
+        });
     }
 
     /// Attaches the result of a week to the action that ran it.

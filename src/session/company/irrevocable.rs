@@ -107,29 +107,32 @@ impl Simulation {
                 let (group, level, day) = (study.group, study.target, study.due_day);
                 single(format!("study of {group} to level {level} ordered, done on day {day}"))
             }
-            ResolvedCommand::SendDeals(letters) => self.offer_actions(letters),
+            ResolvedCommand::SendDeals(messages) => self.offer_actions(messages),
             ResolvedCommand::RejectDeals(threads) => self.rejection_actions(threads),
         }
     }
 
-    fn offer_actions(&self, letters: &[OfferMessage]) -> Vec<IrrevocableAction> {
-        if letters.len() <= MAX_NAMED_ENTRIES {
-            return letters.iter().map(|letter| self.offer_action(letter)).collect();
+    fn offer_actions(&self, messages: &[OfferMessage]) -> Vec<IrrevocableAction> {
+        if messages.len() <= MAX_NAMED_ENTRIES {
+            return messages.iter().map(|message| self.offer_action(message)).collect();
         }
         let mut alike: BTreeMap<(Option<Group>, Vec<Plan>), Vec<&OfferMessage>> = BTreeMap::new();
-        for letter in letters {
-            let plans = letter.offerings.iter().map(|offering| offering.plan).collect();
-            alike.entry((self.group_of(letter.customer), plans)).or_default().push(letter);
+        for offer_message in messages {
+            let plans = offer_message.offerings.iter().map(|offering| offering.plan).collect();
+            alike.entry((self.group_of(offer_message.customer), plans)).or_default().push(offer_message);
         }
-        let joined =
-            |((group, plans), letters): ((Option<Group>, Vec<Plan>), Vec<&OfferMessage>)| match letters[..] {
+        let joined = |((group, plans), offer_messages): ((Option<Group>, Vec<Plan>), Vec<&OfferMessage>)| {
+            match offer_messages[..] {
                 [only] => self.offer_action(only),
                 _ => IrrevocableAction::Offered {
                     group,
-                    offerings: (0..plans.len()).map(|at| price_range_of_offering(&letters, at)).collect(),
-                    companies: letters.len() as u32,
+                    offerings: (0..plans.len())
+                        .map(|at| price_range_of_offering(&offer_messages, at))
+                        .collect(),
+                    companies: offer_messages.len() as u32,
                 },
-            };
+            }
+        };
         alike.into_iter().map(joined).collect()
     }
 
@@ -150,10 +153,10 @@ impl Simulation {
         by_group.into_iter().map(|(group, companies)| IrrevocableAction::Ended { group, companies }).collect()
     }
 
-    fn offer_action(&self, letter: &OfferMessage) -> IrrevocableAction {
+    fn offer_action(&self, message: &OfferMessage) -> IrrevocableAction {
         let offering = |offering: &Offering| format!("{} {}", offering.plan, cents(offering.price));
-        let offerings: Vec<String> = letter.offerings.iter().map(offering).collect();
-        let company = self.names.name_with_number(letter.customer);
+        let offerings: Vec<String> = message.offerings.iter().map(offering).collect();
+        let company = self.names.name_with_number(message.customer);
         IrrevocableAction::Single(format!("offered to {company}: {}", offerings.join(", ")))
     }
 
@@ -169,11 +172,11 @@ fn describe_companies(count: u32, group: Option<Group>) -> String {
 }
 
 /// Returns the plan and the lowest and highest price of the offering at position `at` of all letters.
-fn price_range_of_offering(letters: &[&OfferMessage], at: usize) -> (Plan, f64, f64) {
-    let prices = letters.iter().map(|letter| letter.offerings[at].price);
+fn price_range_of_offering(messages: &[&OfferMessage], at: usize) -> (Plan, f64, f64) {
+    let prices = messages.iter().map(|message| message.offerings[at].price);
     let (least, most) =
         prices.fold((f64::INFINITY, f64::NEG_INFINITY), |all, price| (all.0.min(price), all.1.max(price)));
-    (letters[0].offerings[at].plan, least, most)
+    (messages[0].offerings[at].plan, least, most)
 }
 
 fn describe_offering(&(plan, least, most): &(Plan, f64, f64)) -> String {
@@ -207,9 +210,9 @@ mod tests {
     #[test]
     fn few_offers_are_listed_and_many_are_summarized_by_plan() {
         let session = Session::create(NewRun::default(), &Configuration::bundled()).expect("a run");
-        let descriptions = |letters: &[OfferMessage]| {
+        let descriptions = |messages: &[OfferMessage]| {
             let done =
-                session.simulation().irrevocable_actions(&ResolvedCommand::SendDeals(letters.to_vec()));
+                session.simulation().irrevocable_actions(&ResolvedCommand::SendDeals(messages.to_vec()));
             done.iter().map(IrrevocableAction::to_string).collect::<Vec<_>>()
         };
         let few: Vec<OfferMessage> = (1..=5).map(|customer| letter(customer, &[(Plan::B, 35.0)])).collect();

@@ -43,19 +43,19 @@ pub fn record_external_read(folder: &Path, command: &str, detail: &str) -> Resul
         }
         Err(error) => return Err(error),
     };
-    let look =
+    let activity =
         Activity::ExternalRead(ExternalRead { command: command.to_owned(), detail: detail.to_owned() });
     let trajectory = Trajectory::read(&path)?;
     if trajectory.unfinished_bytes > 0 || has_pending_week(&trajectory) {
         // An interrupted run must be completed first, as when it is opened to play.
         drop(lock);
         let mut session = Session::open(folder, Access::Write, true)?;
-        session.activity().record(look);
+        session.activity().record(activity);
         return session.save();
     }
     let day = trajectory.lines.last().map_or(0, |line| line.day);
     let mut writer = TrajectoryWriter::resume(&path, &trajectory)?;
-    writer.append(day, &Record::Activity(look), Durability::Synced)?;
+    writer.append(day, &Record::Activity(activity), Durability::Synced)?;
     drop(lock);
     Ok(())
 }
@@ -98,8 +98,8 @@ mod tests {
     fn external_reads(folder: &Path) -> Vec<String> {
         let trajectory = Trajectory::read(&folder.join("trajectory.jsonl")).expect("lines");
         let look = |record: &Record| match record {
-            Record::Activity(Activity::ExternalRead(look)) => {
-                Some(format!("{} {}", look.command, look.detail))
+            Record::Activity(Activity::ExternalRead(external_read)) => {
+                Some(format!("{} {}", external_read.command, external_read.detail))
             }
             _ => None,
         };

@@ -68,42 +68,44 @@ impl CompanyView<'_> {
     /// Returns the outlook for a project of a tier, 1..=20, that is started now.
     pub fn research_outlook(&self, tier: u8) -> ResearchOutlook {
         let (today, last_day) = (self.simulation.world.day, self.manifest.days);
-        let (law, development) = (self.simulation.params.research(tier), &self.simulation.params.development);
+        let (research_tier, development) =
+            (self.simulation.params.research(tier), &self.simulation.params.development);
         let spread = || {
             let left = last_day.saturating_sub(today);
             ResearchSpread {
-                at_earliest: share_done_within(development.rd_min_duration_days, law, development),
-                quartile_days: QUARTILES.map(|share| today + duration_quantile(share, law, development)),
-                by_last_day: share_done_within(left, law, development),
-                quartile_gains: QUARTILES.map(|share| gain_quantile(share, law, development)),
+                at_earliest: share_done_within(development.rd_min_duration_days, research_tier, development),
+                quartile_days: QUARTILES
+                    .map(|share| today + duration_quantile(share, research_tier, development)),
+                by_last_day: share_done_within(left, research_tier, development),
+                quartile_gains: QUARTILES.map(|share| gain_quantile(share, research_tier, development)),
                 least_gain: development.rd_min_quality_boost,
-                at_least_gain: share_at_minimum_gain(law, development),
+                at_least_gain: share_at_minimum_gain(research_tier, development),
             }
         };
         ResearchOutlook {
             earliest: today + development.rd_min_duration_days,
             last_day,
-            means: self.tier_means(law),
+            means: self.tier_means(research_tier),
             spread: (self.manifest.mode != Mode::Baseline).then(spread),
         }
     }
 
     /// Returns the means of every R&D tier, lowest first.
     pub fn research_means(&self) -> Vec<ResearchMeans> {
-        self.simulation.params.research_tier.iter().map(|law| self.tier_means(law)).collect()
+        self.simulation.params.research_tier.iter().map(|tier| self.tier_means(tier)).collect()
     }
 
-    fn tier_means(&self, law: &ResearchTier) -> ResearchMeans {
+    fn tier_means(&self, tier: &ResearchTier) -> ResearchMeans {
         let development = &self.simulation.params.development;
         match self.manifest.mode {
             Mode::Baseline => ResearchMeans {
-                days: law.mean_days.max(f64::from(development.rd_min_duration_days)),
-                gain: law.mean_quality_boost.max(development.rd_min_quality_boost),
+                days: tier.mean_days.max(f64::from(development.rd_min_duration_days)),
+                gain: tier.mean_quality_boost.max(development.rd_min_quality_boost),
                 are_lower_bounds: true,
             },
             _ => ResearchMeans {
-                days: mean_days(law, development),
-                gain: mean_gain(law, development),
+                days: mean_days(tier, development),
+                gain: mean_gain(tier, development),
                 are_lower_bounds: false,
             },
         }

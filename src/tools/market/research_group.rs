@@ -89,10 +89,10 @@ pub struct OrderedStudy {
 
 /// Parses the target level. As in the released simulator, 3.0 is not a valid level here.
 fn parse_target_level(arguments: &Arguments, group: Group, view: &ToolContext<'_>) -> Result<u8, Rejection> {
-    let law = &view.params().group_research;
+    let research = &view.params().group_research;
     let level = view.world().market.knowledge[group].level;
-    let Some(given) = arguments.get("target_level") else { return Ok(default_target(level, law)) };
-    let range = u64::from(law.min_target_level)..=u64::from(law.max_target_level);
+    let Some(given) = arguments.get("target_level") else { return Ok(default_target(level, research)) };
+    let range = u64::from(research.min_target_level)..=u64::from(research.max_target_level);
     let target = given.as_u64().filter(|target| range.contains(target)).ok_or_else(|| {
         let message = format!("the level must be 2, 3, 4 or 5, not {given}; {group} is at level {level}");
         Rejection::for_field("target_level", "level_out_of_range", message)

@@ -47,29 +47,29 @@ fn verdict(
     judge_context: &JudgeContext,
     lexicon: &Lexicon,
 ) -> Option<bool> {
-    let law = &lexicon.verdicts;
+    let verdicts = &lexicon.verdicts;
     match name {
         "price_down" => Some(judge_context.price_cut),
         "quality_up" => {
-            let happy = readers.satisfaction >= law.quality_satisfaction;
-            if (readers.progress >= law.quality_progress || judge_context.research_done) && happy {
+            let happy = readers.satisfaction >= verdicts.quality_satisfaction;
+            if (readers.progress >= verdicts.quality_progress || judge_context.research_done) && happy {
                 Some(true)
             } else {
                 (readers.progress < 0.0 || !happy).then_some(false)
             }
         }
         "reliability" if judge_context.outage_days >= 1 => Some(false),
-        "reliability" => (judge_context.overload < law.reliability_overload).then_some(true),
-        "speed" if judge_context.p95_ms <= law.speed_true_ms => Some(true),
-        "speed" => (judge_context.p95_ms > law.speed_false_ms).then_some(false),
+        "reliability" => (judge_context.overload < verdicts.reliability_overload).then_some(true),
+        "speed" if judge_context.p95_ms <= verdicts.speed_true_ms => Some(true),
+        "speed" => (judge_context.p95_ms > verdicts.speed_false_ms).then_some(false),
         "support"
-            if judge_context.issue_age <= law.support_true_age
-                && judge_context.issue_rate <= law.support_true_rate =>
+            if judge_context.issue_age <= verdicts.support_true_age
+                && judge_context.issue_rate <= verdicts.support_true_rate =>
         {
             Some(true)
         }
-        "support" => (judge_context.issue_age > law.support_false_age
-            || judge_context.issue_rate > law.support_false_rate)
+        "support" => (judge_context.issue_age > verdicts.support_false_age
+            || judge_context.issue_rate > verdicts.support_false_rate)
             .then_some(false),
         "limits" => Some(judge_context.quota_up),
         _ => None,

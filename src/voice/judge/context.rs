@@ -167,18 +167,18 @@ fn live_events(
     judge_context: &JudgeContext,
     short: f64,
 ) -> Vec<(LiveEvent, u32)> {
-    let (day, law) = (world.day, &lexicon.events);
+    let (day, events) = (world.day, &lexicon.events);
     let chronicle = &world.market.social.chronicle;
     let age = |page: &Page| day - page.day;
     let raised = |(before, after): &(&Page, &Page)| {
         let rise = |plan: &Plan| {
-            before.prices[*plan] > 0.0 && after.prices[*plan] >= before.prices[*plan] * law.price_rise
+            before.prices[*plan] > 0.0 && after.prices[*plan] >= before.prices[*plan] * events.price_rise
         };
         Plan::ALL.iter().any(rise)
     };
     let outage = chronicle.newest_first(TWO_WEEKS + 1).find(|page| page.outage).map(age);
     let price_up = chronicle.consecutive_pages().find(raised).map(|(_, after)| age(after));
-    let issues = judge_context.issue_rate > law.issue_rate || judge_context.issue_age > law.issue_age;
+    let issues = judge_context.issue_rate > events.issue_rate || judge_context.issue_age > events.issue_age;
     let rivals = world.market.competitors.iter().rev();
     let rival = rivals
         .filter(|event| severity(event.boost, &params.competitor) >= Severity::Moderate)
@@ -199,14 +199,14 @@ fn live_events(
         (LiveEvent::Outage, outage),
         (LiveEvent::PriceUp, price_up),
         (LiveEvent::Issues, issues.then_some(0)),
-        (LiveEvent::Quota, (short > law.quota_share).then_some(0)),
+        (LiveEvent::Quota, (short > events.quota_share).then_some(0)),
         (LiveEvent::Competitor, rival),
         (LiveEvent::MacroDown, economy(LiveEvent::MacroDown)),
         (LiveEvent::MacroUp, economy(LiveEvent::MacroUp)),
         (LiveEvent::Research, research_ages(world).min()),
     ]
     .into_iter()
-    .filter_map(|(event, age)| age.filter(|age| *age <= law.kept_days).map(|age| (event, age)))
+    .filter_map(|(event, age)| age.filter(|age| *age <= events.kept_days).map(|age| (event, age)))
     .collect()
 }
 

@@ -99,17 +99,17 @@ pub(super) fn indicator(holds: bool) -> f64 {
     if holds { 1.0 } else { 0.0 }
 }
 
-fn casualness(content: &str, slang: u32, law: &Law) -> f64 {
+fn casualness(content: &str, slang: u32, features: &Law) -> f64 {
     let count = |of: &dyn Fn(char) -> bool| content.chars().filter(|c| of(*c)).count() as u32;
-    let signs = |each: f64, count: u32| each * f64::from(count.min(law.signs_counted));
+    let signs = |each: f64, count: u32| each * f64::from(count.min(features.signs_counted));
     let shouted = content.split(|c: char| !c.is_alphanumeric()).filter(|word| {
-        word.chars().count() >= law.capitals_letters && word.chars().all(|c| c.is_uppercase())
+        word.chars().count() >= features.capitals_letters && word.chars().all(|c| c.is_uppercase())
     });
-    let total = signs(law.emoji, count(&is_emoji))
-        + signs(law.hash, count(&|c| c == '#'))
-        + signs(law.exclamation, count(&|c| c == '!'))
-        + law.slang * f64::from(slang)
-        + law.capitals * f64::from((shouted.count() as u32).min(law.capitals_counted));
+    let total = signs(features.emoji, count(&is_emoji))
+        + signs(features.hash, count(&|c| c == '#'))
+        + signs(features.exclamation, count(&|c| c == '!'))
+        + features.slang * f64::from(slang)
+        + features.capitals * f64::from((shouted.count() as u32).min(features.capitals_counted));
     total.min(1.0)
 }
 
@@ -123,7 +123,7 @@ fn has_unit(normal: &str, units: &[String]) -> bool {
 
 /// Returns the share of topic words beyond one half, plus the lack of function words.
 fn keyword_stuffing(reading: &TokenizedText, lexicon: &Lexicon) -> f64 {
-    let law = &lexicon.features;
+    let features = &lexicon.features;
     let tokens = reading.tokens().len();
     if tokens == 0 {
         return 0.0;
@@ -138,9 +138,10 @@ fn keyword_stuffing(reading: &TokenizedText, lexicon: &Lexicon) -> f64 {
     let plain = functions.iter().zip(&covered).filter(|(function, covered)| **function && !**covered);
     let density = covered.iter().filter(|covered| **covered).count() as f64 / tokens as f64;
     let function_share = plain.count() as f64 / tokens as f64;
-    let piled = law.stuffing * ((density - law.stuffing_from) / (1.0 - law.stuffing_from)).max(0.0);
-    let no_sentence = function_share < law.function_share && tokens >= law.sentence_tokens;
-    piled + law.stuffing_no_sentence * indicator(no_sentence)
+    let piled =
+        features.stuffing * ((density - features.stuffing_from) / (1.0 - features.stuffing_from)).max(0.0);
+    let no_sentence = function_share < features.function_share && tokens >= features.sentence_tokens;
+    piled + features.stuffing_no_sentence * indicator(no_sentence)
 }
 
 #[cfg(test)]

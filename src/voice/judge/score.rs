@@ -105,18 +105,18 @@ impl GroupJudge<'_> {
 
     /// Returns R, the fit of the topics (-1..=1), and the topics that determine it.
     fn topic_fit(&self) -> (f64, Vec<String>) {
-        let (lexicon, law) = (self.case.lexicon, &self.case.lexicon.terms);
+        let (lexicon, terms) = (self.case.lexicon, &self.case.lexicon.terms);
         let mut best = self.weighted_topics(&self.case.features);
         best.sort_by(|(_, one), (_, other)| other.abs().total_cmp(&one.abs()));
-        best.truncate(law.ranks.len());
+        best.truncate(terms.ranks.len());
         best.retain(|(_, value)| *value != 0.0);
-        let sum: f64 = best.iter().zip(law.ranks).map(|((_, value), rank)| value * rank).sum();
+        let sum: f64 = best.iter().zip(terms.ranks).map(|((_, value), rank)| value * rank).sum();
         let mut fit = sum.clamp(-1.0, 1.0);
         if fit > 0.0 {
             let lead = self.leading_topic(&self.case.features);
             let same = |earlier: &&Features| lead.is_some() && self.leading_topic(earlier) == lead;
             let repeats = self.case.recent.iter().filter(same).count() as u32;
-            fit *= 1.0 - law.repeated_recipe * f64::from(repeats.min(law.repeated_counted));
+            fit *= 1.0 - terms.repeated_recipe * f64::from(repeats.min(terms.repeated_counted));
         }
         (fit, best.iter().map(|(topic, _)| lexicon.topic_name(*topic).to_owned()).collect())
     }
@@ -150,10 +150,10 @@ impl GroupJudge<'_> {
 
     /// E: whether the post addresses a current event, -0.6..=1, with that event.
     fn timing(&self) -> (f64, Vec<String>) {
-        let (features, law) = (&self.case.features, &self.case.lexicon.terms);
+        let (features, terms) = (&self.case.features, &self.case.lexicon.terms);
         if let Some(event) = self.ignored_event() {
             let readers = self.case.circumstances.groups[self.group].subscribers;
-            let value = if readers > 0 { law.tone_deaf_customers } else { law.tone_deaf_others };
+            let value = if readers > 0 { terms.tone_deaf_customers } else { terms.tone_deaf_others };
             return (value, vec![event.id().to_owned()]);
         }
         let mut best: Option<(LiveEvent, f64)> = None;
@@ -227,15 +227,15 @@ impl GroupJudge<'_> {
 
     /// A: taking responsibility if there is a reason to.
     fn accountability(&self) -> f64 {
-        let (features, law) = (&self.case.features, &self.case.lexicon.terms);
+        let (features, terms) = (&self.case.features, &self.case.lexicon.terms);
         let to_answer = [LiveEvent::Outage, LiveEvent::PriceUp, LiveEvent::Issues, LiveEvent::Quota];
         let trouble = to_answer.into_iter().any(|event| self.case.circumstances.event_age(event).is_some());
         if trouble && (features.has_apology || features.names_cause) {
             let elements =
                 [features.has_apology, features.names_cause, features.names_remedy, features.names_time];
-            law.account_step * elements.into_iter().map(indicator).sum::<f64>()
+            terms.account_step * elements.into_iter().map(indicator).sum::<f64>()
         } else if features.has_apology && !trouble {
-            law.needless_apology
+            terms.needless_apology
         } else {
             0.0
         }
@@ -257,15 +257,15 @@ impl GroupJudge<'_> {
     }
 
     fn hype_penalty(&self, supported: bool) -> f64 {
-        let law = &self.case.lexicon.terms;
-        let share = if supported { law.hype_if_true } else { 1.0 };
-        law.hype * self.profile.a * self.case.features.absolutes * share
+        let terms = &self.case.lexicon.terms;
+        let share = if supported { terms.hype_if_true } else { 1.0 };
+        terms.hype * self.profile.a * self.case.features.absolutes * share
     }
 
     fn hard_sell_penalty(&self) -> f64 {
-        let law = &self.case.lexicon.terms;
-        let welcome = self.profile.weight("deal") >= law.likes_deals && self.case.circumstances.promotion;
-        law.hard_sell * self.case.features.sales_pressure * if welcome { 0.5 } else { 1.0 }
+        let terms = &self.case.lexicon.terms;
+        let welcome = self.profile.weight("deal") >= terms.likes_deals && self.case.circumstances.promotion;
+        terms.hard_sell * self.case.features.sales_pressure * if welcome { 0.5 } else { 1.0 }
     }
 
     /// Returns whether the post compares with competitors in numbers, for groups that prefer them.
@@ -275,7 +275,7 @@ impl GroupJudge<'_> {
 
     /// Returns the terms of a reply for the post that it answers.
     fn reply_terms(&self) -> Vec<ScoreTerm> {
-        let (features, law) = (&self.case.features, &self.case.lexicon.terms);
+        let (features, terms) = (&self.case.features, &self.case.lexicon.terms);
         let Some((original, original_post)) = &self.case.original else { return Vec::new() };
         let asked: Vec<usize> =
             (0..original.topics.len()).filter(|topic| original.mentions_topic(*topic)).collect();
@@ -285,10 +285,10 @@ impl GroupJudge<'_> {
         vec![
             term(
                 "reply",
-                law.reply_overlap * share + law.reply_you * indicator(features.addresses_reader),
+                terms.reply_overlap * share + terms.reply_you * indicator(features.addresses_reader),
                 Vec::new(),
             ),
-            term("reply_misses", law.reply_misses * indicator(missed), Vec::new()),
+            term("reply_misses", terms.reply_misses * indicator(missed), Vec::new()),
         ]
     }
 }

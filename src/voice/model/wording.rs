@@ -80,10 +80,10 @@ pub fn check(text: &str) -> Result<(), String> {
 
 /// Returns the numbers of a text as written: digits with points and commas between them.
 fn number_set(text: &str) -> BTreeSet<String> {
-    let letters: Vec<char> = text.chars().collect();
+    let characters: Vec<char> = text.chars().collect();
     let (mut found, mut number) = (BTreeSet::new(), String::new());
-    for (at, letter) in letters.iter().enumerate() {
-        let goes_on = letters.get(at + 1).is_some_and(|next| next.is_numeric());
+    for (at, letter) in characters.iter().enumerate() {
+        let goes_on = characters.get(at + 1).is_some_and(|next| next.is_numeric());
         let joins = matches!(letter, '.' | ',') && !number.is_empty() && goes_on;
         if letter.is_numeric() || joins {
             number.push(*letter);

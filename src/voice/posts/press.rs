@@ -135,7 +135,7 @@ mod tests {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             (state >> 33) as usize % count
         };
-        let law = novamind_world::params::Params::bundled().economy;
+        let economy = novamind_world::params::Params::bundled().economy;
         let mut with_number = 0;
         for round in 0..400u32 {
             let estimate = 0.0131 + f64::from(round) / 3000.0;
@@ -151,13 +151,14 @@ mod tests {
                 "{text}"
             );
             let pmi = 36.0 + f64::from(round % 28);
-            let text = write_economy_post(Trend::from_index(pmi, &law), pmi, (round % 11) as u8, &mut choose);
+            let text =
+                write_economy_post(Trend::from_index(pmi, &economy), pmi, (round % 11) as u8, &mut choose);
             with_number += u32::from(text.contains(&format!("{pmi:.1}")));
             let reading = Reading {
                 measured_day: 1,
                 value: pmi,
                 change: f64::from(round % 5) - 2.0,
-                trend: Trend::from_index(pmi, &law),
+                trend: Trend::from_index(pmi, &economy),
                 phase: novamind_world::events::Phase::Peak,
             };
             let text = write_reading_post(&reading, &mut choose);

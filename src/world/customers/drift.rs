@@ -41,24 +41,24 @@ impl DriftTotals {
 }
 
 /// Returns the growth of a daily rate over one application of drift: (1 + r)^30 - 1.
-pub fn compound_rate(rate: f64, law: &Drift) -> f64 {
-    libm::pow(1.0 + rate, f64::from(law.days_per_application)) - 1.0
+pub fn compound_rate(rate: f64, drift: &Drift) -> f64 {
+    libm::pow(1.0 + rate, f64::from(drift.days_per_application)) - 1.0
 }
 
 /// Returns whether drift is applied on a day: every 30 days after the grace period.
-pub fn is_drift_day(day: u32, law: &Drift) -> bool {
-    day.is_multiple_of(law.interval_days) && day > law.drift_grace_period_days
+pub fn is_drift_day(day: u32, drift: &Drift) -> bool {
+    day.is_multiple_of(drift.interval_days) && day > drift.drift_grace_period_days
 }
 
 /// Returns the next day on which drift is applied.
-pub fn next_drift_day(after: u32, law: &Drift) -> u32 {
-    let next = |day: u32| (day / law.interval_days + 1) * law.interval_days;
-    next(after.max(law.drift_grace_period_days))
+pub fn next_drift_day(after: u32, drift: &Drift) -> u32 {
+    let next = |day: u32| (day / drift.interval_days + 1) * drift.interval_days;
+    next(after.max(drift.drift_grace_period_days))
 }
 
 /// Returns the change of all groups' expectations by one application.
-pub fn global_drift_step(law: &Drift) -> f64 {
-    f64::from(law.days_per_application) * law.global_q_bias_drift
+pub fn global_drift_step(drift: &Drift) -> f64 {
+    f64::from(drift.days_per_application) * drift.global_q_bias_drift
 }
 
 /// Returns the change of a group's expectations and budgets by one application.
@@ -77,14 +77,14 @@ pub fn apply_drift(
     seat_multiplier: &ByGroup<f64>,
     params: &Params,
 ) -> bool {
-    let law = &params.drift;
-    if !is_drift_day(day, law) {
+    let drift = &params.drift;
+    if !is_drift_day(day, drift) {
         return false;
     }
     let times = if params.has_fault(Fault::DriftTwice) { 2 } else { 1 };
     (0..times).for_each(|_| update_totals(totals, params));
     customers.sweep(|group, _, block| {
-        drift_block(block, &params.group(group).individual_drift_per_day, seat_multiplier[group], law);
+        drift_block(block, &params.group(group).individual_drift_per_day, seat_multiplier[group], drift);
     });
     true
 }
@@ -98,32 +98,32 @@ fn update_totals(totals: &mut DriftTotals, params: &Params) {
     }
 }
 
-fn drift_block(block: &mut Block, rates: &IndividualDrift, seat_multiplier: f64, law: &Drift) {
+fn drift_block(block: &mut Block, rates: &IndividualDrift, seat_multiplier: f64, drift: &Drift) {
     if let Some(rate) = rates.c_max_drift {
-        let factor = 1.0 + compound_rate(rate, law);
+        let factor = 1.0 + compound_rate(rate, drift);
         for c_max in &mut block.c_max {
-            *c_max = (*c_max * factor).clamp(law.individual_c_max_min, law.individual_c_max_max);
+            *c_max = (*c_max * factor).clamp(drift.individual_c_max_min, drift.individual_c_max_max);
         }
     }
     if let Some(rate) = rates.q_bias_drift {
-        let factor = 1.0 + compound_rate(rate, law);
+        let factor = 1.0 + compound_rate(rate, drift);
         block.q_min.iter_mut().for_each(|quality| *quality *= factor);
         block.q_max.iter_mut().for_each(|quality| *quality *= factor);
     }
     if let Some(rate) = rates.steepness_left_drift {
-        let factor = 1.0 + compound_rate(rate, law);
-        let (least, most) = (law.individual_steepness_left_min, law.individual_steepness_left_max);
+        let factor = 1.0 + compound_rate(rate, drift);
+        let (least, most) = (drift.individual_steepness_left_min, drift.individual_steepness_left_max);
         block
             .steepness_left
             .iter_mut()
             .for_each(|steepness| *steepness = (*steepness * factor).clamp(least, most));
     }
     if let Some(rate) = rates.seat_count_drift {
-        let factor = 1.0 + compound_rate(rate, law) * seat_multiplier;
+        let factor = 1.0 + compound_rate(rate, drift) * seat_multiplier;
         block
             .seats
             .iter_mut()
-            .for_each(|seats| *seats = (*seats * factor).max(law.individual_seat_count_min));
+            .for_each(|seats| *seats = (*seats * factor).max(drift.individual_seat_count_min));
     }
 }
 

@@ -187,10 +187,10 @@ fn calendar_factors_apply_by_day() {
 /// Parameters with the economy at half its neutral index and no reactions except those that `change` sets.
 fn params_with_macro_reaction(change: impl Fn(&mut MacroBeta)) -> Params {
     let mut params = Params::bundled();
-    let law = &mut params.economy;
-    (law.macro_pmi_initial, law.macro_pmi_long_run_mean) = (25.0, 25.0);
-    (law.macro_pmi_cycle_amplitude, law.macro_pmi_daily_volatility) = (0.0, 0.0);
-    law.macro_pmi_floor = 0.0;
+    let economy = &mut params.economy;
+    (economy.macro_pmi_initial, economy.macro_pmi_long_run_mean) = (25.0, 25.0);
+    (economy.macro_pmi_cycle_amplitude, economy.macro_pmi_daily_volatility) = (0.0, 0.0);
+    economy.macro_pmi_floor = 0.0;
     for group in params.group.iter_mut() {
         group.macro_beta = MacroBeta {
             lead_generation: None,

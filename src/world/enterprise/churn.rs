@@ -153,8 +153,8 @@ impl NegotiationStep<'_> {
     fn damage_reputation(&mut self, group: Group, n: u32, thread: u32) {
         let keys = [u64::from(self.today()), group.index() as u64, u64::from(n), u64::from(thread)];
         let u = self.day.streams.open(Part::ReputationEvent, keys).uniform();
-        let law = &self.day.params.reputation;
-        let damage = event_damage(self.day.morning.subscribers[group], u, law);
+        let reputation = &self.day.params.reputation;
+        let damage = event_damage(self.day.morning.subscribers[group], u, reputation);
         self.reputation.add_all(
             (group, ReputationCause::LostEnterprise),
             &[-damage],

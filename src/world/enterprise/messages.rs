@@ -65,7 +65,7 @@ impl Enterprise {
     ) -> Vec<OfferMessage> {
         let mut next_thread = self.next_thread;
         let mut relationships: BTreeMap<u32, f64> = BTreeMap::new();
-        let mut letters = Vec::new();
+        let mut messages = Vec::new();
         let open = self.open_threads();
         for proposal in proposals {
             let Some(company) = self.company(proposal.customer) else { continue };
@@ -90,7 +90,7 @@ impl Enterprise {
             let z = streams.open(Part::ReplyDelay, [u64::from(number), u64::from(turn)]).standard_normal();
             let manner = &company.negotiator;
             let delay = reply_delay(manner.reply_delay_mean, manner.reply_delay_std, z, &params.enterprise);
-            letters.push(OfferMessage {
+            messages.push(OfferMessage {
                 customer: proposal.customer,
                 thread: number,
                 starts_thread: thread.is_none(),
@@ -100,34 +100,34 @@ impl Enterprise {
                 reply_day: day + delay,
             });
         }
-        letters
+        messages
     }
 
     /// Sends messages that were resolved for this state. Enterprises reply only to the newest turn of a thread.
     pub fn send_offers(
         &mut self,
-        letters: &[OfferMessage],
+        messages: &[OfferMessage],
         day: u32,
         customers: &mut Customers,
         facts: &mut Facts,
     ) {
-        for letter in letters {
-            let Some(at) = self.enterprise_position(letter.customer) else { continue };
-            if let Some(relationship) = letter.relationship {
+        for message in messages {
+            let Some(at) = self.enterprise_position(message.customer) else { continue };
+            if let Some(relationship) = message.relationship {
                 self.companies[at].set_relationship(relationship, customers);
             }
-            let content = TurnContent::Offer(letter.offerings.clone());
-            if letter.starts_thread {
+            let content = TurnContent::Offer(message.offerings.clone());
+            if message.starts_thread {
                 let seats = self.companies[at].row(customers).map_or(1, |row| row.seats as u32);
                 let kind = ThreadKind::Renegotiation;
                 self.open_thread(day, at, kind, seats, Sender::Agent, content, facts);
-            } else if let Some(thread) = self.thread_position(letter.thread) {
-                self.append_turn(thread, letter.turn, day, 1, Sender::Agent, content, facts);
+            } else if let Some(thread) = self.thread_position(message.thread) {
+                self.append_turn(thread, message.turn, day, 1, Sender::Agent, content, facts);
             }
         }
-        for letter in letters {
-            if let Some(thread) = self.thread_position(letter.thread) {
-                self.threads[thread].last_mut().reply_day = Some(letter.reply_day);
+        for offer_message in messages {
+            if let Some(thread) = self.thread_position(offer_message.thread) {
+                self.threads[thread].last_mut().reply_day = Some(offer_message.reply_day);
             }
         }
     }

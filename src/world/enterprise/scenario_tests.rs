@@ -31,8 +31,8 @@ fn turns(kit: &NegotiationKit) -> Vec<(Sender, u32)> {
 fn accepted_offer_activates_the_lead() {
     let mut kit = lead(3.0, 6);
     assert_eq!(turns(&kit), [(Sender::System, 0)]);
-    let letters = kit.send_offer(&[(Plan::B, 35.0)]);
-    assert_eq!((letters[0].reply_day, letters[0].turn, letters[0].relationship), (3, 1, None));
+    let messages = kit.send_offer(&[(Plan::B, 35.0)]);
+    assert_eq!((messages[0].reply_day, messages[0].turn, messages[0].relationship), (3, 1, None));
     assert_eq!(turns(&kit), [(Sender::Agent, 1)]);
     assert_eq!(kit.facts.turns[0].seats, 1);
     assert!(run_days(&mut kit, 1..=2).iter().all(|day| day.new_seats == 0));
@@ -198,8 +198,8 @@ fn failed_renegotiation_loses_the_customer() {
     kit.subscribe(6, |row| row.relationship = 0.5);
     kit.run_day(4);
     assert!(kit.facts.turns.is_empty(), "it is satisfied");
-    let letters = kit.send_offer(&[(Plan::A, 58.0)]);
-    assert_eq!((letters[0].starts_thread, letters[0].turn, letters[0].reply_day), (true, 0, 7));
+    let messages = kit.send_offer(&[(Plan::A, 58.0)]);
+    assert_eq!((messages[0].starts_thread, messages[0].turn, messages[0].reply_day), (true, 0, 7));
     assert_eq!((kit.facts.turns[0].seats, kit.facts.turns[0].kind), (100, ThreadKind::Renegotiation));
     // A product below the minimum quality at every price.
     kit.product.shared_bonus = 0.1;
@@ -234,9 +234,9 @@ fn late_reply_lowers_relationship_once() {
     let mut kit = lead(3.0, 9);
     kit.send_offer(&[(Plan::B, 59.0)]);
     run_days(&mut kit, 1..=7);
-    let letters = kit.send_offer(&[(Plan::B, 44.0)]);
+    let messages = kit.send_offer(&[(Plan::B, 44.0)]);
     // The counter-offer arrived on day 3: four days, three of them late.
-    let relationship = letters[0].relationship.expect("a late answer");
+    let relationship = messages[0].relationship.expect("a late answer");
     assert!((relationship - 0.44).abs() < 1e-12, "{relationship}");
     assert_eq!(
         kit.send_offer(&[(Plan::B, 44.0)])[0].relationship,
@@ -255,10 +255,13 @@ fn parallel_renegotiations_are_answered_separately() {
     let proposal =
         super::messages::OfferDraft { customer: 2, offerings: vec![Offering { plan: Plan::B, price: 20.0 }] };
     let twice = [proposal.clone(), proposal];
-    let letters = kit.enterprise.resolve_offers(&twice, 4, &kit.customers, &kit.params, &kit.streams);
-    assert_eq!((letters[0].thread + 1, letters[1].starts_thread), (letters[1].thread, true));
+    let offer_messages = kit.enterprise.resolve_offers(&twice, 4, &kit.customers, &kit.params, &kit.streams);
+    assert_eq!(
+        (offer_messages[0].thread + 1, offer_messages[1].starts_thread),
+        (offer_messages[1].thread, true)
+    );
     kit.facts.start_day(4);
-    kit.enterprise.send_offers(&letters, 4, &mut kit.customers, &mut kit.facts);
+    kit.enterprise.send_offers(&offer_messages, 4, &mut kit.customers, &mut kit.facts);
     run_days(&mut kit, 5..=7);
     assert_eq!(kit.facts.deals.len(), 2);
     assert_eq!(kit.customers.groups[kit.group].active_count(), 1);
@@ -272,17 +275,17 @@ fn two_offers_in_one_call_share_a_turn_number() {
         super::messages::OfferDraft { customer: 2, offerings: vec![Offering { plan: Plan::B, price: 59.0 }] };
     kit.send_offer(&[(Plan::B, 59.0)]);
     run_days(&mut kit, 1..=7);
-    let letters = kit.enterprise.resolve_offers(
+    let offer_messages = kit.enterprise.resolve_offers(
         &[proposal.clone(), proposal],
         7,
         &kit.customers,
         &kit.params,
         &kit.streams,
     );
-    let relationship: Vec<f64> = letters.iter().filter_map(|letter| letter.relationship).collect();
+    let relationship: Vec<f64> = offer_messages.iter().filter_map(|message| message.relationship).collect();
     assert!((relationship[0] - 0.44).abs() < 1e-12 && (relationship[1] - 0.38).abs() < 1e-12);
     kit.facts.start_day(7);
-    kit.enterprise.send_offers(&letters, 7, &mut kit.customers, &mut kit.facts);
+    kit.enterprise.send_offers(&offer_messages, 7, &mut kit.customers, &mut kit.facts);
     assert_eq!(turns(&kit), [(Sender::Agent, 3), (Sender::Agent, 3)]);
     let replies: Vec<Option<u32>> =
         kit.enterprise.threads[0].turns[3..].iter().map(|t| t.reply_day).collect();

@@ -153,10 +153,10 @@ impl NegotiationKit {
         let offerings =
             offerings.iter().map(|&(plan, price)| crate::events::Offering { plan, price }).collect();
         let proposals = [super::messages::OfferDraft { customer: 2, offerings }];
-        let letters =
+        let offer_messages =
             self.enterprise.resolve_offers(&proposals, day, &self.customers, &self.params, &self.streams);
         self.facts.start_day(day);
-        self.enterprise.send_offers(&letters, day, &mut self.customers, &mut self.facts);
-        letters
+        self.enterprise.send_offers(&offer_messages, day, &mut self.customers, &mut self.facts);
+        offer_messages
     }
 }

@@ -31,20 +31,20 @@ impl NegotiationStep<'_> {
         for (group, block) in self.customers.blocks().filter(|(group, _)| group.is_enterprise()) {
             for at in (0..block.len()).filter(|at| !busy.contains(&block.customer[*at])) {
                 let row = block.row(at);
-                if let Some(wish) = self.talks.subscriber_request(group, &row) {
-                    wishes.push((row.customer, row.seats as u32, wish));
+                if let Some(subscriber_request) = self.talks.subscriber_request(group, &row) {
+                    wishes.push((row.customer, row.seats as u32, subscriber_request));
                 }
             }
         }
         wishes.sort_by_key(|(customer, ..)| *customer);
-        for (customer, seats, wish) in wishes {
-            self.start_thread(customer, seats, wish);
+        for (customer, seats, request) in wishes {
+            self.start_thread(customer, seats, request);
         }
     }
 
-    fn start_thread(&mut self, customer: u32, seats: u32, wish: SubscriberRequest) {
+    fn start_thread(&mut self, customer: u32, seats: u32, subscriber_request: SubscriberRequest) {
         let Some(company) = self.enterprise.enterprise_position(customer) else { return };
-        let (kind, content, notice) = match wish {
+        let (kind, content, notice) = match subscriber_request {
             SubscriberRequest::Leave => {
                 (ThreadKind::ChurnPrevention, TurnContent::Threat, Notice::ChurnThreat { customer })
             }

@@ -45,12 +45,12 @@ pub enum Trend {
 
 impl Trend {
     /// Returns the label of an index value.
-    pub fn from_index(pmi: f64, law: &MacroEconomy) -> Trend {
+    pub fn from_index(pmi: f64, economy: &MacroEconomy) -> Trend {
         match pmi {
-            _ if pmi >= law.trend_strong_expansion_min => Trend::StrongExpansion,
-            _ if pmi >= law.trend_expansion_min => Trend::Expansion,
-            _ if pmi >= law.trend_neutral_min => Trend::Neutral,
-            _ if pmi >= law.trend_contraction_min => Trend::Contraction,
+            _ if pmi >= economy.trend_strong_expansion_min => Trend::StrongExpansion,
+            _ if pmi >= economy.trend_expansion_min => Trend::Expansion,
+            _ if pmi >= economy.trend_neutral_min => Trend::Neutral,
+            _ if pmi >= economy.trend_contraction_min => Trend::Contraction,
             _ => Trend::SevereContraction,
         }
     }
@@ -78,12 +78,12 @@ pub enum Phase {
 
 impl Phase {
     /// Returns the phase for the value and change of a reading.
-    pub fn from_reading(value: f64, change: f64, law: &MacroEconomy) -> Phase {
-        if value >= law.phase_peak_min_pmi && change <= 0.0 {
+    pub fn from_reading(value: f64, change: f64, economy: &MacroEconomy) -> Phase {
+        if value >= economy.phase_peak_min_pmi && change <= 0.0 {
             Phase::Peak
         } else if change < 0.0 {
             Phase::Declining
-        } else if value < law.phase_trough_below_pmi {
+        } else if value < economy.phase_trough_below_pmi {
             Phase::Trough
         } else {
             Phase::Recovering

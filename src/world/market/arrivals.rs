@@ -276,9 +276,9 @@ fn evaluate_lead(
             LeadOutcome::GatedOut
         }
     } else {
-        let look = evaluate_offers(arrivals, offers, group, source, (curve, demand), noise);
-        let LeadEvaluation { choice, discount, .. } = look;
-        if look.is_accepted(params) {
+        let evaluation = evaluate_offers(arrivals, offers, group, source, (curve, demand), noise);
+        let LeadEvaluation { choice, discount, .. } = evaluation;
+        if evaluation.is_accepted(params) {
             let terms = initial_terms(arrivals, group, customer, choice, discount);
             let stored = stored_curve(&traits, &curve, params);
             let c_drift = morning.expectations[group].c_max;

@@ -29,51 +29,54 @@ pub struct Event {
 canonical! { Event { day, boost, sampled, u, by_feedback } }
 
 /// Returns the severity of a boost.
-pub fn severity(boost: f64, law: &Competitor) -> Severity {
+pub fn severity(boost: f64, competitor: &Competitor) -> Severity {
     match boost {
-        _ if boost < law.competitor_severity_minor_max => Severity::Minor,
-        _ if boost < law.competitor_severity_moderate_max => Severity::Moderate,
-        _ if boost < law.competitor_severity_major_max => Severity::Major,
+        _ if boost < competitor.competitor_severity_minor_max => Severity::Minor,
+        _ if boost < competitor.competitor_severity_moderate_max => Severity::Moderate,
+        _ if boost < competitor.competitor_severity_major_max => Severity::Major,
         _ => Severity::Transformative,
     }
 }
 
 fn can_occur(day: u32, total_days: u32, params: &Params) -> bool {
-    let law = &params.competitor;
+    let competitor = &params.competitor;
     let too_early = day < params.drift.drift_grace_period_days;
-    let too_late = i64::from(day) > i64::from(total_days) - i64::from(law.competitor_event_late_cutoff_days);
-    !law.competitor_events_disabled && !too_early && !too_late
+    let too_late =
+        i64::from(day) > i64::from(total_days) - i64::from(competitor.competitor_event_late_cutoff_days);
+    !competitor.competitor_events_disabled && !too_early && !too_late
 }
 
 /// Returns the probability of an event on a day, 0 if none is possible.
 pub fn event_probability(day: u32, total_days: u32, last_event: Option<u32>, params: &Params) -> f64 {
-    let law = &params.competitor;
+    let competitor = &params.competitor;
     if !can_occur(day, total_days, params) {
         return 0.0;
     }
-    let (mut mean, mut least) = (law.competitor_event_mean_interval, law.competitor_event_min_interval);
-    let gap = f64::from(day) - last_event.map_or(-law.competitor_event_mean_interval, f64::from);
-    if day < (total_days / law.first_half_divisor).max(1) {
-        mean *= law.first_half_interval_multiplier;
-        least *= law.first_half_min_interval_multiplier;
+    let (mut mean, mut least) =
+        (competitor.competitor_event_mean_interval, competitor.competitor_event_min_interval);
+    let gap = f64::from(day) - last_event.map_or(-competitor.competitor_event_mean_interval, f64::from);
+    if day < (total_days / competitor.first_half_divisor).max(1) {
+        mean *= competitor.first_half_interval_multiplier;
+        least *= competitor.first_half_min_interval_multiplier;
     }
     if gap < least { 0.0 } else { 1.0 / mean }
 }
 
 /// Returns the growth of sizes over the run: from 1 to 4 along a ramp that ends 30 days before the last day.
-pub fn magnitude_scale(day: u32, total_days: u32, law: &Competitor) -> f64 {
-    let start = f64::from(law.magnitude_ramp_start_day);
-    let end = (f64::from(total_days) - f64::from(law.competitor_event_late_cutoff_days))
-        .max(f64::from(law.magnitude_ramp_end_day_min));
+pub fn magnitude_scale(day: u32, total_days: u32, competitor: &Competitor) -> f64 {
+    let start = f64::from(competitor.magnitude_ramp_start_day);
+    let end = (f64::from(total_days) - f64::from(competitor.competitor_event_late_cutoff_days))
+        .max(f64::from(competitor.magnitude_ramp_end_day_min));
     let ramp = ((f64::from(day) - start) / (end - start).max(1.0)).clamp(0.0, 1.0);
-    let (least, most) = (law.competitor_event_magnitude_scale_min, law.competitor_event_magnitude_scale_max);
+    let (least, most) =
+        (competitor.competitor_event_magnitude_scale_min, competitor.competitor_event_magnitude_scale_max);
     least + (most - least) * ramp
 }
 
 /// Returns the size of an event from a log-normal draw: clamped, then scaled.
-pub fn sampled_boost(log_normal: f64, day: u32, total_days: u32, law: &Competitor) -> f64 {
-    log_normal.clamp(law.competitor_event_boost_min, law.competitor_event_boost_max)
-        * magnitude_scale(day, total_days, law)
+pub fn sampled_boost(log_normal: f64, day: u32, total_days: u32, competitor: &Competitor) -> f64 {
+    log_normal.clamp(competitor.competitor_event_boost_min, competitor.competitor_event_boost_max)
+        * magnitude_scale(day, total_days, competitor)
 }
 
 /// Resolves an event: the larger of the sampled size and the share `u` of the bank applies, and the copied
@@ -102,12 +105,18 @@ pub struct CompetitorMove {
 
 impl CompetitorMove {
     /// Returns the copied share of each non-empty targeted bank, in alphabetical order of the groups.
-    pub fn copied_group_shares(&self, group_bank: &ByGroup<f64>, law: &Competitor) -> Vec<(Group, f64)> {
+    pub fn copied_group_shares(
+        &self,
+        group_bank: &ByGroup<f64>,
+        competitor: &Competitor,
+    ) -> Vec<(Group, f64)> {
         let mut stream = self.remaining_stream.clone();
         let mut funded: Vec<Group> = Group::all().filter(|group| group_bank[*group] > 0.0).collect();
         funded.sort_by_key(|group| group.id());
-        let mut share =
-            || stream.between(law.competitor_segment_drain_u_min, law.competitor_segment_drain_u_max);
+        let mut share = || {
+            stream
+                .between(competitor.competitor_segment_drain_u_min, competitor.competitor_segment_drain_u_max)
+        };
         funded.into_iter().map(|group| (group, share())).collect()
     }
 }
@@ -120,17 +129,17 @@ pub fn move_on_day(
     params: &Params,
     streams: &Streams,
 ) -> Option<CompetitorMove> {
-    let law = &params.competitor;
+    let competitor = &params.competitor;
     let chance = event_probability(day, total_days, last_event, params);
     let mut stream = streams.open(Part::CompetitorEvent, [u64::from(day)]);
     let drawn = match params.replayed_series().and_then(|series| series.competitor_event(day)) {
         Some(recorded_event) => recorded_event.filter(|_| can_occur(day, total_days, params)),
-        None => draw_event(chance, law, &mut stream),
+        None => draw_event(chance, competitor, &mut stream),
     };
     let RecordedEvent { size, u } = drawn?;
     Some(CompetitorMove {
         day,
-        sampled: sampled_boost(size, day, total_days, law),
+        sampled: sampled_boost(size, day, total_days, competitor),
         u,
         remaining_stream: stream,
     })
@@ -158,24 +167,25 @@ pub fn apply_move(
     params: &Params,
     streams: &Streams,
 ) {
-    let law = &params.competitor;
+    let competitor = &params.competitor;
     let last_event = events.last().map(|event| event.day);
     let Some(made) = move_on_day(day, total_days, last_event, params, streams) else { return };
     let event = resolve_event(day, made.sampled, made.u, &mut product.shared_bank, params);
     raise_expectations(event.boost, drift, params);
-    for (group, v) in made.copied_group_shares(&product.group_bank, law) {
-        copy_group_bank(group, v, product, drift, law);
+    for (group, v) in made.copied_group_shares(&product.group_bank, competitor) {
+        copy_group_bank(group, v, product, drift, competitor);
     }
     events.push(event);
 }
 
 /// Returns today's event, if any: its size before growth over the run, and the share of the bank.
-pub fn draw_event(chance: f64, law: &Competitor, stream: &mut Stream) -> Option<RecordedEvent> {
+pub fn draw_event(chance: f64, competitor: &Competitor, stream: &mut Stream) -> Option<RecordedEvent> {
     if chance <= 0.0 || !stream.bernoulli(chance) {
         return None;
     }
-    let size = stream.log_normal(law.competitor_event_boost_mu, law.competitor_event_boost_sigma);
-    let u = stream.between(law.competitor_feedback_u_min, law.competitor_feedback_u_max);
+    let size =
+        stream.log_normal(competitor.competitor_event_boost_mu, competitor.competitor_event_boost_sigma);
+    let u = stream.between(competitor.competitor_feedback_u_min, competitor.competitor_feedback_u_max);
     Some(RecordedEvent { size, u })
 }
 
@@ -193,11 +203,11 @@ pub fn copy_group_bank(
     v: f64,
     product: &mut Product,
     drift: &mut DriftTotals,
-    law: &Competitor,
+    competitor: &Competitor,
 ) {
     let drained = v * product.group_bank[group];
     drift.quality[group] += drained;
-    product.group_bank[group] = (product.group_bank[group] - drained).max(law.bank_min);
+    product.group_bank[group] = (product.group_bank[group] - drained).max(competitor.bank_min);
 }
 
 #[cfg(test)]
@@ -215,12 +225,12 @@ mod tests {
     /// An event with given draws: log-normal size and the fraction of the range of u.
     fn event(day: u32, size: f64, bank: f64, fraction: f64) -> (Event, f64, Severity) {
         let params = Params::bundled();
-        let law = &params.competitor;
-        let u = law.competitor_feedback_u_min
-            + fraction * (law.competitor_feedback_u_max - law.competitor_feedback_u_min);
+        let competitor = &params.competitor;
+        let u = competitor.competitor_feedback_u_min
+            + fraction * (competitor.competitor_feedback_u_max - competitor.competitor_feedback_u_min);
         let mut bank = bank;
-        let event = resolve_event(day, sampled_boost(size, day, 500, law), u, &mut bank, &params);
-        (event, bank, severity(event.boost, law))
+        let event = resolve_event(day, sampled_boost(size, day, 500, competitor), u, &mut bank, &params);
+        (event, bank, severity(event.boost, competitor))
     }
 
     #[test]
@@ -286,14 +296,14 @@ mod tests {
     #[test]
     fn event_sizes_are_clamped_before_scaling() {
         let params = Params::bundled();
-        let law = &params.competitor;
-        assert_near(sampled_boost(0.01, 250, 500, law), 0.02592750533049);
-        assert_near(sampled_boost(0.01, 470, 500, law), 0.04);
-        assert_near(sampled_boost(5.0, 470, 500, law), 0.69103125);
-        assert_near(sampled_boost(1e-9, 470, 500, law), 0.0078975);
-        assert_near(sampled_boost(0.01, 467, 497, law), 0.04);
+        let competitor = &params.competitor;
+        assert_near(sampled_boost(0.01, 250, 500, competitor), 0.02592750533049);
+        assert_near(sampled_boost(0.01, 470, 500, competitor), 0.04);
+        assert_near(sampled_boost(5.0, 470, 500, competitor), 0.69103125);
+        assert_near(sampled_boost(1e-9, 470, 500, competitor), 0.0078975);
+        assert_near(sampled_boost(0.01, 467, 497, competitor), 0.04);
         let mut bank = 1.0;
-        let event = resolve_event(60, sampled_boost(0.01, 60, 500, law), 0.35, &mut bank, &params);
+        let event = resolve_event(60, sampled_boost(0.01, 60, 500, competitor), 0.35, &mut bank, &params);
         assert!(event.by_feedback);
         assert_near(event.boost, 0.35);
         assert_near(bank, 0.65);

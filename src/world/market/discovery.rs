@@ -24,15 +24,15 @@ impl Market {
 
     /// Returns the outcome of an attempt made now. It depends only on the seed and the number of earlier attempts.
     pub fn next_attempt(&self, params: &Params, streams: &Streams) -> Attempt {
-        let law = &params.market_research;
+        let research = &params.market_research;
         let undiscovered: Vec<Group> = self.undiscovered().collect();
         let drawn = || {
             let mut stream = streams.open(Part::MarketResearch, [u64::from(self.attempts)]);
-            draw_attempt(&undiscovered, law.market_research_discover_prob, &mut stream)
+            draw_attempt(&undiscovered, research.market_research_discover_prob, &mut stream)
         };
         let given = params.replayed_series().and_then(|series| series.attempt(self.attempts));
         let found = given.unwrap_or_else(drawn).filter(|group| undiscovered.contains(group));
-        Attempt { earlier: self.attempts, cost: law.discovery_cost_level_1, found }
+        Attempt { earlier: self.attempts, cost: research.discovery_cost_level_1, found }
     }
 
     /// Counts an attempt and marks the group it found as known.

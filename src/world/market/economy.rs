@@ -28,20 +28,22 @@ pub struct Economy {
 canonical! { Economy { pmi, started, history, last_measurement, waiting, published } }
 
 /// Returns the value to which the cycle pulls the index: mean + amplitude sin(2 pi day / period + phase).
-pub fn cycle_target(day: u32, phase: f64, law: &MacroEconomy) -> f64 {
-    let turn = 2.0 * std::f64::consts::PI * f64::from(day) / f64::from(law.macro_pmi_cycle_period_days);
-    law.macro_pmi_long_run_mean + law.macro_pmi_cycle_amplitude * libm::sin(turn + phase)
+pub fn cycle_target(day: u32, phase: f64, economy: &MacroEconomy) -> f64 {
+    let turn = 2.0 * std::f64::consts::PI * f64::from(day) / f64::from(economy.macro_pmi_cycle_period_days);
+    economy.macro_pmi_long_run_mean + economy.macro_pmi_cycle_amplitude * libm::sin(turn + phase)
 }
 
 /// Returns the index after one day; `z` is a standard normal draw.
-pub fn next_pmi(pmi: f64, target: f64, z: f64, law: &MacroEconomy) -> f64 {
-    let moved = pmi + law.macro_pmi_mean_reversion_rate * (target - pmi) + law.macro_pmi_daily_volatility * z;
-    moved.clamp(law.macro_pmi_floor, law.macro_pmi_ceiling)
+pub fn next_pmi(pmi: f64, target: f64, z: f64, economy: &MacroEconomy) -> f64 {
+    let moved =
+        pmi + economy.macro_pmi_mean_reversion_rate * (target - pmi) + economy.macro_pmi_daily_volatility * z;
+    moved.clamp(economy.macro_pmi_floor, economy.macro_pmi_ceiling)
 }
 
 /// Returns the factor of a sensitivity at an index: max(0.5, 1 + beta (PMI - 50) / 50).
-pub fn macro_multiplier(beta: f64, pmi: f64, law: &MacroEconomy) -> f64 {
-    (law.multiplier_neutral + beta * (pmi - law.neutral_pmi) / law.pmi_scale).max(law.multiplier_min)
+pub fn macro_multiplier(beta: f64, pmi: f64, economy: &MacroEconomy) -> f64 {
+    (economy.multiplier_neutral + beta * (pmi - economy.neutral_pmi) / economy.pmi_scale)
+        .max(economy.multiplier_min)
 }
 
 /// A figure that the economy affects.
@@ -95,21 +97,21 @@ impl Economy {
     }
 }
 
-fn cycle_phase(law: &MacroEconomy, streams: &Streams) -> f64 {
-    if law.macro_pmi_random_phase {
+fn cycle_phase(economy: &MacroEconomy, streams: &Streams) -> f64 {
+    if economy.macro_pmi_random_phase {
         streams.open_for_day(0, Part::Macro, [0]).between(0.0, 2.0 * std::f64::consts::PI)
     } else {
-        law.macro_pmi_fixed_phase
+        economy.macro_pmi_fixed_phase
     }
 }
 
 /// Returns the index of a day from that of the day before.
 pub fn index_on_day(day: u32, yesterday: f64, params: &Params, streams: &Streams) -> f64 {
-    let law = &params.economy;
+    let economy = &params.economy;
     let drawn = || {
-        let target = cycle_target(day, cycle_phase(law, streams), law);
+        let target = cycle_target(day, cycle_phase(economy, streams), economy);
         let z = streams.open(Part::Macro, [u64::from(day)]).standard_normal();
-        next_pmi(yesterday, target, z, law)
+        next_pmi(yesterday, target, z, economy)
     };
     params.replayed_series().and_then(|series| series.pmi(day)).unwrap_or_else(drawn)
 }
@@ -124,32 +126,34 @@ pub fn step(
     streams: &Streams,
     facts: &mut Facts,
 ) {
-    let law = &params.economy;
+    let macro_economy = &params.economy;
     if !held {
         economy.pmi = index_on_day(day, economy.pmi, params, streams);
     }
     economy.started = true;
     economy.history.push(economy.pmi);
-    let interval = law.macro_pmi_update_interval_days;
+    let interval = macro_economy.macro_pmi_update_interval_days;
     if economy.last_measurement.is_none_or(|last| day - last >= interval) {
-        measure(day, economy, law);
+        measure(day, economy, macro_economy);
     }
-    publish(day, economy, law, facts);
+    publish(day, economy, macro_economy, facts);
 }
 
-fn measure(day: u32, economy: &mut Economy, law: &MacroEconomy) {
+fn measure(day: u32, economy: &mut Economy, macro_economy: &MacroEconomy) {
     let mean = economy.history.iter().sum::<f64>() / economy.history.len() as f64;
-    let value = round_to(mean, law.published_pmi_decimals);
-    let before = economy.latest_measurement().map_or(law.macro_pmi_initial, |reading| reading.value);
-    let change = round_to(value - before, law.published_pmi_decimals);
-    let (trend, phase) = (Trend::from_index(value, law), Phase::from_reading(value, change, law));
+    let value = round_to(mean, macro_economy.published_pmi_decimals);
+    let before =
+        economy.latest_measurement().map_or(macro_economy.macro_pmi_initial, |reading| reading.value);
+    let change = round_to(value - before, macro_economy.published_pmi_decimals);
+    let (trend, phase) =
+        (Trend::from_index(value, macro_economy), Phase::from_reading(value, change, macro_economy));
     economy.waiting.push(Reading { measured_day: day, value, change, trend, phase });
     economy.history.clear();
     economy.last_measurement = Some(day);
 }
 
-fn publish(day: u32, economy: &mut Economy, law: &MacroEconomy, facts: &mut Facts) {
-    let delay = law.macro_pmi_publication_delay_days;
+fn publish(day: u32, economy: &mut Economy, macro_economy: &MacroEconomy, facts: &mut Facts) {
+    let delay = macro_economy.macro_pmi_publication_delay_days;
     let due = economy.waiting.partition_point(|reading| reading.measured_day + delay <= day);
     for reading in economy.waiting.drain(..due) {
         economy.published = Some(reading);
@@ -205,8 +209,16 @@ pub(crate) mod tests {
         {
             assert_eq!((*published, *reading), (day, Reading { measured_day, value, change, trend, phase }));
         }
-        let law = Params::bundled().economy;
-        assert_eq!(next_pmi(30.1, cycle_target(200, law.macro_pmi_fixed_phase, &law), -3.0, &law), 30.0);
+        let macro_economy = Params::bundled().economy;
+        assert_eq!(
+            next_pmi(
+                30.1,
+                cycle_target(200, macro_economy.macro_pmi_fixed_phase, &macro_economy),
+                -3.0,
+                &macro_economy
+            ),
+            30.0
+        );
     }
 
     #[test]
@@ -238,7 +250,7 @@ pub(crate) mod tests {
 
     #[test]
     fn readings_are_labeled_by_value_and_change() {
-        let law = Params::bundled().economy;
+        let economy = Params::bundled().economy;
         for (pmi, trend) in [
             (58.0, "strong_expansion"),
             (57.9, "expansion"),
@@ -246,7 +258,7 @@ pub(crate) mod tests {
             (47.9, "contraction"),
             (41.9, "severe_contraction"),
         ] {
-            assert_eq!(Trend::from_index(pmi, &law).id(), trend);
+            assert_eq!(Trend::from_index(pmi, &economy).id(), trend);
         }
         for (value, change, phase) in [
             (53.0, 0.0, "peak"),
@@ -256,7 +268,7 @@ pub(crate) mod tests {
             (47.0, 0.0, "trough"),
             (47.0, -1.0, "declining"),
         ] {
-            assert_eq!(Phase::from_reading(value, change, &law).id(), phase);
+            assert_eq!(Phase::from_reading(value, change, &economy).id(), phase);
         }
     }
 

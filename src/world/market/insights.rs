@@ -172,21 +172,23 @@ fn insights_with(
 ) -> Option<Insights> {
     let known = &market.knowledge[group];
     let snapshot = known.snapshot.filter(|_| known.level >= 1)?;
-    let (group_params, law) = (params.group(group), &params.group_research);
+    let (group_params, research) = (params.group(group), &params.group_research);
     let noise = params.level(known.level).noise;
     let mut estimate = |field: EstimatedField, truth: f64| truth * (1.0 + noise * draw(field));
-    let willingness_to_pay =
-        round_to(estimate(EstimatedField::WillingnessToPay, snapshot.c_max), law.willingness_to_pay_decimals);
+    let willingness_to_pay = round_to(
+        estimate(EstimatedField::WillingnessToPay, snapshot.c_max),
+        research.willingness_to_pay_decimals,
+    );
     let usage_volume = round_to(
         estimate(EstimatedField::UsageVolume, group_params.usage_demand_mean),
-        law.usage_volume_decimals,
+        research.usage_volume_decimals,
     );
     let quality_floor =
-        round_to(estimate(EstimatedField::QualityFloor, snapshot.q_min), law.quality_floor_decimals);
+        round_to(estimate(EstimatedField::QualityFloor, snapshot.q_min), research.quality_floor_decimals);
     let market_cap = truncate_to_at_least_one(estimate(EstimatedField::MarketCap, snapshot.market_cap));
     let growth = estimate(EstimatedField::GrowthRate, group_params.annual_cap_growth_rate).max(0.0);
     let lockin = estimate(EstimatedField::LockinAversion, group_params.lockin_penalty_mean).max(0.0);
-    let company = enterprise_insights(group_params, law.response_days_decimals, &mut estimate);
+    let company = enterprise_insights(group_params, research.response_days_decimals, &mut estimate);
     let links = |estimate: &mut dyn FnMut(EstimatedField, f64) -> f64,
                  field: fn(Group) -> EstimatedField,
                  least: f64,
@@ -196,13 +198,13 @@ fn insights_with(
         others.sort_by_key(|other| other.id());
         let shown = |other: &Group| {
             let value = estimate(field(*other), truth(*other)).max(0.0);
-            (*other, round_to(value, law.influence_decimals))
+            (*other, round_to(value, research.influence_decimals))
         };
         let mut values: Vec<(Group, f64)> = others.iter().map(shown).collect();
         values.sort_by(|left, right| right.1.total_cmp(&left.1));
         values
     };
-    let (network, reputation) = (law.network_display_min, law.reputation_display_min);
+    let (network, reputation) = (research.network_display_min, research.reputation_display_min);
     let referrals_to = links(&mut estimate, EstimatedField::ReferralTo, network, &|other| {
         params.referral_rate(group, other)
     });
@@ -226,8 +228,8 @@ fn insights_with(
         usage_volume,
         quality_floor,
         market_cap,
-        growth_rate: round_to(growth, law.growth_rate_decimals),
-        lockin_aversion: round_to(lockin, law.lockin_decimals),
+        growth_rate: round_to(growth, research.growth_rate_decimals),
+        lockin_aversion: round_to(lockin, research.lockin_decimals),
         enterprise: company,
         referrals_to,
         referrals_from,

@@ -88,10 +88,11 @@ impl LeadSample {
                 continue;
             }
             let curve_and_demand = (lead.curve, lead.demand);
-            let look = LeadEvaluation::new(offers, promotion, curve_and_demand, lead.misjudgement, params);
-            if look.is_accepted(params) {
-                let plan = look.choice.plan;
-                let bill = offers[plan].price - look.discount - ongoing[plan];
+            let evaluation =
+                LeadEvaluation::new(offers, promotion, curve_and_demand, lead.misjudgement, params);
+            if evaluation.is_accepted(params) {
+                let plan = evaluation.choice.plan;
+                let bill = offers[plan].price - evaluation.discount - ongoing[plan];
                 choices.choices_by_plan[plan] += 1;
                 choices.first_bills += bill.max(params.billing.effective_price_min);
             }

@@ -70,22 +70,22 @@ impl LeadFactors {
 }
 
 /// Returns the number of customers or accounts in a group's market on a day.
-pub fn market_cap(base: f64, annual_growth: f64, day: u32, law: &Leads) -> f64 {
-    base * (1.0 + annual_growth * f64::from(day) / law.days_per_year)
+pub fn market_cap(base: f64, annual_growth: f64, day: u32, leads: &Leads) -> f64 {
+    base * (1.0 + annual_growth * f64::from(day) / leads.days_per_year)
 }
 
 /// Returns the saturation factor: max(0, 1 - (N / cap)^2); 1 for an empty market or a market of size 0.
-pub fn saturation(subscribers: u32, cap: f64, law: &Leads) -> f64 {
+pub fn saturation(subscribers: u32, cap: f64, leads: &Leads) -> f64 {
     if subscribers == 0 || cap <= 0.0 {
         return 1.0;
     }
-    let taken = libm::pow(f64::from(subscribers) / cap, law.saturation_exponent);
-    (law.saturation_base - taken).max(law.saturation_floor)
+    let taken = libm::pow(f64::from(subscribers) / cap, leads.saturation_exponent);
+    (leads.saturation_base - taken).max(leads.saturation_floor)
 }
 
 /// Returns the leads from a budget before the factors: dollars times yield per 1,000 dollars.
-pub fn paid_leads(spend: f64, leads_per_unit: f64, law: &Leads) -> f64 {
-    spend * leads_per_unit / law.ad_spend_unit
+pub fn paid_leads(spend: f64, leads_per_unit: f64, leads: &Leads) -> f64 {
+    spend * leads_per_unit / leads.ad_spend_unit
 }
 
 /// Inputs of the leads of a day.
@@ -209,14 +209,14 @@ mod tests {
 
     #[test]
     fn saturation_decreases_with_market_share() {
-        let law = Params::bundled().leads;
-        assert_near(saturation(136_000, market_cap(272_000.0, 0.2, 0, &law), &law), 0.75);
-        assert_near(saturation(136_000, market_cap(272_000.0, 0.2, 250, &law), &law), 0.806611990129);
-        assert_near(saturation(600, market_cap(1190.0, 0.14, 100, &law), &law), 0.764215155299);
-        assert_eq!(saturation(140, market_cap(136.0, 0.1, 0, &law), &law), 0.0);
-        assert_eq!(saturation(0, 0.0, &law), 1.0);
-        assert_near(market_cap(272_000.0, 0.2, 365, &law), 326_400.0);
-        assert_near(market_cap(136.0, 0.1, 500, &law), 154.630136986301);
+        let leads = Params::bundled().leads;
+        assert_near(saturation(136_000, market_cap(272_000.0, 0.2, 0, &leads), &leads), 0.75);
+        assert_near(saturation(136_000, market_cap(272_000.0, 0.2, 250, &leads), &leads), 0.806611990129);
+        assert_near(saturation(600, market_cap(1190.0, 0.14, 100, &leads), &leads), 0.764215155299);
+        assert_eq!(saturation(140, market_cap(136.0, 0.1, 0, &leads), &leads), 0.0);
+        assert_eq!(saturation(0, 0.0, &leads), 1.0);
+        assert_near(market_cap(272_000.0, 0.2, 365, &leads), 326_400.0);
+        assert_near(market_cap(136.0, 0.1, 500, &leads), 154.630136986301);
     }
 
     #[test]

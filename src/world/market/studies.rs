@@ -6,8 +6,8 @@ use crate::identifiers::Group;
 use crate::params::{GroupResearch, Params};
 
 /// Returns the default target level of a study: the current level, but at least the lowest allowed.
-pub fn default_target(level: u8, law: &GroupResearch) -> u8 {
-    level.max(law.min_target_level)
+pub fn default_target(level: u8, research: &GroupResearch) -> u8 {
+    level.max(research.min_target_level)
 }
 
 impl Market {

@@ -23,26 +23,24 @@ pub fn week_end(day: u32, days_per_week: u32, total_days: u32) -> u32 {
 }
 
 /// Draws the surge of a day, if there is one.
-pub fn draw_surge(day: u32, law: &DemandSurge, streams: &Streams) -> Option<Surge> {
+pub fn draw_surge(day: u32, surge: &DemandSurge, streams: &Streams) -> Option<Surge> {
     let mut stream = streams.open(Part::Surge, [u64::from(day)]);
-    if !stream.bernoulli(law.probability) {
+    if !stream.bernoulli(surge.probability) {
         return None;
     }
-    let duration = stream.integer(law.duration_days_low, law.duration_days_high_exclusive - 1);
-    let multiplier = law.multiplier_base + law.multiplier_range * stream.uniform();
+    let duration = stream.integer(surge.duration_days_low, surge.duration_days_high_exclusive - 1);
+    let multiplier = surge.multiplier_base + surge.multiplier_range * stream.uniform();
     Some(Surge { day, end_day: day + duration, multiplier })
 }
 
 /// Returns the surge of a day: from the record if one is replayed, otherwise drawn.
 pub fn surge_on_day(day: u32, params: &Params, streams: &Streams) -> Option<Surge> {
-    let law = &params.demand_surge;
+    let demand_surge = &params.demand_surge;
     match params.replayed_series().and_then(|series| series.demand_surge(day)) {
-        None => draw_surge(day, law, streams),
-        Some(recorded_surge) => recorded_surge.filter(|_| law.probability > 0.0).map(|surge| Surge {
-            day,
-            end_day: day + surge.days,
-            multiplier: surge.multiplier,
-        }),
+        None => draw_surge(day, demand_surge, streams),
+        Some(recorded_surge) => recorded_surge
+            .filter(|_| demand_surge.probability > 0.0)
+            .map(|surge| Surge { day, end_day: day + surge.days, multiplier: surge.multiplier }),
     }
 }
 

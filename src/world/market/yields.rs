@@ -5,8 +5,8 @@ use crate::params::{Leads, Params};
 use crate::random::{Part, Streams};
 
 /// Returns the yield after a month; `z` is a standard normal draw. A yield of 0 stays 0.
-pub fn yield_after_month(value: f64, z: f64, law: &Leads) -> f64 {
-    (value + law.monthly_channel_noise_fraction * value * z).max(law.monthly_channel_value_min)
+pub fn yield_after_month(value: f64, z: f64, leads: &Leads) -> f64 {
+    (value + leads.monthly_channel_noise_fraction * value * z).max(leads.monthly_channel_value_min)
 }
 
 /// Varies all yields, including those of undiscovered groups, on days divisible by 30. Channels draw in
@@ -40,9 +40,9 @@ mod tests {
 
     #[test]
     fn yield_changes_by_a_fraction_above_its_minimum() {
-        let law = Params::bundled().leads;
-        assert!((yield_after_month(124.5849, 1.0, &law) - 130.814145).abs() < 1e-9);
-        assert_eq!(yield_after_month(124.5849, -25.0, &law), 0.0);
+        let leads = Params::bundled().leads;
+        assert!((yield_after_month(124.5849, 1.0, &leads) - 130.814145).abs() < 1e-9);
+        assert_eq!(yield_after_month(124.5849, -25.0, &leads), 0.0);
     }
 
     #[test]

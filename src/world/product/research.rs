@@ -20,9 +20,9 @@ pub fn project_boost(tier: &ResearchTier, z: f64, development: &Development) -> 
 pub fn draw_project(product: &Product, day: u32, tier: u8, params: &Params, streams: &Streams) -> Project {
     let earlier = product.research.iter().filter(|project| project.tier == tier).count() as u32;
     let mut stream = streams.open(Part::Research, [u64::from(tier), u64::from(earlier)]);
-    let law = params.research(tier);
-    let duration = project_duration(law, stream.standard_normal(), &params.development);
-    let boost = project_boost(law, stream.standard_normal(), &params.development);
+    let research_tier = params.research(tier);
+    let duration = project_duration(research_tier, stream.standard_normal(), &params.development);
+    let boost = project_boost(research_tier, stream.standard_normal(), &params.development);
     Project {
         tier,
         number: earlier + 1,

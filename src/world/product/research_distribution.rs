@@ -121,21 +121,21 @@ mod tests {
         let params = Params::bundled();
         for tier in [3, 10, 17] {
             let product = Product::initial(&params);
-            let law = params.research(tier);
+            let research_tier = params.research(tier);
             let drawn: Vec<_> =
                 (0..4000).map(|seed| draw_project(&product, 0, tier, &params, &Streams::new(seed))).collect();
             let share = |holds: &dyn Fn(&crate::events::Project) -> bool| {
                 drawn.iter().filter(|project| holds(project)).count() as f64 / 4000.0
             };
             for days in [30, 60, 150, 400] {
-                let value = share_done_within(days, law, &params.development);
+                let value = share_done_within(days, research_tier, &params.development);
                 assert!(
                     (share(&|project| project.due_day <= days) - value).abs() < 0.025,
                     "tier {tier}, {days}"
                 );
             }
             for part in [0.25, 0.5, 0.75] {
-                let gain = gain_quantile(part, law, &params.development);
+                let gain = gain_quantile(part, research_tier, &params.development);
                 assert!(
                     (share(&|project| project.boost <= gain) - part).abs() < 0.025,
                     "tier {tier}, {part}"

@@ -12,11 +12,11 @@ use crate::retention::plan_comparison::{compare_plans, drifted_curve};
 use crate::settings::Settings;
 
 /// Returns the monthly rate of involuntary churn from a standard normal draw; 0 if the group has none.
-pub fn involuntary_rate(mean: f64, std: f64, z: f64, law: &InvoluntaryChurn) -> f64 {
-    if !law.enable_involuntary_churn || (mean <= 0.0 && std <= 0.0) {
+pub fn involuntary_rate(mean: f64, std: f64, z: f64, churn: &InvoluntaryChurn) -> f64 {
+    if !churn.enable_involuntary_churn || (mean <= 0.0 && std <= 0.0) {
         return 0.0;
     }
-    (mean + std * z).clamp(law.mu_min, law.mu_max)
+    (mean + std * z).clamp(churn.mu_min, churn.mu_max)
 }
 
 /// Returns the rates of all groups in the month of a day; 0 for enterprises.
@@ -28,16 +28,16 @@ pub fn involuntary_rates(day: u32, params: &Params, streams: &Streams) -> ByGrou
 
 /// Returns the rate of a group in the month of a day.
 pub fn group_involuntary_rate(group: Group, day: u32, params: &Params, streams: &Streams) -> f64 {
-    let law = &params.involuntary_churn;
-    let month = day / law.month_days;
+    let churn = &params.involuntary_churn;
+    let month = day / churn.month_days;
     let given = params.replayed_series().and_then(|series| series.involuntary_rate(group, month));
-    if let Some(rate) = given.filter(|_| law.enable_involuntary_churn) {
+    if let Some(rate) = given.filter(|_| churn.enable_involuntary_churn) {
         return rate;
     }
     let keys = [group.index() as u64, u64::from(month)];
-    let z = streams.open_for_day(month * law.month_days, Part::InvoluntaryMu, keys).standard_normal();
+    let z = streams.open_for_day(month * churn.month_days, Part::InvoluntaryMu, keys).standard_normal();
     let group_params = params.group(group);
-    involuntary_rate(group_params.involuntary_churn_mean, group_params.involuntary_churn_std, z, law)
+    involuntary_rate(group_params.involuntary_churn_mean, group_params.involuntary_churn_std, z, churn)
 }
 
 /// An individual who cancelled today because no plan was acceptable.
@@ -309,12 +309,12 @@ mod tests {
 
     #[test]
     fn involuntary_rate_follows_its_draw_within_bounds() {
-        let law = Params::bundled().involuntary_churn;
+        let churn = Params::bundled().involuntary_churn;
         for (z, rate) in [(-5.0, 0.0), (1.0, 0.07), (80.0, 1.0)] {
-            assert!((involuntary_rate(0.055, 0.015, z, &law) - rate).abs() < 1e-12);
+            assert!((involuntary_rate(0.055, 0.015, z, &churn) - rate).abs() < 1e-12);
         }
-        assert_eq!(involuntary_rate(0.0, 0.0, 3.0, &law), 0.0);
-        let off = InvoluntaryChurn { enable_involuntary_churn: false, ..law };
+        assert_eq!(involuntary_rate(0.0, 0.0, 3.0, &churn), 0.0);
+        let off = InvoluntaryChurn { enable_involuntary_churn: false, ..churn };
         assert_eq!(involuntary_rate(0.055, 0.015, 1.0, &off), 0.0);
     }
 

@@ -14,8 +14,8 @@ use crate::support::company::{advance_week, advance_weeks};
 
 fn inspections(lines: &Trajectory) -> Vec<(String, String, u32)> {
     let look = |record: &Record| match record {
-        Record::Activity(Activity::Inspection(look)) => {
-            Some((look.what.clone(), look.which.clone(), look.shown_day))
+        Record::Activity(Activity::Inspection(inspection)) => {
+            Some((inspection.what.clone(), inspection.which.clone(), inspection.shown_day))
         }
         _ => None,
     };

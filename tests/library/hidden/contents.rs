@@ -249,12 +249,12 @@ fn hidden_threads_match_the_customer_view() {
             Cell::Integer(number) => number as u32,
             ref other => panic!("{other:?}"),
         };
-        let CustomerView::Enterprise(lens) =
+        let CustomerView::Enterprise(view) =
             session.inspect().customer_view(number(2), Some(number(0))).expect("a look")
         else {
             panic!("a company")
         };
-        let thread_day = lens
+        let thread_day = view
             .threads_of_day()
             .find(|enterprise_thread_day| enterprise_thread_day.thread == number(1))
             .expect("its thread");

@@ -179,7 +179,7 @@ impl Dialog for BranchesPage {
         DialogResponse::stay()
     }
 
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         let dialog_area =
             centered_rect(area, area.width.saturating_sub(2).min(140), area.height.saturating_sub(2));
         canvas.clear(dialog_area, Role::Text);
@@ -202,7 +202,7 @@ impl Dialog for BranchesPage {
             let row = Rect { y: page.y + page.height, height: below, ..inside };
             canvas.draw_text(row, problem, Role::Bad);
         }
-        canvas.draw_pane_keys(dialog_area, &look.hints(&self.hints()));
+        canvas.draw_pane_keys(dialog_area, &context.hints(&self.hints()));
     }
 }
 

@@ -24,7 +24,7 @@ const MIN_ROWS_FOR_PLAN_LINES: u16 = 12;
 const MIN_ROWS_FOR_LEGEND: u16 = 14;
 
 impl CurveDialog {
-    pub(super) fn draw_page(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    pub(super) fn draw_page(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         let dialog_area = centered_rect(
             area,
             area.width.saturating_sub(2).min(MAX_PAGE_WIDTH),
@@ -49,12 +49,12 @@ impl CurveDialog {
             }
             Some(Ok(opened)) => self.draw_explorer(canvas, inside, opened),
         }
-        canvas.draw_pane_keys(dialog_area, &self.key_hints(look));
+        canvas.draw_pane_keys(dialog_area, &self.key_hints(context));
     }
 
     /// The drag keys come first.
-    fn key_hints(&self, look: &ScreenContext<'_>) -> String {
-        let label = |action| look.keys.label(action).unwrap_or_default();
+    fn key_hints(&self, context: &ScreenContext<'_>) -> String {
+        let label = |action| context.keys.label(action).unwrap_or_default();
         let drags = match self.successful_exploration() {
             Some(_) => format!(
                 "{} {} price · {} {} quality · ",
@@ -65,7 +65,7 @@ impl CurveDialog {
             ),
             None => String::new(),
         };
-        drags + &look.hints(&self.hints())
+        drags + &context.hints(&self.hints())
     }
 
     fn draw_explorer(&self, canvas: &mut Canvas<'_>, area: Rect, opened: &CurveExploration) {

@@ -101,8 +101,8 @@ impl CurveDialog {
     }
 
     /// Requests the curve of the next or previous known group.
-    fn change_group(&mut self, forward: bool, look: &ScreenContext<'_>) -> DialogResponse {
-        let known = &look.company.observation.known_groups;
+    fn change_group(&mut self, forward: bool, context: &ScreenContext<'_>) -> DialogResponse {
+        let known = &context.company.observation.known_groups;
         let Some(at) = known.iter().position(|group| *group == self.group) else {
             return DialogResponse::stay();
         };
@@ -174,11 +174,11 @@ impl Dialog for CurveDialog {
         }
     }
 
-    fn handle_action(&mut self, action: Action, look: &ScreenContext<'_>) -> DialogResponse {
+    fn handle_action(&mut self, action: Action, context: &ScreenContext<'_>) -> DialogResponse {
         match action {
             Action::Close | Action::Cancel => return DialogResponse::close(),
             Action::NextCurve | Action::PreviousCurve => {
-                return self.change_group(action == Action::NextCurve, look);
+                return self.change_group(action == Action::NextCurve, context);
             }
             Action::Open | Action::Confirm => return self.open_price_form(),
             Action::Left => self.adjust_price(-1.0),
@@ -205,7 +205,7 @@ impl Dialog for CurveDialog {
         DialogResponse::stay()
     }
 
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
-        self.draw_page(canvas, area, look);
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
+        self.draw_page(canvas, area, context);
     }
 }

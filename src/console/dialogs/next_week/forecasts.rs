@@ -14,14 +14,14 @@ use novamind_tui::theme::Role;
 use novamind_worker::company::DisplayedCompany;
 
 impl NextWeekDialog {
-    pub(super) fn draw_forecasts(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
-        let (company, roomy) = (look.company, area.height >= 12);
+    pub(super) fn draw_forecasts(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
+        let (company, roomy) = (context.company, area.height >= 12);
         let question = format!(
             "Cash now: {}. Forecast it with ranges that contain the actual value 95 times in 100.",
             dollars(company.observation.cash)
         );
         let asked = wrap(&question, area.width as usize);
-        let below = self.naive_forecast_text(look, area.width as usize, roomy);
+        let below = self.naive_forecast_text(context, area.width as usize, roomy);
         let used = (asked.len() + 1 + HORIZON_LABELS.len() + below.len()) as u16;
         let mut rows = row_rects(area);
         for (line, row) in asked.iter().zip(rows.by_ref()) {
@@ -53,19 +53,19 @@ impl NextWeekDialog {
     /// Describes the projection, and its past coverage if the rules permit.
     fn naive_forecast_text(
         &self,
-        look: &ScreenContext<'_>,
+        context: &ScreenContext<'_>,
         width: usize,
         roomy: bool,
     ) -> Vec<(String, Role)> {
         let filled = self.filled_naively.as_flattened().contains(&true);
-        let fills = match (filled, look.keys.label(Action::FillNaiveForecasts)) {
+        let fills = match (filled, context.keys.label(Action::FillNaiveForecasts)) {
             (false, Some(key)) => format!("{key} fills empty cells"),
             _ => "marked as projection".to_owned(),
         };
         let text = format!("{fills}: the last four weeks continue at current costs");
         let mut lines: Vec<(String, Role)> =
             wrap(&text, width).into_iter().map(|line| (line, Role::Dim)).collect();
-        if filled && roomy && !look.company.is_baseline() {
+        if filled && roomy && !context.company.is_baseline() {
             let coverage = wrap(&ErrorBands::bundled().describe_coverage(), width);
             lines.extend(coverage.into_iter().map(|line| (line, Role::Dim)));
         }

@@ -125,7 +125,7 @@ impl NextWeekDialog {
         self.problem = Some(problem);
     }
 
-    fn next_step(&mut self, look: &ScreenContext<'_>) -> DialogResponse {
+    fn next_step(&mut self, context: &ScreenContext<'_>) -> DialogResponse {
         self.problem = None;
         match self.step {
             NextWeekStep::Review => self.step = NextWeekStep::Rationale,
@@ -133,7 +133,7 @@ impl NextWeekDialog {
                 self.problem = Some(RATIONALE_NEEDED.to_owned());
             }
             NextWeekStep::Rationale => self.step = NextWeekStep::Forecasts,
-            NextWeekStep::Forecasts => match self.parse_forecasts(look.company) {
+            NextWeekStep::Forecasts => match self.parse_forecasts(context.company) {
                 Ok(forecasts) => {
                     let rationale = self.rationale.text().trim().to_owned();
                     return DialogResponse::confirm_with(vec![Effect::Request(Request::Advance {
@@ -303,12 +303,12 @@ impl Dialog for NextWeekDialog {
         hints
     }
 
-    fn handle_action(&mut self, action: Action, look: &ScreenContext<'_>) -> DialogResponse {
+    fn handle_action(&mut self, action: Action, context: &ScreenContext<'_>) -> DialogResponse {
         match action {
-            Action::NextStep if !self.is_typing => return self.next_step(look),
+            Action::NextStep if !self.is_typing => return self.next_step(context),
             Action::NextStep => {
                 self.is_typing = false;
-                return self.next_step(look);
+                return self.next_step(context);
             }
             Action::PreviousStep => {
                 self.is_typing = false;
@@ -316,17 +316,17 @@ impl Dialog for NextWeekDialog {
             }
             Action::Close | Action::LeaveEditor => return DialogResponse::close(),
             Action::FillRationale if self.step == NextWeekStep::Rationale => {
-                self.fill_rationale(look.company)
+                self.fill_rationale(context.company)
             }
             Action::FillNaiveForecasts if self.step == NextWeekStep::Forecasts => {
-                self.fill_naive_forecasts(look.company)
+                self.fill_naive_forecasts(context.company)
             }
             // Without new decisions, one key fills everything and goes to the last step.
             Action::FillNaiveForecasts
-                if self.step == NextWeekStep::Review && !look.company.is_baseline() =>
+                if self.step == NextWeekStep::Review && !context.company.is_baseline() =>
             {
-                self.fill_rationale(look.company);
-                self.fill_naive_forecasts(look.company);
+                self.fill_rationale(context.company);
+                self.fill_naive_forecasts(context.company);
                 self.step = NextWeekStep::Forecasts;
             }
             Action::FillNaiveForecasts if self.step == NextWeekStep::Review => {
@@ -344,17 +344,17 @@ impl Dialog for NextWeekDialog {
             }
             other if self.step == NextWeekStep::Forecasts => self.move_focus(other),
             other if self.step == NextWeekStep::Review => {
-                self.review.handle_scroll(other, look.page_rows as usize)
+                self.review.handle_scroll(other, context.page_rows as usize)
             }
             _ => {}
         }
         DialogResponse::stay()
     }
 
-    fn handle_key(&mut self, key: &KeyEvent, look: &ScreenContext<'_>) -> DialogResponse {
+    fn handle_key(&mut self, key: &KeyEvent, context: &ScreenContext<'_>) -> DialogResponse {
         match self.step {
             NextWeekStep::Rationale if key.code == crossterm::event::KeyCode::Tab => {
-                return self.next_step(look);
+                return self.next_step(context);
             }
             NextWeekStep::Rationale => {
                 self.rationale.handle_key(key);
@@ -394,7 +394,7 @@ impl Dialog for NextWeekDialog {
         DialogResponse::stay()
     }
 
-    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         let dialog_area = centered_rect(area, 106.min(area.width), 26.min(area.height));
         canvas.clear(dialog_area, Role::Text);
         let mark = |step: NextWeekStep, name: &str| match (self.step as u8).cmp(&(step as u8)) {
@@ -402,27 +402,27 @@ impl Dialog for NextWeekDialog {
             std::cmp::Ordering::Equal => format!("[{name}]"),
             std::cmp::Ordering::Less => name.to_owned(),
         };
-        let days = look.company.next_decision_day - look.company.observation.day;
+        let days = context.company.next_decision_day - context.company.observation.day;
         let title = format!(
             "Next week · {} · {} · {}",
             mark(NextWeekStep::Review, "1 review"),
             mark(NextWeekStep::Rationale, "2 rationale"),
             mark(NextWeekStep::Forecasts, "3 forecasts")
         );
-        let note = format!("{days} days, to day {}", look.company.next_decision_day);
+        let note = format!("{days} days, to day {}", context.company.next_decision_day);
         let inside = canvas.draw_pane_frame(dialog_area, &title, &note, true);
         let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
         let body = Rect { height: inside.height.saturating_sub(1), ..inside };
         match self.step {
-            NextWeekStep::Review => self.review.draw(canvas, body, look.company, &self.tools_with_drafts),
-            NextWeekStep::Rationale => self.draw_rationale(canvas, body, look.company),
-            NextWeekStep::Forecasts => self.draw_forecasts(canvas, body, look),
+            NextWeekStep::Review => self.review.draw(canvas, body, context.company, &self.tools_with_drafts),
+            NextWeekStep::Rationale => self.draw_rationale(canvas, body, context.company),
+            NextWeekStep::Forecasts => self.draw_forecasts(canvas, body, context),
         }
         if let Some(problem) = &self.problem {
             let row = Rect { y: body.bottom(), height: 1, ..body };
             canvas.draw_text(row, &format!("! {problem}"), Role::Bad);
         }
-        canvas.draw_pane_keys(dialog_area, &look.hints(&self.hints()));
+        canvas.draw_pane_keys(dialog_area, &context.hints(&self.hints()));
     }
 }
 

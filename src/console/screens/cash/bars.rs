@@ -31,12 +31,12 @@ impl Pane<Cash> for BarsPane {
         cash.figure_of(cash.selected_subject_in_week())
     }
 
-    fn handle_action(&self, cash: &mut Cash, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_action(&self, cash: &mut Cash, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         match action {
             Action::Open => return ledger_rows(cash.selected_subject_in_week()),
             // Up and down select the category to compare.
             action if !cash.handle_week_action(action) => {
-                cash.table.handle_action(action, look.page_rows);
+                cash.table.handle_action(action, context.page_rows);
             }
             _ => {}
         }
@@ -48,7 +48,7 @@ impl Pane<Cash> for BarsPane {
         Vec::new()
     }
 
-    fn border(&self, cash: &Cash, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
+    fn border(&self, cash: &Cash, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
         let week = cash.week();
         let note = cash.subject().map_or(String::new(), |subject| {
             let amount = subject.amount(&cash.ledger.week(week));
@@ -57,23 +57,23 @@ impl Pane<Cash> for BarsPane {
         PaneBorder {
             title: "Income and costs by week".to_owned(),
             note,
-            keys: week_keys(look),
+            keys: week_keys(context),
             ..PaneBorder::default()
         }
     }
 
-    fn draw(&self, cash: &Cash, canvas: &mut Canvas<'_>, seat: PanePlacement, _: &ScreenContext<'_>) {
-        draw(canvas, seat.area, &cash.ledger, cash.week(), seat.index);
+    fn draw(&self, cash: &Cash, canvas: &mut Canvas<'_>, placement: PanePlacement, _: &ScreenContext<'_>) {
+        draw(canvas, placement.area, &cash.ledger, cash.week(), placement.index);
     }
 }
 
 /// Draws the bars. `pane` is the index for clicks, whose rows are the weeks.
-fn draw(canvas: &mut Canvas<'_>, area: Rect, books: &WeeklyLedger, selected: u32, pane: usize) {
+fn draw(canvas: &mut Canvas<'_>, area: Rect, ledger: &WeeklyLedger, selected: u32, pane: usize) {
     if area.width < AXIS_WIDTH + 2 * MIN_WEEK_WIDTH || area.height < 5 {
         return;
     }
     let room = area.width - AXIS_WIDTH;
-    let weeks = books.last_weeks((room / MIN_WEEK_WIDTH) as usize);
+    let weeks = ledger.last_weeks((room / MIN_WEEK_WIDTH) as usize);
     if weeks.is_empty() {
         canvas.draw_text(area, canvas.empty_chart_text, Role::Dim);
         return;
@@ -82,7 +82,7 @@ fn draw(canvas: &mut Canvas<'_>, area: Rect, books: &WeeklyLedger, selected: u32
     let coloured = has_category_colors(canvas);
     let sign =
         |category: usize| if coloured { "█".to_owned() } else { CATEGORIES[category].glyph.to_string() };
-    let legend = legend_lines(books, area.width as usize);
+    let legend = legend_lines(ledger, area.width as usize);
     let legend_rows = (legend.len() as u16).min(area.height.saturating_sub(6) / 2);
     let nets = u16::from(width >= 7);
     let height = area.height - legend_rows - 1 - nets;
@@ -266,11 +266,11 @@ fn draw_net_label(canvas: &mut Canvas<'_>, place: Rect, amounts: &Amounts) {
 }
 
 /// Returns the lines of the legend: categories with entries, and their text.
-fn legend_lines(books: &WeeklyLedger, width: usize) -> Vec<Vec<(usize, String)>> {
+fn legend_lines(ledger: &WeeklyLedger, width: usize) -> Vec<Vec<(usize, String)>> {
     let mut lines: Vec<Vec<(usize, String)>> = Vec::new();
     let mut used = width;
     for (at, category) in CATEGORIES.iter().enumerate() {
-        if !books.is_used(at) {
+        if !ledger.is_used(at) {
             continue;
         }
         // The glyph of the category is drawn over the first column.
@@ -320,23 +320,23 @@ mod tests {
 
     fn draw_bars_to_buffer(theme: &str, marker: Marker) -> ratatui::buffer::Buffer {
         use crate::test_kit::played_session;
-        let books = WeeklyLedger::from_company(&novamind_worker::company::DisplayedCompany::from_session(&played_session(6)));
+        let ledger = WeeklyLedger::from_company(&novamind_worker::company::DisplayedCompany::from_session(&played_session(6)));
         let theme = novamind_tui::theme::Theme::bundled(theme);
         let theme = theme.expect("a theme");
         let area = Rect::new(0, 0, 60, 20);
         let mut buffer = ratatui::buffer::Buffer::empty(area);
         let mut canvas = Canvas::new(&mut buffer, &theme);
         canvas.marker = marker;
-        draw(&mut canvas, area, &books, 6, 0);
+        draw(&mut canvas, area, &ledger, 6, 0);
         buffer
     }
 
     #[test]
     fn net_is_drawn_below_its_week_with_a_sign() {
-        let books = WeeklyLedger::from_company(&novamind_worker::company::DisplayedCompany::from_session(&crate::test_kit::played_session(6)));
+        let ledger = WeeklyLedger::from_company(&novamind_worker::company::DisplayedCompany::from_session(&crate::test_kit::played_session(6)));
         let picture: String =
             draw_bars_to_buffer("dark", Marker::Braille).content.iter().map(|cell| cell.symbol().to_owned()).collect();
-        for (week, amounts) in books.last_weeks(6) {
+        for (week, amounts) in ledger.last_weeks(6) {
             let net: f64 = amounts.iter().sum();
             let sign = if net < 0.0 { "-" } else { "+" };
             let text = format!("{sign}{}", novamind_base::formatting::compact_number(net.abs()));

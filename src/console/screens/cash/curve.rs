@@ -37,8 +37,8 @@ impl Pane<Cash> for CurvePane {
         Vec::new()
     }
 
-    fn border(&self, cash: &Cash, area: Rect, look: &ScreenContext<'_>) -> PaneBorder {
-        let (title, company, week) = ("Cash", look.company, cash.week());
+    fn border(&self, cash: &Cash, area: Rect, context: &ScreenContext<'_>) -> PaneBorder {
+        let (title, company, week) = ("Cash", context.company, cash.week());
         let note = match cash_before_and_after(company, week) {
             Some((before, after)) => {
                 let change = after - before;
@@ -46,20 +46,20 @@ impl Pane<Cash> for CurvePane {
             }
             None => summary(&company.cash_by_day, &short_dollars, note_width(area, title)),
         };
-        PaneBorder { title: title.to_owned(), note, keys: week_keys(look), ..PaneBorder::default() }
+        PaneBorder { title: title.to_owned(), note, keys: week_keys(context), ..PaneBorder::default() }
     }
 
     /// Draws the curve, and the change of every week below it if it fits.
-    fn draw(&self, cash: &Cash, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
-        let (company, week) = (look.company, cash.week());
-        let changes = if seat.area.height >= 11 { seat.area.height / 3 } else { 0 };
+    fn draw(&self, cash: &Cash, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
+        let (company, week) = (context.company, cash.week());
+        let changes = if placement.area.height >= 11 { placement.area.height / 3 } else { 0 };
         let [above, below] =
-            Layout::vertical([Constraint::Min(0), Constraint::Length(changes)]).areas(seat.area);
+            Layout::vertical([Constraint::Min(0), Constraint::Length(changes)]).areas(placement.area);
         let cash = &company.cash_by_day;
         let plot = Plot {
             curves: &[Curve::from_values(cash, Role::Series(0))],
             band: None,
-            marked_x: seat.focused.then(|| f64::from(days_of_week(week).1)),
+            marked_x: placement.focused.then(|| f64::from(days_of_week(week).1)),
             x: &XAxis { format: &|day| format!("day {day:.0}"), required_values: &[] },
             y: &YAxis { unit: AxisUnit::Dollars, required_values: zero_if_near(cash.iter().copied()) },
         };

@@ -27,11 +27,11 @@ impl Pane<Cash> for ForecastsPane {
         cash.forecasts.figure()
     }
 
-    fn handle_action(&self, cash: &mut Cash, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_action(&self, cash: &mut Cash, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         if action == Action::Open {
             return vec![Effect::Do(Action::Journal)];
         }
-        cash.forecasts.handle_action(action, look.page_rows);
+        cash.forecasts.handle_action(action, context.page_rows);
         Vec::new()
     }
 
@@ -40,14 +40,14 @@ impl Pane<Cash> for ForecastsPane {
         Vec::new()
     }
 
-    fn border(&self, cash: &Cash, area: Rect, look: &ScreenContext<'_>) -> PaneBorder {
-        let label = |action| look.keys.label(action).unwrap_or_default();
+    fn border(&self, cash: &Cash, area: Rect, context: &ScreenContext<'_>) -> PaneBorder {
+        let label = |action| context.keys.label(action).unwrap_or_default();
         let horizons = format!("{} {} other horizons", label(Action::Left), label(Action::Right));
         let weeks = cash.forecasts.horizon() / 7;
         let title = format!("Forecasts {weeks} week{} ahead", if weeks == 1 { "" } else { "s" });
         // Do not show a figure that is cut off.
         let room = note_width(area, &title);
-        let scores = cash.forecasts.score_texts(look.company);
+        let scores = cash.forecasts.score_texts(context.company);
         let note = scores.into_iter().find(|note| note.width() <= room).unwrap_or_default();
         PaneBorder {
             title,
@@ -57,20 +57,20 @@ impl Pane<Cash> for ForecastsPane {
         }
     }
 
-    fn draw(&self, cash: &Cash, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
-        let (outlook, inside) = (&cash.forecasts, seat.area);
+    fn draw(&self, cash: &Cash, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
+        let (outlook, inside) = (&cash.forecasts, placement.area);
         if outlook.forecasts.is_empty() {
             let text = format!(
                 "No forecasts yet. You file four before each week ({}).",
-                look.hint(Action::NextWeek)
+                context.hint(Action::NextWeek)
             );
             canvas.draw_text(inside, &text, Role::Dim);
             return;
         }
         let list = if inside.height >= 13 { (inside.height / 3).max(5) } else { inside.height };
         let [above, below] = Layout::vertical([Constraint::Min(0), Constraint::Length(list)]).areas(inside);
-        outlook.draw_curve(canvas, above, look.company);
-        outlook.table.draw(canvas, below, seat.focused, seat.index);
+        outlook.draw_curve(canvas, above, context.company);
+        outlook.table.draw(canvas, below, placement.focused, placement.index);
     }
 }
 

@@ -34,34 +34,34 @@ impl Pane<Cash> for LedgerPane {
         cash.figure_of(selected(cash))
     }
 
-    fn handle_action(&self, cash: &mut Cash, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_action(&self, cash: &mut Cash, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         match action {
             Action::Open => return ledger_rows(selected(cash)),
             Action::Close if cash.selected_week.is_some() => {
                 cash.handle_week_action(action);
             }
             action => {
-                cash.table.handle_action(action, look.page_rows);
+                cash.table.handle_action(action, context.page_rows);
             }
         }
         Vec::new()
     }
 
-    fn border(&self, cash: &Cash, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
-        let open = look.keys.label(Action::Open).unwrap_or_default();
+    fn border(&self, cash: &Cash, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
+        let open = context.keys.label(Action::Open).unwrap_or_default();
         PaneBorder {
-            title: format!("Ledger of {}", week_label(cash.week(), look.company)),
+            title: format!("Ledger of {}", week_label(cash.week(), context.company)),
             note: match cash.table.summary() {
-                note if note.is_empty() => format!("{} now", dollars(look.company.observation.cash)),
+                note if note.is_empty() => format!("{} now", dollars(context.company.observation.cash)),
                 note => note,
             },
-            keys: format!("{open} ledger rows · {}", look.hint(Action::Sort)),
+            keys: format!("{open} ledger rows · {}", context.hint(Action::Sort)),
             ..PaneBorder::default()
         }
     }
 
-    fn draw(&self, cash: &Cash, canvas: &mut Canvas<'_>, seat: PanePlacement, _: &ScreenContext<'_>) {
-        cash.table.draw(canvas, seat.area, seat.focused, seat.index);
+    fn draw(&self, cash: &Cash, canvas: &mut Canvas<'_>, placement: PanePlacement, _: &ScreenContext<'_>) {
+        cash.table.draw(canvas, placement.area, placement.focused, placement.index);
     }
 }
 
@@ -85,7 +85,7 @@ fn week_label(week: u32, company: &DisplayedCompany) -> String {
 }
 
 /// Returns the table of a week: columns, subjects of the rows, rows.
-pub fn table_of(books: &WeeklyLedger, week: u32) -> (Vec<TableColumn>, Vec<LedgerSubject>, Vec<Vec<TableCell>>) {
+pub fn table_of(ledger: &WeeklyLedger, week: u32) -> (Vec<TableColumn>, Vec<LedgerSubject>, Vec<Vec<TableCell>>) {
     let before = week.saturating_sub(1);
     let columns = vec![
         TableColumn::text("category").with_max_width(14),
@@ -99,11 +99,11 @@ pub fn table_of(books: &WeeklyLedger, week: u32) -> (Vec<TableColumn>, Vec<Ledge
     // Sums come before their parts, because small windows cut the end.
     let mut subjects = vec![LedgerSubject::Net];
     for income in [true, false] {
-        let used = |at: &usize| CATEGORIES[*at].is_income == income && books.is_used(*at);
+        let used = |at: &usize| CATEGORIES[*at].is_income == income && ledger.is_used(*at);
         subjects.push(if income { LedgerSubject::Income } else { LedgerSubject::Costs });
         subjects.extend((0..CATEGORIES.len()).filter(used).map(LedgerSubject::Category));
     }
-    let all = [books.week(week), books.week(before), books.mean_of_four(week), books.total()];
+    let all = [ledger.week(week), ledger.week(before), ledger.mean_of_four(week), ledger.total()];
     let rows = subjects.iter().map(|subject| row_of(subject, &all, week)).collect();
     (columns, subjects, rows)
 }

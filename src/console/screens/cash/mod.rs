@@ -131,8 +131,8 @@ fn ledger_rows(selected: Option<SelectedSubject>) -> Vec<Effect> {
     selected.map(|(subject, weeks)| Effect::RunSql(statement(&subject, weeks))).into_iter().collect()
 }
 
-fn week_keys(look: &ScreenContext<'_>) -> String {
-    let label = |action| look.keys.label(action).unwrap_or_default();
+fn week_keys(context: &ScreenContext<'_>) -> String {
+    let label = |action| context.keys.label(action).unwrap_or_default();
     let keys = format!("{} {} another week", label(Action::Left), label(Action::Right));
     format!("{keys} · {} ledger rows", label(Action::Open))
 }
@@ -142,10 +142,10 @@ impl ScreenState for Cash {
         usize::from(self.selected_week.is_some())
     }
 
-    fn on_company_change(&mut self, look: &ScreenContext<'_>) {
-        self.ledger = WeeklyLedger::from_company(look.company);
+    fn on_company_change(&mut self, context: &ScreenContext<'_>) {
+        self.ledger = WeeklyLedger::from_company(context.company);
         self.rebuild_table();
-        self.forecasts.update(look.company);
+        self.forecasts.update(context.company);
     }
 }
 
@@ -174,9 +174,9 @@ impl PaneScreen for Cash {
         self.focus = name;
     }
 
-    fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         if area.width >= 104 && area.height >= 30 {
-            return self.draw_large_layout(canvas, area, look);
+            return self.draw_large_layout(canvas, area, context);
         }
         // In small windows the focused pane gets the larger part.
         let rows = self.table.rows().len() as u16 + 3;
@@ -187,14 +187,14 @@ impl PaneScreen for Cash {
             other => (area.height / 3, other),
         };
         let [table, rest] = Layout::vertical([Constraint::Length(upper), Constraint::Min(0)]).areas(area);
-        draw_pane(self, CashPane::Ledger, canvas, table, look);
-        draw_pane(self, below, canvas, rest, look);
+        draw_pane(self, CashPane::Ledger, canvas, table, context);
+        draw_pane(self, below, canvas, rest, context);
     }
 }
 
 impl Cash {
     /// Draws the ledger, waterfall and curve above the weeks and forecasts.
-    fn draw_large_layout(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    fn draw_large_layout(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         let rows = self.table.rows().len() as u16 + 3;
         let [top, below] = Layout::vertical([
             Constraint::Length(rows.clamp(10, area.height - area.height / 2)),
@@ -206,17 +206,17 @@ impl Cash {
         };
         let [table, right_area] = halves(top, 82.min(area.width * 2 / 3));
         let [weeks, forecasts] = halves(below, (area.width * 11 / 20).max(60));
-        draw_pane(self, CashPane::Ledger, canvas, table, look);
+        draw_pane(self, CashPane::Ledger, canvas, table, context);
         if area.width >= MIN_WIDE_WIDTH {
             let [steps, curve] = halves(right_area, right_area.width / 2);
-            draw_pane(self, CashPane::Waterfall, canvas, steps, look);
-            draw_pane(self, CashPane::Curve, canvas, curve, look);
+            draw_pane(self, CashPane::Waterfall, canvas, steps, context);
+            draw_pane(self, CashPane::Curve, canvas, curve, context);
         } else {
             // The curve replaces the waterfall while it has the focus.
             let front = if self.focus == CashPane::Curve { CashPane::Curve } else { CashPane::Waterfall };
-            draw_pane(self, front, canvas, right_area, look);
+            draw_pane(self, front, canvas, right_area, context);
         }
-        draw_pane(self, CashPane::Weeks, canvas, weeks, look);
-        draw_pane(self, CashPane::Forecasts, canvas, forecasts, look);
+        draw_pane(self, CashPane::Weeks, canvas, weeks, context);
+        draw_pane(self, CashPane::Forecasts, canvas, forecasts, context);
     }
 }

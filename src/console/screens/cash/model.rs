@@ -160,9 +160,9 @@ pub struct CashStep {
 
 /// Returns the steps of a week in at most `most` rows: income first, then costs by size; the smallest costs
 /// are combined.
-pub fn cash_steps(books: &WeeklyLedger, company: &DisplayedCompany, week: u32, most: usize) -> Vec<CashStep> {
+pub fn cash_steps(ledger: &WeeklyLedger, company: &DisplayedCompany, week: u32, most: usize) -> Vec<CashStep> {
     let Some((before, after)) = cash_before_and_after(company, week) else { return Vec::new() };
-    let amounts = books.week(week);
+    let amounts = ledger.week(week);
     let mut moved: Vec<usize> = (0..CATEGORY_COUNT).filter(|at| amounts[*at] != 0.0).collect();
     moved.sort_by(|left, right| {
         let order = |at: &usize| (!CATEGORIES[*at].is_income, -amounts[*at].abs());

@@ -8,7 +8,7 @@ use novamind_session::{WEEK_OF_ENTRY_SQL, filed_forecasts};
 #[test]
 fn weekly_ledger_agrees_with_the_database() {
     let (mut session, company, screen) = played_screen::<Cash>(5);
-    let books = &screen.ledger;
+    let weekly_ledger = &screen.ledger;
     let sql = format!("SELECT {WEEK_OF_ENTRY_SQL}, category, sum(amount) FROM ledger GROUP BY 1, 2");
     let mut entries = 0;
     for row in session.query(&sql).expect("an answer").rows {
@@ -21,12 +21,12 @@ fn weekly_ledger_agrees_with_the_database() {
             assert_eq!((category.as_str(), *amount), ("initial_funding", company.observation.starting_cash));
             continue;
         }
-        let booked = books.week(*week as u32)[at];
+        let booked = weekly_ledger.week(*week as u32)[at];
         assert!((booked - amount).abs() < 0.02, "week {week}, {category}: {booked} and {amount}");
         entries += 1;
     }
     assert!(entries > 20);
-    let earned: f64 = books.total().iter().sum();
+    let earned: f64 = weekly_ledger.total().iter().sum();
     let change = company.observation.cash - company.observation.starting_cash;
     assert!((earned - change).abs() < 0.1, "the opening cash is not income: {earned}, {change}");
 }
@@ -34,16 +34,16 @@ fn weekly_ledger_agrees_with_the_database() {
 #[test]
 fn cash_steps_end_at_the_cash_for_any_row_count() {
     let (_, company, screen) = played_screen::<Cash>(3);
-    let books = &screen.ledger;
+    let ledger = &screen.ledger;
     for room in 0..20 {
-        let steps = cash_steps(books, &company, 2, room);
+        let steps = cash_steps(ledger, &company, 2, room);
         assert!(steps.len() <= room.max(3), "{room}: {}", steps.len());
         let (before, after) = cash_before_and_after(&company, 2).expect("two weeks");
         assert_eq!((steps[0].to, steps[steps.len() - 1].to), (before, after));
         let last = &steps[steps.len() - 2];
         assert!((last.to - after).abs() < 0.02, "{room}: {last:?}");
     }
-    assert!(cash_steps(books, &company, 0, 9).is_empty());
+    assert!(cash_steps(ledger, &company, 0, 9).is_empty());
 }
 
 #[test]
@@ -70,16 +70,16 @@ fn opening_a_category_queries_its_ledger_rows() {
 fn ledger_figures_equal_the_sum_of_their_rows() {
     let (mut session, company, mut screen) = played_screen::<Cash>(6);
     let keys = crate::keys::KeyBindings::bundled();
-    let look = ScreenContext { company: &company, keys: &keys, page_rows: 5 };
-    let books = screen.ledger.clone();
+    let context = ScreenContext { company: &company, keys: &keys, page_rows: 5 };
+    let ledger = screen.ledger.clone();
     for row in 0..screen.subjects.len() {
         let subject = screen.subjects[row];
-        for (column, amounts) in [(1, books.week(6)), (3, books.week(5)), (5, books.total())] {
+        for (column, amounts) in [(1, ledger.week(6)), (3, ledger.week(5)), (5, ledger.total())] {
             assert_eq!((screen.table.selected(), screen.table.selected_column()), (Some(row), 1));
             for _ in 1..column {
                 handle_action(&mut screen, Action::Right, &company);
             }
-            let figure = screen.figure(&look).expect("a figure");
+            let figure = screen.figure(&context).expect("a figure");
             let sql = format!("SELECT coalesce(sum(amount), 0.0) FROM ({})", figure.sql.expect("rows"));
             let rows = session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
             let made = novamind_database::number_at(&rows.rows[0], 0);
@@ -97,8 +97,8 @@ fn ledger_figures_equal_the_sum_of_their_rows() {
 fn every_pane_returns_its_selected_figure() {
     let (mut session, company, mut screen) = played_screen::<Cash>(5);
     let keys = crate::keys::KeyBindings::bundled();
-    let look = ScreenContext { company: &company, keys: &keys, page_rows: 5 };
-    let title = |screen: &Cash| screen.figure(&look).expect("a figure").title;
+    let context = ScreenContext { company: &company, keys: &keys, page_rows: 5 };
+    let title = |screen: &Cash| screen.figure(&context).expect("a figure").title;
     screen.set_focused_pane(CashPane::Waterfall);
     assert_eq!(title(&screen), "net of week 5");
     handle_action(&mut screen, Action::Down, &company);
@@ -114,7 +114,7 @@ fn every_pane_returns_its_selected_figure() {
     assert_eq!(title(&screen), "income of week 4");
     screen.set_focused_pane(CashPane::Forecasts);
     assert_eq!(title(&screen), "forecast of day 28 for day 35");
-    let sql = screen.figure(&look).and_then(|figure| figure.sql).expect("rows");
+    let sql = screen.figure(&context).and_then(|figure| figure.sql).expect("rows");
     assert_eq!(session.query(&sql).expect("an answer").rows.len(), 1);
 }
 
@@ -127,11 +127,11 @@ fn forecasts_are_scored_once_due() {
 
 #[test]
 fn mean_covers_at_most_four_weeks() {
-    let books = WeeklyLedger::from_company(&DisplayedCompany::from_session(&played_session(6)));
+    let ledger = WeeklyLedger::from_company(&DisplayedCompany::from_session(&played_session(6)));
     for (week, weeks) in [(6, vec![3, 4, 5, 6]), (4, vec![1, 2, 3, 4]), (2, vec![1, 2]), (1, vec![1])] {
-        let mean = books.mean_of_four(week);
+        let mean = ledger.mean_of_four(week);
         for (category, mean) in mean.iter().enumerate() {
-            let sum: f64 = weeks.iter().map(|week| books.week(*week)[category]).sum();
+            let sum: f64 = weeks.iter().map(|week| ledger.week(*week)[category]).sum();
             assert!((mean - sum / weeks.len() as f64).abs() < 1e-9, "category {category} of week {week}");
         }
     }

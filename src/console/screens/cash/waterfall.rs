@@ -22,14 +22,14 @@ impl Pane<Cash> for WaterfallPane {
         vec![Action::Left, Action::Right, Action::Open]
     }
 
-    fn figure(&self, cash: &Cash, look: &ScreenContext<'_>) -> Option<Figure> {
-        cash.figure_of(selected(cash, look.company))
+    fn figure(&self, cash: &Cash, context: &ScreenContext<'_>) -> Option<Figure> {
+        cash.figure_of(selected(cash, context.company))
     }
 
-    fn handle_action(&self, cash: &mut Cash, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
-        let last = cash.steps(look.company).len().saturating_sub(1);
+    fn handle_action(&self, cash: &mut Cash, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
+        let last = cash.steps(context.company).len().saturating_sub(1);
         match action {
-            Action::Open => return ledger_rows(selected(cash, look.company)),
+            Action::Open => return ledger_rows(selected(cash, context.company)),
             Action::Left | Action::Right => {
                 cash.handle_week_action(action);
             }
@@ -41,7 +41,7 @@ impl Pane<Cash> for WaterfallPane {
             Action::First => cash.selected_step = 0,
             Action::Last => cash.selected_step = last,
             action => {
-                cash.table.handle_action(action, look.page_rows);
+                cash.table.handle_action(action, context.page_rows);
             }
         }
         Vec::new()
@@ -52,24 +52,24 @@ impl Pane<Cash> for WaterfallPane {
         Vec::new()
     }
 
-    fn border(&self, cash: &Cash, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
+    fn border(&self, cash: &Cash, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
         let week = cash.week();
-        let change = cash_before_and_after(look.company, week).map_or(0.0, |(before, after)| after - before);
+        let change = cash_before_and_after(context.company, week).map_or(0.0, |(before, after)| after - before);
         PaneBorder {
             title: format!("From week {} to {week}", week.saturating_sub(1)),
             note: format_change(change, &dollars(change.abs())),
-            keys: week_keys(look),
+            keys: week_keys(context),
             ..PaneBorder::default()
         }
     }
 
-    fn draw(&self, cash: &Cash, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
+    fn draw(&self, cash: &Cash, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
         // Without the focus the pane shows the whole waterfall with small steps combined; with it, every step
         // can be selected.
-        let most = if seat.focused { usize::MAX } else { seat.area.height.saturating_sub(1) as usize };
-        let steps = cash_steps(&cash.ledger, look.company, cash.week(), most);
-        let selected = seat.focused.then(|| cash.selected_step.min(steps.len().saturating_sub(1)));
-        draw(canvas, seat.area, &steps, selected, seat.index);
+        let most = if placement.focused { usize::MAX } else { placement.area.height.saturating_sub(1) as usize };
+        let steps = cash_steps(&cash.ledger, context.company, cash.week(), most);
+        let selected = placement.focused.then(|| cash.selected_step.min(steps.len().saturating_sub(1)));
+        draw(canvas, placement.area, &steps, selected, placement.index);
     }
 }
 

@@ -25,26 +25,26 @@ impl Pane<Customers> for ChannelMapPane {
         vec![Action::Open]
     }
 
-    fn figure(&self, customers: &Customers, look: &ScreenContext<'_>) -> Option<Figure> {
-        figure(look.company, customers.map_cell)
+    fn figure(&self, customers: &Customers, context: &ScreenContext<'_>) -> Option<Figure> {
+        figure(context.company, customers.map_cell)
     }
 
-    fn handle_action(&self, customers: &mut Customers, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_action(&self, customers: &mut Customers, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         if action == Action::Open {
             return vec![Effect::ShowTool(ToolId::SetTargetedAdSpend)];
         }
-        customers.map_cell.handle_action(action, look.company.observation.known_groups.len());
+        customers.map_cell.handle_action(action, context.company.observation.known_groups.len());
         Vec::new()
     }
 
-    fn handle_click(&self, customers: &mut Customers, row: usize, look: &ScreenContext<'_>) -> Vec<Effect> {
-        let groups = look.company.observation.known_groups.len().max(1);
+    fn handle_click(&self, customers: &mut Customers, row: usize, context: &ScreenContext<'_>) -> Vec<Effect> {
+        let groups = context.company.observation.known_groups.len().max(1);
         customers.map_cell = ChannelMapCell { channel: row / groups, group: row % groups };
         Vec::new()
     }
 
-    fn border(&self, _: &Customers, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
-        let open = look.keys.label(Action::Open).unwrap_or_default();
+    fn border(&self, _: &Customers, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
+        let open = context.keys.label(Action::Open).unwrap_or_default();
         PaneBorder {
             title: "Leads per $1,000".to_owned(),
             note: "measured over 28 days · █ best of the group".to_owned(),
@@ -53,9 +53,9 @@ impl Pane<Customers> for ChannelMapPane {
         }
     }
 
-    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
+    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
         let (market, place) = (&customers.data, customers.map_cell);
-        draw(canvas, seat.area, look.company, market, place, seat.focused, seat.index);
+        draw(canvas, placement.area, context.company, market, place, placement.focused, placement.index);
     }
 }
 

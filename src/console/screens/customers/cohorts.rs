@@ -28,16 +28,16 @@ impl Pane<Customers> for CohortsPane {
         vec![Action::Open, Action::FocusNext, Action::Close]
     }
 
-    fn figure(&self, customers: &Customers, look: &ScreenContext<'_>) -> Option<Figure> {
-        customers.group_state.cohort.figure(&customers.cohorts, customers.group(look.company)?)
+    fn figure(&self, customers: &Customers, context: &ScreenContext<'_>) -> Option<Figure> {
+        customers.group_state.cohort.figure(&customers.cohorts, customers.group(context.company)?)
     }
 
-    fn handle_action(&self, customers: &mut Customers, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
-        let Some(group) = customers.group(look.company) else { return Vec::new() };
+    fn handle_action(&self, customers: &mut Customers, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
+        let Some(group) = customers.group(context.company) else { return Vec::new() };
         if action == Action::Open {
-            return show_rows_effect(self.figure(customers, look));
+            return show_rows_effect(self.figure(customers, context));
         }
-        customers.group_state.cohort.handle_action(action, &customers.cohorts, group, look.company.observation.week);
+        customers.group_state.cohort.handle_action(action, &customers.cohorts, group, context.company.observation.week);
         Vec::new()
     }
 
@@ -46,19 +46,19 @@ impl Pane<Customers> for CohortsPane {
         Vec::new()
     }
 
-    fn border(&self, customers: &Customers, area: Rect, look: &ScreenContext<'_>) -> PaneBorder {
+    fn border(&self, customers: &Customers, area: Rect, context: &ScreenContext<'_>) -> PaneBorder {
         let title = "Retention, %";
-        let week = look.company.observation.week;
+        let week = context.company.observation.week;
         let note = customers
-            .group(look.company)
+            .group(context.company)
             .map_or(String::new(), |group| customers.cohorts.summary(group, week, note_width(area, title)));
         PaneBorder { title: title.to_owned(), note, ..PaneBorder::default() }
     }
 
-    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
-        let Some(group) = customers.group(look.company) else { return };
-        let place = seat.focused.then_some(customers.group_state.cohort);
-        draw(canvas, seat.area, &customers.cohorts, (group, look.company.observation.week), place, seat.index);
+    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
+        let Some(group) = customers.group(context.company) else { return };
+        let place = placement.focused.then_some(customers.group_state.cohort);
+        draw(canvas, placement.area, &customers.cohorts, (group, context.company.observation.week), place, placement.index);
     }
 }
 

@@ -33,36 +33,36 @@ impl Pane<Customers> for CostsPane {
         vec![Action::Open, Action::Sort, Action::Filter]
     }
 
-    fn figure(&self, customers: &Customers, look: &ScreenContext<'_>) -> Option<Figure> {
-        let pair = selected(customers, look.company)?;
+    fn figure(&self, customers: &Customers, context: &ScreenContext<'_>) -> Option<Figure> {
+        let pair = selected(customers, context.company)?;
         let (channel, group) = (pair.channel, pair.group);
         let title = format!("cost of leads of {group} through {}", channel.id());
         Some(Figure { title, term: "cost-per-lead", sql: Some(statement(channel, group)), week_quantity: None })
     }
 
-    fn handle_action(&self, customers: &mut Customers, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_action(&self, customers: &mut Customers, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         if action == Action::Open {
             return vec![Effect::ShowTool(ToolId::SetTargetedAdSpend)];
         }
-        customers.costs.handle_action(action, look.page_rows);
+        customers.costs.handle_action(action, context.page_rows);
         Vec::new()
     }
 
-    fn border(&self, customers: &Customers, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
+    fn border(&self, customers: &Customers, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
         let note = match customers.costs.summary() {
             note if note.is_empty() => "last 4 weeks · cheapest 4 weeks before".to_owned(),
             note => note,
         };
-        let keys = look.hints(&[Action::Open, Action::Sort, Action::Filter]);
+        let keys = context.hints(&[Action::Open, Action::Sort, Action::Filter]);
         PaneBorder { title: "Cost per lead".to_owned(), note, keys, ..PaneBorder::default() }
     }
 
-    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: PanePlacement, _: &ScreenContext<'_>) {
+    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, placement: PanePlacement, _: &ScreenContext<'_>) {
         if customers.costs.rows().is_empty() {
-            canvas.draw_text(seat.area, "No ads in the last 4 weeks", Role::Dim);
+            canvas.draw_text(placement.area, "No ads in the last 4 weeks", Role::Dim);
             return;
         }
-        customers.costs.draw(canvas, seat.area, seat.focused, seat.index);
+        customers.costs.draw(canvas, placement.area, placement.focused, placement.index);
     }
 }
 

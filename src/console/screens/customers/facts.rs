@@ -21,9 +21,9 @@ use novamind_worker::company::DisplayedCompany;
 pub struct FactsPane;
 
 impl FactsPane {
-    fn lines(&self, customers: &Customers, look: &ScreenContext<'_>, bars: usize) -> Vec<FactLine> {
-        customers.group(look.company).map_or(Vec::new(), |group| {
-            facts(look.company, &customers.data, &customers.data.facts_of_group(group), group, bars)
+    fn lines(&self, customers: &Customers, context: &ScreenContext<'_>, bars: usize) -> Vec<FactLine> {
+        customers.group(context.company).map_or(Vec::new(), |group| {
+            facts(context.company, &customers.data, &customers.data.facts_of_group(group), group, bars)
         })
     }
 }
@@ -33,16 +33,16 @@ impl Pane<Customers> for FactsPane {
         vec![Action::Open, Action::FocusNext, Action::Close]
     }
 
-    fn figure(&self, customers: &Customers, look: &ScreenContext<'_>) -> Option<Figure> {
-        self.lines(customers, look, 0).into_iter().nth(customers.group_state.fact_line)?.figure
+    fn figure(&self, customers: &Customers, context: &ScreenContext<'_>) -> Option<Figure> {
+        self.lines(customers, context, 0).into_iter().nth(customers.group_state.fact_line)?.figure
     }
 
     /// Moves to the next line with a figure.
-    fn handle_action(&self, customers: &mut Customers, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_action(&self, customers: &mut Customers, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         if action == Action::Open {
-            return show_rows_effect(self.figure(customers, look));
+            return show_rows_effect(self.figure(customers, context));
         }
-        let lines = self.lines(customers, look, 0);
+        let lines = self.lines(customers, context, 0);
         let held: Vec<usize> = (0..lines.len()).filter(|at| lines[*at].figure.is_some()).collect();
         let fact = &mut customers.group_state.fact_line;
         let place = held.iter().position(|at| *at >= *fact).unwrap_or(0);
@@ -62,20 +62,20 @@ impl Pane<Customers> for FactsPane {
         Vec::new()
     }
 
-    fn border(&self, customers: &Customers, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
-        customers.group(look.company).map_or_else(PaneBorder::default, |group| {
+    fn border(&self, customers: &Customers, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
+        customers.group(context.company).map_or_else(PaneBorder::default, |group| {
             let segment = if group.is_enterprise() { "enterprise" } else { "individual" };
-            let note = name_of(look.company, group).to_owned();
+            let note = name_of(context.company, group).to_owned();
             PaneBorder { title: format!("{group} · {segment}"), note, ..PaneBorder::default() }
         })
     }
 
-    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
-        let selected = seat.focused.then_some(customers.group_state.fact_line);
-        let bars = (seat.area.width as usize).saturating_sub(32).min(16);
-        let lines = self.lines(customers, look, bars);
-        let from = first_visible_row(selected.unwrap_or(0), seat.area.height as usize, lines.len());
-        for (row, (at, fact)) in row_rects(seat.area).zip(lines.iter().enumerate().skip(from)) {
+    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
+        let selected = placement.focused.then_some(customers.group_state.fact_line);
+        let bars = (placement.area.width as usize).saturating_sub(32).min(16);
+        let lines = self.lines(customers, context, bars);
+        let from = first_visible_row(selected.unwrap_or(0), placement.area.height as usize, lines.len());
+        for (row, (at, fact)) in row_rects(placement.area).zip(lines.iter().enumerate().skip(from)) {
             let here = selected == Some(at) && fact.figure.is_some();
             let role = if here { Role::Selection } else { fact.role };
             if here {
@@ -83,7 +83,7 @@ impl Pane<Customers> for FactsPane {
             }
             canvas.draw_text(row, &fact.label, role);
             canvas.draw_aligned(row, &fact.value, role, Align::Right);
-            canvas.register_click(row, Click::Row(seat.index, at));
+            canvas.register_click(row, Click::Row(placement.index, at));
         }
     }
 }

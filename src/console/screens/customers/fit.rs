@@ -27,8 +27,8 @@ impl Pane<Customers> for FitPane {
         vec![Action::Open, Action::FocusNext, Action::Close]
     }
 
-    fn figure(&self, customers: &Customers, look: &ScreenContext<'_>) -> Option<Figure> {
-        let group = customers.group(look.company)?;
+    fn figure(&self, customers: &Customers, context: &ScreenContext<'_>) -> Option<Figure> {
+        let group = customers.group(context.company)?;
         let sql = format!(
             "SELECT (c.created_day + 6) / 7 AS week, c.acquisition_source = 'network' AS by_word_of_mouth, count(*) AS \
              leads,\n    total(s.status IN ('subscribed', 'cancelled')) AS signed\nFROM customers c\nLEFT JOIN subscriptions s \
@@ -39,19 +39,19 @@ impl Pane<Customers> for FitPane {
         let quantity =
             WeekQuantity::for_group(WeekFigure::Conversion, group).filter(|_| !group.is_enterprise());
         let figure = Figure { title, term: "fit", sql: Some(sql), week_quantity: None };
-        Some(figure.with_week_quantity(quantity, look.company.observation.week))
+        Some(figure.with_week_quantity(quantity, context.company.observation.week))
     }
 
-    fn handle_action(&self, customers: &mut Customers, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_action(&self, customers: &mut Customers, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         if action == Action::Open {
-            return show_rows_effect(self.figure(customers, look));
+            return show_rows_effect(self.figure(customers, context));
         }
         customers.group_state.fit_line = move_index(customers.group_state.fit_line, usize::MAX - 1, action);
         Vec::new()
     }
 
-    fn border(&self, customers: &Customers, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
-        let fit = customers.group(look.company).and_then(|group| look.company.fit(group));
+    fn border(&self, customers: &Customers, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
+        let fit = customers.group(context.company).and_then(|group| context.company.fit(group));
         fit.map_or_else(PaneBorder::default, |fit| PaneBorder {
             title: format!("Fit of {}", fit.group),
             note: format!("study level {} · {}", fit.level, fit.describe_study_day()),
@@ -59,14 +59,14 @@ impl Pane<Customers> for FitPane {
         })
     }
 
-    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
-        let company = look.company;
+    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
+        let company = context.company;
         let Some(fit) = customers.group(company).and_then(|group| company.fit(group)) else { return };
         let tier = |plan: Plan| format_number(company.setting(ToolId::SetModelTiers, plan.id()));
-        let lines = lines(fit, seat.area.width as usize, &tier);
-        let last = lines.len().saturating_sub(seat.area.height as usize);
-        let from = if seat.focused { customers.group_state.fit_line.min(last) } else { 0 };
-        for (row, line) in row_rects(seat.area).zip(&lines[from..]) {
+        let lines = lines(fit, placement.area.width as usize, &tier);
+        let last = lines.len().saturating_sub(placement.area.height as usize);
+        let from = if placement.focused { customers.group_state.fit_line.min(last) } else { 0 };
+        for (row, line) in row_rects(placement.area).zip(&lines[from..]) {
             canvas.draw_text(row, &line.text, line.role);
         }
     }

@@ -49,32 +49,32 @@ impl Pane<Customers> for GroupActionsPane {
         vec![Action::Open, Action::FocusNext, Action::Close]
     }
 
-    fn handle_action(&self, customers: &mut Customers, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
-        let Some(group) = customers.group(look.company) else { return Vec::new() };
+    fn handle_action(&self, customers: &mut Customers, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
+        let Some(group) = customers.group(context.company) else { return Vec::new() };
         match action {
             Action::Open => return vec![action_effect(customers.group_state.action, group)],
-            Action::Left => customers.change_group(|open| open.saturating_sub(1), look.company),
-            Action::Right => customers.change_group(|open| open + 1, look.company),
+            Action::Left => customers.change_group(|open| open.saturating_sub(1), context.company),
+            Action::Right => customers.change_group(|open| open + 1, context.company),
             action => customers.group_state.action = move_index(customers.group_state.action, ACTION_COUNT - 1, action),
         }
         Vec::new()
     }
 
-    fn handle_click(&self, customers: &mut Customers, row: usize, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_click(&self, customers: &mut Customers, row: usize, context: &ScreenContext<'_>) -> Vec<Effect> {
         let before = customers.group_state.action;
         customers.group_state.action = row.min(ACTION_COUNT - 1);
-        if before == customers.group_state.action { self.handle_action(customers, Action::Open, look) } else { Vec::new() }
+        if before == customers.group_state.action { self.handle_action(customers, Action::Open, context) } else { Vec::new() }
     }
 
     fn border(&self, _: &Customers, _: Rect, _: &ScreenContext<'_>) -> PaneBorder {
         PaneBorder { title: "Go to".to_owned(), ..PaneBorder::default() }
     }
 
-    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: PanePlacement, _: &ScreenContext<'_>) {
+    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, placement: PanePlacement, _: &ScreenContext<'_>) {
         let choice = customers.group_state.action;
-        let from = first_visible_row(choice, seat.area.height as usize, ACTION_COUNT);
-        for (at, row) in (from..ACTION_COUNT).zip(row_rects(seat.area)) {
-            let role = match (at == choice, seat.focused) {
+        let from = first_visible_row(choice, placement.area.height as usize, ACTION_COUNT);
+        for (at, row) in (from..ACTION_COUNT).zip(row_rects(placement.area)) {
+            let role = match (at == choice, placement.focused) {
                 (true, true) => Role::Selection,
                 (true, false) => Role::InactiveSelection,
                 _ => Role::Text,
@@ -86,7 +86,7 @@ impl Pane<Customers> for GroupActionsPane {
             let purpose_role = if at == choice { role } else { Role::Dim };
             let place = Rect { x: row.x + 23, width: row.width.saturating_sub(23), ..row };
             canvas.draw_aligned(place, purpose, purpose_role, Align::Right);
-            canvas.register_click(row, Click::Row(seat.index, at));
+            canvas.register_click(row, Click::Row(placement.index, at));
         }
     }
 }

@@ -27,23 +27,23 @@ impl Pane<Customers> for CustomerGroupsPane {
         vec![Action::Open, Action::Sort, Action::Filter]
     }
 
-    fn figure(&self, customers: &Customers, look: &ScreenContext<'_>) -> Option<Figure> {
-        let group = customers.group(look.company)?;
-        columns::figure(group, customers.table.selected_column(), look.company)
+    fn figure(&self, customers: &Customers, context: &ScreenContext<'_>) -> Option<Figure> {
+        let group = customers.group(context.company)?;
+        columns::figure(group, customers.table.selected_column(), context.company)
     }
 
-    fn handle_action(&self, customers: &mut Customers, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_action(&self, customers: &mut Customers, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         if action == Action::Open {
             customers.open_group = customers.table.selected();
             customers.group_state = OpenGroupState::default();
         } else {
-            customers.table.handle_action(action, look.page_rows);
+            customers.table.handle_action(action, context.page_rows);
         }
         Vec::new()
     }
 
-    fn border(&self, customers: &Customers, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
-        let seen = &look.company.observation;
+    fn border(&self, customers: &Customers, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
+        let seen = &context.company.observation;
         let note = match customers.table.summary() {
             note if note.is_empty() => format!(
                 "{} · {} · week {}",
@@ -53,18 +53,18 @@ impl Pane<Customers> for CustomerGroupsPane {
             ),
             note => note,
         };
-        let note = match &look.company.hidden_values {
+        let note = match &context.company.hidden_values {
             Some(hidden) => format!("x-ray: true values of day {} · {note}", hidden.day),
             None => note,
         };
-        let mut keys = look.hints(&[Action::Open, Action::Sort, Action::Filter]);
-        if look.company.can_inspect {
-            keys = format!("{} · {keys}", look.hint(Action::HiddenValues));
+        let mut keys = context.hints(&[Action::Open, Action::Sort, Action::Filter]);
+        if context.company.can_inspect {
+            keys = format!("{} · {keys}", context.hint(Action::HiddenValues));
         }
         PaneBorder { title: "Groups".to_owned(), note, keys, ..PaneBorder::default() }
     }
 
-    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: PanePlacement, _: &ScreenContext<'_>) {
-        customers.table.draw(canvas, seat.area, seat.focused, seat.index);
+    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, placement: PanePlacement, _: &ScreenContext<'_>) {
+        customers.table.draw(canvas, placement.area, placement.focused, placement.index);
     }
 }

@@ -146,20 +146,20 @@ impl ScreenState for Customers {
         ]
     }
 
-    fn apply_rows(&mut self, reading: Reading, rows: &QueryResult, look: &ScreenContext<'_>) {
+    fn apply_rows(&mut self, reading: Reading, rows: &QueryResult, context: &ScreenContext<'_>) {
         match reading {
             Reading::Cohorts => self.cohorts = Cohorts::from_rows(rows),
             reading => self.data.apply_rows(reading, rows),
         }
-        self.rebuild_tables(look.company);
+        self.rebuild_tables(context.company);
     }
 
-    fn on_company_change(&mut self, look: &ScreenContext<'_>) {
-        self.rebuild_tables(look.company);
+    fn on_company_change(&mut self, context: &ScreenContext<'_>) {
+        self.rebuild_tables(context.company);
     }
 
-    fn open_item_title(&self, look: &ScreenContext<'_>) -> Option<String> {
-        self.open_group.and_then(|_| self.group(look.company)).map(|group| group.to_string())
+    fn open_item_title(&self, context: &ScreenContext<'_>) -> Option<String> {
+        self.open_group.and_then(|_| self.group(context.company)).map(|group| group.to_string())
     }
 
     fn covers_list(&self) -> bool {
@@ -170,8 +170,8 @@ impl ScreenState for Customers {
         usize::from(self.open_group.is_some())
     }
 
-    fn open_object(&self, look: &ScreenContext<'_>) -> Option<(&'static str, String)> {
-        let group = look.company.observation.known_groups.get(self.open_group?)?;
+    fn open_object(&self, context: &ScreenContext<'_>) -> Option<(&'static str, String)> {
+        let group = context.company.observation.known_groups.get(self.open_group?)?;
         Some(("group", group.id().to_owned()))
     }
 }
@@ -213,32 +213,32 @@ impl PaneScreen for Customers {
         (action == Action::Close && self.open_group.take().is_some()).then(Vec::new)
     }
 
-    fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         if self.open_group.is_some() {
-            return open_group::draw_open_group(self, canvas, area, look);
+            return open_group::draw_open_group(self, canvas, area, context);
         }
         let map = (channel_map::MAP_HEIGHT + 2).min(area.height / 2);
-        let list = (look.company.observation.known_groups.len() as u16 + 3).min(area.height - map);
+        let list = (context.company.observation.known_groups.len() as u16 + 3).min(area.height - map);
         let rest = area.height - map - list;
         // A preview of the selected group takes the remaining rows if it fits.
         let (list, rest) = if rest >= 14 { (list, rest) } else { (list + rest, 0) };
         let [table, channels, preview] =
             Layout::vertical([Constraint::Length(list), Constraint::Length(map), Constraint::Length(rest)])
                 .areas(area);
-        draw_pane(self, CustomersPane::Groups, canvas, table, look);
+        draw_pane(self, CustomersPane::Groups, canvas, table, context);
         // Both halves if they fit, otherwise the focused one.
         if channels.width >= 150 {
             let halves = [Constraint::Percentage(50), Constraint::Min(0)];
             let [left, right] = Layout::horizontal(halves).areas(channels);
-            draw_pane(self, CustomersPane::Channels, canvas, left, look);
-            draw_pane(self, CustomersPane::Costs, canvas, right, look);
+            draw_pane(self, CustomersPane::Channels, canvas, left, context);
+            draw_pane(self, CustomersPane::Costs, canvas, right, context);
         } else if self.focus == CustomersPane::Costs {
-            draw_pane(self, CustomersPane::Costs, canvas, channels, look);
+            draw_pane(self, CustomersPane::Costs, canvas, channels, context);
         } else {
-            draw_pane(self, CustomersPane::Channels, canvas, channels, look);
+            draw_pane(self, CustomersPane::Channels, canvas, channels, context);
         }
         if rest > 0 && self.table.selected().is_some() {
-            open_group::draw_preview(self, canvas, preview, look);
+            open_group::draw_preview(self, canvas, preview, context);
         }
     }
 }

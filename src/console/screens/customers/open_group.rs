@@ -38,9 +38,9 @@ impl Default for OpenGroupState {
 
 const FIT_ROWS: u16 = 24;
 
-pub fn draw_open_group(customers: &Customers, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+pub fn draw_open_group(customers: &Customers, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
     use CustomersPane::{Cohorts, Facts, Fit, Quality, Study, Actions, Weeks};
-    let mut draw = |area: Rect, pane: CustomersPane| draw_pane(customers, pane, canvas, area, look);
+    let mut draw = |area: Rect, pane: CustomersPane| draw_pane(customers, pane, canvas, area, context);
     let split = |area: Rect, first: u16| {
         Layout::vertical([Constraint::Length(first), Constraint::Min(0)]).areas::<2>(area)
     };
@@ -86,17 +86,17 @@ pub fn draw_open_group(customers: &Customers, canvas: &mut Canvas<'_>, area: Rec
 }
 
 /// Draws a preview of the selected group below the list. It is not clickable.
-pub fn draw_preview(customers: &Customers, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+pub fn draw_preview(customers: &Customers, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
     let middle = if area.width >= 150 { area.width * 3 / 10 } else { 0 };
     let right = Constraint::Length(46.min(area.width / 2));
     let [fit, curves, side] =
         Layout::horizontal([Constraint::Min(0), Constraint::Length(middle), right]).areas(area);
     let clicks = canvas.clicks.len();
     let seat = |area: Rect| PanePlacement { area, focused: false, index: 0 };
-    FitPane.draw_with_border(customers, canvas, seat(fit), look);
+    FitPane.draw_with_border(customers, canvas, seat(fit), context);
     if middle > 0 {
-        QualityByWeekPane.draw_with_border(customers, canvas, seat(curves), look);
+        QualityByWeekPane.draw_with_border(customers, canvas, seat(curves), context);
     }
-    FactsPane.draw_with_border(customers, canvas, seat(side), look);
+    FactsPane.draw_with_border(customers, canvas, seat(side), context);
     canvas.clicks.truncate(clicks);
 }

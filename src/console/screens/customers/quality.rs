@@ -20,13 +20,13 @@ impl Pane<Customers> for QualityByWeekPane {
         vec![Action::FocusNext, Action::Close]
     }
 
-    fn figure(&self, customers: &Customers, look: &ScreenContext<'_>) -> Option<Figure> {
-        let title = format!("quality delivered to {} by week", customers.group(look.company)?);
+    fn figure(&self, customers: &Customers, context: &ScreenContext<'_>) -> Option<Figure> {
+        let title = format!("quality delivered to {} by week", customers.group(context.company)?);
         Some(Figure { title, term: "delivered-quality", sql: None, week_quantity: None })
     }
 
-    fn border(&self, customers: &Customers, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
-        let fit = customers.group(look.company).and_then(|group| look.company.fit(group));
+    fn border(&self, customers: &Customers, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
+        let fit = customers.group(context.company).and_then(|group| context.company.fit(group));
         fit.map_or_else(PaneBorder::default, |fit| PaneBorder {
             title: "Delivered and required quality".to_owned(),
             note: format!("░ required, now {}", fit.floor.format_quality()),
@@ -34,18 +34,18 @@ impl Pane<Customers> for QualityByWeekPane {
         })
     }
 
-    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
-        let Some(group) = customers.group(look.company) else { return };
+    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
+        let Some(group) = customers.group(context.company) else { return };
         let names = ["A", "B", "C"];
         let line = |plan: Plan| {
-            let points = quality_by_week(look.company, group, plan);
+            let points = quality_by_week(context.company, group, plan);
             Curve::from_points(points, Role::Series(plan.index())).with_name(names[plan.index()])
         };
         let lines = Plan::ALL.map(line);
-        let band = Band { bounds: required_quality_by_week(look.company, group), name: "required" };
+        let band = Band { bounds: required_quality_by_week(context.company, group), name: "required" };
         let x = XAxis { format: &|week| format!("wk {week:.0}"), required_values: &[] };
         let y = YAxis { unit: AxisUnit::Number, required_values: &[0.0] };
-        Plot { curves: &lines, band: Some(&band), marked_x: None, x: &x, y: &y }.draw(canvas, seat.area);
+        Plot { curves: &lines, band: Some(&band), marked_x: None, x: &x, y: &y }.draw(canvas, placement.area);
     }
 }
 

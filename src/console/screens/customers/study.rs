@@ -20,37 +20,37 @@ impl Pane<Customers> for StudyPane {
         vec![Action::Open, Action::FocusNext, Action::Close]
     }
 
-    fn figure(&self, customers: &Customers, look: &ScreenContext<'_>) -> Option<Figure> {
-        let title = format!("market study of {}", customers.group(look.company)?);
+    fn figure(&self, customers: &Customers, context: &ScreenContext<'_>) -> Option<Figure> {
+        let title = format!("market study of {}", customers.group(context.company)?);
         Some(Figure { title, term: "info-level", sql: None, week_quantity: None })
     }
 
-    fn handle_action(&self, customers: &mut Customers, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
-        let Some(group) = customers.group(look.company) else { return Vec::new() };
+    fn handle_action(&self, customers: &mut Customers, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
+        let Some(group) = customers.group(context.company) else { return Vec::new() };
         if action == Action::Open {
-            return show_rows_effect(self.figure(customers, look));
+            return show_rows_effect(self.figure(customers, context));
         }
-        let last = report::lines(look.company, group).len().saturating_sub(1);
+        let last = report::lines(context.company, group).len().saturating_sub(1);
         customers.group_state.study_line = move_index(customers.group_state.study_line, last, action);
         Vec::new()
     }
 
-    fn border(&self, customers: &Customers, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
-        customers.group(look.company).map_or_else(PaneBorder::default, |group| {
-            let level = level_of(look.company, group);
-            let noise = look.company.tool_limits.study_level(level).map_or(0.0, |level| level.noise);
+    fn border(&self, customers: &Customers, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
+        customers.group(context.company).map_or_else(PaneBorder::default, |group| {
+            let level = level_of(context.company, group);
+            let noise = context.company.tool_limits.study_level(level).map_or(0.0, |level| level.noise);
             let note = format!(
                 "study level {level} · ±{} · {}",
                 percent(noise, 0),
-                report::study_date_text(look.company, group)
+                report::study_date_text(context.company, group)
             );
             PaneBorder { title: format!("Study of {group}"), note, ..PaneBorder::default() }
         })
     }
 
-    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
-        if let Some(group) = customers.group(look.company) {
-            report::draw_estimates(canvas, seat.area, look.company, group, customers.group_state.study_line);
+    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
+        if let Some(group) = customers.group(context.company) {
+            report::draw_estimates(canvas, placement.area, context.company, group, customers.group_state.study_line);
         }
     }
 }

@@ -136,12 +136,12 @@ fn table_figures_equal_their_rows() {
 fn cohort_cells_count_retained_customers() {
     let (mut session, company, mut screen) = played_screen::<Customers>(9);
     let keys = crate::keys::KeyBindings::bundled();
-    let look = ScreenContext { company: &company, keys: &keys, page_rows: 5 };
+    let context = ScreenContext { company: &company, keys: &keys, page_rows: 5 };
     screen.show_group(group("S1"), &company);
     screen.set_focused_pane(CustomersPane::Cohorts);
     handle_action(&mut screen, Action::Last, &company);
     for _ in 0..9 {
-        let figure = screen.figure(&look).expect("a figure");
+        let figure = screen.figure(&context).expect("a figure");
         let sql = figure.sql.expect("rows");
         let kept = query_figure(&mut session, &sql, "count(*)");
         let size = query_figure(&mut session, sql.split("\n    AND (s.status").next().expect("words"), "count(*)");
@@ -163,14 +163,14 @@ fn cohort_cells_count_retained_customers() {
 fn group_panes_return_their_figures() {
     let (mut session, company, mut screen) = played_screen::<Customers>(8);
     let keys = crate::keys::KeyBindings::bundled();
-    let look = ScreenContext { company: &company, keys: &keys, page_rows: 5 };
+    let context = ScreenContext { company: &company, keys: &keys, page_rows: 5 };
     screen.show_group(group("S1"), &company);
     let mut rows = 0;
     for pane in 1..Screen::pane_count(&screen) {
         screen.set_focus(pane);
         handle_action(&mut screen, Action::First, &company);
         for _ in 0..20 {
-            if let Some(sql) = screen.figure(&look).and_then(|figure| figure.sql) {
+            if let Some(sql) = screen.figure(&context).and_then(|figure| figure.sql) {
                 session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
                 rows += 1;
             }
@@ -179,7 +179,7 @@ fn group_panes_return_their_figures() {
     }
     assert!(rows > 40, "{rows}");
     screen.set_focused_pane(CustomersPane::Weeks);
-    let title = |screen: &Customers| screen.figure(&look).expect("a figure").title;
+    let title = |screen: &Customers| screen.figure(&context).expect("a figure").title;
     handle_action(&mut screen, Action::First, &company);
     handle_action(&mut screen, Action::Left, &company);
     assert_eq!(title(&screen), "leads of S1 in week 7");

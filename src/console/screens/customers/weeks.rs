@@ -29,8 +29,8 @@ const FLOWS: [(&str, &str, WeekFigure); 3] = [
 pub struct WeeksPane;
 
 impl WeeksPane {
-    fn week(&self, customers: &Customers, look: &ScreenContext<'_>) -> u32 {
-        look.company.observation.week.saturating_sub(customers.group_state.weeks_back)
+    fn week(&self, customers: &Customers, context: &ScreenContext<'_>) -> u32 {
+        context.company.observation.week.saturating_sub(customers.group_state.weeks_back)
     }
 }
 
@@ -39,8 +39,8 @@ impl Pane<Customers> for WeeksPane {
         vec![Action::Open, Action::FocusNext, Action::Close]
     }
 
-    fn figure(&self, customers: &Customers, look: &ScreenContext<'_>) -> Option<Figure> {
-        let (group, week) = (customers.group(look.company)?, self.week(customers, look));
+    fn figure(&self, customers: &Customers, context: &ScreenContext<'_>) -> Option<Figure> {
+        let (group, week) = (customers.group(context.company)?, self.week(customers, context));
         let flow = customers.group_state.flow;
         let (name, term, figure) = FLOWS[flow];
         let sql = Some(flow_statement(flow, group, week));
@@ -48,11 +48,11 @@ impl Pane<Customers> for WeeksPane {
         Some(quantity.with_week_quantity(WeekQuantity::for_group(figure, group), week))
     }
 
-    fn handle_action(&self, customers: &mut Customers, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
-        let most = model::CURVE_WEEKS.min(look.company.observation.week).saturating_sub(1);
+    fn handle_action(&self, customers: &mut Customers, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
+        let most = model::CURVE_WEEKS.min(context.company.observation.week).saturating_sub(1);
         let opened = &mut customers.group_state;
         match action {
-            Action::Open => return show_rows_effect(self.figure(customers, look)),
+            Action::Open => return show_rows_effect(self.figure(customers, context)),
             Action::Left => opened.weeks_back = (opened.weeks_back + 1).min(most),
             Action::Right => opened.weeks_back = opened.weeks_back.saturating_sub(1),
             action => opened.flow = move_index(opened.flow, FLOWS.len() - 1, action),
@@ -60,17 +60,17 @@ impl Pane<Customers> for WeeksPane {
         Vec::new()
     }
 
-    fn border(&self, customers: &Customers, area: Rect, look: &ScreenContext<'_>) -> PaneBorder {
+    fn border(&self, customers: &Customers, area: Rect, context: &ScreenContext<'_>) -> PaneBorder {
         let title = "By week";
-        let label = |action| look.keys.label(action).unwrap_or_default();
+        let label = |action| context.keys.label(action).unwrap_or_default();
         let [left, right] = [Action::Left, Action::Right].map(label);
         let [up, down] = [Action::Up, Action::Down].map(label);
-        let note = customers.group(look.company).map_or(String::new(), |group| {
+        let note = customers.group(context.company).map_or(String::new(), |group| {
             // Without the focus the pane summarizes all flows of the last week.
             let focused = customers.has_focus(CustomersPane::Weeks);
             let (week, flow) = match focused {
-                true => (self.week(customers, look), customers.group_state.flow),
-                false => (look.company.observation.week, usize::MAX),
+                true => (self.week(customers, context), customers.group_state.flow),
+                false => (context.company.observation.week, usize::MAX),
             };
             flow_summary(&customers.data.facts_of_group(group), week, flow, note_width(area, title))
         });
@@ -78,10 +78,10 @@ impl Pane<Customers> for WeeksPane {
         PaneBorder { title: title.to_owned(), note, keys, ..PaneBorder::default() }
     }
 
-    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
-        let Some(group) = customers.group(look.company) else { return };
+    fn draw(&self, customers: &Customers, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
+        let Some(group) = customers.group(context.company) else { return };
         let group_facts = customers.data.facts_of_group(group);
-        let week = look.company.observation.week;
+        let week = context.company.observation.week;
         let trend = |figure: fn(&WeekFlow) -> f64| points(group_facts.weekly_values(week, figure));
         let lines = [
             Curve::from_points(trend(|flow| flow.leads), Role::Series(2)).with_name("leads"),
@@ -91,27 +91,27 @@ impl Pane<Customers> for WeeksPane {
                 ..Curve::from_points(trend(|flow| flow.cancellations), Role::Bad).with_name("cancelled")
             },
         ];
-        let mark = seat.focused.then(|| f64::from(self.week(customers, look)));
-        draw_plot(canvas, seat.area, &lines, mark, &[0.0]);
+        let mark = placement.focused.then(|| f64::from(self.week(customers, context)));
+        draw_plot(canvas, placement.area, &lines, mark, &[0.0]);
     }
 
-    fn draw_with_border(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
+    fn draw_with_border(&self, customers: &Customers, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
         let [stock, flows] =
-            Layout::vertical([Constraint::Percentage(50), Constraint::Min(0)]).areas(seat.area);
-        self.draw_stock(customers, canvas, PanePlacement { area: stock, ..seat }, look);
-        draw_framed(self, customers, canvas, PanePlacement { area: flows, ..seat }, look);
+            Layout::vertical([Constraint::Percentage(50), Constraint::Min(0)]).areas(placement.area);
+        self.draw_stock(customers, canvas, PanePlacement { area: stock, ..placement }, context);
+        draw_framed(self, customers, canvas, PanePlacement { area: flows, ..placement }, context);
     }
 }
 
 impl WeeksPane {
-    fn draw_stock(&self, customers: &Customers, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
-        let Some(group) = customers.group(look.company) else { return };
-        let held = points(customers.data.facts_of_group(group).subscriptions_by_week(look.company.observation.week));
+    fn draw_stock(&self, customers: &Customers, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
+        let Some(group) = customers.group(context.company) else { return };
+        let held = points(customers.data.facts_of_group(group).subscriptions_by_week(context.company.observation.week));
         let values: Vec<f64> = held.iter().map(|point| point.1).collect();
         let title = format!("{group} {}", if group.is_enterprise() { "companies" } else { "subscribers" });
-        let words = summary(&values, &|value| grouped_number(value, 0), note_width(seat.area, &title));
-        let inside = canvas.draw_pane_frame(seat.area, &title, &words, false);
-        let mark = seat.focused.then(|| f64::from(self.week(customers, look)));
+        let words = summary(&values, &|value| grouped_number(value, 0), note_width(placement.area, &title));
+        let inside = canvas.draw_pane_frame(placement.area, &title, &words, false);
+        let mark = placement.focused.then(|| f64::from(self.week(customers, context)));
         let lines = [Curve::from_points(held, Role::Series(0))];
         draw_plot(canvas, inside, &lines, mark, zero_if_near(values.iter().copied()));
     }

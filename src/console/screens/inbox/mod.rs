@@ -317,7 +317,7 @@ impl ScreenState for Inbox {
         }
     }
 
-    fn apply_rows(&mut self, reading: Reading, rows: &QueryResult, look: &ScreenContext<'_>) {
+    fn apply_rows(&mut self, reading: Reading, rows: &QueryResult, context: &ScreenContext<'_>) {
         match reading {
             Reading::FirstOffers => {
                 self.outcomes.iter_mut().for_each(|offer_outcomes| offer_outcomes.set_rows(rows));
@@ -327,19 +327,19 @@ impl ScreenState for Inbox {
             Reading::LastLetters => self.asked_plans = novamind_rules::RequestedPlans::from_rows(rows),
             _ => self.threads.apply_rows(reading, rows),
         }
-        self.update_threads(look.company);
+        self.update_threads(context.company);
     }
 
-    fn on_company_change(&mut self, look: &ScreenContext<'_>) {
-        self.update_threads(look.company);
+    fn on_company_change(&mut self, context: &ScreenContext<'_>) {
+        self.update_threads(context.company);
     }
 
-    fn handle_response(&mut self, news: &Response, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_response(&mut self, news: &Response, context: &ScreenContext<'_>) -> Vec<Effect> {
         match news {
             Response::ToolCalled(_, Ok(answer), _) => {
                 let effects = self.handle_sent(answer);
                 self.rules_form = None;
-                self.update_threads(look.company);
+                self.update_threads(context.company);
                 effects
             }
             _ => Vec::new(),
@@ -383,14 +383,14 @@ impl PaneScreen for Inbox {
         }
     }
 
-    fn handle_screen_action(&mut self, action: Action, look: &ScreenContext<'_>) -> Option<Vec<Effect>> {
+    fn handle_screen_action(&mut self, action: Action, context: &ScreenContext<'_>) -> Option<Vec<Effect>> {
         if let Some(effects) = self.handle_outcomes_action(action) {
             return Some(effects);
         }
-        let lists = list_prices(look.company);
+        let lists = list_prices(context.company);
         if let Some(ruling) = &mut self.rules_form {
             match action {
-                Action::SendOffer => return Some(self.send_rule_answers(look.company)),
+                Action::SendOffer => return Some(self.send_rule_answers(context.company)),
                 Action::Discard | Action::Close => self.rules_form = None,
                 Action::Commit => ruling.is_typing = false,
                 Action::InboxRules | Action::Open => self.set_focused_pane(InboxPane::Offer),
@@ -417,14 +417,14 @@ impl PaneScreen for Inbox {
                 self.toggle_marks(action == Action::MarkAll);
                 self.rebuild_table(self.list_position());
                 if action == Action::Mark {
-                    self.table.handle_action(Action::Down, look.page_rows);
+                    self.table.handle_action(Action::Down, context.page_rows);
                 }
             }
             Action::NextThreadView => {
                 let place = self.list_position();
                 self.view = self.view.next();
                 self.rebuild_table(place);
-                self.table.handle_action(Action::First, look.page_rows);
+                self.table.handle_action(Action::First, context.page_rows);
                 self.scroll = 0;
             }
             Action::MatchAskedPrice => {
@@ -437,9 +437,9 @@ impl PaneScreen for Inbox {
             Action::OfferPlan => self.cycle_plan(),
             Action::OfferBasis => self.cycle_basis(lists),
             Action::OfferPrice => self.start_typing(),
-            Action::InboxRules => return Some(self.open_rules(look.company)),
-            Action::SendOffer => return Some(self.send_offers(look.company)),
-            Action::RejectOffer => return Some(self.confirm_rejection(look.company)),
+            Action::InboxRules => return Some(self.open_rules(context.company)),
+            Action::SendOffer => return Some(self.send_offers(context.company)),
+            Action::RejectOffer => return Some(self.confirm_rejection(context.company)),
             Action::InboxGroup => {
                 let group = self.selected_thread().and_then(|thread| Group::parse(&thread.group));
                 let effect = group.map(|group| Effect::ShowGroup(ScreenId::Customers, group));
@@ -451,11 +451,11 @@ impl PaneScreen for Inbox {
         Some(Vec::new())
     }
 
-    fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         use InboxPane::{Offer, Thread};
         let first = self.left_pane();
         if area.width < 104 && self.rules_form.is_some() {
-            return rules_form::draw_small_layout(self, canvas, area, look);
+            return rules_form::draw_small_layout(self, canvas, area, context);
         }
         if area.width < 104 {
             let below = (OFFER_HEIGHT + 1).min(area.height.div_ceil(2));
@@ -463,7 +463,7 @@ impl PaneScreen for Inbox {
             let [thread, offer] =
                 Layout::horizontal([Constraint::Min(0), Constraint::Length(44)]).areas(below);
             for (pane, place) in [(first, list), (Thread, thread), (Offer, offer)] {
-                draw_pane(self, pane, canvas, place, look);
+                draw_pane(self, pane, canvas, place, context);
             }
             return;
         }
@@ -472,7 +472,7 @@ impl PaneScreen for Inbox {
         let [list, right] = Layout::horizontal([Constraint::Min(0), Constraint::Length(right)]).areas(area);
         let [above, offer] =
             Layout::vertical([Constraint::Min(0), Constraint::Length(OFFER_HEIGHT)]).areas(right);
-        draw_pane(self, first, canvas, list, look);
+        draw_pane(self, first, canvas, list, context);
         // Messages are drawn above the preview if both fit.
         let constraint = match !self.marked.is_empty() && above.height >= 20 {
             true => Constraint::Percentage(45),
@@ -481,9 +481,9 @@ impl PaneScreen for Inbox {
         let [side_thread_area, thread_area] = Layout::vertical([constraint, Constraint::Min(0)]).areas(above);
         if !side_thread_area.is_empty() {
             canvas.register_click(side_thread_area, Click::Pane(Thread as usize));
-            thread::draw_side_thread(self, canvas, side_thread_area, look);
+            thread::draw_side_thread(self, canvas, side_thread_area, context);
         }
-        draw_pane(self, Thread, canvas, thread_area, look);
-        draw_pane(self, Offer, canvas, offer, look);
+        draw_pane(self, Thread, canvas, thread_area, context);
+        draw_pane(self, Offer, canvas, offer, context);
     }
 }

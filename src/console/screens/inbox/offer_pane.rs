@@ -49,7 +49,7 @@ impl Pane<Inbox> for OfferPane {
         inbox.selected_thread().map(sending::usage_figure)
     }
 
-    fn handle_action(&self, inbox: &mut Inbox, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_action(&self, inbox: &mut Inbox, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         match action {
             Action::Up | Action::CommitPrevious => inbox.selected_term = inbox.selected_term.saturating_sub(1),
             Action::Down | Action::CommitDown | Action::CommitNext => {
@@ -59,25 +59,25 @@ impl Pane<Inbox> for OfferPane {
             Action::Last => inbox.selected_term = MAX_TERMS - 1,
             Action::Open => inbox.start_typing(),
             Action::Right => inbox.cycle_plan(),
-            Action::Left => inbox.cycle_basis(list_prices(look.company)),
+            Action::Left => inbox.cycle_basis(list_prices(context.company)),
             Action::Close => inbox.focus = inbox.left_pane(),
             _ => {}
         }
         Vec::new()
     }
 
-    fn handle_key(&self, inbox: &mut Inbox, key: &KeyEvent, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_key(&self, inbox: &mut Inbox, key: &KeyEvent, context: &ScreenContext<'_>) -> Vec<Effect> {
         if inbox.rules_form.is_some() {
-            inbox.handle_rules_key(key, look.company);
+            inbox.handle_rules_key(key, context.company);
             return Vec::new();
         }
         let taken = inbox.value_field.as_mut().is_none_or(|field| field.handle_number_key(key));
         if taken { Vec::new() } else { vec![Effect::Complain(NUMBER_HINT.to_owned())] }
     }
 
-    fn paste(&self, inbox: &mut Inbox, text: &str, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn paste(&self, inbox: &mut Inbox, text: &str, context: &ScreenContext<'_>) -> Vec<Effect> {
         match inbox.rules_form {
-            Some(_) => inbox.edit_rules(look.company, &mut |field| field.insert(text)),
+            Some(_) => inbox.edit_rules(context.company, &mut |field| field.insert(text)),
             None => self.edit_filter(inbox, &mut |field| field.insert(text)),
         }
         Vec::new()
@@ -98,9 +98,9 @@ impl Pane<Inbox> for OfferPane {
         Vec::new()
     }
 
-    fn border(&self, inbox: &Inbox, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
+    fn border(&self, inbox: &Inbox, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
         if inbox.rules_form.is_some() {
-            return inbox.rules_border(look);
+            return inbox.rules_border(context);
         }
         let title = match inbox.marked.len() {
             0 => "Your offer".to_owned(),
@@ -108,15 +108,15 @@ impl Pane<Inbox> for OfferPane {
         };
         let shown = inbox.selected_thread().is_some() || !inbox.marked.is_empty();
         let keys = [Action::OfferPlan, Action::OfferBasis, Action::SendOffer];
-        let keys = if shown { look.hints(&keys) } else { String::new() };
+        let keys = if shown { context.hints(&keys) } else { String::new() };
         PaneBorder { title, keys, ..PaneBorder::default() }
     }
 
-    fn draw(&self, inbox: &Inbox, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
+    fn draw(&self, inbox: &Inbox, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
         if let Some(ruling) = &inbox.rules_form {
-            return inbox.draw_rules(ruling, canvas, seat);
+            return inbox.draw_rules(ruling, canvas, placement);
         }
-        let (inside, batch) = (seat.area, !inbox.marked.is_empty());
+        let (inside, batch) = (placement.area, !inbox.marked.is_empty());
         if inbox.selected_thread().is_none() && !batch {
             return;
         }
@@ -127,10 +127,10 @@ impl Pane<Inbox> for OfferPane {
         }
         for at in 0..offer.0.len() {
             let Some(row) = rows.next() else { return };
-            draw_term(inbox, canvas, PanePlacement { area: row, ..seat }, &offer, at, look);
+            draw_term(inbox, canvas, PanePlacement { area: row, ..placement }, &offer, at, context);
         }
         rows.next();
-        for (row, (text, role)) in rows.zip(offer_pane_notes(inbox, inside.width, look)) {
+        for (row, (text, role)) in rows.zip(offer_pane_notes(inbox, inside.width, context)) {
             canvas.draw_text(row, &text, role);
         }
     }
@@ -148,18 +148,18 @@ fn column_heads(width: u16, batch: bool) -> String {
     format!("plan   of     {:>8}{worth}", "value")
 }
 
-fn offer_pane_notes(inbox: &Inbox, width: u16, look: &ScreenContext<'_>) -> Vec<(String, Role)> {
-    let planned = inbox.planned_offers(look.company);
+fn offer_pane_notes(inbox: &Inbox, width: u16, context: &ScreenContext<'_>) -> Vec<(String, Role)> {
+    let planned = inbox.planned_offers(context.company);
     let mut notes = match planned.first() {
         _ if !inbox.marked.is_empty() => {
             let lines = wrap(&summary(&planned), width as usize).into_iter();
             lines.map(|line| (line, Role::Strong)).collect()
         }
         Some((_, Err(why))) => vec![(format!("can't send: {why}"), Role::Warning)],
-        Some((thread, Ok(offers))) => offer_notes(inbox, thread, offers, width, look),
+        Some((thread, Ok(offers))) => offer_notes(inbox, thread, offers, width, context),
         None => Vec::new(),
     };
-    let lists = list_prices(look.company);
+    let lists = list_prices(context.company);
     let list = ["A", "B", "C"].iter().zip(lists).map(|(plan, price)| format!("{plan} {}", cents(price)));
     notes.push((format!("list {}", list.collect::<Vec<_>>().join(" · ")), Role::Dim));
     notes
@@ -172,10 +172,10 @@ fn offer_notes(
     thread: &Thread,
     offers: &[(Plan, f64)],
     width: u16,
-    look: &ScreenContext<'_>,
+    context: &ScreenContext<'_>,
 ) -> Vec<(String, Role)> {
     let priced = || {
-        let money = |sold: &(Plan, f64)| (sold.0, OfferEconomics::for_offer(&inbox.usage, look.company, thread, *sold));
+        let money = |sold: &(Plan, f64)| (sold.0, OfferEconomics::for_offer(&inbox.usage, context.company, thread, *sold));
         offers.iter().map(money)
     };
     let mut notes = Vec::new();
@@ -193,7 +193,7 @@ fn offer_notes(
         let sign = if best < 0.0 { "-" } else { "+" };
         notes.push((format!("asked price {}; yours {sign}{}", cents(price), cents(best.abs())), Role::Text));
     }
-    let Some((units, source)) = usage_per_seat(&inbox.usage, look.company, &thread.group) else {
+    let Some((units, source)) = usage_per_seat(&inbox.usage, context.company, &thread.group) else {
         notes.push(("compute unknown: the group has no usage yet".to_owned(), Role::Dim));
         return notes;
     };
@@ -212,18 +212,18 @@ fn offer_notes(
     notes
 }
 
-fn draw_term(inbox: &Inbox, canvas: &mut Canvas<'_>, seat: PanePlacement, offer: &OfferDraft, at: usize, look: &ScreenContext<'_>) {
-    let row = seat.area;
-    let lists = list_prices(look.company);
+fn draw_term(inbox: &Inbox, canvas: &mut Canvas<'_>, placement: PanePlacement, offer: &OfferDraft, at: usize, context: &ScreenContext<'_>) {
+    let row = placement.area;
+    let lists = list_prices(context.company);
     let term = &offer.0[at];
-    let here = seat.focused && inbox.selected_term == at;
+    let here = placement.focused && inbox.selected_term == at;
     let role = match (here, term.plan) {
         (true, _) => Role::Selection,
         (false, PlanChoice::Unused) => Role::Dim,
         (false, _) => Role::Text,
     };
     canvas.clear(row, role);
-    canvas.register_click(row, Click::Row(seat.index, at));
+    canvas.register_click(row, Click::Row(placement.index, at));
     let value = if term.plan == PlanChoice::Unused && !here { String::new() } else { term.value_text() };
     let basis = if term.plan == PlanChoice::Unused && !here { "" } else { term.basis.label() };
     let mut text = format!("{:<6} {basis:<6} {value:>8}", term.plan_label());
@@ -231,7 +231,7 @@ fn draw_term(inbox: &Inbox, canvas: &mut Canvas<'_>, seat: PanePlacement, offer:
     if let Some((thread, sold)) = single.and_then(|thread| Some((thread, term.price(thread, lists)?))) {
         text += &format!(" {:>8} {:>9}", cents(sold.1), dollars(sold.1 * thread.seats));
         if row.width >= MIN_FULL_WIDTH {
-            let money = OfferEconomics::for_offer(&inbox.usage, look.company, thread, sold);
+            let money = OfferEconomics::for_offer(&inbox.usage, context.company, thread, sold);
             let compute = money.compute_cost.map_or("–".to_owned(), dollars);
             let margin = money.margin().map_or("–".to_owned(), |margin| percent(margin, 0));
             let loses = if money.margin().is_some_and(|margin| margin < 0.0) { "!" } else { "" };

@@ -180,18 +180,18 @@ impl Pane<Inbox> for OutcomesPane {
         Some(Figure { title, term: "offer", sql: Some(statement(offer_outcome)), week_quantity: None })
     }
 
-    fn handle_action(&self, inbox: &mut Inbox, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_action(&self, inbox: &mut Inbox, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         if action == Action::Open {
             return vec![Effect::RunSql(Reading::FirstOffers.sql().to_owned())];
         }
-        let done = self.table_mut(inbox).is_some_and(|table| table.handle_action(action, look.page_rows));
+        let done = self.table_mut(inbox).is_some_and(|table| table.handle_action(action, context.page_rows));
         if action == Action::Close && !done {
             inbox.close_outcomes();
         }
         Vec::new()
     }
 
-    fn border(&self, inbox: &Inbox, area: Rect, look: &ScreenContext<'_>) -> PaneBorder {
+    fn border(&self, inbox: &Inbox, area: Rect, context: &ScreenContext<'_>) -> PaneBorder {
         let title = match area.width {
             ..72 => "By first offer and week",
             _ => "Outcome by first offer and week",
@@ -200,24 +200,24 @@ impl Pane<Inbox> for OutcomesPane {
             Some(note) if !note.is_empty() => note,
             _ => "new leads".to_owned(),
         };
-        let keys = look.hints(&[Action::Open, Action::Rows, Action::Filter, Action::Close]);
+        let keys = context.hints(&[Action::Open, Action::Rows, Action::Filter, Action::Close]);
         PaneBorder { title: title.to_owned(), note, keys, ..PaneBorder::default() }
     }
 
-    fn draw(&self, inbox: &Inbox, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
+    fn draw(&self, inbox: &Inbox, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
         let Some(offer_outcomes) = &inbox.outcomes else { return };
         let text = match offer_outcomes.rows.as_deref() {
             None => "reading …".to_owned(),
             Some([]) => {
-                let send = look.keys.label(Action::SendOffer).unwrap_or_default();
+                let send = context.keys.label(Action::SendOffer).unwrap_or_default();
                 format!(
                     "No new lead has been sent an offer yet. Send one with {send} in the list of threads."
                 )
             }
-            Some(_) => return offer_outcomes.table.draw(canvas, seat.area, seat.focused, seat.index),
+            Some(_) => return offer_outcomes.table.draw(canvas, placement.area, placement.focused, placement.index),
         };
-        let lines = wrap(&text, seat.area.width as usize);
-        for (row, line) in novamind_tui::canvas::row_rects(seat.area).zip(lines) {
+        let lines = wrap(&text, placement.area.width as usize);
+        for (row, line) in novamind_tui::canvas::row_rects(placement.area).zip(lines) {
             canvas.draw_text(row, &line, Role::Dim);
         }
     }

@@ -16,14 +16,14 @@ const NAMED_WIDTH: u16 = 28;
 const NUMBERED_WIDTH: u16 = 14;
 const MIN_WIDTH_FOR_NAMES: u16 = 68;
 
-pub fn preview_border(inbox: &Inbox, look: &ScreenContext<'_>) -> PaneBorder {
-    let title = format!("Preview for {}", inbox.planned_offers(look.company).len());
+pub fn preview_border(inbox: &Inbox, context: &ScreenContext<'_>) -> PaneBorder {
+    let title = format!("Preview for {}", inbox.planned_offers(context.company).len());
     PaneBorder { title, note: "before → offer".to_owned(), ..PaneBorder::default() }
 }
 
-pub fn draw(inbox: &Inbox, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
-    let (inside, planned) = (seat.area, inbox.planned_offers(look.company));
-    if seat.focused {
+pub fn draw(inbox: &Inbox, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
+    let (inside, planned) = (placement.area, inbox.planned_offers(context.company));
+    if placement.focused {
         canvas.page_rows = inside.height.max(1);
     }
     let from = (inbox.scroll as usize).min(planned.len().saturating_sub(inside.height as usize));

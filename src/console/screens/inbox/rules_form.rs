@@ -65,10 +65,10 @@ impl RulesForm {
 }
 
 /// Draws the layout for small windows: the preview above the rules.
-pub fn draw_small_layout(inbox: &Inbox, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+pub fn draw_small_layout(inbox: &Inbox, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
     let [above, below] = Layout::vertical([Constraint::Percentage(45), Constraint::Min(0)]).areas(area);
-    draw_pane(inbox, InboxPane::Thread, canvas, above, look);
-    draw_pane(inbox, InboxPane::Offer, canvas, below, look);
+    draw_pane(inbox, InboxPane::Thread, canvas, above, context);
+    draw_pane(inbox, InboxPane::Offer, canvas, below, context);
 }
 
 impl Inbox {
@@ -136,9 +136,9 @@ impl Inbox {
         (!calls.is_empty()).then(|| (calls, batch.summary().join("\n")))
     }
 
-    pub(super) fn rules_border(&self, look: &ScreenContext<'_>) -> PaneBorder {
+    pub(super) fn rules_border(&self, context: &ScreenContext<'_>) -> PaneBorder {
         use crate::action::Action::{Discard, SendOffer};
-        let keys = format!("{} · ctrl-n clear the line · {}", look.hint(SendOffer), look.hint(Discard));
+        let keys = format!("{} · ctrl-n clear the line · {}", context.hint(SendOffer), context.hint(Discard));
         PaneBorder {
             title: "Rules".to_owned(),
             note: "first match applies".to_owned(),
@@ -148,15 +148,15 @@ impl Inbox {
     }
 
     /// Draws the field, and a line for each rule or the error.
-    pub(super) fn draw_rules(&self, ruling: &RulesForm, canvas: &mut Canvas<'_>, seat: PanePlacement) {
-        let mut rows = row_rects(seat.area);
+    pub(super) fn draw_rules(&self, ruling: &RulesForm, canvas: &mut Canvas<'_>, placement: PanePlacement) {
+        let mut rows = row_rects(placement.area);
         let Some(first) = rows.next() else { return };
         match ruling.is_typing {
             true => ruling.field.draw(canvas, first),
             false => canvas.draw_text(first, ruling.field.text(), Role::Strong),
         }
         rows.next();
-        let width = seat.area.width as usize;
+        let width = placement.area.width as usize;
         let (lines, role) = match &ruling.batch {
             Ok(batch) => (batch.summary(), Role::Text),
             Err(problem) => (vec![format!("column {}: {}", problem.column, problem.text)], Role::Warning),
@@ -175,21 +175,21 @@ impl Inbox {
         &self,
         ruling: &RulesForm,
         canvas: &mut Canvas<'_>,
-        seat: PanePlacement,
-        look: &ScreenContext<'_>,
+        placement: PanePlacement,
+        context: &ScreenContext<'_>,
     ) {
-        let (inside, count) = (seat.area, ruling.matched_threads().count());
-        if seat.focused {
+        let (inside, count) = (placement.area, ruling.matched_threads().count());
+        if placement.focused {
             canvas.page_rows = inside.height.max(1);
         }
         let from = (self.scroll as usize).min(count.saturating_sub(inside.height as usize));
         for (row, ruled) in row_rects(inside).zip(ruling.matched_threads().skip(from)) {
-            draw_rule_match(canvas, row, ruled, look);
+            draw_rule_match(canvas, row, ruled, context);
         }
     }
 }
 
-fn draw_rule_match(canvas: &mut Canvas<'_>, row: Rect, ruled: &RuleOutcome, look: &ScreenContext<'_>) {
+fn draw_rule_match(canvas: &mut Canvas<'_>, row: Rect, ruled: &RuleOutcome, context: &ScreenContext<'_>) {
     let waiting_thread = &ruled.thread.waiting;
     let rule = ruled.rule_index.map_or(0, |at| at + 1);
     let asked = waiting_thread.asked.map_or("–".to_owned(), cents);
@@ -198,7 +198,7 @@ fn draw_rule_match(canvas: &mut Canvas<'_>, row: Rect, ruled: &RuleOutcome, look
         waiting_thread.customer,
         waiting_thread.group,
         ruled.describe_reply(),
-        look.company.company_names.name(waiting_thread.customer)
+        context.company.company_names.name(waiting_thread.customer)
     );
     let role = if ruled.reply.is_ok() { Role::Text } else { Role::Warning };
     canvas.draw_text(row, &words, role);

@@ -76,9 +76,9 @@ fn crowded_screen_with(threads: u32) -> (Inbox, DisplayedCompany) {
     let (company, turns, firms) = crowded_company(threads);
     let mut screen = Inbox::default();
     let keys = KeyBindings::bundled();
-    let look = ScreenContext { company: &company, keys: &keys, page_rows: 20 };
-    screen.apply_rows(Reading::EnterpriseTurns, &turns, &look);
-    screen.apply_rows(Reading::Companies, &firms, &look);
+    let context = ScreenContext { company: &company, keys: &keys, page_rows: 20 };
+    screen.apply_rows(Reading::EnterpriseTurns, &turns, &context);
+    screen.apply_rows(Reading::Companies, &firms, &context);
     (screen, company)
 }
 
@@ -86,7 +86,7 @@ fn crowded_screen_with(threads: u32) -> (Inbox, DisplayedCompany) {
 /// number of keys.
 fn press(screen: &mut Inbox, company: &DisplayedCompany, keys: &str) -> (Vec<Effect>, usize) {
     let known = KeyBindings::bundled();
-    let look = ScreenContext { company, keys: &known, page_rows: 20 };
+    let context = ScreenContext { company, keys: &known, page_rows: 20 };
     let (mut effects, mut count) = (Vec::new(), 0);
     for word in keys.split(' ') {
         let typed = word.strip_prefix('\'').and_then(|rest| rest.strip_suffix('\''));
@@ -99,8 +99,8 @@ fn press(screen: &mut Inbox, company: &DisplayedCompany, keys: &str) -> (Vec<Eff
             let scopes = screen.scopes();
             let text = scopes[0].is_text() && chord.is_printable();
             effects = match known.action(&scopes, chord).filter(|_| !text) {
-                Some(action) => screen.handle_action(action, &look),
-                None => screen.handle_key(&chord.to_event(), &look),
+                Some(action) => screen.handle_action(action, &context),
+                None => screen.handle_key(&chord.to_event(), &context),
             };
             count += 1;
         }
@@ -124,14 +124,14 @@ fn apply_answers(screen: &mut Inbox, company: &mut DisplayedCompany, deals: &[Va
     let done = |customer_id: u32| DealResult::Done { customer_id, success: true };
     let results = DealResults { results: customers.into_iter().map(done).collect() };
     let keys = KeyBindings::bundled();
-    let look = ScreenContext { company, keys: &keys, page_rows: 20 };
-    screen.on_company_change(&look);
+    let context = ScreenContext { company, keys: &keys, page_rows: 20 };
+    screen.on_company_change(&context);
     let news = Response::ToolCalled(
         ToolId::SendEnterpriseDeal,
         Ok(Box::new(Answer::SendEnterpriseDeal(results))),
         std::sync::Arc::new(company.clone()),
     );
-    screen.handle_response(&news, &look);
+    screen.handle_response(&news, &context);
 }
 
 #[test]
@@ -344,16 +344,16 @@ fn offer_shows_margin_and_source_of_usage() {
     let small = screen_text(&screen, &company, 80, 21);
     assert!(small.contains(&format!("B est. compute {compute}/mo, margin {margin}")), "{small}");
     let keys = KeyBindings::bundled();
-    let look = ScreenContext { company: &company, keys: &keys, page_rows: 20 };
+    let context = ScreenContext { company: &company, keys: &keys, page_rows: 20 };
     for focus in 0..Screen::pane_count(&screen) {
         screen.set_focus(focus);
-        let figure = screen.figure(&look).expect("a figure");
+        let figure = screen.figure(&context).expect("a figure");
         session
             .query(&figure.sql.expect("rows"))
             .unwrap_or_else(|refusal| panic!("{}: {refusal}", figure.title));
     }
     screen.set_focused_pane(InboxPane::List);
-    let turns = screen.figure(&look).and_then(|figure| figure.sql).expect("rows");
+    let turns = screen.figure(&context).and_then(|figure| figure.sql).expect("rows");
     assert_eq!(session.query(&turns).expect("rows").rows.len(), thread.messages.len());
 }
 
@@ -382,9 +382,9 @@ fn first_offer_outcomes_agree_with_turns_and_subscriptions() {
     assert!(matches!(&effects[..], [Effect::Read(Reading::FirstOffers)]), "{effects:?}");
     assert!(screen_text(&screen, &company, 80, 21).contains("reading …"));
     let keys = KeyBindings::bundled();
-    let look = ScreenContext { company: &company, keys: &keys, page_rows: 20 };
+    let context = ScreenContext { company: &company, keys: &keys, page_rows: 20 };
     let rows = session.query(Reading::FirstOffers.sql()).expect("rows");
-    screen.apply_rows(Reading::FirstOffers, &rows, &look);
+    screen.apply_rows(Reading::FirstOffers, &rows, &context);
     let cells: Vec<Vec<String>> = {
         let table = OutcomesPane.table(&screen).expect("a table");
         table.rows().iter().map(|row| row.iter().map(|cell| cell.text.clone()).collect()).collect()
@@ -425,7 +425,7 @@ fn first_offer_outcomes_agree_with_turns_and_subscriptions() {
         threads += all;
         // The query for the row returns its threads.
         OutcomesPane.table_mut(&mut screen).expect("a table").select(at);
-        let sql = screen.figure(&look).and_then(|figure| figure.sql).expect("rows");
+        let sql = screen.figure(&context).and_then(|figure| figure.sql).expect("rows");
         let behind = session.query(&sql).expect("rows");
         assert_eq!(behind.rows.len() as f64, all, "{row:?}");
         assert_eq!(behind.rows.iter().map(|turn_row| number_at(turn_row, 5)).sum::<f64>(), signed, "{row:?}");

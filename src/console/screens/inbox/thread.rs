@@ -32,7 +32,7 @@ impl Pane<Inbox> for ThreadPane {
         inbox.selected_thread().map(|thread| sending::figure(thread, "thread with", "thread"))
     }
 
-    fn handle_action(&self, inbox: &mut Inbox, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_action(&self, inbox: &mut Inbox, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         // A thread opens at its end, a preview at its start.
         let back = if inbox.marked.is_empty() && inbox.rules_form.is_none() { Action::Up } else { Action::Down };
         inbox.scroll = match action {
@@ -47,35 +47,35 @@ impl Pane<Inbox> for ThreadPane {
             Action::Up | Action::Down if action == back => inbox.scroll.saturating_add(1).min(500),
             Action::Up | Action::Down => inbox.scroll.saturating_sub(1),
             Action::PageUp | Action::PageDown if (action == Action::PageUp) == (back == Action::Up) => {
-                inbox.scroll.saturating_add(look.page_rows).min(500)
+                inbox.scroll.saturating_add(context.page_rows).min(500)
             }
-            Action::PageUp | Action::PageDown => inbox.scroll.saturating_sub(look.page_rows),
+            Action::PageUp | Action::PageDown => inbox.scroll.saturating_sub(context.page_rows),
             Action::First | Action::Last => 0,
             _ => inbox.scroll,
         };
         Vec::new()
     }
 
-    fn border(&self, inbox: &Inbox, area: Rect, look: &ScreenContext<'_>) -> PaneBorder {
+    fn border(&self, inbox: &Inbox, area: Rect, context: &ScreenContext<'_>) -> PaneBorder {
         match (&inbox.rules_form, inbox.marked.is_empty()) {
             (Some(ruling), _) => inbox.rules_preview_border(ruling),
-            (None, true) => MessagesPane.border(inbox, area, look),
-            (None, false) => preview::preview_border(inbox, look),
+            (None, true) => MessagesPane.border(inbox, area, context),
+            (None, false) => preview::preview_border(inbox, context),
         }
     }
 
-    fn draw(&self, inbox: &Inbox, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
+    fn draw(&self, inbox: &Inbox, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
         match (&inbox.rules_form, inbox.marked.is_empty()) {
-            (Some(ruling), _) => inbox.draw_rules_preview(ruling, canvas, seat, look),
-            (None, true) => MessagesPane.draw(inbox, canvas, seat, look),
-            (None, false) => preview::draw(inbox, canvas, seat, look),
+            (Some(ruling), _) => inbox.draw_rules_preview(ruling, canvas, placement, context),
+            (None, true) => MessagesPane.draw(inbox, canvas, placement, context),
+            (None, false) => preview::draw(inbox, canvas, placement, context),
         }
     }
 }
 
 /// Draws the thread next to the preview.
-pub fn draw_side_thread(inbox: &Inbox, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
-    draw_framed(&MessagesPane, inbox, canvas, PanePlacement { area, focused: false, index: 0 }, look);
+pub fn draw_side_thread(inbox: &Inbox, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
+    draw_framed(&MessagesPane, inbox, canvas, PanePlacement { area, focused: false, index: 0 }, context);
 }
 
 struct MessagesPane;
@@ -99,10 +99,10 @@ impl Pane<Inbox> for MessagesPane {
         PaneBorder { title, note, ..PaneBorder::default() }
     }
 
-    fn draw(&self, inbox: &Inbox, canvas: &mut Canvas<'_>, seat: PanePlacement, _: &ScreenContext<'_>) {
+    fn draw(&self, inbox: &Inbox, canvas: &mut Canvas<'_>, placement: PanePlacement, _: &ScreenContext<'_>) {
         let Some(thread) = inbox.selected_thread() else { return };
-        let inside = Rect { x: seat.area.x + 1, width: seat.area.width.saturating_sub(2), ..seat.area };
-        if seat.focused {
+        let inside = Rect { x: placement.area.x + 1, width: placement.area.width.saturating_sub(2), ..placement.area };
+        if placement.focused {
             canvas.page_rows = inside.height.max(1);
         }
         let lines = message_lines(inbox, thread, inside.width as usize);

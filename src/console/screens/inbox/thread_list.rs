@@ -66,12 +66,12 @@ impl Pane<Inbox> for ThreadListPane {
         })
     }
 
-    fn handle_action(&self, inbox: &mut Inbox, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_action(&self, inbox: &mut Inbox, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         if action == Action::Open {
             inbox.focus = InboxPane::Offer;
         } else {
             inbox.scroll = 0;
-            inbox.table.handle_action(action, look.page_rows);
+            inbox.table.handle_action(action, context.page_rows);
         }
         Vec::new()
     }
@@ -82,7 +82,7 @@ impl Pane<Inbox> for ThreadListPane {
         Vec::new()
     }
 
-    fn border(&self, inbox: &Inbox, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
+    fn border(&self, inbox: &Inbox, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
         let threads = inbox.rows.len();
         let (title, worth) = match inbox.view {
             InboxView::WaitingForPlayer => (format!("{threads} waiting for you"), true),
@@ -98,24 +98,24 @@ impl Pane<Inbox> for ThreadListPane {
         if !inbox.marked.is_empty() {
             note = format!("{} marked · {note}", inbox.marked.len());
         }
-        let keys = look.hints(&[Action::Mark, Action::MarkAll, Action::Filter, Action::NextThreadView]);
+        let keys = context.hints(&[Action::Mark, Action::MarkAll, Action::Filter, Action::NextThreadView]);
         PaneBorder { title, note, keys, ..PaneBorder::default() }
     }
 
-    fn draw(&self, inbox: &Inbox, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
+    fn draw(&self, inbox: &Inbox, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
         if inbox.rows.is_empty() {
-            draw_empty_state(inbox, canvas, seat.area, look);
+            draw_empty_state(inbox, canvas, placement.area, context);
         } else {
-            inbox.table.draw(canvas, seat.area, seat.focused, seat.index);
+            inbox.table.draw(canvas, placement.area, placement.focused, placement.index);
         }
     }
 }
 
-fn draw_empty_state(inbox: &Inbox, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+fn draw_empty_state(inbox: &Inbox, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
     let inside = Rect { x: area.x + 1, width: area.width.saturating_sub(2), ..area };
-    let mut lines = wrap(&empty_text(inbox, look), inside.width as usize);
+    let mut lines = wrap(&empty_text(inbox, context), inside.width as usize);
     if lines.len() > inside.height as usize {
-        let zoom = look.keys.label(Action::Zoom).unwrap_or_default();
+        let zoom = context.keys.label(Action::Zoom).unwrap_or_default();
         lines.truncate((inside.height as usize).saturating_sub(1));
         lines.push(format!("… {zoom} shows more"));
     }
@@ -124,13 +124,13 @@ fn draw_empty_state(inbox: &Inbox, canvas: &mut Canvas<'_>, area: Rect, look: &S
     }
 }
 
-fn empty_text(inbox: &Inbox, look: &ScreenContext<'_>) -> String {
-    let key = |action: Action| look.keys.label(action).unwrap_or_default();
+fn empty_text(inbox: &Inbox, context: &ScreenContext<'_>) -> String {
+    let key = |action: Action| context.keys.label(action).unwrap_or_default();
     if !inbox.threads.threads.is_empty() {
         return format!("No threads here. {} shows others.", key(Action::NextThreadView));
     }
     let funnels: Vec<String> =
-        look.company.funnels.iter().map(|funnel| format!("· {}", funnel.describe())).collect();
+        context.company.funnels.iter().map(|funnel| format!("· {}", funnel.describe())).collect();
     format!(
         "No enterprise has asked for an offer yet. Advertise to enterprise groups ({} set_targeted_ad_spend). A higher \
          model tier, development for their group and a quota for all seats make a plan more attractive.\n\n{}",

@@ -38,23 +38,23 @@ pub fn empty_table() -> Table {
 
 /// Returns the rows of a tree, with the current run marked.
 pub fn rows(tree: &[RelatedRun], text: &str) -> Vec<Vec<TableCell>> {
-    tree.iter().map(|kin| row(kin, text)).collect()
+    tree.iter().map(|run| row(run, text)).collect()
 }
 
-fn row(kin: &RelatedRun, text: &str) -> Vec<TableCell> {
-    let run = &kin.run;
+fn row(related_run: &RelatedRun, text: &str) -> Vec<TableCell> {
+    let run = &related_run.run;
     let (mark, role) = if run.id == text { (" ◂", Role::Strong) } else { ("", Role::Text) };
-    let left = match kin.branched_in_week {
+    let left = match related_run.branched_in_week {
         Some(week) => TableCell::from_number(week.into(), format!("week {week}")),
         None => TableCell::from_text(""),
     };
-    let change = match (&kin.first_change, kin.branched_in_week) {
+    let change = match (&related_run.first_change, related_run.branched_in_week) {
         (Some(change), Some(_)) => TableCell::from_text(describe_first_change(change)),
         (None, Some(_)) => TableCell::from_text("none").with_role(Role::Dim),
         (_, None) => TableCell::from_text(""),
     };
     vec![
-        TableCell::from_text(format!("{}{}{mark}", "  ".repeat(kin.depth), run.id)).with_role(role),
+        TableCell::from_text(format!("{}{}{mark}", "  ".repeat(related_run.depth), run.id)).with_role(role),
         left,
         change,
         TableCell::from_number(run.day.into(), format!("{} of {}", run.day, run.days)),
@@ -83,7 +83,7 @@ impl Journal {
         let is_first = self.tree.is_empty();
         (self.tree, self.is_tree_read) = (tree, true);
         self.branches.set_rows(rows(&self.tree, run));
-        if is_first && let Some(number) = self.tree.iter().position(|kin| kin.run.id == *run) {
+        if is_first && let Some(number) = self.tree.iter().position(|related_run| related_run.run.id == *run) {
             self.branches.select(number);
         }
         if self.focus == JournalPane::Branches && !self.has_tree() {
@@ -93,11 +93,11 @@ impl Journal {
 
     /// Returns the note next to the title of the entries: the filter, or the number of runs in the tree with
     /// its key.
-    pub(super) fn entries_note(&self, look: &ScreenContext<'_>) -> String {
+    pub(super) fn entries_note(&self, context: &ScreenContext<'_>) -> String {
         match (self.table.summary(), self.has_tree()) {
             (note, false) => note,
             (note, true) if !note.is_empty() => note,
-            (_, true) => format!("{} of {} runs", look.hint(Action::ShowTree), self.tree.len()),
+            (_, true) => format!("{} of {} runs", context.hint(Action::ShowTree), self.tree.len()),
         }
     }
 
@@ -124,27 +124,27 @@ impl Pane<Journal> for BranchesPane {
     }
 
     fn figure(&self, journal: &Journal, _: &ScreenContext<'_>) -> Option<Figure> {
-        let title = journal.selected_run().map(|kin| format!("run {}", kin.run.id))?;
+        let title = journal.selected_run().map(|related_run| format!("run {}", related_run.run.id))?;
         Some(Figure { title, term: "branch", sql: None, week_quantity: None })
     }
 
-    fn handle_action(&self, journal: &mut Journal, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_action(&self, journal: &mut Journal, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         let is_filtered = journal.branches.is_filtered();
         match action {
             Action::Open => {
                 return match journal.selected_run() {
-                    Some(kin) => vec![Effect::OpenRun(kin.run.id.clone())],
+                    Some(run) => vec![Effect::OpenRun(run.run.id.clone())],
                     None => Vec::new(),
                 };
             }
             Action::Close if !is_filtered => journal.focus = JournalPane::List,
-            action => drop(journal.branches.handle_action(action, look.page_rows)),
+            action => drop(journal.branches.handle_action(action, context.page_rows)),
         }
         Vec::new()
     }
 
-    fn border(&self, journal: &Journal, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
-        let open = look.keys.label(Action::Open).unwrap_or_default();
+    fn border(&self, journal: &Journal, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
+        let open = context.keys.label(Action::Open).unwrap_or_default();
         PaneBorder {
             title: "Branches".to_owned(),
             note: journal.branches.summary(),
@@ -153,19 +153,19 @@ impl Pane<Journal> for BranchesPane {
         }
     }
 
-    fn draw(&self, journal: &Journal, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
+    fn draw(&self, journal: &Journal, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
         let texts = match journal.selected_run() {
-            Some(kin) => wrap(related_run_line(kin, &look.company.observation.run).trim_start(), seat.area.width.into()),
+            Some(run) => wrap(related_run_line(run, &context.company.observation.run).trim_start(), placement.area.width.into()),
             None => Vec::new(),
         };
         let rows = journal.branches.visible_rows().len() as u16 + 1;
-        let below = match seat.area.height >= MIN_HEIGHT_FOR_DETAILS {
-            true => (texts.len() as u16 + 1).min(seat.area.height / 2),
-            false => seat.area.height.saturating_sub(rows + 1).min(texts.len() as u16 + 1),
+        let below = match placement.area.height >= MIN_HEIGHT_FOR_DETAILS {
+            true => (texts.len() as u16 + 1).min(placement.area.height / 2),
+            false => placement.area.height.saturating_sub(rows + 1).min(texts.len() as u16 + 1),
         };
-        let area = Rect { height: seat.area.height - below, ..seat.area };
-        journal.branches.draw(canvas, area, seat.focused, seat.index);
-        let below = Rect { y: area.bottom(), height: below, ..seat.area };
+        let area = Rect { height: placement.area.height - below, ..placement.area };
+        journal.branches.draw(canvas, area, placement.focused, placement.index);
+        let below = Rect { y: area.bottom(), height: below, ..placement.area };
         for (row, line) in row_rects(below).skip(1).zip(&texts) {
             canvas.draw_text(row, line, Role::Dim);
         }

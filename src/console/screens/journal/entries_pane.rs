@@ -33,7 +33,7 @@ impl Pane<Journal> for EntriesPane {
         journal.table.selected().and_then(|row| journal.figures.get(row)).cloned()
     }
 
-    fn handle_action(&self, journal: &mut Journal, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_action(&self, journal: &mut Journal, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         let action = match action {
             Action::Open => {
                 let whole = journal.table.selected().and_then(|row| journal.full_texts.get(row));
@@ -44,20 +44,20 @@ impl Pane<Journal> for EntriesPane {
             Action::CommitNext | Action::CommitPrevious => Action::Commit,
             other => other,
         };
-        journal.table.handle_action(action, look.page_rows);
+        journal.table.handle_action(action, context.page_rows);
         Vec::new()
     }
 
-    fn border(&self, journal: &Journal, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
+    fn border(&self, journal: &Journal, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
         PaneBorder {
             title: "Journal".to_owned(),
-            note: journal.entries_note(look),
-            keys: look.hints(&[Action::Open, Action::Filter]),
+            note: journal.entries_note(context),
+            keys: context.hints(&[Action::Open, Action::Filter]),
             ..PaneBorder::default()
         }
     }
 
-    fn draw(&self, journal: &Journal, canvas: &mut Canvas<'_>, seat: PanePlacement, _: &ScreenContext<'_>) {
-        journal.table.draw(canvas, seat.area, seat.focused, seat.index);
+    fn draw(&self, journal: &Journal, canvas: &mut Canvas<'_>, placement: PanePlacement, _: &ScreenContext<'_>) {
+        journal.table.draw(canvas, placement.area, placement.focused, placement.index);
     }
 }

@@ -105,11 +105,11 @@ impl ScreenState for Journal {
         usize::from(self.focus != JournalPane::List)
     }
 
-    fn on_company_change(&mut self, look: &ScreenContext<'_>) {
+    fn on_company_change(&mut self, context: &ScreenContext<'_>) {
         let mut rows = Vec::new();
         self.full_texts.clear();
         self.figures.clear();
-        for line in entries::lines(look.company) {
+        for line in entries::lines(context.company) {
             rows.push(vec![
                 TableCell::from_number(f64::from(line.day), line.day.to_string()).with_role(Role::Dim),
                 TableCell::from_text(line.text).with_role(line.role),
@@ -124,20 +124,20 @@ impl ScreenState for Journal {
         }
         self.table.set_rows(rows);
         // The editor normalizes line ends, so both sides must be normalized.
-        let kept = TextEditor::with_text(&look.company.notes);
+        let kept = TextEditor::with_text(&context.company.notes);
         if !self.has_unsaved_notes() && kept.text() != self.saved_notes {
             self.notes = kept.clone();
         }
         self.saved_notes = kept.text();
     }
 
-    fn request_data(&mut self, look: &ScreenContext<'_>) -> Vec<Effect> {
-        self.request_tree(look.company)
+    fn request_data(&mut self, context: &ScreenContext<'_>) -> Vec<Effect> {
+        self.request_tree(context.company)
     }
 
-    fn take_answers(&mut self, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn take_answers(&mut self, context: &ScreenContext<'_>) -> Vec<Effect> {
         match self.asked.try_take() {
-            Some((_, Ok(tree))) => self.set_tree(tree, look.company),
+            Some((_, Ok(tree))) => self.set_tree(tree, context.company),
             Some((_, Err(refusal))) => return vec![Effect::Complain(refusal.message)],
             None => {}
         }
@@ -195,11 +195,11 @@ impl PaneScreen for Journal {
         Some(Vec::new())
     }
 
-    fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         if area.width < 60 || area.height < 14 {
-            return draw_pane(self, self.focus, canvas, area, look);
+            return draw_pane(self, self.focus, canvas, area, context);
         }
-        let few = look.company.forecast_scores.len() as u16 + 4;
+        let few = context.company.forecast_scores.len() as u16 + 4;
         let wide = area.width >= 104;
         let [list, below] = if wide {
             let right = (area.width / 3).clamp(48, 64);
@@ -207,8 +207,8 @@ impl PaneScreen for Journal {
         } else {
             Layout::vertical([Constraint::Min(0), Constraint::Length(few)]).areas(area)
         };
-        let (list, below) = self.draw_tree(canvas, (list, below), area, look);
-        draw_pane(self, JournalPane::List, canvas, list, look);
+        let (list, below) = self.draw_tree(canvas, (list, below), area, context);
+        draw_pane(self, JournalPane::List, canvas, list, context);
         let [scores, notes] = if wide {
             // Individual forecasts below the scores, if some of them fit.
             let tall = (few + 9).min(below.height / 2).max(few);
@@ -216,8 +216,8 @@ impl PaneScreen for Journal {
         } else {
             Layout::horizontal([Constraint::Length(40), Constraint::Min(0)]).areas(below)
         };
-        draw_pane(self, JournalPane::Scores, canvas, scores, look);
-        draw_pane(self, JournalPane::Notes, canvas, notes, look);
+        draw_pane(self, JournalPane::Scores, canvas, scores, context);
+        draw_pane(self, JournalPane::Notes, canvas, notes, context);
     }
 }
 
@@ -232,7 +232,7 @@ impl Journal {
         canvas: &mut Canvas<'_>,
         (list, below): (Rect, Rect),
         area: Rect,
-        look: &ScreenContext<'_>,
+        context: &ScreenContext<'_>,
     ) -> (Rect, Rect) {
         let has_focus = self.focus == JournalPane::Branches;
         if !self.has_tree() {
@@ -244,7 +244,7 @@ impl Journal {
                     let [list, tree] =
                         Layout::vertical([Constraint::Length(area.height / 3), Constraint::Min(0)])
                             .areas(Rect { width: list.width, ..area });
-                    draw_pane(self, JournalPane::Branches, canvas, tree, look);
+                    draw_pane(self, JournalPane::Branches, canvas, tree, context);
                     (list, if below.x > list.x { below } else { Rect::default() })
                 }
                 false => (list, below),
@@ -253,7 +253,7 @@ impl Journal {
         let wanted = self.tree.len() as u16 + branches::CHROME_ROWS + 3;
         let tall = wanted.min(list.height / 2);
         let [list, tree] = Layout::vertical([Constraint::Min(0), Constraint::Length(tall)]).areas(list);
-        draw_pane(self, JournalPane::Branches, canvas, tree, look);
+        draw_pane(self, JournalPane::Branches, canvas, tree, context);
         (list, below)
     }
 }

@@ -48,7 +48,7 @@ impl Pane<Journal> for NotesPane {
         Vec::new()
     }
 
-    fn border(&self, journal: &Journal, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
+    fn border(&self, journal: &Journal, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
         let keys: &[Action] = match (journal.editing, journal.has_unsaved_notes()) {
             (true, _) => &[Action::SaveNotes, Action::LeaveEditor],
             (false, true) => &[Action::EditNotes, Action::SaveNotes],
@@ -57,12 +57,12 @@ impl Pane<Journal> for NotesPane {
         PaneBorder {
             title: "Notes".to_owned(),
             note: if journal.has_unsaved_notes() { "draft, unsaved".to_owned() } else { String::new() },
-            keys: look.hints(keys),
+            keys: context.hints(keys),
             shows_keys_always: true,
         }
     }
 
-    fn draw(&self, journal: &Journal, canvas: &mut Canvas<'_>, seat: PanePlacement, _: &ScreenContext<'_>) {
-        journal.notes.draw(canvas, seat.area, journal.editing, "notes to yourself, saved with the run");
+    fn draw(&self, journal: &Journal, canvas: &mut Canvas<'_>, placement: PanePlacement, _: &ScreenContext<'_>) {
+        journal.notes.draw(canvas, placement.area, journal.editing, "notes to yourself, saved with the run");
     }
 }

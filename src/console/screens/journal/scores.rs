@@ -52,12 +52,12 @@ impl Pane<Journal> for ScoresPane {
         vec![Action::Up, Action::Down, Action::Close]
     }
 
-    fn figure(&self, journal: &Journal, look: &ScreenContext<'_>) -> Option<Figure> {
-        figure(look.company, journal.horizon)
+    fn figure(&self, journal: &Journal, context: &ScreenContext<'_>) -> Option<Figure> {
+        figure(context.company, journal.horizon)
     }
 
-    fn handle_action(&self, journal: &mut Journal, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
-        let last = look.company.forecast_scores.len().saturating_sub(1);
+    fn handle_action(&self, journal: &mut Journal, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
+        let last = context.company.forecast_scores.len().saturating_sub(1);
         match action {
             Action::Close => journal.focus = JournalPane::List,
             Action::Up | Action::First => journal.horizon = journal.horizon.saturating_sub(1),
@@ -67,34 +67,34 @@ impl Pane<Journal> for ScoresPane {
         Vec::new()
     }
 
-    fn handle_click(&self, journal: &mut Journal, row: usize, look: &ScreenContext<'_>) -> Vec<Effect> {
-        journal.horizon = row.min(look.company.forecast_scores.len().saturating_sub(1));
+    fn handle_click(&self, journal: &mut Journal, row: usize, context: &ScreenContext<'_>) -> Vec<Effect> {
+        journal.horizon = row.min(context.company.forecast_scores.len().saturating_sub(1));
         Vec::new()
     }
 
-    fn border(&self, _: &Journal, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
-        let note = if look.company.shows_calibration() { "95 % coverage" } else { "" };
+    fn border(&self, _: &Journal, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
+        let note = if context.company.shows_calibration() { "95 % coverage" } else { "" };
         PaneBorder { title: "Forecasts".to_owned(), note: note.to_owned(), ..PaneBorder::default() }
     }
 
-    fn draw(&self, journal: &Journal, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
-        let company = look.company;
+    fn draw(&self, journal: &Journal, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
+        let company = context.company;
         let summary = company.shows_calibration();
         let head = match summary {
             true => format!("{:<9}{:>10}{:>8}{:>8}", "", "inside", "error", "width"),
             false => format!("{:<9}{:>10}", "", "came due"),
         };
-        let mut rows = row_rects(seat.area);
+        let mut rows = row_rects(placement.area);
         if let Some(row) = rows.next() {
             canvas.draw_text(row, &head, Role::Header);
         }
         for ((at, score), row) in company.forecast_scores.iter().enumerate().zip(rows.by_ref()) {
             let usual_role = if summary { role_of(score) } else { Role::Text };
-            let role = if seat.focused && at == journal.horizon { Role::Selection } else { usual_role };
+            let role = if placement.focused && at == journal.horizon { Role::Selection } else { usual_role };
             let counted = || format!("{:<9}{:>10}", format_weeks(score.horizon_days), score.scored);
             canvas.clear(row, role);
             canvas.draw_text(row, &if summary { line_of(score) } else { counted() }, role);
-            canvas.register_click(row, Click::Row(seat.index, at));
+            canvas.register_click(row, Click::Row(placement.index, at));
         }
         if let Some(row) = rows.next() {
             let none = company.forecast_scores.iter().all(|score| score.scored == 0);

@@ -14,13 +14,13 @@ fn with_context<T>(company: &DisplayedCompany, work: impl FnOnce(&ScreenContext<
 }
 
 fn handle_action(screen: &mut Journal, company: &DisplayedCompany, action: Action) -> Vec<Effect> {
-    with_context(company, |look| screen.handle_action(action, look))
+    with_context(company, |context| screen.handle_action(action, context))
 }
 
 fn type_notes(screen: &mut Journal, company: &DisplayedCompany, text: &str) {
     for letter in text.chars() {
         let key = KeyEvent::new(KeyCode::Char(letter), KeyModifiers::NONE);
-        with_context(company, |look| screen.handle_key(&key, look));
+        with_context(company, |context| screen.handle_key(&key, context));
     }
 }
 
@@ -39,7 +39,7 @@ fn played_company() -> DisplayedCompany {
 
 fn journal_of(company: &DisplayedCompany) -> Journal {
     let mut screen = Journal::default();
-    with_context(company, |look| screen.on_company_change(look));
+    with_context(company, |context| screen.on_company_change(context));
     screen
 }
 
@@ -68,7 +68,7 @@ fn every_row_has_a_term_and_source_rows() {
     let mut screen = journal_of(&company);
     let mut terms = Vec::new();
     for _ in 0..screen.table.rows().len() {
-        let figure = with_context(&company, |look| screen.figure(look)).expect("a figure");
+        let figure = with_context(&company, |context| screen.figure(context)).expect("a figure");
         if let Some(sql) = &figure.sql {
             let rows = session.query(sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}")).rows;
             if figure.term == "cash-change" {
@@ -85,7 +85,7 @@ fn every_row_has_a_term_and_source_rows() {
     }
     screen.set_focused_pane(JournalPane::Scores);
     handle_action(&mut screen, &company, Action::Down);
-    let figure = with_context(&company, |look| screen.figure(look)).expect("a figure");
+    let figure = with_context(&company, |screen_context| screen.figure(screen_context)).expect("a figure");
     assert!(figure.title.contains("4 weeks"), "{figure:?}");
 }
 
@@ -124,13 +124,13 @@ fn unsaved_notes_survive_until_they_are_saved() {
     assert_eq!(screen.scopes(), [Scope::Editor, Scope::Notes]);
     type_notes(&mut screen, &company, "watch S3");
     handle_action(&mut screen, &company, Action::LeaveEditor);
-    with_context(&company, |look| screen.on_company_change(look));
+    with_context(&company, |context| screen.on_company_change(context));
     assert!(screen.has_unsent_text() && screen.notes.text() == "watch S3");
     assert!(contains(&screen_rows(&screen, &company, 80, 21), "draft, unsaved"));
     let effects = handle_action(&mut screen, &company, Action::SaveNotes);
     assert!(matches!(&effects[..], [Effect::Request(Request::SetNotes(text))] if text == "watch S3"));
     company.notes = "watch S3\n".to_owned();
-    with_context(&company, |look| screen.on_company_change(look));
+    with_context(&company, |screen_context| screen.on_company_change(screen_context));
     assert!(!screen.has_unsent_text());
     company.notes = "from elsewhere".to_owned();
     with_context(&company, |look| screen.on_company_change(look));

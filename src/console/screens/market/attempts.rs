@@ -40,13 +40,13 @@ impl Pane<Market> for AttemptsPane {
         Some(Figure { title, term: "market-research", sql: Some(sql.to_owned()), week_quantity: None })
     }
 
-    fn handle_action(&self, market: &mut Market, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
-        super::move_in_table(&mut market.attempts, action, look);
+    fn handle_action(&self, market: &mut Market, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
+        super::move_in_table(&mut market.attempts, action, context);
         Vec::new()
     }
 
-    fn border(&self, market: &Market, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
-        let next = dollars(look.company.tool_limits.attempt_cost);
+    fn border(&self, market: &Market, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
+        let next = dollars(context.company.tool_limits.attempt_cost);
         let note = match market.facts.attempts.len() {
             0 => format!("next {next}"),
             count => format!(
@@ -55,16 +55,16 @@ impl Pane<Market> for AttemptsPane {
                 dollars(market.facts.research_cost())
             ),
         };
-        let keys = look.hint(Action::FindGroup);
+        let keys = context.hint(Action::FindGroup);
         PaneBorder { title: "Attempts".to_owned(), note, keys, shows_keys_always: true }
     }
 
-    fn draw(&self, market: &Market, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
+    fn draw(&self, market: &Market, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
         if market.facts.attempts.is_empty() {
-            let key = look.keys.label(Action::FindGroup).unwrap_or_default();
-            canvas.draw_text(seat.area, &format!("No attempts yet. Pay for one with {key}."), Role::Dim);
+            let key = context.keys.label(Action::FindGroup).unwrap_or_default();
+            canvas.draw_text(placement.area, &format!("No attempts yet. Pay for one with {key}."), Role::Dim);
         } else {
-            market.attempts.draw(canvas, seat.area, seat.focused, seat.index);
+            market.attempts.draw(canvas, placement.area, placement.focused, placement.index);
         }
     }
 }

@@ -80,27 +80,27 @@ impl Pane<Market> for EconomyPane {
         Vec::new()
     }
 
-    fn border(&self, market: &Market, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
+    fn border(&self, market: &Market, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
         let note = market.economy().selected().map_or(String::new(), |here| {
             let sign = if here.change < 0.0 { '-' } else { '+' };
             let figures = format!("PMI {} ({sign}{})", grouped_number(here.value, 1), grouped_number(here.change.abs(), 1));
             format!("{figures} · {}", here.phase)
         });
-        let keys = [Action::Left, Action::Right].map(|action| look.keys.label(action).unwrap_or_default());
+        let keys = [Action::Left, Action::Right].map(|action| context.keys.label(action).unwrap_or_default());
         let keys = format!("{}/{} other measurements", keys[0], keys[1]);
         PaneBorder { title: "Economy".to_owned(), note, keys, ..PaneBorder::default() }
     }
 
-    fn draw(&self, market: &Market, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
-        let inside = match &look.company.hidden_values {
-            Some(hidden) => true_values::draw_lines_above(canvas, seat.area, &true_values::economy_lines(hidden)),
-            None => seat.area,
+    fn draw(&self, market: &Market, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
+        let inside = match &context.company.hidden_values {
+            Some(hidden) => true_values::draw_lines_above(canvas, placement.area, &true_values::economy_lines(hidden)),
+            None => placement.area,
         };
         let view = market.economy();
         let Some(here) = view.selected() else {
-            return draw_empty_state(canvas, inside, &view, &look.company.tool_limits);
+            return draw_empty_state(canvas, inside, &view, &context.company.tool_limits);
         };
-        let terms = &look.company.tool_limits;
+        let terms = &context.company.tool_limits;
         let width = inside.width as usize;
         let lag = format!(
             "measured on day {}, published on day {}; next on day {}",
@@ -116,7 +116,7 @@ impl Pane<Market> for EconomyPane {
         let room = (inside.height / 2) as usize;
         let words = &words[words.len().saturating_sub(room.max(1))..];
         let above = inside.height.saturating_sub(words.len() as u16);
-        draw_curve(canvas, Rect { height: above, ..inside }, look.company, &view, here);
+        draw_curve(canvas, Rect { height: above, ..inside }, context.company, &view, here);
         let below = Rect { y: inside.y + above, height: inside.height - above, ..inside };
         for (row, line) in row_rects(below).zip(words) {
             canvas.draw_text(row, line, Role::Dim);

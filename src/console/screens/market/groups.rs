@@ -34,7 +34,7 @@ impl Pane<Market> for KnownGroupsPane {
         super::GROUP_HINTS.to_vec()
     }
 
-    fn figure(&self, market: &Market, look: &ScreenContext<'_>) -> Option<Figure> {
+    fn figure(&self, market: &Market, context: &ScreenContext<'_>) -> Option<Figure> {
         let (term, what) = match market.table.selected_column() {
             2 | 3 => ("group_info_levels.info_level", "study level of"),
             4 => ("research_group.target_level", "the next study of"),
@@ -42,15 +42,15 @@ impl Pane<Market> for KnownGroupsPane {
             6 => ("group_info_levels.last_research_day", "last study of"),
             _ => ("group_info_levels.group_id", "facts about"),
         };
-        knowledge_figure(market.group()?, look.company, term, what)
+        knowledge_figure(market.group()?, context.company, term, what)
     }
 
-    fn handle_action(&self, market: &mut Market, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_action(&self, market: &mut Market, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         if action == Action::Open {
-            return market.show_customers_effect(look.company);
+            return market.show_customers_effect(context.company);
         }
         let before = market.group();
-        super::move_in_table(&mut market.table, action, look);
+        super::move_in_table(&mut market.table, action, context);
         market.reset_report_if_changed(before);
         Vec::new()
     }
@@ -61,31 +61,31 @@ impl Pane<Market> for KnownGroupsPane {
         market.reset_report_if_changed(before);
     }
 
-    fn handle_click(&self, market: &mut Market, row: usize, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_click(&self, market: &mut Market, row: usize, context: &ScreenContext<'_>) -> Vec<Effect> {
         let before = market.group();
         market.table.select_visible_row(row);
         let again = before == market.group();
         market.reset_report_if_changed(before);
-        if again { market.show_customers_effect(look.company) } else { Vec::new() }
+        if again { market.show_customers_effect(context.company) } else { Vec::new() }
     }
 
-    fn border(&self, market: &Market, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
-        let known = look.company.observation.known_groups.len();
+    fn border(&self, market: &Market, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
+        let known = context.company.observation.known_groups.len();
         let note = match market.table.summary() {
-            note if note.is_empty() => format!("{known} known · {} to find", undiscovered_count(look.company)),
+            note if note.is_empty() => format!("{known} known · {} to find", undiscovered_count(context.company)),
             note => note,
         };
-        let open = look.keys.label(Action::Open).unwrap_or_default();
-        let keys = look.hints(&[Action::FindGroup, Action::StudyGroup, Action::Filter]);
+        let open = context.keys.label(Action::Open).unwrap_or_default();
+        let keys = context.hints(&[Action::FindGroup, Action::StudyGroup, Action::Filter]);
         let mut keys = format!("{open} customers of the group · {keys}");
-        if look.company.can_inspect {
-            keys = format!("{} · {keys}", look.hint(Action::HiddenValues));
+        if context.company.can_inspect {
+            keys = format!("{} · {keys}", context.hint(Action::HiddenValues));
         }
         PaneBorder { title: "Groups".to_owned(), note, keys, ..PaneBorder::default() }
     }
 
-    fn draw(&self, market: &Market, canvas: &mut Canvas<'_>, seat: PanePlacement, _: &ScreenContext<'_>) {
-        market.table.draw(canvas, seat.area, seat.focused, seat.index);
+    fn draw(&self, market: &Market, canvas: &mut Canvas<'_>, placement: PanePlacement, _: &ScreenContext<'_>) {
+        market.table.draw(canvas, placement.area, placement.focused, placement.index);
     }
 }
 

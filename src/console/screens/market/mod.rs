@@ -223,31 +223,31 @@ impl ScreenState for Market {
         &[Reading::Knowledge, Reading::Attempts, Reading::Economy]
     }
 
-    fn apply_rows(&mut self, reading: Reading, rows: &QueryResult, look: &ScreenContext<'_>) {
+    fn apply_rows(&mut self, reading: Reading, rows: &QueryResult, context: &ScreenContext<'_>) {
         self.facts.apply_rows(reading, rows);
-        self.rebuild_tables(look.company);
+        self.rebuild_tables(context.company);
     }
 
-    fn on_company_change(&mut self, look: &ScreenContext<'_>) {
-        self.rebuild_tables(look.company);
+    fn on_company_change(&mut self, context: &ScreenContext<'_>) {
+        self.rebuild_tables(context.company);
     }
 
-    fn open_object(&self, look: &ScreenContext<'_>) -> Option<(&'static str, String)> {
-        let group = self.group().filter(|group| level_of(look.company, *group) > 0)?;
+    fn open_object(&self, context: &ScreenContext<'_>) -> Option<(&'static str, String)> {
+        let group = self.group().filter(|group| level_of(context.company, *group) > 0)?;
         Some(("study", group.id().to_owned()))
     }
 
-    fn take_answers(&mut self, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn take_answers(&mut self, context: &ScreenContext<'_>) -> Vec<Effect> {
         match self.pending_call.try_take() {
-            Some((call, Ok(preview))) => vec![self.confirm_effect(call.tool, call.arguments, &preview, look.company)],
+            Some((call, Ok(preview))) => vec![self.confirm_effect(call.tool, call.arguments, &preview, context.company)],
             Some((_, Err(refusal))) => vec![Effect::Complain(refusal.to_string())],
             None => Vec::new(),
         }
     }
 
-    fn handle_response(&mut self, news: &Response, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_response(&mut self, news: &Response, context: &ScreenContext<'_>) -> Vec<Effect> {
         match news {
-            Response::ToolCalled(_, Ok(answer), _) => self.handle_answer(answer, look.company),
+            Response::ToolCalled(_, Ok(answer), _) => self.handle_answer(answer, context.company),
             _ => Vec::new(),
         }
     }
@@ -278,27 +278,27 @@ impl PaneScreen for Market {
         self.focus = name;
     }
 
-    fn handle_screen_action(&mut self, action: Action, look: &ScreenContext<'_>) -> Option<Vec<Effect>> {
+    fn handle_screen_action(&mut self, action: Action, context: &ScreenContext<'_>) -> Option<Vec<Effect>> {
         match action {
             Action::FindGroup => Some(self.check_call(FIND_TOOL, json!({}))),
             // The user must see which group is selected.
             Action::StudyGroup if !matches!(self.focus, MarketPane::Groups | MarketPane::Report) => {
                 Some(vec![Effect::Complain("First select the group in the groups pane".to_owned())])
             }
-            Action::StudyGroup => Some(self.order_study(look.company)),
-            Action::GroupCurve => Some(self.show_curve_effect(look.company)),
+            Action::StudyGroup => Some(self.order_study(context.company)),
+            Action::GroupCurve => Some(self.show_curve_effect(context.company)),
             Action::LevelUp | Action::LevelDown => {
-                self.choose_level(look.company, action == Action::LevelUp);
+                self.choose_level(context.company, action == Action::LevelUp);
                 Some(Vec::new())
             }
             _ => None,
         }
     }
 
-    fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         use MarketPane::{Attempts, Economy, Groups, Report};
         if area.width >= 104 && area.height >= 24 {
-            return self.draw_wide_layout(canvas, area, look);
+            return self.draw_wide_layout(canvas, area, context);
         }
         // The focused pane takes the window. Groups and report share it, as do attempts and economy.
         let halves = [Constraint::Percentage(50), Constraint::Min(0)];
@@ -306,15 +306,15 @@ impl PaneScreen for Market {
         let (above, below) = match self.focus {
             Groups if area.height >= 14 => (Groups, Report),
             Attempts => (Attempts, Economy),
-            alone => return draw_pane(self, alone, canvas, area, look),
+            alone => return draw_pane(self, alone, canvas, area, context),
         };
-        draw_pane(self, above, canvas, upper, look);
-        draw_pane(self, below, canvas, lower, look);
+        draw_pane(self, above, canvas, upper, context);
+        draw_pane(self, below, canvas, lower, context);
     }
 }
 
 impl Market {
-    fn draw_wide_layout(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    fn draw_wide_layout(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         let [left, right] = Layout::horizontal([Constraint::Percentage(52), Constraint::Min(0)]).areas(area);
         let rows = (self.groups.len() as u16 + 3).min(area.height / 20 * 11);
         let [groups, economy] = Layout::vertical([Constraint::Length(rows), Constraint::Min(0)]).areas(left);
@@ -332,7 +332,7 @@ impl Market {
             (MarketPane::Attempts, found),
             (MarketPane::News, news),
         ] {
-            draw_pane(self, pane, canvas, place, look);
+            draw_pane(self, pane, canvas, place, context);
         }
     }
 }
@@ -342,12 +342,12 @@ fn table_scopes(table: &Table) -> Vec<Scope> {
 }
 
 /// Moves in a table; tab ends typing.
-fn move_in_table(table: &mut Table, action: Action, look: &ScreenContext<'_>) {
+fn move_in_table(table: &mut Table, action: Action, context: &ScreenContext<'_>) {
     let action = match action {
         Action::CommitNext | Action::CommitPrevious => Action::Commit,
         other => other,
     };
-    table.handle_action(action, look.page_rows);
+    table.handle_action(action, context.page_rows);
 }
 
 /// Returns the figure of a study value of a group.

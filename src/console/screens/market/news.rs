@@ -61,39 +61,39 @@ impl Pane<Market> for CompetitorNewsPane {
         })
     }
 
-    fn handle_action(&self, market: &mut Market, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_action(&self, market: &mut Market, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         if action == Action::Open {
             let read = |item: &CompetitorNews| {
                 Effect::ShowText(format!("day {} · press", item.post.day), item.post.text.clone())
             };
             return selected(market).map(read).into_iter().collect();
         }
-        super::move_in_table(&mut market.headlines, action, look);
+        super::move_in_table(&mut market.headlines, action, context);
         Vec::new()
     }
 
-    fn border(&self, market: &Market, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
+    fn border(&self, market: &Market, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
         let note = match market.headlines.summary() {
             note if note.is_empty() => format!("{} in the press", market.news.len()),
             note => note,
         };
         let keys = match market.news.is_empty() {
             true => String::new(),
-            false => look.hints(&[Action::Open, Action::Filter]),
+            false => context.hints(&[Action::Open, Action::Filter]),
         };
         PaneBorder { title: "Competitors and economy in the news".to_owned(), note, keys, ..PaneBorder::default() }
     }
 
-    fn draw(&self, market: &Market, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
-        let area = match &look.company.hidden_values {
-            Some(hidden) => true_values::draw_lines_above(canvas, seat.area, &true_values::competitor_lines(hidden)),
-            None => seat.area,
+    fn draw(&self, market: &Market, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
+        let area = match &context.company.hidden_values {
+            Some(hidden) => true_values::draw_lines_above(canvas, placement.area, &true_values::competitor_lines(hidden)),
+            None => placement.area,
         };
         if market.news.is_empty() {
             canvas.draw_text(area, "No news yet", Role::Dim);
             return;
         }
-        market.headlines.draw(canvas, area, seat.focused, seat.index);
+        market.headlines.draw(canvas, area, placement.focused, placement.index);
     }
 }
 

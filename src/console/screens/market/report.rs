@@ -182,16 +182,16 @@ impl Pane<Market> for ReportPane {
         super::GROUP_HINTS.to_vec()
     }
 
-    fn figure(&self, market: &Market, look: &ScreenContext<'_>) -> Option<Figure> {
-        knowledge_figure(market.group()?, look.company, "get_group_insights", "estimates of")
+    fn figure(&self, market: &Market, context: &ScreenContext<'_>) -> Option<Figure> {
+        knowledge_figure(market.group()?, context.company, "get_group_insights", "estimates of")
     }
 
-    fn handle_action(&self, market: &mut Market, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
-        let page = usize::from(look.page_rows.max(1));
-        let count = market.group().map_or(0, |group| lines(look.company, group).len());
+    fn handle_action(&self, market: &mut Market, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
+        let page = usize::from(context.page_rows.max(1));
+        let count = market.group().map_or(0, |group| lines(context.company, group).len());
         let (from, last) = (market.first_line, count.saturating_sub(page));
         market.first_line = match action {
-            Action::Open => return market.show_customers_effect(look.company),
+            Action::Open => return market.show_customers_effect(context.company),
             Action::Up => from.min(last).saturating_sub(1),
             Action::Down => (from + 1).min(last),
             Action::PageUp => from.saturating_sub(page),
@@ -207,8 +207,8 @@ impl Pane<Market> for ReportPane {
         Vec::new()
     }
 
-    fn border(&self, market: &Market, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
-        let company = look.company;
+    fn border(&self, market: &Market, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
+        let company = context.company;
         let Some(group) = market.group() else {
             return PaneBorder { title: "Insight report".to_owned(), ..PaneBorder::default() };
         };
@@ -220,22 +220,22 @@ impl Pane<Market> for ReportPane {
         PaneBorder {
             title: format!("{group} · {}", name_of(company, group)),
             note: format!("level {level} · ±{} · {}", percent(noise, 0), study_date_text(company, group)),
-            keys: look.hints(&[Action::StudyGroup, Action::LevelUp, Action::LevelDown]),
+            keys: context.hints(&[Action::StudyGroup, Action::LevelUp, Action::LevelDown]),
             shows_keys_always: true,
         }
     }
 
-    fn draw(&self, market: &Market, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
-        let (company, inside) = (look.company, seat.area);
+    fn draw(&self, market: &Market, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
+        let (company, inside) = (context.company, placement.area);
         let Some(group) = market.group().filter(|_| !inside.is_empty()) else { return };
         if level_of(company, group) == 0 {
-            return draw_unknown(canvas, inside, look);
+            return draw_unknown(canvas, inside, context);
         }
         let running = running_study(company, group).is_some();
         let role = if running { Role::Warning } else { Role::Strong };
         canvas.draw_text(Rect { height: 1, ..inside }, &study_offer_text(company, group, market.target_level), role);
         let rest = Rect { y: inside.y + 1, height: inside.height - 1, ..inside };
-        if seat.focused {
+        if placement.focused {
             canvas.page_rows = rest.height.max(1);
         }
         draw_estimates(canvas, rest, company, group, market.first_line);
@@ -243,11 +243,11 @@ impl Pane<Market> for ReportPane {
 }
 
 /// Explains how an unknown group can be found.
-fn draw_unknown(canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
-    let terms = &look.company.tool_limits;
+fn draw_unknown(canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
+    let terms = &context.company.tool_limits;
     let words = format!(
         "This group has not been found yet. {} pays {} for a market research attempt; {} % of attempts find one of the unknown groups. A found group sends leads from the next day.",
-        look.keys.label(Action::FindGroup).unwrap_or_default(),
+        context.keys.label(Action::FindGroup).unwrap_or_default(),
         dollars(terms.attempt_cost),
         grouped_number(terms.attempt_chance * 100.0, 0)
     );

@@ -19,14 +19,14 @@ fn confirm_and_call(screen: &mut Market, session: &mut Session, action: Action) 
     let effects = handle_action(screen, action, &company);
     let CallCheck { tool, arguments } = asked(&effects);
     screen.pending_call.set_answer(session.preview_call(*tool, arguments));
-    let effects = with_context(&company, |look| screen.take_answers(look));
+    let effects = with_context(&company, |context| screen.take_answers(context));
     let [Effect::ConfirmCall { tool, arguments, text }] = &effects[..] else { panic!("{effects:?}") };
     let answer = session.call(tool, arguments, Via::Form);
     let company = DisplayedCompany::from_session(session);
     let called = Response::ToolCalled(*tool, answer.map(Box::new), Arc::new(company.clone()));
-    let effects = with_context(&company, |look| {
-        screen.on_company_change(look);
-        screen.handle_response(&called, look)
+    let effects = with_context(&company, |screen_context| {
+        screen.on_company_change(screen_context);
+        screen.handle_response(&called, screen_context)
     });
     (text.clone(), effects)
 }
@@ -190,14 +190,14 @@ fn unpublished_days_are_shaded_and_competitor_news_marked() {
     let text = screen_text(&screen, &company, 120, 37);
     assert!(text.contains("measured on day 1, published on day 31"), "{text}");
     let keys = KeyBindings::bundled();
-    let look = ScreenContext { company: &company, keys: &keys, page_rows: 5 };
-    let figure = screen.figure(&look).expect("a figure");
+    let context = ScreenContext { company: &company, keys: &keys, page_rows: 5 };
+    let figure = screen.figure(&context).expect("a figure");
     assert_eq!(figure.title, "PMI of day 1");
     let rows = session.query(&figure.sql.expect("rows")).expect("rows").rows;
     assert_eq!(novamind_database::number_at(&rows[0], 1), screen.facts.economy[0].value);
     for focus in 0..Screen::pane_count(&screen) {
         screen.set_focus(focus);
-        if let Some(figure) = screen.figure(&look) {
+        if let Some(figure) = screen.figure(&context) {
             session
                 .query(&figure.sql.expect("rows"))
                 .unwrap_or_else(|refusal| panic!("{}: {refusal}", figure.title));

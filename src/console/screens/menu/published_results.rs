@@ -148,8 +148,9 @@ mod tests {
         assert_eq!(why, [Some(0), Some(1), Some(1), Some(1), None, Some(0)]);
         assert_eq!((results[0].name.as_str(), results[0].is_own), ("You · rich", true));
         assert_eq!(results.iter().filter(|result| result.is_own).count(), 2);
-        let ruin = results.iter().find(|result| result.name == "You · ruin").expect("the bankrupt run");
-        assert!(ruin.cash.abs() < 1e-9);
+        let ranked_result =
+            results.iter().find(|result| result.name == "You · ruin").expect("the bankrupt run");
+        assert!(ranked_result.cash.abs() < 1e-9);
         assert!(results.is_sorted_by(|left, right| left.cash >= right.cash));
     }
 }

@@ -24,16 +24,16 @@ impl Pane<Overview> for CashCurvePane {
         vec![Action::Open]
     }
 
-    fn figure(&self, _: &Overview, look: &ScreenContext<'_>) -> Option<Figure> {
-        Some(figures::figure(&METRICS[0], 0, look.company))
+    fn figure(&self, _: &Overview, context: &ScreenContext<'_>) -> Option<Figure> {
+        Some(figures::figure(&METRICS[0], 0, context.company))
     }
 
     fn handle_action(&self, _: &mut Overview, action: Action, _: &ScreenContext<'_>) -> Vec<Effect> {
         if action == Action::Open { vec![Effect::Show(ScreenId::Cash)] } else { Vec::new() }
     }
 
-    fn border(&self, _: &Overview, area: Rect, look: &ScreenContext<'_>) -> PaneBorder {
-        let (title, company) = ("Cash", look.company);
+    fn border(&self, _: &Overview, area: Rect, context: &ScreenContext<'_>) -> PaneBorder {
+        let (title, company) = ("Cash", context.company);
         let change = company.observation.cash_change;
         let moved = format!("{} {}", dollars(company.observation.cash), format_change(change, &short_dollars(change.abs())));
         let full = match company.last_forecasts() {
@@ -44,16 +44,16 @@ impl Pane<Overview> for CashCurvePane {
         PaneBorder { title: title.to_owned(), note, ..PaneBorder::default() }
     }
 
-    fn draw(&self, _: &Overview, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
-        let company = look.company;
+    fn draw(&self, _: &Overview, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
+        let company = context.company;
         match company.last_forecasts() {
             Some((filed, forecasts)) => {
-                forecast_fan::draw_fan(canvas, seat.area, company, filed, &forecast_fan::within_fan_horizon(company, forecasts));
+                forecast_fan::draw_fan(canvas, placement.area, company, filed, &forecast_fan::within_fan_horizon(company, forecasts));
             }
             None => {
                 let lines = [Curve::from_values(&company.cash_by_day, Role::Series(0))];
                 let x = XAxis { format: &|day| format!("day {day:.0}"), required_values: &[] };
-                draw_chart(canvas, seat.area, &lines, &x, &YAxis { unit: AxisUnit::Dollars, required_values: &[] });
+                draw_chart(canvas, placement.area, &lines, &x, &YAxis { unit: AxisUnit::Dollars, required_values: &[] });
             }
         }
     }

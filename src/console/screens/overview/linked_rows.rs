@@ -41,8 +41,8 @@ impl LinkedRow {
 }
 
 /// Draws the rows, starting where the selected row is completely visible.
-pub fn draw(canvas: &mut Canvas<'_>, seat: PanePlacement, rows: &[LinkedRow], selected: usize) {
-    let area = seat.area;
+pub fn draw(canvas: &mut Canvas<'_>, placement: PanePlacement, rows: &[LinkedRow], selected: usize) {
+    let area = placement.area;
     let all: Vec<Vec<String>> = rows.iter().map(|row| row.lines(area.width)).collect();
     let mut from = 0;
     let height = |from: usize| all[from..].iter().take(selected + 1 - from).map(Vec::len).sum::<usize>();
@@ -55,8 +55,8 @@ pub fn draw(canvas: &mut Canvas<'_>, seat: PanePlacement, rows: &[LinkedRow], se
             break;
         }
         let place = Rect { y, height: lines.len() as u16, ..area }.intersection(area);
-        draw_row(canvas, place, &rows[at], lines, seat.focused && at == selected);
-        canvas.register_click(place, Click::Row(seat.index, at));
+        draw_row(canvas, place, &rows[at], lines, placement.focused && at == selected);
+        canvas.register_click(place, Click::Row(placement.index, at));
         y += lines.len() as u16;
     }
 }

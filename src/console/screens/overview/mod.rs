@@ -72,17 +72,17 @@ impl ScreenState for Overview {
         &[Reading::Service, Reading::WeekNotices, Reading::Research]
     }
 
-    fn apply_rows(&mut self, reading: Reading, rows: &QueryResult, look: &ScreenContext<'_>) {
+    fn apply_rows(&mut self, reading: Reading, rows: &QueryResult, context: &ScreenContext<'_>) {
         match reading {
             Reading::Service => self.days = parse_service_days(rows),
             Reading::WeekNotices => self.notices = news::notice_items(rows),
-            _ => self.research = news::research_items(&projects(rows), look.company.observation.day),
+            _ => self.research = news::research_items(&projects(rows), context.company.observation.day),
         }
-        self.rebuild_news(look.company);
+        self.rebuild_news(context.company);
     }
 
-    fn on_company_change(&mut self, look: &ScreenContext<'_>) {
-        let company = look.company;
+    fn on_company_change(&mut self, context: &ScreenContext<'_>) {
+        let company = context.company;
         self.rebuild_news(company);
         self.selected_need = self.selected_need.min(company.action_items.len().saturating_sub(1));
         let rows = METRICS.iter().map(|metric| figures::row_of(metric, company)).collect();
@@ -126,17 +126,17 @@ impl PaneScreen for Overview {
         self.focus = name;
     }
 
-    fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         if area.width >= 104 {
-            self.draw_wide_layout(canvas, area, look);
+            self.draw_wide_layout(canvas, area, context);
         } else {
-            self.draw_small_layout(canvas, area, look);
+            self.draw_small_layout(canvas, area, context);
         }
     }
 }
 
 impl Overview {
-    fn draw_wide_layout(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    fn draw_wide_layout(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         let [left, right] = Layout::horizontal([Constraint::Percentage(50), Constraint::Min(0)]).areas(area);
         let quality = (self.quality.rows().len() as u16 + 3).min(left.height / 2);
         // Usage has its own chart if cash keeps enough rows.
@@ -144,12 +144,12 @@ impl Overview {
         let [cash, used, below] =
             Layout::vertical([Constraint::Min(8), Constraint::Length(usage), Constraint::Length(quality)])
                 .areas(left);
-        draw_pane(self, OverviewPane::Cash, canvas, cash, look);
+        draw_pane(self, OverviewPane::Cash, canvas, cash, context);
         if usage > 0 {
             trends::draw_usage(canvas, used, &self.days);
         }
-        draw_pane(self, OverviewPane::Quality, canvas, below, look);
-        let needs = needs::pane_height(look.company, right.width, right.height / 3);
+        draw_pane(self, OverviewPane::Quality, canvas, below, context);
+        let needs = needs::pane_height(context.company, right.width, right.height / 3);
         let table = (METRICS.len() as u16 + 3).min(right.height.saturating_sub(needs));
         let left = right.height.saturating_sub(needs + table);
         let news = if left >= 3 { (self.news.len().max(1) as u16 + 2).min(left) } else { 0 };
@@ -161,26 +161,26 @@ impl Overview {
             Constraint::Length(charts),
         ])
         .areas(right);
-        draw_pane(self, OverviewPane::Needs, canvas, above, look);
+        draw_pane(self, OverviewPane::Needs, canvas, above, context);
         if news > 0 {
-            draw_pane(self, OverviewPane::News, canvas, new, look);
+            draw_pane(self, OverviewPane::News, canvas, new, context);
         }
-        draw_pane(self, OverviewPane::Week, canvas, week, look);
-        trends::draw(canvas, small, look.company);
+        draw_pane(self, OverviewPane::Week, canvas, week, context);
+        trends::draw(canvas, small, context.company);
     }
 
-    fn draw_small_layout(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
-        let needs = needs::pane_height(look.company, area.width, area.height * 2 / 5);
+    fn draw_small_layout(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
+        let needs = needs::pane_height(context.company, area.width, area.height * 2 / 5);
         let [above, below] = Layout::vertical([Constraint::Length(needs), Constraint::Min(0)]).areas(area);
-        draw_pane(self, OverviewPane::Needs, canvas, above, look);
+        draw_pane(self, OverviewPane::Needs, canvas, above, context);
         // The week needs room for the name, value and change of each figure.
         let left = 48.min(area.width * 3 / 5);
         let [week, side] = Layout::horizontal([Constraint::Length(left), Constraint::Min(0)]).areas(below);
-        draw_pane(self, OverviewPane::Week, canvas, week, look);
+        draw_pane(self, OverviewPane::Week, canvas, week, context);
         let overview_pane = match self.focus {
             OverviewPane::Quality | OverviewPane::News => self.focus,
             _ => OverviewPane::Cash,
         };
-        draw_pane(self, overview_pane, canvas, side, look);
+        draw_pane(self, overview_pane, canvas, side, context);
     }
 }

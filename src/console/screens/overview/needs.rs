@@ -25,12 +25,12 @@ impl Pane<Overview> for NeedsPane {
         vec![Action::Open]
     }
 
-    fn figure(&self, overview: &Overview, look: &ScreenContext<'_>) -> Option<Figure> {
-        look.company.action_items.get(overview.selected_need).map(|need| figure_of(need, look.company.observation.day))
+    fn figure(&self, overview: &Overview, context: &ScreenContext<'_>) -> Option<Figure> {
+        context.company.action_items.get(overview.selected_need).map(|need| figure_of(need, context.company.observation.day))
     }
 
-    fn handle_action(&self, overview: &mut Overview, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
-        let needs = &look.company.action_items;
+    fn handle_action(&self, overview: &mut Overview, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
+        let needs = &context.company.action_items;
         if action == Action::Open {
             return needs.get(overview.selected_need).map(need_effect).into_iter().collect();
         }
@@ -38,33 +38,33 @@ impl Pane<Overview> for NeedsPane {
         Vec::new()
     }
 
-    fn handle_click(&self, overview: &mut Overview, row: usize, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_click(&self, overview: &mut Overview, row: usize, context: &ScreenContext<'_>) -> Vec<Effect> {
         let again = overview.selected_need == row;
-        overview.selected_need = row.min(look.company.action_items.len().saturating_sub(1));
-        if again { self.handle_action(overview, Action::Open, look) } else { Vec::new() }
+        overview.selected_need = row.min(context.company.action_items.len().saturating_sub(1));
+        if again { self.handle_action(overview, Action::Open, context) } else { Vec::new() }
     }
 
-    fn border(&self, _: &Overview, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
-        let needs = &look.company.action_items;
+    fn border(&self, _: &Overview, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
+        let needs = &context.company.action_items;
         let urgent = needs.iter().filter(|need| need.is_urgent).count();
         let note = if urgent > 0 { format!("{urgent} now · {} in all", needs.len()) } else { String::new() };
         PaneBorder { title: "Action needed".to_owned(), note, ..PaneBorder::default() }
     }
 
-    fn draw(&self, overview: &Overview, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
-        if look.company.action_items.is_empty() {
-            let text = match look.company.observation.ended {
+    fn draw(&self, overview: &Overview, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
+        if context.company.action_items.is_empty() {
+            let text = match context.company.observation.ended {
                 Some(_) => "The run is over. You can still read and query it.",
                 // Items whose tool is locked are hidden, so an empty list does not mean that nothing needs
                 // action.
-                None if look.company.running_lesson().is_some_and(|lesson_status| lesson_status.tools.is_some()) => {
+                None if context.company.running_lesson().is_some_and(|lesson_status| lesson_status.tools.is_some()) => {
                     "Nothing is listed here. Your task says what to do."
                 }
                 None => "Nothing needs action. Start the next week with n.",
             };
-            canvas.draw_text(seat.area, text, Role::Dim);
+            canvas.draw_text(placement.area, text, Role::Dim);
         }
-        linked_rows::draw(canvas, seat, &rows_of(look.company), overview.selected_need);
+        linked_rows::draw(canvas, placement, &rows_of(context.company), overview.selected_need);
     }
 }
 

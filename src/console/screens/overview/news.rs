@@ -23,8 +23,8 @@ impl Pane<Overview> for NewsPane {
         vec![Action::Open]
     }
 
-    fn figure(&self, overview: &Overview, look: &ScreenContext<'_>) -> Option<Figure> {
-        overview.news.get(overview.selected_item).map(|item| item.figure(look.company.observation.day))
+    fn figure(&self, overview: &Overview, context: &ScreenContext<'_>) -> Option<Figure> {
+        overview.news.get(overview.selected_item).map(|item| item.figure(context.company.observation.day))
     }
 
     fn handle_action(&self, overview: &mut Overview, action: Action, _: &ScreenContext<'_>) -> Vec<Effect> {
@@ -35,23 +35,23 @@ impl Pane<Overview> for NewsPane {
         Vec::new()
     }
 
-    fn handle_click(&self, overview: &mut Overview, row: usize, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_click(&self, overview: &mut Overview, row: usize, context: &ScreenContext<'_>) -> Vec<Effect> {
         let again = overview.selected_item == row;
         overview.selected_item = row.min(overview.news.len().saturating_sub(1));
-        if again { self.handle_action(overview, Action::Open, look) } else { Vec::new() }
+        if again { self.handle_action(overview, Action::Open, context) } else { Vec::new() }
     }
 
     fn border(&self, _: &Overview, _: Rect, _: &ScreenContext<'_>) -> PaneBorder {
         PaneBorder { title: "New this week".to_owned(), ..PaneBorder::default() }
     }
 
-    fn draw(&self, overview: &Overview, canvas: &mut Canvas<'_>, seat: PanePlacement, _: &ScreenContext<'_>) {
+    fn draw(&self, overview: &Overview, canvas: &mut Canvas<'_>, placement: PanePlacement, _: &ScreenContext<'_>) {
         if overview.news.is_empty() {
-            canvas.draw_text(seat.area, "nothing", Role::Dim);
+            canvas.draw_text(placement.area, "nothing", Role::Dim);
         }
         let row = |item: &NewsItem| LinkedRow::new(item.screen(), item.text.clone(), false);
         let rows: Vec<LinkedRow> = overview.news.iter().map(row).collect();
-        linked_rows::draw(canvas, seat, &rows, overview.selected_item);
+        linked_rows::draw(canvas, placement, &rows, overview.selected_item);
     }
 }
 

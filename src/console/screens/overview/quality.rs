@@ -38,8 +38,8 @@ impl Pane<Overview> for QualityPane {
         vec![Action::Rows, Action::Sort, Action::Open]
     }
 
-    fn figure(&self, overview: &Overview, look: &ScreenContext<'_>) -> Option<Figure> {
-        let group = look.company.quality.get(overview.quality.selected()?)?.group;
+    fn figure(&self, overview: &Overview, context: &ScreenContext<'_>) -> Option<Figure> {
+        let group = context.company.quality.get(overview.quality.selected()?)?.group;
         let column = overview.quality.selected_column();
         let of = match column.checked_sub(1).and_then(|at| Plan::ALL.get(at)) {
             Some(plan) => format!("on plan {plan}"),
@@ -54,25 +54,25 @@ impl Pane<Overview> for QualityPane {
         Some(Figure { title, term: "delivered-quality", sql: None, week_quantity: None })
     }
 
-    fn handle_action(&self, overview: &mut Overview, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_action(&self, overview: &mut Overview, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         if action == Action::Open {
-            let row = overview.quality.selected().and_then(|row| look.company.quality.get(row));
+            let row = overview.quality.selected().and_then(|row| context.company.quality.get(row));
             return row.map(|delivered_quality| Effect::ShowGroup(ScreenId::Customers, delivered_quality.group)).into_iter().collect();
         }
-        overview.quality.handle_action(action, look.page_rows);
+        overview.quality.handle_action(action, context.page_rows);
         Vec::new()
     }
 
-    fn border(&self, _: &Overview, area: Rect, look: &ScreenContext<'_>) -> PaneBorder {
-        let (base, shared) = look.company.quality_base;
+    fn border(&self, _: &Overview, area: Rect, context: &ScreenContext<'_>) -> PaneBorder {
+        let (base, shared) = context.company.quality_base;
         let title = "Delivered quality";
         let full = format!("base {base:.2} · general {shared:+.4}");
         let note = if full.width() <= note_width(area, title) { full } else { String::new() };
         PaneBorder { title: title.to_owned(), note, ..PaneBorder::default() }
     }
 
-    fn draw(&self, overview: &Overview, canvas: &mut Canvas<'_>, seat: PanePlacement, _: &ScreenContext<'_>) {
-        overview.quality.draw(canvas, seat.area, seat.focused, seat.index);
+    fn draw(&self, overview: &Overview, canvas: &mut Canvas<'_>, placement: PanePlacement, _: &ScreenContext<'_>) {
+        overview.quality.draw(canvas, placement.area, placement.focused, placement.index);
     }
 }
 

@@ -61,9 +61,9 @@ fn week_figures_equal_their_rows() {
 fn selected_figure_title_has_name_and_weeks() {
     let (mut session, company, mut screen) = played_screen::<Overview>(6);
     let keys = crate::keys::KeyBindings::bundled();
-    let look = ScreenContext { company: &company, keys: &keys, page_rows: 5 };
+    let context = ScreenContext { company: &company, keys: &keys, page_rows: 5 };
     screen.set_focused_pane(OverviewPane::Week);
-    let title = |screen: &Overview| screen.figure(&look).expect("a figure").title;
+    let title = |screen: &Overview| screen.figure(&context).expect("a figure").title;
     assert_eq!(title(&screen), "cash at week's end, week 6");
     for _ in 0..4 {
         handle_action(&mut screen, Action::Right, &company);
@@ -77,7 +77,7 @@ fn selected_figure_title_has_name_and_weeks() {
     for pane in 0..Screen::pane_count(&screen) {
         screen.set_focus(pane);
         for _ in 0..METRICS.len() {
-            if let Some(sql) = screen.figure(&look).and_then(|figure| figure.sql) {
+            if let Some(sql) = screen.figure(&context).and_then(|figure| figure.sql) {
                 session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
             }
             handle_action(&mut screen, Action::Down, &company);

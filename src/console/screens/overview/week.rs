@@ -27,23 +27,23 @@ impl Pane<Overview> for WeekPane {
         vec![Action::Rows, Action::Sort, Action::Open]
     }
 
-    fn figure(&self, overview: &Overview, look: &ScreenContext<'_>) -> Option<Figure> {
+    fn figure(&self, overview: &Overview, context: &ScreenContext<'_>) -> Option<Figure> {
         let metric = METRICS.get(overview.week.selected()?)?;
-        Some(figures::figure(metric, overview.week.selected_column(), look.company))
+        Some(figures::figure(metric, overview.week.selected_column(), context.company))
     }
 
-    fn handle_action(&self, overview: &mut Overview, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_action(&self, overview: &mut Overview, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         if action == Action::Open {
             let metric = overview.week.selected().and_then(|row| METRICS.get(row));
             return metric.map(|metric| Effect::Show(screen_of(metric.term))).into_iter().collect();
         }
-        overview.week.handle_action(action, look.page_rows);
+        overview.week.handle_action(action, context.page_rows);
         Vec::new()
     }
 
-    fn border(&self, overview: &Overview, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
+    fn border(&self, overview: &Overview, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
         let note = match overview.week.summary() {
-            note if note.is_empty() => match &look.company.observation.last_week {
+            note if note.is_empty() => match &context.company.observation.last_week {
                 Some(week) => format!("week {} · to day {}", week_of(week.day), week.day),
                 None => "no week yet".to_owned(),
             },
@@ -52,8 +52,8 @@ impl Pane<Overview> for WeekPane {
         PaneBorder { title: "This week".to_owned(), note, ..PaneBorder::default() }
     }
 
-    fn draw(&self, overview: &Overview, canvas: &mut Canvas<'_>, seat: PanePlacement, _: &ScreenContext<'_>) {
-        overview.week.draw(canvas, seat.area, seat.focused, seat.index);
+    fn draw(&self, overview: &Overview, canvas: &mut Canvas<'_>, placement: PanePlacement, _: &ScreenContext<'_>) {
+        overview.week.draw(canvas, placement.area, placement.focused, placement.index);
     }
 }
 

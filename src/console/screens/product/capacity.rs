@@ -88,8 +88,8 @@ impl ProductPanel for CapacityPane {
         Some(figure.with_week_quantity(WeekQuantity::for_company(WeekFigure::Usage), company.observation.week))
     }
 
-    fn draw_content(&self, product: &Product, canvas: &mut Canvas<'_>, seat: PanePlacement, company: &DisplayedCompany) {
-        let (area, rows) = (seat.area, product.capacity_tiers.len() as u16 + 1);
+    fn draw_content(&self, product: &Product, canvas: &mut Canvas<'_>, placement: PanePlacement, company: &DisplayedCompany) {
+        let (area, rows) = (placement.area, product.capacity_tiers.len() as u16 + 1);
         let [list, history] = if area.height >= rows + 7 {
             Layout::vertical([Constraint::Length(rows), Constraint::Min(0)]).areas(area)
         } else if area.width >= 90 {
@@ -97,20 +97,20 @@ impl ProductPanel for CapacityPane {
         } else {
             [area, Rect::default()]
         };
-        draw_ladder(product, canvas, PanePlacement { area: list, ..seat }, company);
+        draw_ladder(product, canvas, PanePlacement { area: list, ..placement }, company);
         draw_history(canvas, history, &product.capacity_tiers, &product.days);
     }
 }
 
-fn draw_ladder(product: &Product, canvas: &mut Canvas<'_>, seat: PanePlacement, company: &DisplayedCompany) {
-    let (area, rungs, days) = (seat.area, &product.capacity_tiers, &product.days);
+fn draw_ladder(product: &Product, canvas: &mut Canvas<'_>, placement: PanePlacement, company: &DisplayedCompany) {
+    let (area, rungs, days) = (placement.area, &product.capacity_tiers, &product.days);
     let selected = product.selected_row(ProductPane::Capacity);
     let head = format!("{:<6}{:>10}{:>10}{:>9}{:>9}{:>8}", "tier", "units/day", "$/day", "mean", "peak", "");
     canvas.draw_text(area, &head, Role::Header);
     let (in_force, set) = tiers(company, days);
     let used = last_week(days);
     let below = Rect { y: area.y + 1, height: area.height.saturating_sub(1), ..area };
-    if seat.focused {
+    if placement.focused {
         canvas.page_rows = below.height.max(1);
     }
     let from = first_visible_row(selected, below.height as usize, rungs.len());
@@ -125,7 +125,7 @@ fn draw_ladder(product: &Product, canvas: &mut Canvas<'_>, seat: PanePlacement, 
             _ if used.is_some_and(|(_, peak)| peak > rung.units) => "! too small",
             _ => "",
         };
-        let role = match (seat.focused && at == selected, rung.tier == set, mark.starts_with('!')) {
+        let role = match (placement.focused && at == selected, rung.tier == set, mark.starts_with('!')) {
             (true, ..) => Role::Selection,
             (_, true, _) => Role::Strong,
             (_, _, true) => Role::Dim,
@@ -139,7 +139,7 @@ fn draw_ladder(product: &Product, canvas: &mut Canvas<'_>, seat: PanePlacement, 
             dollars(rung.cost)
         );
         canvas.draw_text(row, &text, role);
-        canvas.register_click(row, Click::Row(seat.index, at));
+        canvas.register_click(row, Click::Row(placement.index, at));
     }
 }
 

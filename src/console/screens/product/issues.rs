@@ -77,14 +77,14 @@ impl ProductPanel for IssuesPane {
         Some(figure.with_week_quantity(quantity, company.observation.week))
     }
 
-    fn draw_content(&self, product: &Product, canvas: &mut Canvas<'_>, seat: PanePlacement, _: &DisplayedCompany) {
-        draw(product, canvas, seat);
+    fn draw_content(&self, product: &Product, canvas: &mut Canvas<'_>, placement: PanePlacement, _: &DisplayedCompany) {
+        draw(product, canvas, placement);
     }
 }
 
 /// Draws a row with all groups, then one row per group. All bars share one scale.
-fn draw(product: &Product, canvas: &mut Canvas<'_>, seat: PanePlacement) {
-    let (area, selected) = (seat.area, product.selected_row(ProductPane::Issues));
+fn draw(product: &Product, canvas: &mut Canvas<'_>, placement: PanePlacement) {
+    let (area, selected) = (placement.area, product.selected_row(ProductPane::Issues));
     let head = ["to 3 d", "4-7 d", "8-14 d", "15+ d", "all"].map(str::to_owned);
     canvas.draw_text(area, &line("group", &head), Role::Header);
     if area.height < 2 {
@@ -107,19 +107,19 @@ fn draw(product: &Product, canvas: &mut Canvas<'_>, seat: PanePlacement) {
     let first = Rect { height: 1, ..below };
     canvas.draw_text(first, &line("all", &cells(&all)), Role::Strong);
     let below = Rect { y: below.y + 1, height: below.height - 1, ..below };
-    if seat.focused {
+    if placement.focused {
         canvas.page_rows = below.height.max(1);
     }
     let from = first_visible_row(selected, below.height as usize, issues.len());
     for (row, (at, (group, ages))) in row_rects(below).zip(issues.iter().enumerate().skip(from)) {
-        let role = match (seat.focused && at == selected, ages[3] > 0.0) {
+        let role = match (placement.focused && at == selected, ages[3] > 0.0) {
             (true, _) => Role::Selection,
             (false, true) => Role::Warning,
             (false, false) => Role::Text,
         };
         canvas.clear(row, role);
         canvas.draw_text(row, &line(group, &cells(ages)), role);
-        canvas.register_click(row, Click::Row(seat.index, at));
+        canvas.register_click(row, Click::Row(placement.index, at));
         if row.width > FIGURES_WIDTH + 8 {
             let place = Rect { x: row.x + FIGURES_WIDTH + 2, width: row.width - FIGURES_WIDTH - 2, ..row };
             let text = stacked_bar(ages, whole, place.width as usize);

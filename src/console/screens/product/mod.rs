@@ -116,7 +116,7 @@ impl ScreenState for Product {
         &[Reading::Service, Reading::Research, Reading::Subscribers, Reading::Usage, Reading::OpenIssues]
     }
 
-    fn apply_rows(&mut self, reading: Reading, rows: &QueryResult, look: &ScreenContext<'_>) {
+    fn apply_rows(&mut self, reading: Reading, rows: &QueryResult, context: &ScreenContext<'_>) {
         match reading {
             Reading::Service => self.days = model::parse_service_days(rows),
             Reading::Research => self.projects = model::projects(rows),
@@ -125,20 +125,20 @@ impl ScreenState for Product {
             Reading::OpenIssues => self.issues = Some(model::issues(rows)),
             _ => {}
         }
-        self.plans = model::plans(&self.sales, look.company);
+        self.plans = model::plans(&self.sales, context.company);
     }
 
-    fn on_company_change(&mut self, look: &ScreenContext<'_>) {
-        let spent = |category| model::weekly_spending(&look.company.weeks, category);
+    fn on_company_change(&mut self, context: &ScreenContext<'_>) {
+        let spent = |category| model::weekly_spending(&context.company.weeks, category);
         self.spending = research::QualitySpending {
             development: spent(Category::Development),
             operations: spent(Category::Operations),
         };
-        self.capacity_tiers = model::capacity_tiers(look.company);
-        self.offers = model::offers(look.company);
-        self.plans = model::plans(&self.sales, look.company);
+        self.capacity_tiers = model::capacity_tiers(context.company);
+        self.offers = model::offers(context.company);
+        self.plans = model::plans(&self.sales, context.company);
         if !self.is_ladder_positioned {
-            let (_, set) = capacity::tiers(look.company, &self.days);
+            let (_, set) = capacity::tiers(context.company, &self.days);
             let rung = self.capacity_tiers.iter().position(|rung| rung.tier == set);
             *self.selected_row_mut(ProductPane::Capacity) = rung.unwrap_or(0);
             self.is_ladder_positioned = true;
@@ -165,40 +165,40 @@ impl PaneScreen for Product {
         self.focus = name;
     }
 
-    fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         if area.width >= 104 && area.height >= 32 {
-            self.draw_wide_layout(canvas, area, look);
+            self.draw_wide_layout(canvas, area, context);
         } else {
-            self.draw_small_layout(canvas, area, look);
+            self.draw_small_layout(canvas, area, context);
         }
     }
 }
 
 impl Product {
     /// Draws all panes in two columns.
-    fn draw_wide_layout(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    fn draw_wide_layout(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         use ProductPane::{Capacity, Issues, Plans, Quality, Research, Service};
         let [left, right] = Layout::horizontal([Constraint::Percentage(48), Constraint::Min(0)]).areas(area);
-        let rows = |pane: ProductPane| pane.panel().row_count(self, look.company) as u16;
+        let rows = |pane: ProductPane| pane.panel().row_count(self, context.company) as u16;
         let quality = (rows(Quality) + 3).min(left.height / 3);
         let plans = (rows(Plans) + 3).min(left.height / 3 + 2);
         let [top, middle, bottom] =
             Layout::vertical([Constraint::Length(quality), Constraint::Length(plans), Constraint::Min(0)])
                 .areas(left);
         for (pane, place) in [(Quality, top), (Plans, middle), (Research, bottom)] {
-            draw_pane(self, pane, canvas, place, look);
+            draw_pane(self, pane, canvas, place, context);
         }
         let issues = (rows(Issues).max(1) + 4).min(right.height / 4);
         let [top, middle, bottom] =
             Layout::vertical([Constraint::Min(0), Constraint::Length(8), Constraint::Length(issues)])
                 .areas(right);
         for (pane, place) in [(Capacity, top), (Service, middle), (Issues, bottom)] {
-            draw_pane(self, pane, canvas, place, look);
+            draw_pane(self, pane, canvas, place, context);
         }
     }
 
     /// Draws one line per pane, with the focused pane below.
-    fn draw_small_layout(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    fn draw_small_layout(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         let panes = ProductPane::VARIANTS;
         let lines = (panes.len() as u16).min(area.height / 3);
         let [list, below] = Layout::vertical([Constraint::Length(lines), Constraint::Min(0)]).areas(area);
@@ -210,10 +210,10 @@ impl Product {
             };
             let head = format!("{mark} {:<9} ", pane.title());
             let room = usize::from(row.width).saturating_sub(head.chars().count());
-            let text = head + &pane.panel().summary(self, look.company, room);
+            let text = head + &pane.panel().summary(self, context.company, room);
             canvas.draw_text(row, &text, role);
             canvas.register_click(row, Click::Pane(number));
         }
-        draw_pane(self, self.focus, canvas, below, look);
+        draw_pane(self, self.focus, canvas, below, context);
     }
 }

@@ -40,7 +40,7 @@ pub trait ProductPanel: Pane<Product> {
         false
     }
 
-    fn draw_content(&self, product: &Product, canvas: &mut Canvas<'_>, seat: PanePlacement, company: &DisplayedCompany);
+    fn draw_content(&self, product: &Product, canvas: &mut Canvas<'_>, placement: PanePlacement, company: &DisplayedCompany);
 }
 
 impl<P: ProductPanel> Pane<Product> for P {
@@ -48,13 +48,13 @@ impl<P: ProductPanel> Pane<Product> for P {
         vec![Action::FocusNext, Action::Open]
     }
 
-    fn figure(&self, product: &Product, look: &ScreenContext<'_>) -> Option<Figure> {
-        self.selected_figure(product, look.company)
+    fn figure(&self, product: &Product, context: &ScreenContext<'_>) -> Option<Figure> {
+        self.selected_figure(product, context.company)
     }
 
-    fn handle_action(&self, product: &mut Product, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
-        let last = self.row_count(product, look.company).saturating_sub(1);
-        let page = look.page_rows.max(1) as usize;
+    fn handle_action(&self, product: &mut Product, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
+        let last = self.row_count(product, context.company).saturating_sub(1);
+        let page = context.page_rows.max(1) as usize;
         let place = product.selected_row_mut(self.id());
         match action {
             Action::Up => *place = place.saturating_sub(1),
@@ -66,34 +66,34 @@ impl<P: ProductPanel> Pane<Product> for P {
             Action::Left | Action::Right if !self.move_sideways(product, action) => {
                 product.move_focus(action == Action::Right);
             }
-            Action::Open => return vec![self.open_effect(product, look.company)],
+            Action::Open => return vec![self.open_effect(product, context.company)],
             _ => {}
         }
         Vec::new()
     }
 
-    fn handle_click(&self, product: &mut Product, row: usize, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_click(&self, product: &mut Product, row: usize, context: &ScreenContext<'_>) -> Vec<Effect> {
         let place = product.selected_row_mut(self.id());
         let again = *place == row;
         *place = row;
-        if again { self.handle_action(product, Action::Open, look) } else { Vec::new() }
+        if again { self.handle_action(product, Action::Open, context) } else { Vec::new() }
     }
 
-    fn border(&self, product: &Product, area: Rect, look: &ScreenContext<'_>) -> PaneBorder {
-        let open = look.keys.label(Action::Open).unwrap_or_default();
+    fn border(&self, product: &Product, area: Rect, context: &ScreenContext<'_>) -> PaneBorder {
+        let open = context.keys.label(Action::Open).unwrap_or_default();
         let title = self.id().title();
         // Corners, the blanks around title and note, and a piece of border between them.
         let width = (area.width as usize).saturating_sub(title.len() + 9);
         PaneBorder {
             title: title.to_owned(),
-            note: self.note(product, look.company, width),
+            note: self.note(product, context.company, width),
             keys: format!("{open} {}", self.destination(product)),
             ..PaneBorder::default()
         }
     }
 
-    fn draw(&self, product: &Product, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
-        self.draw_content(product, canvas, seat, look.company);
+    fn draw(&self, product: &Product, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
+        self.draw_content(product, canvas, placement, context.company);
     }
 }
 

@@ -77,34 +77,34 @@ impl ProductPanel for PlansPane {
         true
     }
 
-    fn draw_content(&self, product: &Product, canvas: &mut Canvas<'_>, seat: PanePlacement, _: &DisplayedCompany) {
-        let (area, plans, selected) = (seat.area, &product.plans, product.selected_row(self.id()));
+    fn draw_content(&self, product: &Product, canvas: &mut Canvas<'_>, placement: PanePlacement, _: &DisplayedCompany) {
+        let (area, plans, selected) = (placement.area, &product.plans, product.selected_row(self.id()));
         let line = |name: &str, cells: [String; 3]| {
             let [a, b, c] = cells;
             format!("{name:<18} {a:>10} {b:>10} {c:>10}")
         };
         canvas.draw_text(area, &line("per plan", Plan::ALL.map(|plan| plan.id().to_owned())), Role::Header);
         let below = Rect { y: area.y + 1, height: area.height.saturating_sub(1), ..area };
-        if seat.focused {
+        if placement.focused {
             canvas.page_rows = below.height.max(1);
         }
         let from = first_visible_row(selected, below.height as usize, PLAN_FIGURES.len());
         for (row, (at, (name, write))) in row_rects(below).zip(PLAN_FIGURES.iter().enumerate().skip(from)) {
             let loses = *name == "gross margin"
                 && plans.iter().any(|plan| plan.margin().is_some_and(|margin| margin < 0.0));
-            let role = match (seat.focused && at == selected, loses) {
+            let role = match (placement.focused && at == selected, loses) {
                 (true, _) => Role::Selection,
                 (false, true) => Role::Bad,
                 (false, false) => Role::Text,
             };
             canvas.clear(row, role);
             canvas.draw_text(row, &line(name, [0, 1, 2].map(|plan| write(&plans[plan]))), role);
-            if seat.focused && at == selected {
+            if placement.focused && at == selected {
                 let place = Rect { x: row.x + 19 + 11 * product.selected_plan as u16, width: 10, ..row };
                 let mark = Style::new().add_modifier(Modifier::BOLD | Modifier::UNDERLINED);
                 canvas.buffer.set_style(place.intersection(row).intersection(canvas.area()), mark);
             }
-            canvas.register_click(row, Click::Row(seat.index, at));
+            canvas.register_click(row, Click::Row(placement.index, at));
         }
     }
 }

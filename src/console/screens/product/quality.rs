@@ -51,8 +51,8 @@ impl ProductPanel for QualityComponentsPane {
         Some(Figure { title, term: "delivered-quality", sql: Some(sql.to_owned()), week_quantity: None })
     }
 
-    fn draw_content(&self, product: &Product, canvas: &mut Canvas<'_>, seat: PanePlacement, company: &DisplayedCompany) {
-        let (area, selected) = (seat.area, product.selected_row(self.id()));
+    fn draw_content(&self, product: &Product, canvas: &mut Canvas<'_>, placement: PanePlacement, company: &DisplayedCompany) {
+        let (area, selected) = (placement.area, product.selected_row(self.id()));
         let (base, shared) = company.quality_base;
         let tier = |plan: &str| format!("{plan} T{}", format_number(company.setting(ToolId::SetModelTiers, plan)));
         let wide = area.width >= 62;
@@ -61,7 +61,7 @@ impl ProductPanel for QualityComponentsPane {
             format!("group {parts} {:>8} {:>9} {:>8} {:>8}", "targeted", tier("A"), tier("B"), tier("C"));
         canvas.draw_text(area, &head, Role::Header);
         let below = Rect { y: area.y + 1, height: area.height.saturating_sub(1), ..area };
-        if seat.focused {
+        if placement.focused {
             canvas.page_rows = below.height.max(1);
         }
         let from = first_visible_row(selected, below.height as usize, company.quality.len());
@@ -73,14 +73,14 @@ impl ProductPanel for QualityComponentsPane {
             };
             let [a, b, c] = quality.by_plan.0;
             let text = format!("{:<6}{parts} {bonus_text:>8} {a:>9.4} {b:>8.4} {c:>8.4}", quality.group.id());
-            let role = match (seat.focused && at == selected, quality.group_bonus > 0.0) {
+            let role = match (placement.focused && at == selected, quality.group_bonus > 0.0) {
                 (true, _) => Role::Selection,
                 (false, true) => Role::Text,
                 (false, false) => Role::Dim,
             };
             canvas.clear(row, role);
             canvas.draw_text(row, &text, role);
-            canvas.register_click(row, Click::Row(seat.index, at));
+            canvas.register_click(row, Click::Row(placement.index, at));
         }
     }
 }

@@ -89,14 +89,14 @@ impl ProductPanel for ResearchPane {
         Some(Figure { title: format!("project of tier {}", offer.tier), term, sql: Some(sql), week_quantity: None })
     }
 
-    fn draw_content(&self, product: &Product, canvas: &mut Canvas<'_>, seat: PanePlacement, company: &DisplayedCompany) {
-        let line = (product.projects.len() as u16 + 1).clamp(2, (seat.area.height / 3).max(2));
+    fn draw_content(&self, product: &Product, canvas: &mut Canvas<'_>, placement: PanePlacement, company: &DisplayedCompany) {
+        let line = (product.projects.len() as u16 + 1).clamp(2, (placement.area.height / 3).max(2));
         let [money, line, list] =
             Layout::vertical([Constraint::Length(2), Constraint::Length(line), Constraint::Min(0)])
-                .areas(seat.area);
+                .areas(placement.area);
         draw_spending(canvas, money, &product.spending);
-        draw_timeline(product, canvas, PanePlacement { area: line, ..seat }, company);
-        draw_offers(product, canvas, PanePlacement { area: list, ..seat }, company);
+        draw_timeline(product, canvas, PanePlacement { area: line, ..placement }, company);
+        draw_offers(product, canvas, PanePlacement { area: list, ..placement }, company);
     }
 }
 
@@ -113,10 +113,10 @@ fn draw_spending(canvas: &mut Canvas<'_>, area: Rect, spent: &QualitySpending) {
 }
 
 /// Draws projects as bars over the days from the first start to the last end.
-fn draw_timeline(product: &Product, canvas: &mut Canvas<'_>, seat: PanePlacement, company: &DisplayedCompany) {
-    let (area, projects) = (seat.area, &product.projects);
+fn draw_timeline(product: &Product, canvas: &mut Canvas<'_>, placement: PanePlacement, company: &DisplayedCompany) {
+    let (area, projects) = (placement.area, &product.projects);
     let selected =
-        Some(product.selected_row(ProductPane::Research)).filter(|at| seat.focused && *at < projects.len());
+        Some(product.selected_row(ProductPane::Research)).filter(|at| placement.focused && *at < projects.len());
     let today = company.observation.day;
     let rows = area.height.saturating_sub(1) as usize;
     let skipped = first_visible_row(selected.unwrap_or(0), rows, projects.len());
@@ -154,7 +154,7 @@ fn draw_timeline(product: &Product, canvas: &mut Canvas<'_>, seat: PanePlacement
             (false, true) => Role::Dim,
             (false, false) => Role::Text,
         };
-        canvas.register_click(row, Click::Row(seat.index, skipped + at));
+        canvas.register_click(row, Click::Row(placement.index, skipped + at));
         let mark = match project.done {
             true => "✓",
             false if project.expected_day > company.observation.last_day => "!",
@@ -181,9 +181,9 @@ fn draw_timeline(product: &Product, canvas: &mut Canvas<'_>, seat: PanePlacement
     }
 }
 
-fn draw_offers(product: &Product, canvas: &mut Canvas<'_>, seat: PanePlacement, company: &DisplayedCompany) {
-    let (area, offers, before) = (seat.area, &product.offers, product.projects.len());
-    let selected = product.selected_row(ProductPane::Research).checked_sub(before).filter(|_| seat.focused);
+fn draw_offers(product: &Product, canvas: &mut Canvas<'_>, placement: PanePlacement, company: &DisplayedCompany) {
+    let (area, offers, before) = (placement.area, &product.offers, product.projects.len());
+    let selected = product.selected_row(ProductPane::Research).checked_sub(before).filter(|_| placement.focused);
     let head = format!(
         "{:>4} {:<17} {:>8} {:>5} {:>7} {:>8}  ",
         "tier", "project", "cost", "days", "quality", "$/0.01"
@@ -233,6 +233,6 @@ fn draw_offers(product: &Product, canvas: &mut Canvas<'_>, seat: PanePlacement, 
             remarks
         );
         canvas.draw_text(row, text.trim_end(), role);
-        canvas.register_click(row, Click::Row(seat.index, before + at));
+        canvas.register_click(row, Click::Row(placement.index, before + at));
     }
 }

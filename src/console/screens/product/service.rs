@@ -44,8 +44,8 @@ impl ProductPanel for ServicePane {
         Some(figure.with_week_quantity(WeekQuantity::for_company(WeekFigure::Outage), company.observation.week))
     }
 
-    fn draw_content(&self, product: &Product, canvas: &mut Canvas<'_>, seat: PanePlacement, _: &DisplayedCompany) {
-        draw(canvas, seat.area, &product.days);
+    fn draw_content(&self, product: &Product, canvas: &mut Canvas<'_>, placement: PanePlacement, _: &DisplayedCompany) {
+        draw(canvas, placement.area, &product.days);
     }
 }
 

@@ -113,11 +113,11 @@ const MAX_ANSWER_ROWS: f64 = 5000.0;
 fn figures_equal_their_rows() {
     let (mut session, company, mut screen) = played_screen::<Product>(6);
     let keys = crate::keys::KeyBindings::bundled();
-    let look = ScreenContext { company: &company, keys: &keys, page_rows: 5 };
+    let context = ScreenContext { company: &company, keys: &keys, page_rows: 5 };
     for pane in ProductPane::VARIANTS {
         screen.set_focused_pane(*pane);
         for _ in 0..pane.panel().row_count(&screen, &company) {
-            let figure = screen.figure(&look).expect("a figure");
+            let figure = screen.figure(&context).expect("a figure");
             if let Some(sql) = figure.sql {
                 session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}"));
             }
@@ -125,12 +125,12 @@ fn figures_equal_their_rows() {
         }
     }
     let mut rows = |screen: &Product| {
-        let sql = screen.figure(&look).and_then(|figure| figure.sql).expect("rows");
+        let sql = screen.figure(&context).and_then(|figure| figure.sql).expect("rows");
         session.query(&sql).expect("rows").rows
     };
     screen.set_focused_pane(ProductPane::Plans);
     (screen.selected_rows[ProductPane::Plans as usize], screen.selected_plan) = (4, 1);
-    assert_eq!(screen.figure(&look).expect("a figure").title, "customers of plan B");
+    assert_eq!(screen.figure(&context).expect("a figure").title, "customers of plan B");
     assert_eq!(rows(&screen).len() as f64, screen.plans[1].usage.customers.min(MAX_ANSWER_ROWS));
     handle_action(&mut screen, Action::Right, &company);
     assert_eq!(

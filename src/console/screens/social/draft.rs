@@ -56,11 +56,11 @@ impl Pane<Social> for DraftPane {
         Vec::new()
     }
 
-    fn handle_click(&self, social: &mut Social, _: usize, look: &ScreenContext<'_>) -> Vec<Effect> {
-        self.handle_action(social, Action::Open, look)
+    fn handle_click(&self, social: &mut Social, _: usize, context: &ScreenContext<'_>) -> Vec<Effect> {
+        self.handle_action(social, Action::Open, context)
     }
 
-    fn border(&self, social: &Social, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
+    fn border(&self, social: &Social, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
         let title = match (social.reply_to, social.has_posted_this_week()) {
             (Some(post), _) => format!("Answer to #{post}"),
             (None, true) => "New post · 1 of 1 this week".to_owned(),
@@ -72,35 +72,35 @@ impl Pane<Social> for DraftPane {
             (SocialPane::Draft, false, None) => &[Action::Compose, Action::SendPost],
             _ => &[Action::Compose],
         };
-        PaneBorder { title, note: length_text(social, look), keys: look.hints(keys), shows_keys_always: true }
+        PaneBorder { title, note: length_text(social, context), keys: context.hints(keys), shows_keys_always: true }
     }
 
-    fn draw(&self, social: &Social, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
-        let key = look.keys.label(Action::Compose).unwrap_or_default();
+    fn draw(&self, social: &Social, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
+        let key = context.keys.label(Action::Compose).unwrap_or_default();
         let hint = match social.has_posted_this_week() {
             true => "This week's post is published. Write the next one next week.".to_owned(),
             false => format!("Write a post with {key}. One a week, read by every known group."),
         };
-        social.draft.draw(canvas, seat.area, social.editing, &hint);
+        social.draft.draw(canvas, placement.area, social.editing, &hint);
     }
 
     /// Marks a post that is too long in the border.
-    fn draw_with_border(&self, social: &Social, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
-        let area = seat.area;
+    fn draw_with_border(&self, social: &Social, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
+        let area = placement.area;
         if area.height < 3 {
             return;
         }
-        draw_framed(self, social, canvas, seat, look);
-        if social.draft_length() > look.company.tool_limits.post_characters && area.width > 8 {
-            let width = (length_text(social, look).chars().count() as u16 + 1).min(area.width - 3);
+        draw_framed(self, social, canvas, placement, context);
+        if social.draft_length() > context.company.tool_limits.post_characters && area.width > 8 {
+            let width = (length_text(social, context).chars().count() as u16 + 1).min(area.width - 3);
             let row = Rect { x: area.right() - 2 - width, width, height: 1, ..area };
             canvas.buffer.set_style(row.intersection(canvas.area()), canvas.theme.style(Role::Bad));
         }
     }
 }
 
-fn length_text(social: &Social, look: &ScreenContext<'_>) -> String {
-    let (length, most) = (social.draft_length(), look.company.tool_limits.post_characters);
+fn length_text(social: &Social, context: &ScreenContext<'_>) -> String {
+    let (length, most) = (social.draft_length(), context.company.tool_limits.post_characters);
     match length > most {
         true => format!("! {length} of {most} characters: {} too many", length - most),
         false => format!("{length} of {most} characters"),

@@ -35,11 +35,11 @@ impl Pane<Social> for FeedPane {
         social.selected_post().map(super::figure_of)
     }
 
-    fn handle_action(&self, social: &mut Social, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_action(&self, social: &mut Social, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         let last = social.visible_posts.len().saturating_sub(1);
-        let (here, page) = (social.selected, usize::from(look.page_rows.max(1)));
+        let (here, page) = (social.selected, usize::from(context.page_rows.max(1)));
         match action {
-            Action::Open => return social.open_post(social.selected_post().cloned(), look.company),
+            Action::Open => return social.open_post(social.selected_post().cloned(), context.company),
             Action::Up => social.selected = here.saturating_sub(1),
             Action::Down => social.selected = (here + 1).min(last),
             Action::PageUp => social.selected = here.saturating_sub(page),
@@ -72,13 +72,13 @@ impl Pane<Social> for FeedPane {
         }
     }
 
-    fn handle_click(&self, social: &mut Social, row: usize, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_click(&self, social: &mut Social, row: usize, context: &ScreenContext<'_>) -> Vec<Effect> {
         let again = social.selected == row;
         social.selected = row.min(social.visible_posts.len().saturating_sub(1));
-        if again { self.handle_action(social, Action::Open, look) } else { Vec::new() }
+        if again { self.handle_action(social, Action::Open, context) } else { Vec::new() }
     }
 
-    fn border(&self, social: &Social, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
+    fn border(&self, social: &Social, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
         let filtered = social.filter.label();
         let note = match filtered.is_empty() {
             true => format_count(social.feed.len() as f64, "post"),
@@ -88,11 +88,11 @@ impl Pane<Social> for FeedPane {
             Some(_) => &[Action::Close, Action::Open, Action::Reply],
             None => &[Action::NextKind, Action::EarlierWeek, Action::LaterWeek, Action::Reply],
         };
-        PaneBorder { title: "Feed".to_owned(), note, keys: look.hints(keys), ..PaneBorder::default() }
+        PaneBorder { title: "Feed".to_owned(), note, keys: context.hints(keys), ..PaneBorder::default() }
     }
 
-    fn draw(&self, social: &Social, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
-        let mut inside = seat.area;
+    fn draw(&self, social: &Social, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
+        let mut inside = placement.area;
         if let Some(field) = social.filter_field.as_ref().filter(|_| inside.height > 1 && inside.width > 1) {
             let row = Rect { y: inside.bottom() - 1, height: 1, ..inside };
             canvas.draw_text(row, "/", Role::Key);
@@ -102,12 +102,12 @@ impl Pane<Social> for FeedPane {
         if social.visible_posts.is_empty() {
             let words = match social.feed.is_empty() {
                 true => "No posts yet. Run a week (n).".to_owned(),
-                false => format!("No matching posts: {}", look.hint(Action::Close)),
+                false => format!("No matching posts: {}", context.hint(Action::Close)),
             };
             canvas.draw_text(inside, &words, Role::Text);
         }
         let posts: Vec<&Post> =
             social.visible_posts.iter().filter_map(|at| social.feed.get(*at)).map(AsRef::as_ref).collect();
-        feed_rows::draw(canvas, PanePlacement { area: inside, ..seat }, &posts, social.selected);
+        feed_rows::draw(canvas, PanePlacement { area: inside, ..placement }, &posts, social.selected);
     }
 }

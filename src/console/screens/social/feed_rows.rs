@@ -15,8 +15,8 @@ struct FeedRow {
 }
 
 /// Draws posts; `selected` is an index among them.
-pub fn draw(canvas: &mut Canvas<'_>, seat: PanePlacement, posts: &[&Post], selected: usize) {
-    let (area, focused) = (seat.area, seat.focused);
+pub fn draw(canvas: &mut Canvas<'_>, placement: PanePlacement, posts: &[&Post], selected: usize) {
+    let (area, focused) = (placement.area, placement.focused);
     if area.is_empty() {
         return;
     }
@@ -39,7 +39,7 @@ pub fn draw(canvas: &mut Canvas<'_>, seat: PanePlacement, posts: &[&Post], selec
         }
         canvas.draw_text(row, &line.text, role);
         if let Some(place) = line.post_index {
-            canvas.register_click(row, Click::Row(seat.index, place));
+            canvas.register_click(row, Click::Row(placement.index, place));
         }
     }
 }

@@ -185,10 +185,10 @@ impl Social {
     }
 
     /// Checks the tool call; the confirmation follows.
-    fn check_post(&mut self, look: &ScreenContext<'_>) -> Vec<Effect> {
-        let (length, most) = (self.draft_length(), look.company.tool_limits.post_characters);
+    fn check_post(&mut self, context: &ScreenContext<'_>) -> Vec<Effect> {
+        let (length, most) = (self.draft_length(), context.company.tool_limits.post_characters);
         if self.draft.is_blank() {
-            let key = look.keys.label(Action::Compose).unwrap_or_default();
+            let key = context.keys.label(Action::Compose).unwrap_or_default();
             return vec![Effect::Complain(format!("Nothing to publish. Write a post with {key}."))];
         }
         if length > most {
@@ -268,11 +268,11 @@ impl ScreenState for Social {
         self.others.iter().filter(is_new).count()
     }
 
-    fn on_company_change(&mut self, look: &ScreenContext<'_>) {
-        self.day = look.company.observation.day;
-        self.last_viewed_day = look.company.last_viewed_days.get(ScreenId::Social.record_name()).copied();
-        if !Arc::ptr_eq(&self.others, &look.company.posts) {
-            self.others = look.company.posts.clone();
+    fn on_company_change(&mut self, context: &ScreenContext<'_>) {
+        self.day = context.company.observation.day;
+        self.last_viewed_day = context.company.last_viewed_days.get(ScreenId::Social.record_name()).copied();
+        if !Arc::ptr_eq(&self.others, &context.company.posts) {
+            self.others = context.company.posts.clone();
             self.rebuild_feed();
         }
     }
@@ -331,11 +331,11 @@ impl PaneScreen for Social {
         self.filter_field = None;
     }
 
-    fn handle_screen_action(&mut self, action: Action, look: &ScreenContext<'_>) -> Option<Vec<Effect>> {
+    fn handle_screen_action(&mut self, action: Action, context: &ScreenContext<'_>) -> Option<Vec<Effect>> {
         match action {
             Action::Compose => self.start_draft(None),
             Action::Reply => return Some(self.start_reply()),
-            Action::SendPost => return Some(self.check_post(look)),
+            Action::SendPost => return Some(self.check_post(context)),
             Action::ClearReply => self.reply_to = None,
             Action::LeaveEditor => self.editing = false,
             Action::NextKind | Action::EarlierWeek | Action::LaterWeek => self.change_filter(action),
@@ -344,7 +344,7 @@ impl PaneScreen for Social {
         Some(Vec::new())
     }
 
-    fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         use SocialPane::{Draft, Feed, OwnPosts};
         if area.width >= 104 && area.height >= 20 {
             let right = (area.width / 3).clamp(40, 72);
@@ -352,9 +352,9 @@ impl PaneScreen for Social {
                 Layout::horizontal([Constraint::Min(0), Constraint::Length(right)]).areas(area);
             let [feed, draft] = Layout::vertical([Constraint::Min(0), Constraint::Length(8)]).areas(left);
             let [own_posts_area, weeks] = Layout::vertical([Constraint::Percentage(60), Constraint::Min(0)]).areas(side);
-            draw_pane(self, Feed, canvas, feed, look);
-            draw_pane(self, Draft, canvas, draft, look);
-            draw_pane(self, OwnPosts, canvas, own_posts_area, look);
+            draw_pane(self, Feed, canvas, feed, context);
+            draw_pane(self, Draft, canvas, draft, context);
+            draw_pane(self, OwnPosts, canvas, own_posts_area, context);
             return self.draw_weekly_counts(canvas, weeks);
         }
         // Panes stacked; if there are too few rows, only the focused one.
@@ -367,12 +367,12 @@ impl PaneScreen for Social {
         if self.focus == OwnPosts {
             let halves = [Constraint::Percentage(50), Constraint::Min(0)];
             let [own_posts_area, weeks] = Layout::vertical(halves).areas(upper);
-            draw_pane(self, OwnPosts, canvas, own_posts_area, look);
+            draw_pane(self, OwnPosts, canvas, own_posts_area, context);
             self.draw_weekly_counts(canvas, weeks);
         } else {
-            draw_pane(self, Feed, canvas, upper, look);
+            draw_pane(self, Feed, canvas, upper, context);
         }
-        draw_pane(self, Draft, canvas, draft, look);
+        draw_pane(self, Draft, canvas, draft, context);
     }
 }
 

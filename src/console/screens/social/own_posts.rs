@@ -48,18 +48,18 @@ impl Pane<Social> for OwnPostsPane {
         })
     }
 
-    fn handle_action(&self, social: &mut Social, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_action(&self, social: &mut Social, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         let action = match action {
-            Action::Open => return social.open_post(social.selected_own_post().cloned(), look.company),
+            Action::Open => return social.open_post(social.selected_own_post().cloned(), context.company),
             // Tab ends typing here.
             Action::CommitNext | Action::CommitPrevious => Action::Commit,
             other => other,
         };
-        social.table.handle_action(action, look.page_rows);
+        social.table.handle_action(action, context.page_rows);
         Vec::new()
     }
 
-    fn border(&self, social: &Social, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
+    fn border(&self, social: &Social, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
         let views: u32 = social.own_posts.iter().map(|post| post.views).sum();
         let note = match social.table.summary() {
             note if !note.is_empty() => note,
@@ -68,17 +68,17 @@ impl Pane<Social> for OwnPostsPane {
         };
         let keys = match social.own_posts.is_empty() {
             true => String::new(),
-            false => look.hints(&[Action::Open, Action::Sort, Action::Filter]),
+            false => context.hints(&[Action::Open, Action::Sort, Action::Filter]),
         };
         PaneBorder { title: "Your posts".to_owned(), note, keys, ..PaneBorder::default() }
     }
 
-    fn draw(&self, social: &Social, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
+    fn draw(&self, social: &Social, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
         if social.own_posts.is_empty() {
-            let key = look.keys.label(Action::Compose).unwrap_or_default();
-            canvas.draw_text(seat.area, &format!("None yet. Write one with {key}."), Role::Dim);
+            let key = context.keys.label(Action::Compose).unwrap_or_default();
+            canvas.draw_text(placement.area, &format!("None yet. Write one with {key}."), Role::Dim);
             return;
         }
-        social.table.draw(canvas, seat.area, seat.focused, seat.index);
+        social.table.draw(canvas, placement.area, placement.focused, placement.index);
     }
 }

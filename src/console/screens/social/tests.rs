@@ -20,7 +20,7 @@ fn with_context<T>(company: &DisplayedCompany, work: impl FnOnce(&ScreenContext<
 fn type_draft(screen: &mut Social, company: &DisplayedCompany, text: &str) {
     for letter in text.chars() {
         let key = KeyEvent::new(KeyCode::Char(letter), KeyModifiers::NONE);
-        with_context(company, |look| screen.handle_key(&key, look));
+        with_context(company, |context| screen.handle_key(&key, context));
     }
 }
 
@@ -126,7 +126,7 @@ fn figures_equal_their_rows() {
     let company = DisplayedCompany::from_session(&session);
     let mut screen: Social = loaded_screen(&mut session, &company);
     let mut rows = |screen: &Social| {
-        let figure = with_context(&company, |look| screen.figure(look)).expect("a figure");
+        let figure = with_context(&company, |context| screen.figure(context)).expect("a figure");
         let sql = figure.sql.expect("rows");
         session.query(&sql).unwrap_or_else(|refusal| panic!("{sql}: {refusal}")).rows
     };
@@ -155,14 +155,14 @@ fn post_is_checked_confirmed_and_sent() {
     );
     assert!(screen_text(&screen, &company, 120, 37).contains("! 281 of 280 characters: 1 too many"));
     let key = KeyEvent::new(KeyCode::Backspace, KeyModifiers::NONE);
-    with_context(&company, |look| screen.handle_key(&key, look));
+    with_context(&company, |context| screen.handle_key(&key, context));
     handle_action(&mut screen, Action::LeaveEditor, &company);
     assert!(screen.has_unsent_text(), "the draft is kept");
     let effects = handle_action(&mut screen, Action::SendPost, &company);
     let CallCheck { tool, arguments } = asked(&effects);
     assert_eq!(arguments["reply_to_post_id"], answered);
     screen.pending_arguments.set_answer(session.preview_call(*tool, arguments));
-    let effects = with_context(&company, |look| screen.take_answers(look));
+    let effects = with_context(&company, |screen_context| screen.take_answers(screen_context));
     let [Effect::ConfirmCall { tool, arguments, text }] = &effects[..] else { panic!("{effects:?}") };
     assert!(text.contains("cannot be undone") && text.contains("on day 15"), "{text}");
     let answer = session.call(tool, arguments, Via::Form);
@@ -183,14 +183,14 @@ fn rejected_post_keeps_the_draft() {
     handle_action(&mut screen, Action::SendPost, &company);
     let refused = || Err(Rejection::new("already_posted", "you have already posted"));
     screen.pending_arguments.set_answer(refused());
-    let effects = with_context(&company, |look| screen.take_answers(look));
+    let effects = with_context(&company, |context| screen.take_answers(context));
     assert!(
         matches!(&effects[..], [Effect::Complain(text)] if text.contains("already posted")),
         "{effects:?}"
     );
     assert_eq!(screen.draft.text(), "Again");
     screen.pending_arguments.set_answer(refused());
-    let effects = with_context(&company, |look| screen.take_answers(look));
+    let effects = with_context(&company, |screen_context| screen.take_answers(screen_context));
     assert!(effects.is_empty(), "an unexpected answer is ignored");
 }
 

@@ -153,8 +153,8 @@ impl TableBrowser {
     }
 
     /// Draws the tree, and a description of the selected row below it.
-    pub fn draw(&self, canvas: &mut Canvas<'_>, seat: PanePlacement) {
-        let (inside, focused) = (seat.area, seat.focused);
+    pub fn draw(&self, canvas: &mut Canvas<'_>, placement: PanePlacement) {
+        let (inside, focused) = (placement.area, placement.focused);
         if inside.is_empty() {
             return;
         }
@@ -173,7 +173,7 @@ impl TableBrowser {
         let from = first_visible_row(self.selected, height as usize, entries.len());
         for (row, (at, entry)) in row_rects(tree).zip(entries.iter().enumerate().skip(from)) {
             self.draw_entry(canvas, row, *entry, (at == self.selected).then_some(focused));
-            canvas.register_click(row, Click::Row(seat.index, at));
+            canvas.register_click(row, Click::Row(placement.index, at));
         }
         let under = Rect { y: tree.bottom(), height: below, ..inside };
         for (row, line) in row_rects(under).zip(&words) {

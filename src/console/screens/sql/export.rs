@@ -41,7 +41,7 @@ impl ExportMenu {
     }
 
     /// Draws the list over the screen. `rows` describes the exported rows.
-    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, pane: usize, rows: &str, look: &ScreenContext<'_>) {
+    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, pane: usize, rows: &str, context: &ScreenContext<'_>) {
         let dialog_area = centered_rect(area, 62, EXPORT_ACTIONS.len() as u16 + 2);
         canvas.clear(dialog_area, Role::Text);
         canvas.clicks.clear();
@@ -52,13 +52,13 @@ impl ExportMenu {
             if selected {
                 canvas.clear(row, Role::Selection);
             }
-            let key = look.keys.label(*way).unwrap_or_default();
+            let key = context.keys.label(*way).unwrap_or_default();
             canvas.draw_text(Rect { x: row.x + 1, width: 3.min(row.width), ..row }, &key, role(Role::Key));
             let doc = Rect { x: row.x + 5, width: row.width.saturating_sub(6), ..row };
             canvas.draw_text(doc, way.entry().doc, role(Role::Text));
             canvas.register_click(row, Click::Row(pane, at));
         }
-        canvas.draw_pane_keys(dialog_area, &look.hints(&[Action::Open, Action::Close]));
+        canvas.draw_pane_keys(dialog_area, &context.hints(&[Action::Open, Action::Close]));
     }
 }
 

@@ -185,8 +185,8 @@ impl Sql {
 }
 
 impl ScreenState for Sql {
-    fn on_company_change(&mut self, look: &ScreenContext<'_>) {
-        self.can_inspect = look.company.can_inspect;
+    fn on_company_change(&mut self, context: &ScreenContext<'_>) {
+        self.can_inspect = context.company.can_inspect;
         self.browser.shows_hidden = self.can_inspect;
     }
 
@@ -251,7 +251,7 @@ impl PaneScreen for Sql {
         self.editor.hide_completion();
     }
 
-    fn handle_screen_action(&mut self, action: Action, look: &ScreenContext<'_>) -> Option<Vec<Effect>> {
+    fn handle_screen_action(&mut self, action: Action, context: &ScreenContext<'_>) -> Option<Vec<Effect>> {
         if action != Action::Open {
             self.has_inserted_column = false;
         }
@@ -263,7 +263,7 @@ impl PaneScreen for Sql {
             Action::EditQuery => self.focus = SqlPane::Editor,
             Action::ClearQuery => self.set_statement(""),
             Action::LeaveEditor => return Some(self.leave_editor()),
-            Action::History => return Some(self.open_history(look)),
+            Action::History => return Some(self.open_history(context)),
             Action::Library => self.open_library(),
             Action::SaveQuery => return Some(self.open_save_query()),
             Action::Export => return Some(self.open_export()),
@@ -272,7 +272,7 @@ impl PaneScreen for Sql {
         Some(Vec::new())
     }
 
-    fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         let width = match area.width {
             wide if wide >= 150 => 38,
             wide if wide >= WIDE => 29,
@@ -286,9 +286,9 @@ impl PaneScreen for Sql {
             (height, _) => (height / 3).clamp(5, 14),
         };
         let [above, below] = Layout::vertical([Constraint::Length(upper), Constraint::Min(0)]).areas(rest);
-        draw_pane(self, SqlPane::Tables, canvas, tables, look);
-        draw_pane(self, SqlPane::Editor, canvas, above, look);
-        draw_pane(self, SqlPane::Results, canvas, below, look);
+        draw_pane(self, SqlPane::Tables, canvas, tables, context);
+        draw_pane(self, SqlPane::Editor, canvas, above, context);
+        draw_pane(self, SqlPane::Results, canvas, below, context);
         if self.focus == SqlPane::Editor && self.overlay.is_none() {
             self.editor.draw_completion(canvas, rest);
         }

@@ -46,13 +46,13 @@ impl Pane<Sql> for PickerPane {
         vec![Action::Commit, Action::Discard]
     }
 
-    fn handle_action(&self, sql: &mut Sql, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_action(&self, sql: &mut Sql, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         match (&mut sql.overlay, action) {
             // The same key selects the next statement; the other key switches the list.
             (Some(SqlOverlay::History(picker)), Action::History) => picker.select_next(),
             (Some(SqlOverlay::Library(picker)), Action::Library) => picker.select_next(),
             (Some(SqlOverlay::History(_)), Action::Library) => sql.open_library(),
-            (Some(SqlOverlay::Library(_)), Action::History) => return sql.open_history(look),
+            (Some(SqlOverlay::Library(_)), Action::History) => return sql.open_history(context),
             (Some(SqlOverlay::History(picker) | SqlOverlay::Library(picker)), action) => {
                 let choice = picker.handle_action(action);
                 return sql.apply_choice(choice);
@@ -62,9 +62,9 @@ impl Pane<Sql> for PickerPane {
         Vec::new()
     }
 
-    fn handle_key(&self, sql: &mut Sql, key: &KeyEvent, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_key(&self, sql: &mut Sql, key: &KeyEvent, context: &ScreenContext<'_>) -> Vec<Effect> {
         if let Some(SqlOverlay::History(picker) | SqlOverlay::Library(picker)) = &mut sql.overlay {
-            picker.handle_key(key, look.page_rows);
+            picker.handle_key(key, context.page_rows);
         }
         Vec::new()
     }
@@ -86,9 +86,9 @@ impl Pane<Sql> for PickerPane {
         }
     }
 
-    fn draw(&self, sql: &Sql, canvas: &mut Canvas<'_>, seat: PanePlacement, _: &ScreenContext<'_>) {
+    fn draw(&self, sql: &Sql, canvas: &mut Canvas<'_>, placement: PanePlacement, _: &ScreenContext<'_>) {
         if let Some(SqlOverlay::History(picker) | SqlOverlay::Library(picker)) = &sql.overlay {
-            picker.draw(canvas, seat.area, seat.index);
+            picker.draw(canvas, placement.area, placement.index);
         }
     }
 }
@@ -122,9 +122,9 @@ impl Pane<Sql> for SaveQueryPane {
         }
     }
 
-    fn draw(&self, sql: &Sql, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
+    fn draw(&self, sql: &Sql, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
         if let Some(SqlOverlay::SaveQuery(saving)) = &sql.overlay {
-            saving.draw(canvas, seat.area, &sql.library, look);
+            saving.draw(canvas, placement.area, &sql.library, context);
         }
     }
 }
@@ -151,15 +151,15 @@ impl Pane<Sql> for ExportPane {
 
     fn edit_filter(&self, _: &mut Sql, _: &mut dyn FnMut(&mut TextField)) {}
 
-    fn handle_click(&self, sql: &mut Sql, row: usize, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_click(&self, sql: &mut Sql, row: usize, context: &ScreenContext<'_>) -> Vec<Effect> {
         let Some(SqlOverlay::Export(list)) = &mut sql.overlay else { return Vec::new() };
         let way = list.select_row(row);
-        self.handle_action(sql, way, look)
+        self.handle_action(sql, way, context)
     }
 
-    fn draw(&self, sql: &Sql, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
+    fn draw(&self, sql: &Sql, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
         if let Some(SqlOverlay::Export(list)) = &sql.overlay {
-            list.draw(canvas, seat.area, seat.index, &sql.results.current().export_label(), look);
+            list.draw(canvas, placement.area, placement.index, &sql.results.current().export_label(), context);
         }
     }
 }
@@ -200,17 +200,17 @@ impl Pane<Sql> for PivotPane {
         PivotPane::apply_step(sql, step)
     }
 
-    fn draw(&self, sql: &Sql, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
+    fn draw(&self, sql: &Sql, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
         if let Some(SqlOverlay::Pivot(choice)) = &sql.overlay {
-            choice.draw(canvas, seat.area, seat.index, look);
+            choice.draw(canvas, placement.area, placement.index, context);
         }
     }
 }
 
 impl Sql {
-    pub(super) fn open_history(&mut self, look: &ScreenContext<'_>) -> Vec<Effect> {
+    pub(super) fn open_history(&mut self, context: &ScreenContext<'_>) -> Vec<Effect> {
         self.editor.hide_completion();
-        match self.history.picker(&look.company.past_queries) {
+        match self.history.picker(&context.company.past_queries) {
             Some(picker) => {
                 self.overlay = Some(SqlOverlay::History(picker));
                 Vec::new()

@@ -58,7 +58,7 @@ impl Pane<Sql> for EditorPane {
         Vec::new()
     }
 
-    fn border(&self, sql: &Sql, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
+    fn border(&self, sql: &Sql, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
         let (number, count) = sql.editor.statement_position();
         let named = sql.editor.statement().and_then(|statement| QueryHeader::parse(&statement.sql).title);
         let title = match named {
@@ -68,13 +68,13 @@ impl Pane<Sql> for EditorPane {
         };
         let is_of_xray = sql.editor.statement().is_some_and(|statement| sql.reads_hidden_state(&statement.sql));
         let title = if is_of_xray { format!("{title} · x-ray") } else { title };
-        let note = look.hints(&[Action::RunQuery, Action::History, Action::Library]);
+        let note = context.hints(&[Action::RunQuery, Action::History, Action::Library]);
         PaneBorder { title, note, ..PaneBorder::default() }
     }
 
-    fn draw(&self, sql: &Sql, canvas: &mut Canvas<'_>, seat: PanePlacement, _: &ScreenContext<'_>) {
-        let hint = if seat.focused { "type a statement" } else { "i or a click to edit" };
-        sql.editor.draw(canvas, seat.area, seat.focused && sql.overlay.is_none(), hint);
+    fn draw(&self, sql: &Sql, canvas: &mut Canvas<'_>, placement: PanePlacement, _: &ScreenContext<'_>) {
+        let hint = if placement.focused { "type a statement" } else { "i or a click to edit" };
+        sql.editor.draw(canvas, placement.area, placement.focused && sql.overlay.is_none(), hint);
     }
 }
 
@@ -101,24 +101,24 @@ impl Pane<Sql> for ResultsPane {
         sql.results.current().hints()
     }
 
-    fn handle_action(&self, sql: &mut Sql, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_action(&self, sql: &mut Sql, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         if matches!(action, Action::Close | Action::CloseChart) && sql.is_running() {
             return vec![Effect::CancelQuery];
         }
         if let Some(effects) = sql.handle_result_action(action) {
             return effects;
         }
-        sql.results.current_mut().handle_action(action, look.page_rows)
+        sql.results.current_mut().handle_action(action, context.page_rows)
     }
 
-    fn handle_click(&self, sql: &mut Sql, row: usize, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_click(&self, sql: &mut Sql, row: usize, context: &ScreenContext<'_>) -> Vec<Effect> {
         if sql.results.handle_click(row) {
             return Vec::new();
         }
-        sql.results.current_mut().handle_click(row, look.page_rows)
+        sql.results.current_mut().handle_click(row, context.page_rows)
     }
 
-    fn border(&self, sql: &Sql, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
+    fn border(&self, sql: &Sql, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
         let (title, note) = match sql.is_running() {
             true => ("Result".to_owned(), String::new()),
             false => sql.results.current().heading(),
@@ -129,15 +129,15 @@ impl Pane<Sql> for ResultsPane {
         };
         let mark = if asked.is_some_and(|asked| sql.reads_hidden_state(asked)) { " · x-ray" } else { "" };
         let title = title.replacen("Result", &format!("Result{}{mark}", sql.results.position_label()), 1);
-        PaneBorder { title, note, keys: look.hints(sql.results.current().actions()), ..PaneBorder::default() }
+        PaneBorder { title, note, keys: context.hints(sql.results.current().actions()), ..PaneBorder::default() }
     }
 
-    fn draw(&self, sql: &Sql, canvas: &mut Canvas<'_>, seat: PanePlacement, _: &ScreenContext<'_>) {
+    fn draw(&self, sql: &Sql, canvas: &mut Canvas<'_>, placement: PanePlacement, _: &ScreenContext<'_>) {
         match &sql.running {
-            Some(running) => sql.results.current().draw_running(canvas, seat.area, running.started_at.elapsed()),
+            Some(running) => sql.results.current().draw_running(canvas, placement.area, running.started_at.elapsed()),
             None => {
-                let area = sql.results.draw(canvas, seat.area, seat.index);
-                sql.results.current().draw(canvas, PanePlacement { area, ..seat }, &sql.library);
+                let area = sql.results.draw(canvas, placement.area, placement.index);
+                sql.results.current().draw(canvas, PanePlacement { area, ..placement }, &sql.library);
             }
         }
     }
@@ -154,10 +154,10 @@ impl Pane<Sql> for TablesPane {
         vec![Action::Open, Action::Filter, Action::RunQuery, Action::EditQuery]
     }
 
-    fn handle_action(&self, sql: &mut Sql, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_action(&self, sql: &mut Sql, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         if action == Action::Open {
             sql.insert_selected_name();
-        } else if !sql.browser.handle_action(action, look.page_rows) && action == Action::Close {
+        } else if !sql.browser.handle_action(action, context.page_rows) && action == Action::Close {
             sql.focus = SqlPane::Editor;
         }
         Vec::new()
@@ -167,12 +167,12 @@ impl Pane<Sql> for TablesPane {
         sql.browser.edit_filter_text(edit);
     }
 
-    fn handle_click(&self, sql: &mut Sql, row: usize, look: &ScreenContext<'_>) -> Vec<Effect> {
-        if sql.browser.select(row) { self.handle_action(sql, Action::Right, look) } else { Vec::new() }
+    fn handle_click(&self, sql: &mut Sql, row: usize, context: &ScreenContext<'_>) -> Vec<Effect> {
+        if sql.browser.select(row) { self.handle_action(sql, Action::Right, context) } else { Vec::new() }
     }
 
-    fn border(&self, sql: &Sql, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
-        let label = |action| look.keys.label(action).unwrap_or_default();
+    fn border(&self, sql: &Sql, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
+        let label = |action| context.keys.label(action).unwrap_or_default();
         let keys = (label(Action::Open), label(Action::Right), label(Action::Left));
         PaneBorder {
             title: "Tables".to_owned(),
@@ -182,8 +182,8 @@ impl Pane<Sql> for TablesPane {
         }
     }
 
-    fn draw(&self, sql: &Sql, canvas: &mut Canvas<'_>, seat: PanePlacement, _: &ScreenContext<'_>) {
-        sql.browser.draw(canvas, seat);
+    fn draw(&self, sql: &Sql, canvas: &mut Canvas<'_>, placement: PanePlacement, _: &ScreenContext<'_>) {
+        sql.browser.draw(canvas, placement);
     }
 }
 

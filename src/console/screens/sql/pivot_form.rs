@@ -128,7 +128,7 @@ impl PivotForm {
     }
 
     /// Draws the setup over the screen.
-    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, pane: usize, look: &ScreenContext<'_>) {
+    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, pane: usize, context: &ScreenContext<'_>) {
         let dialog_area = centered_rect(area, 56, LINE_COUNT as u16 + 2);
         canvas.clear(dialog_area, Role::Text);
         canvas.clicks.clear();
@@ -148,11 +148,11 @@ impl PivotForm {
             canvas.draw_text(rest, &shown, role(Role::Text));
             canvas.register_click(row, Click::Row(pane, at));
         }
-        let key = |action| look.keys.label(action).unwrap_or_default();
+        let key = |action| context.keys.label(action).unwrap_or_default();
         let [open, left, right] = [Action::Open, Action::Left, Action::Right].map(key);
         canvas.draw_pane_keys(
             dialog_area,
-            &format!("{open} run · {left} {right} change · {}", look.hints(&[Action::Close])),
+            &format!("{open} run · {left} {right} change · {}", context.hints(&[Action::Close])),
         );
     }
 }

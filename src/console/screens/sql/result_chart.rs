@@ -202,8 +202,8 @@ impl ResultChart {
     }
 
     /// Draws the summary and the chart.
-    pub fn draw(&self, canvas: &mut Canvas<'_>, seat: PanePlacement, rows: &QueryResult, table: &Table) {
-        let area = seat.area;
+    pub fn draw(&self, canvas: &mut Canvas<'_>, placement: PanePlacement, rows: &QueryResult, table: &Table) {
+        let area = placement.area;
         // The chart needs a minimum of rows below the summary.
         let number = self.y_columns.len().min(usize::from(area.height.saturating_sub(5)));
         for (row, (series, column)) in row_rects(area).zip(self.y_columns.iter().enumerate().take(number)) {
@@ -214,7 +214,7 @@ impl ResultChart {
         let below = Rect { y: area.y + number as u16, height: area.height - number as u16, ..area };
         match self.kind {
             ChartKind::Line => self.draw_lines(canvas, below, rows, table),
-            ChartKind::Bar => self.draw_bars(canvas, PanePlacement { area: below, ..seat }, rows, table),
+            ChartKind::Bar => self.draw_bars(canvas, PanePlacement { area: below, ..placement }, rows, table),
         }
     }
 
@@ -251,8 +251,8 @@ impl ResultChart {
         draw_chart(canvas, area, &lines, &x, &y);
     }
 
-    fn draw_bars(&self, canvas: &mut Canvas<'_>, seat: PanePlacement, rows: &QueryResult, table: &Table) {
-        let (area, focused) = (seat.area, seat.focused);
+    fn draw_bars(&self, canvas: &mut Canvas<'_>, placement: PanePlacement, rows: &QueryResult, table: &Table) {
+        let (area, focused) = (placement.area, placement.focused);
         let shown = table.visible_rows();
         let names: Vec<String> = shown.iter().map(|row| self.row_name(table, *row)).collect();
         let selected = table.selected();
@@ -280,7 +280,7 @@ impl ResultChart {
         let from = first_visible_row(place, fit, shown.len());
         for (row, (place, series)) in row_rects(area).zip(all.skip(from * each)) {
             scale.draw(canvas, row, &bar(place, series));
-            canvas.register_click(row, Click::Row(seat.index, place));
+            canvas.register_click(row, Click::Row(placement.index, place));
         }
     }
 }

@@ -276,19 +276,19 @@ impl ResultView {
         canvas.draw_text(row, &format!("running {seconds}… esc cancels"), Role::Warning);
     }
 
-    pub fn draw(&self, canvas: &mut Canvas<'_>, seat: PanePlacement, library: &QueryLibrary) {
+    pub fn draw(&self, canvas: &mut Canvas<'_>, placement: PanePlacement, library: &QueryLibrary) {
         match &self.answer {
-            QueryAnswer::None => draw_empty_state(canvas, seat.area, library),
+            QueryAnswer::None => draw_empty_state(canvas, placement.area, library),
             QueryAnswer::Rejected(refusal) => {
                 let role = if rejection_title(refusal.code) == "failed" { Role::Bad } else { Role::Warning };
-                draw_wrapped_text(canvas, seat.area, refusal.code, &refusal.message, role);
+                draw_wrapped_text(canvas, placement.area, refusal.code, &refusal.message, role);
             }
-            QueryAnswer::Rows(rows, _) => self.draw_rows(canvas, seat, rows),
+            QueryAnswer::Rows(rows, _) => self.draw_rows(canvas, placement, rows),
         }
     }
 
-    fn draw_rows(&self, canvas: &mut Canvas<'_>, seat: PanePlacement, rows: &QueryResult) {
-        let area = seat.area;
+    fn draw_rows(&self, canvas: &mut Canvas<'_>, placement: PanePlacement, rows: &QueryResult) {
+        let area = placement.area;
         let remark = match (&rows.warning, &rows.hint) {
             (Some(warning), _) => Some(warning.clone()),
             (None, Some(hint)) => Some(format!("No rows: {hint}")),
@@ -311,8 +311,8 @@ impl ResultView {
         };
         let below = Rect { y: area.y + used, height: area.height.saturating_sub(used), ..area };
         match &self.chart {
-            Some(plot) => plot.draw(canvas, PanePlacement { area: below, ..seat }, rows, &self.table),
-            None => self.table.draw(canvas, below, seat.focused, seat.index),
+            Some(plot) => plot.draw(canvas, PanePlacement { area: below, ..placement }, rows, &self.table),
+            None => self.table.draw(canvas, below, placement.focused, placement.index),
         }
     }
 

@@ -87,7 +87,7 @@ impl SaveQueryForm {
     }
 
     /// Draws the dialog over the screen.
-    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, library: &QueryLibrary, look: &ScreenContext<'_>) {
+    pub fn draw(&self, canvas: &mut Canvas<'_>, area: Rect, library: &QueryLibrary, context: &ScreenContext<'_>) {
         let dialog_area = centered_rect(area, 72, 6);
         canvas.clear(dialog_area, Role::Text);
         canvas.clicks.clear();
@@ -100,7 +100,7 @@ impl SaveQueryForm {
         for (row, line) in rows.zip(wrap(&text, inside.width.saturating_sub(2).into())) {
             canvas.draw_text(Rect { x: row.x + 1, width: row.width.saturating_sub(2), ..row }, &line, role);
         }
-        canvas.draw_pane_keys(dialog_area, &look.hints(&[Action::Commit, Action::Discard]));
+        canvas.draw_pane_keys(dialog_area, &context.hints(&[Action::Commit, Action::Discard]));
     }
 }
 

@@ -19,11 +19,11 @@ fn with_context<T>(company: &DisplayedCompany, work: impl FnOnce(&ScreenContext<
 }
 
 fn handle_action(screen: &mut Sql, company: &DisplayedCompany, action: Action) -> Vec<Effect> {
-    with_context(company, |look| screen.handle_action(action, look))
+    with_context(company, |context| screen.handle_action(action, context))
 }
 
 fn press_key(screen: &mut Sql, company: &DisplayedCompany, code: KeyCode) {
-    with_context(company, |look| screen.handle_key(&KeyEvent::new(code, KeyModifiers::NONE), look));
+    with_context(company, |context| screen.handle_key(&KeyEvent::new(code, KeyModifiers::NONE), context));
 }
 
 fn type_statement(screen: &mut Sql, company: &DisplayedCompany, text: &str) {
@@ -35,7 +35,7 @@ fn type_statement(screen: &mut Sql, company: &DisplayedCompany, text: &str) {
 fn receive_answer(screen: &mut Sql, company: &DisplayedCompany, answer: Result<QueryResult, Rejection>) {
     let running = screen.running.as_ref().expect("a query");
     running.answer.set_answer(answer.map(|rows| (rows, Duration::from_micros(12_400))));
-    with_context(company, |look| screen.take_answers(look));
+    with_context(company, |context| screen.take_answers(context));
 }
 
 /// Returns the SQL of the only effect.
@@ -314,7 +314,7 @@ fn highlighting_follows_the_scroll_position() {
     let area = Rect::new(0, 0, 80, 21);
     let mut buffer = Buffer::empty(area);
     let mut canvas = Canvas::new(&mut buffer, &theme);
-    with_context(&company, |look| screen.draw(&mut canvas, area, look));
+    with_context(&company, |context| screen.draw(&mut canvas, area, context));
     let row = (0..21).find(|y| buffer[(1, *y)].symbol() == "S").expect("the line is shown");
     for (x, role) in [(1, Role::Keyword), (6, Role::Keyword), (8, Role::SqlString), (12, Role::Comment)] {
         let colour = buffer[(x, row)].style().fg.filter(|color| *color != ratatui::style::Color::Reset);
@@ -467,6 +467,6 @@ fn pivot_takes_two_keys_at_every_size() {
     draw_at_all_sizes(&mut screen, &company);
     screen.set_focused_pane(SqlPane::Results);
     let place = screen.focused_index();
-    with_context(&company, |look| screen.handle_click(place, usize::MAX - 9, look));
+    with_context(&company, |context| screen.handle_click(place, usize::MAX - 9, context));
     assert!(contains(&screen_rows(&screen, &company, 120, 37), "Result 1/2"), "a click on the first tab");
 }

@@ -58,7 +58,7 @@ impl Pane<Tools> for FormPane {
         cell.or_else(|| tools.selected_tool().map(figure::tool_figure))
     }
 
-    fn handle_action(&self, tools: &mut Tools, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_action(&self, tools: &mut Tools, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         match action {
             Action::Close => {
                 tools.focus = ToolsPane::List;
@@ -69,38 +69,38 @@ impl Pane<Tools> for FormPane {
                 return tools.dedicated_screen_effect().into_iter().collect();
             }
             Action::SaveCalls => {
-                let calls = tools.calls_text(look.company);
+                let calls = tools.calls_text(context.company);
                 return vec![Effect::Write("calls.txt".to_owned(), calls.into_bytes())];
             }
             _ => {}
         }
-        tools.form(look.company).map_or(Vec::new(), |form| form.handle_action(action, look.company))
+        tools.form(context.company).map_or(Vec::new(), |form| form.handle_action(action, context.company))
     }
 
-    fn handle_key(&self, tools: &mut Tools, key: &KeyEvent, look: &ScreenContext<'_>) -> Vec<Effect> {
-        tools.form(look.company).map_or(Vec::new(), |form| form.handle_key(key))
+    fn handle_key(&self, tools: &mut Tools, key: &KeyEvent, context: &ScreenContext<'_>) -> Vec<Effect> {
+        tools.form(context.company).map_or(Vec::new(), |form| form.handle_key(key))
     }
 
-    fn paste(&self, tools: &mut Tools, text: &str, look: &ScreenContext<'_>) -> Vec<Effect> {
-        tools.form(look.company).map_or(Vec::new(), |form| form.paste(text))
+    fn paste(&self, tools: &mut Tools, text: &str, context: &ScreenContext<'_>) -> Vec<Effect> {
+        tools.form(context.company).map_or(Vec::new(), |form| form.paste(text))
     }
 
-    fn handle_click(&self, tools: &mut Tools, row: usize, look: &ScreenContext<'_>) -> Vec<Effect> {
-        let Some(form) = tools.form(look.company).filter(|form| !form.is_typing()) else { return Vec::new() };
+    fn handle_click(&self, tools: &mut Tools, row: usize, context: &ScreenContext<'_>) -> Vec<Effect> {
+        let Some(form) = tools.form(context.company).filter(|form| !form.is_typing()) else { return Vec::new() };
         let place = form.sheet.positions().nth(row);
         if place == Some(form.focus) {
-            return form.handle_action(Action::EditCell, look.company);
+            return form.handle_action(Action::EditCell, context.company);
         }
         form.focus = place.unwrap_or(form.focus);
         Vec::new()
     }
 
-    fn border(&self, tools: &Tools, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
+    fn border(&self, tools: &Tools, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
         match (tools.selected_tool(), tools.visible_form()) {
             (Some(spec), Some(form)) => PaneBorder {
                 title: format!("{} · {} · {}", spec.name(), spec.module.id(), spec.code),
                 note: effect_label(spec).to_owned(),
-                keys: key_hints(form, look),
+                keys: key_hints(form, context),
                 shows_keys_always: true,
             },
             (spec, _) => {
@@ -110,25 +110,25 @@ impl Pane<Tools> for FormPane {
         }
     }
 
-    fn draw(&self, tools: &Tools, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
+    fn draw(&self, tools: &Tools, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
         let Some(form) = tools.visible_form() else { return };
-        let inside = Rect { x: seat.area.x + 1, width: seat.area.width.saturating_sub(2), ..seat.area };
+        let inside = Rect { x: placement.area.x + 1, width: placement.area.width.saturating_sub(2), ..placement.area };
         if let Some(editor) = form.code_editor() {
-            return draw_code(editor, canvas, inside, seat.focused);
+            return draw_code(editor, canvas, inside, placement.focused);
         }
-        let FormLayout { head, outcome, gap } = layout_form(tools, form, inside, look);
+        let FormLayout { head, outcome, gap } = layout_form(tools, form, inside, context);
         let lines = form_lines(form);
         let below = draw_head(&head, canvas, inside);
         // A dense form keeps the edited values visible; otherwise up to half of the rows are for the outcome.
         let kept = if gap == 0 { 0 } else { outcome.lines.len().min(below.height as usize / 2) };
         let room = below.height.saturating_sub(kept as u16);
         let sheet = Rect { height: (lines.len() as u16).min(room), ..below };
-        draw_sheet(form, &tools.leads, &lines, canvas, sheet, seat.focused);
+        draw_sheet(form, &tools.leads, &lines, canvas, sheet, placement.focused);
         let rest = area_below(below, sheet.height + gap.min(sheet.height));
-        let used = draw_outcome(&outcome.lines, canvas, rest, look);
+        let used = draw_outcome(&outcome.lines, canvas, rest, context);
         let below = area_below(rest, used + 1);
         let used = draw_earlier(&form.earlier_calls, canvas, below);
-        draw_manual(form.spec, canvas, area_below(below, used), look);
+        draw_manual(form.spec, canvas, area_below(below, used), context);
     }
 }
 
@@ -158,16 +158,16 @@ struct FormLayout {
 
 /// Chooses the normal layout if the margins fit, otherwise a denser one with as much of the description as
 /// fits.
-fn layout_form(tools: &Tools, form: &ToolForm, area: Rect, look: &ScreenContext<'_>) -> FormLayout {
+fn layout_form(tools: &Tools, form: &ToolForm, area: Rect, context: &ScreenContext<'_>) -> FormLayout {
     let (width, values) = (area.width as usize, form_lines(form).len());
     let lines = |text: &str, role: Role| wrap(text, width).into_iter().map(move |line| (line, role));
-    let has = look.company.has_tool(form.spec.id);
+    let has = context.company.has_tool(form.spec.id);
     let locked = if has { "" } else { "Not in this lesson. " };
     let summary: Vec<_> = lines(&format!("{locked}{}.", form.spec.summary), Role::Strong).collect();
-    let terms = cost_and_effect_text(form.spec, &look.company.numbers, look.company.observation.day);
+    let terms = cost_and_effect_text(form.spec, &context.company.numbers, context.company.observation.day);
     let terms: Vec<_> = summary.iter().cloned().chain(lines(&terms, Role::Text)).collect();
     let blank: Vec<_> = terms.iter().cloned().chain([(String::new(), Role::Text)]).collect();
-    let outcome_with_detail = |detail| outcome_lines(form, &tools.leads, &tools.sales, look, (width, detail));
+    let outcome_with_detail = |detail| outcome_lines(form, &tools.leads, &tools.sales, context, (width, detail));
     // Keep a row for the note that text is cut.
     let fits = |head: &[(String, Role)], gap: usize, outcome: &OutcomeLines| {
         head.len() + values + gap + outcome.required_lines < area.height as usize && !outcome.is_truncated(width)
@@ -190,13 +190,13 @@ fn draw_head(head: &[(String, Role)], canvas: &mut Canvas<'_>, area: Rect) -> Re
 }
 
 /// Draws the check of the call and the answer; returns the number of rows.
-fn draw_outcome(lines: &[(String, Role)], canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) -> u16 {
+fn draw_outcome(lines: &[(String, Role)], canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) -> u16 {
     let mut shown: Vec<TextLine<'_>> =
         lines.iter().map(|(text, role)| TextLine::from(canvas.span(text.as_str(), *role))).collect();
     // The manual has the complete text.
     if shown.len() > area.height as usize && area.height > 0 {
         shown.truncate(area.height as usize - 1);
-        let explain = look.keys.label(Action::Explain).unwrap_or_default();
+        let explain = context.keys.label(Action::Explain).unwrap_or_default();
         let more = format!("… {explain} in the list of tools shows the rest");
         shown.push(TextLine::from(canvas.span(more, Role::Dim)));
     }
@@ -221,7 +221,7 @@ fn draw_earlier(calls: &[(u32, String)], canvas: &mut Canvas<'_>, area: Rect) ->
 }
 
 /// Draws the manual of the tool in large windows.
-fn draw_manual(spec: &ToolSpec, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+fn draw_manual(spec: &ToolSpec, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
     if area.height < 8 {
         return;
     }
@@ -229,13 +229,13 @@ fn draw_manual(spec: &ToolSpec, canvas: &mut Canvas<'_>, area: Rect, look: &Scre
     if let Some(row) = rows.next() {
         canvas.draw_text(row, "manual", Role::Header);
     }
-    for (row, line) in rows.zip(wrap(&describe::format_manual(spec, &look.company.numbers), area.width as usize))
+    for (row, line) in rows.zip(wrap(&describe::format_manual(spec, &context.company.numbers), area.width as usize))
     {
         canvas.draw_text(row, &line, Role::Text);
     }
 }
 
-fn key_hints(form: &ToolForm, look: &ScreenContext<'_>) -> String {
+fn key_hints(form: &ToolForm, context: &ScreenContext<'_>) -> String {
     match form.spec.id {
         ToolId::NextWeek => return "n opens the next-week dialog".to_owned(),
         ToolId::Query => return "enter opens the SQL screen".to_owned(),
@@ -243,16 +243,16 @@ fn key_hints(form: &ToolForm, look: &ScreenContext<'_>) -> String {
     }
     match form.sheet.blocks.is_empty() {
         true => "enter runs it".to_owned(),
-        false if form.code_editor().is_some() => look.hints(&[Action::Apply, Action::LeaveEditor]),
-        false if form.is_typing() => look.hints(&[Action::CommitDown, Action::Apply, Action::Discard]),
+        false if form.code_editor().is_some() => context.hints(&[Action::Apply, Action::LeaveEditor]),
+        false if form.is_typing() => context.hints(&[Action::CommitDown, Action::Apply, Action::Discard]),
         false => format!(
             "{} {} · {} · {} · {} · {}",
-            look.hint(Action::EditCell),
+            context.hint(Action::EditCell),
             form.sheet.blocks.get(form.focus.block).map_or("the value", ArgumentBlock::kind_label),
-            look.hint(Action::Apply),
-            look.hint(Action::ResetForm),
-            look.hint(Action::CopyCall),
-            look.hint(Action::SaveCalls)
+            context.hint(Action::Apply),
+            context.hint(Action::ResetForm),
+            context.hint(Action::CopyCall),
+            context.hint(Action::SaveCalls)
         ),
     }
 }

@@ -32,9 +32,9 @@ impl Pane<Tools> for ToolListPane {
         tools.selected_tool().map(figure::tool_figure)
     }
 
-    fn handle_action(&self, tools: &mut Tools, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_action(&self, tools: &mut Tools, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         let last = tools.visible_tools().len().saturating_sub(1);
-        let (here, page) = (tools.selected, look.page_rows as usize);
+        let (here, page) = (tools.selected, context.page_rows as usize);
         match action {
             Action::Up => tools.selected = here.saturating_sub(1),
             Action::Down => tools.selected = (here + 1).min(last),
@@ -56,21 +56,21 @@ impl Pane<Tools> for ToolListPane {
             },
             _ => {}
         }
-        tools.form(look.company);
+        tools.form(context.company);
         Vec::new()
     }
 
-    fn handle_key(&self, tools: &mut Tools, key: &KeyEvent, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_key(&self, tools: &mut Tools, key: &KeyEvent, context: &ScreenContext<'_>) -> Vec<Effect> {
         self.edit_filter(tools, &mut |field| {
             field.handle_key(key);
         });
-        tools.form(look.company);
+        tools.form(context.company);
         Vec::new()
     }
 
-    fn paste(&self, tools: &mut Tools, text: &str, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn paste(&self, tools: &mut Tools, text: &str, context: &ScreenContext<'_>) -> Vec<Effect> {
         self.edit_filter(tools, &mut |field| field.insert(text));
-        tools.form(look.company);
+        tools.form(context.company);
         Vec::new()
     }
 
@@ -82,31 +82,31 @@ impl Pane<Tools> for ToolListPane {
         }
     }
 
-    fn handle_click(&self, tools: &mut Tools, row: usize, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_click(&self, tools: &mut Tools, row: usize, context: &ScreenContext<'_>) -> Vec<Effect> {
         tools.selected = row.min(tools.visible_tools().len().saturating_sub(1));
-        tools.form(look.company);
+        tools.form(context.company);
         Vec::new()
     }
 
-    fn border(&self, tools: &Tools, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
+    fn border(&self, tools: &Tools, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
         let note = match tools.tools_with_drafts().len() {
             _ if !tools.filter.is_empty() => format!("\"{}\"", tools.filter),
-            0 => look.hint(Action::Filter),
+            0 => context.hint(Action::Filter),
             1 => "* 1 draft".to_owned(),
             drafts => format!("* {drafts} drafts"),
         };
         PaneBorder { title: "Tools".to_owned(), note, ..PaneBorder::default() }
     }
 
-    fn draw(&self, tools: &Tools, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
+    fn draw(&self, tools: &Tools, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
         let lines = lines_of(tools);
         if lines.is_empty() {
-            let text = format!("No matching tool: {}", look.hint(Action::Close));
-            canvas.draw_text(seat.area, &text, Role::Dim);
+            let text = format!("No matching tool: {}", context.hint(Action::Close));
+            canvas.draw_text(placement.area, &text, Role::Dim);
         }
         let field = u16::from(tools.filter_field.is_some());
-        let list = Rect { height: seat.area.height.saturating_sub(field), ..seat.area };
-        if seat.focused {
+        let list = Rect { height: placement.area.height.saturating_sub(field), ..placement.area };
+        if placement.focused {
             canvas.page_rows = list.height.max(1);
         }
         let is_here = |line: &ListLine| matches!(line, ListLine::Tool(place, _) if *place == tools.selected);
@@ -116,15 +116,15 @@ impl Pane<Tools> for ToolListPane {
             match line {
                 ListLine::Module(module) => canvas.draw_text(row, module.id(), Role::Header),
                 ListLine::Tool(place, spec) => {
-                    let has = look.company.has_tool(spec.id);
-                    let selected = (place == tools.selected).then_some(seat.focused);
+                    let has = context.company.has_tool(spec.id);
+                    let selected = (place == tools.selected).then_some(placement.focused);
                     draw_tool(tools, canvas, row, (spec, has), selected);
-                    canvas.register_click(row, Click::Row(seat.index, place));
+                    canvas.register_click(row, Click::Row(placement.index, place));
                 }
             }
         }
         if let Some(field) = &tools.filter_field {
-            let row = Rect { y: seat.area.bottom().saturating_sub(1), height: 1, ..seat.area };
+            let row = Rect { y: placement.area.bottom().saturating_sub(1), height: 1, ..placement.area };
             canvas.draw_text(row, "/", Role::Key);
             field.draw(canvas, Rect { x: row.x + 1, width: row.width.saturating_sub(1), ..row });
         }

@@ -206,11 +206,11 @@ impl ScreenState for Tools {
         }
     }
 
-    fn on_company_change(&mut self, look: &ScreenContext<'_>) {
+    fn on_company_change(&mut self, context: &ScreenContext<'_>) {
         for form in self.forms.values_mut() {
-            form.update(look.company);
+            form.update(context.company);
         }
-        self.form(look.company);
+        self.form(context.company);
     }
 
     fn take_answers(&mut self, _: &ScreenContext<'_>) -> Vec<Effect> {
@@ -218,7 +218,7 @@ impl ScreenState for Tools {
         Vec::new()
     }
 
-    fn handle_response(&mut self, news: &Response, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_response(&mut self, news: &Response, context: &ScreenContext<'_>) -> Vec<Effect> {
         match news {
             // The last check and answer are outdated.
             Response::SettingRestored(_, Ok(_), _) => {
@@ -230,7 +230,7 @@ impl ScreenState for Tools {
                         // The user can correct the call and send it again.
                         form.stop_typing();
                     } else if answer.is_ok() {
-                        form.reset(look.company);
+                        form.reset(context.company);
                         // A sent form returns the focus to the list.
                         if form.spec.kind.changes_company() {
                             self.focus = ToolsPane::List;
@@ -241,7 +241,7 @@ impl ScreenState for Tools {
                     {
                         form.focus = place;
                     }
-                    form.answer = Some(answer.clone().map(|answer| display_value(&answer, look.company)));
+                    form.answer = Some(answer.clone().map(|answer| display_value(&answer, context.company)));
                 }
             }
             _ => {}
@@ -313,7 +313,7 @@ impl PaneScreen for Tools {
         }
     }
 
-    fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         let narrow = area.width < 100;
         let list = match self.focus {
             ToolsPane::Form if narrow => 0,
@@ -323,7 +323,7 @@ impl PaneScreen for Tools {
             _ => 37,
         };
         let [left, right] = Layout::horizontal([Constraint::Length(list), Constraint::Min(0)]).areas(area);
-        draw_pane(self, ToolsPane::List, canvas, left, look);
-        draw_pane(self, ToolsPane::Form, canvas, right, look);
+        draw_pane(self, ToolsPane::List, canvas, left, context);
+        draw_pane(self, ToolsPane::Form, canvas, right, context);
     }
 }

@@ -98,7 +98,7 @@ pub(super) fn outcome_lines(
     form: &ToolForm,
     leads: &ChannelLeads,
     sales: &PlanSales,
-    look: &ScreenContext<'_>,
+    context: &ScreenContext<'_>,
     (width, detail): (usize, DetailLevel),
 ) -> OutcomeLines {
     let dense = detail != DetailLevel::Full;
@@ -107,7 +107,7 @@ pub(super) fn outcome_lines(
         lines.extend(wrap(text, width).into_iter().map(|line| (line, role)));
     };
     if form.spec.kind.changes_company() && form.sheet.is_changed() {
-        paragraph(&draft_line(form, look, dense), Role::Changed);
+        paragraph(&draft_line(form, context, dense), Role::Changed);
     }
     match &form.preview {
         Some(Ok(preview)) => {
@@ -137,7 +137,7 @@ pub(super) fn outcome_lines(
         form.preview.as_ref().is_some_and(|preview| preview.as_ref().is_ok_and(|result| result.research.is_some()));
     let mut needed = if spread { lines.len() } else { 0 };
     let tables =
-        [form_margin_lines(form, sales, look.company, detail == DetailLevel::Brief), reference_lines(form.spec.id, look.company)];
+        [form_margin_lines(form, sales, context.company, detail == DetailLevel::Brief), reference_lines(form.spec.id, context.company)];
     for (number, table) in tables.iter().enumerate().filter(|(_, table)| !table.is_empty()) {
         if !dense {
             lines.push((" ".to_owned(), Role::Text));
@@ -159,12 +159,12 @@ pub(super) fn outcome_lines(
             lines.extend(wrap(text, width).into_iter().map(|line| (line, Role::Text)));
         }
     };
-    about(&look.company.numbers.substitute(form.spec.effect));
+    about(&context.company.numbers.substitute(form.spec.effect));
     OutcomeLines { lines, required_lines: needed }
 }
 
 /// Describes the draft: values as old → new, and the keys to send or discard it.
-fn draft_line(form: &ToolForm, look: &ScreenContext<'_>, dense: bool) -> String {
+fn draft_line(form: &ToolForm, context: &ScreenContext<'_>, dense: bool) -> String {
     let changes: Vec<String> = form
         .sheet
         .positions()
@@ -185,7 +185,7 @@ fn draft_line(form: &ToolForm, look: &ScreenContext<'_>, dense: bool) -> String 
     if more > 0 {
         words += &format!(" · {more} more");
     }
-    let keys = look.hints(&[Action::Apply, Action::ResetForm]);
+    let keys = context.hints(&[Action::Apply, Action::ResetForm]);
     let draft = if dense { "* draft" } else { "* draft, kept until sent or reset" };
     format!("{draft}{}{words} ({keys})", if words.is_empty() { "" } else { ": " })
 }

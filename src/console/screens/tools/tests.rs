@@ -14,7 +14,7 @@ use novamind_worker::request::Request;
 /// Types into the form of a tool. Named keys are pressed, other strings are typed.
 fn form_after_keys(tool: ToolId, keys: &[&str]) -> (Tools, Vec<Effect>) {
     let (company, bindings) = (new_company(), KeyBindings::bundled());
-    let look = ScreenContext { company: &company, keys: &bindings, page_rows: 10 };
+    let context = ScreenContext { company: &company, keys: &bindings, page_rows: 10 };
     let mut tools = Tools::default();
     tools.show_tool(tool, &company);
     let mut effects = Vec::new();
@@ -25,8 +25,8 @@ fn form_after_keys(tool: ToolId, keys: &[&str]) -> (Tools, Vec<Effect>) {
         let scopes: Vec<Scope> =
             tools.scopes().into_iter().filter(|scope| !text || scope.is_text()).collect();
         effects = match bindings.action(&scopes, chord) {
-            Some(action) => tools.handle_action(action, &look),
-            None => tools.handle_key(&event, &look),
+            Some(action) => tools.handle_action(action, &context),
+            None => tools.handle_key(&event, &context),
         };
     }
     (tools, effects)
@@ -112,15 +112,15 @@ fn changing_one_quota_keeps_the_others() {
     let mut session = played_session(1);
     let company = DisplayedCompany::from_session(&session);
     let keys = KeyBindings::bundled();
-    let look = ScreenContext { company: &company, keys: &keys, page_rows: 10 };
+    let context = ScreenContext { company: &company, keys: &keys, page_rows: 10 };
     let mut tools: Tools = loaded_screen(&mut session, &company);
     tools.show_tool(ToolId::SetUsageQuotas, &company);
     let press = |tools: &mut Tools, key: &str| {
         let chord = Chord::parse(key).expect(key);
         let typed = tools.scopes()[0].is_text() && chord.is_printable();
         match keys.action(&tools.scopes(), chord).filter(|_| !typed) {
-            Some(action) => tools.handle_action(action, &look),
-            None => tools.handle_key(&chord.to_event(), &look),
+            Some(action) => tools.handle_action(action, &context),
+            None => tools.handle_key(&chord.to_event(), &context),
         }
     };
     for key in ["down", "enter", "9", "0", "0", "down", "backspace", "enter"] {
@@ -136,15 +136,15 @@ fn changing_one_quota_keeps_the_others() {
 fn focus_returns_to_the_list_after_a_call() {
     let (mut tools, _) = form_after_keys(ToolId::SetPrices, &["enter", "1", "2", "enter"]);
     let (company, keys) = (new_company(), KeyBindings::bundled());
-    let look = ScreenContext { company: &company, keys: &keys, page_rows: 10 };
+    let context = ScreenContext { company: &company, keys: &keys, page_rows: 10 };
     let refused = Rejection::for_field("A", "price_not_positive", "no");
-    tools.handle_response(&Response::ToolCalled(ToolId::SetPrices, Err(refused), company.clone().into()), &look);
+    tools.handle_response(&Response::ToolCalled(ToolId::SetPrices, Err(refused), company.clone().into()), &context);
     assert_eq!(tools.focus, ToolsPane::Form, "a rejected call keeps the focus in its form");
     let set = played_session(0).call("set_prices", &json!({"A": 12}), Via::Form).expect("a price");
-    tools.handle_response(&Response::ToolCalled(ToolId::SetPrices, Ok(set.into()), company.clone().into()), &look);
+    tools.handle_response(&Response::ToolCalled(ToolId::SetPrices, Ok(set.into()), company.clone().into()), &context);
     assert_eq!((tools.focus, tools.scopes()), (ToolsPane::List, vec![Scope::List]));
     assert!(tools.visible_form().expect("a form").answer.is_some());
-    tools.handle_response(&Response::SettingRestored("undone", Ok(Vec::new()), company.clone().into()), &look);
+    tools.handle_response(&Response::SettingRestored("undone", Ok(Vec::new()), company.clone().into()), &context);
     assert!(tools.visible_form().expect("a form").answer.is_none(), "an undo invalidates the answer");
 }
 
@@ -203,9 +203,9 @@ fn a_form_without_changes_is_not_sent_and_a_wrong_cell_is_named() {
 fn drafts_are_kept_when_another_tool_is_shown() {
     let (mut tools, _) = form_after_keys(ToolId::SetPrices, &["enter", "1", "2", "enter"]);
     let (company, keys) = (new_company(), KeyBindings::bundled());
-    let look = ScreenContext { company: &company, keys: &keys, page_rows: 10 };
+    let context = ScreenContext { company: &company, keys: &keys, page_rows: 10 };
     tools.show_tool(ToolId::SetDailySpend, &company);
-    tools.on_company_change(&look);
+    tools.on_company_change(&context);
     tools.show_tool(ToolId::SetPrices, &company);
     assert_eq!(tools.visible_form().expect("a form").sheet.arguments(), Ok(json!({"A": 12})));
     assert!(tools.has_unsent_text());
@@ -216,12 +216,12 @@ fn a_draft_shows_old_and_new_and_is_offered_again_after_esc() {
     let (_, company, mut tools) = played_screen::<Tools>(2);
     tools.show_tool(ToolId::SetPrices, &company);
     let keys = KeyBindings::bundled();
-    let look = ScreenContext { company: &company, keys: &keys, page_rows: 10 };
+    let context = ScreenContext { company: &company, keys: &keys, page_rows: 10 };
     for key in ["enter", "1", "4", "enter", "esc"] {
         let chord = Chord::parse(key).expect(key);
         match keys.action(&tools.scopes(), chord) {
-            Some(action) => tools.handle_action(action, &look),
-            None => tools.handle_key(&chord.to_event(), &look),
+            Some(action) => tools.handle_action(action, &context),
+            None => tools.handle_key(&chord.to_event(), &context),
         };
     }
     assert_eq!(tools.focus, ToolsPane::List, "esc leaves the form");
@@ -298,7 +298,7 @@ fn calls_and_drafts_are_written_to_a_file() {
 fn a_field_names_its_term_and_its_history() {
     let (mut session, company, mut tools) = played_screen::<Tools>(3);
     let keys = KeyBindings::bundled();
-    let look = ScreenContext { company: &company, keys: &keys, page_rows: 10 };
+    let context = ScreenContext { company: &company, keys: &keys, page_rows: 10 };
     let mut asked = std::collections::BTreeSet::new();
     for tool in CATALOGUE {
         let spec = tool.spec();
@@ -306,7 +306,7 @@ fn a_field_names_its_term_and_its_history() {
         let places = tools.visible_form().map_or(Vec::new(), |form| form.sheet.positions().collect());
         for place in places {
             tools.form(&company).expect("a form").focus = place;
-            let figure = tools.figure(&look).expect("a figure");
+            let figure = tools.figure(&context).expect("a figure");
             let (text, argument) = figure.term.split_once('.').expect("tool.argument");
             assert!(
                 text == spec.name() && spec.arguments.iter().any(|it| it.name == argument),
@@ -318,11 +318,11 @@ fn a_field_names_its_term_and_its_history() {
             }
         }
         tools.set_focused_pane(ToolsPane::List);
-        assert_eq!(tools.figure(&look).expect("a figure").term, spec.name());
+        assert_eq!(tools.figure(&context).expect("a figure").term, spec.name());
     }
     tools.show_tool(ToolId::SetPrices, &company);
     tools.form(&company).expect("a form").focus = Default::default();
-    let figure = tools.figure(&look).expect("a figure");
+    let figure = tools.figure(&context).expect("a figure");
     assert_eq!(figure.term, "set_prices.A");
     let rows = session.query(&figure.sql.expect("rows")).expect("rows").rows;
     assert_eq!(novamind_database::number_at(rows.last().expect("a row"), 1), 12.0);
@@ -424,18 +424,18 @@ fn code_keeps_its_lines_when_pasted() {
     let (company, bindings) = (new_company(), KeyBindings::bundled());
     let text = screen_text(&tools, &company, 80, 21);
     assert!(text.contains("# p … 2 lines"), "{text}");
-    let look = ScreenContext { company: &company, keys: &bindings, page_rows: 10 };
+    let context = ScreenContext { company: &company, keys: &bindings, page_rows: 10 };
     // The output is shown below the code until the code changes.
     let value = json!({"returncode": 0, "stdout": "first\nsecond\n", "stderr": ""});
     tools.forms.get_mut(&ToolId::PythonExec).expect("a form").answer = Some(Ok(value));
     let text = screen_text(&tools, &company, 80, 21);
     assert!(text.contains("answered") && text.contains("first") && text.contains("second"), "{text}");
     assert_eq!(tools.tools_with_drafts(), [ToolId::PythonExec]);
-    tools.handle_action(Action::Apply, &look);
+    tools.handle_action(Action::Apply, &context);
     assert!(tools.tools_with_drafts().is_empty(), "it was sent");
-    tools.handle_action(Action::ResetForm, &look);
-    tools.paste("# python\nfor day in range(2):\n    print(day)\n", &look);
-    let effects = tools.handle_action(Action::Apply, &look);
+    tools.handle_action(Action::ResetForm, &context);
+    tools.paste("# python\nfor day in range(2):\n    print(day)\n", &context);
+    let effects = tools.handle_action(Action::Apply, &context);
     let [Effect::Request(Request::Call { arguments, .. })] = &effects[..] else { panic!("{effects:?}") };
     assert_eq!(arguments["code"], "# python\nfor day in range(2):\n    print(day)\n");
 }

@@ -23,9 +23,9 @@ pub type StyledRow = Vec<(String, Role)>;
 const MAX_CURVE_DAYS: usize = 28;
 
 /// Draws the wrapped result, with the cursor on a factor of the leads.
-pub fn draw(xray: &Xray, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
-    let width = usize::from(seat.area.width);
-    let rows = match shown_content(xray, look) {
+pub fn draw(xray: &Xray, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
+    let width = usize::from(placement.area.width);
+    let rows = match shown_content(xray, context) {
         Content::Sentence(text, role) => {
             wrap(&text, width).into_iter().map(|part| vec![(part, role)]).collect()
         }
@@ -33,15 +33,15 @@ pub fn draw(xray: &Xray, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &Sc
         Content::Found(found) => {
             let marked = (xray.view() == XrayView::Leads && !found.curves.is_empty())
                 .then(|| factor_line_index(LeadFactor::ALL[xray.selected_factor]));
-            text_rows(found, marked, seat.focused, width)
+            text_rows(found, marked, placement.focused, width)
         }
     };
-    let height = usize::from(seat.area.height);
+    let height = usize::from(placement.area.height);
     let from = xray.scroll.clamped_first_row(rows.len().saturating_sub(height));
-    if seat.focused {
-        canvas.page_rows = seat.area.height.max(1);
+    if placement.focused {
+        canvas.page_rows = placement.area.height.max(1);
     }
-    for (row, pieces) in row_rects(seat.area).zip(rows.iter().skip(from)) {
+    for (row, pieces) in row_rects(placement.area).zip(rows.iter().skip(from)) {
         let mut x = row.x;
         for (text, role) in pieces {
             let room = row.right().saturating_sub(x);
@@ -87,9 +87,9 @@ enum Content<'a> {
     Found(&'a InspectionAnswer),
 }
 
-fn shown_content<'a>(xray: &'a Xray, look: &ScreenContext<'_>) -> Content<'a> {
+fn shown_content<'a>(xray: &'a Xray, context: &ScreenContext<'_>) -> Content<'a> {
     let sentence = |text: &str, role| Content::Sentence(text.to_owned(), role);
-    let key = |action| look.keys.label(action).unwrap_or_default();
+    let key = |action| context.keys.label(action).unwrap_or_default();
     if !xray.can_inspect {
         return Content::Sentence(capitalize(INSPECTION_REJECTED) + ".", Role::Dim);
     }

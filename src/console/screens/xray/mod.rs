@@ -338,10 +338,10 @@ fn select_row(table: &mut Table, row: Option<usize>) {
 }
 
 impl ScreenState for Xray {
-    fn on_company_change(&mut self, look: &ScreenContext<'_>) {
+    fn on_company_change(&mut self, context: &ScreenContext<'_>) {
         self.fill_tables();
-        self.fill_groups(look.company);
-        (self.last_day, self.can_inspect) = (look.company.observation.day, look.company.can_inspect);
+        self.fill_groups(context.company);
+        (self.last_day, self.can_inspect) = (context.company.observation.day, context.company.can_inspect);
         if !self.can_inspect {
             self.focus = XrayPane::Inspection;
         }
@@ -408,11 +408,11 @@ impl PaneScreen for Xray {
         })
     }
 
-    fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, look: &ScreenContext<'_>) {
+    fn draw_panes(&self, canvas: &mut Canvas<'_>, area: Rect, context: &ScreenContext<'_>) {
         let alone = !self.can_inspect || (self.focus == XrayPane::Inspection && area.width < MIN_WIDE_WIDTH);
         let lists = if alone { 0 } else { LIST_WIDTH.min(area.width / 2) };
         let [left, right] = Layout::horizontal([Constraint::Length(lists), Constraint::Min(0)]).areas(area);
-        draw_pane(self, XrayPane::Inspection, canvas, right, look);
+        draw_pane(self, XrayPane::Inspection, canvas, right, context);
         if lists == 0 {
             return;
         }
@@ -424,9 +424,9 @@ impl PaneScreen for Xray {
             (_, false) => area.height,
         };
         let [upper, lower] = Layout::vertical([Constraint::Length(upper), Constraint::Min(0)]).areas(left);
-        draw_pane(self, XrayPane::Views, canvas, upper, look);
+        draw_pane(self, XrayPane::Views, canvas, upper, context);
         if self.choice_table().is_some() {
-            draw_pane(self, XrayPane::Choices, canvas, lower, look);
+            draw_pane(self, XrayPane::Choices, canvas, lower, context);
         }
     }
 }

@@ -79,7 +79,7 @@ impl Pane<Xray> for ViewsPane {
         figure_of(xray)
     }
 
-    fn handle_action(&self, xray: &mut Xray, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_action(&self, xray: &mut Xray, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         match action {
             Action::Open => {
                 let is_empty = match xray.view() {
@@ -95,7 +95,7 @@ impl Pane<Xray> for ViewsPane {
             Action::Sort | Action::Filter => {}
             action => {
                 let before = xray.view();
-                xray.views.handle_action(action, look.page_rows);
+                xray.views.handle_action(action, context.page_rows);
                 if xray.view() != before {
                     xray.reset_view();
                 }
@@ -114,8 +114,8 @@ impl Pane<Xray> for ViewsPane {
         PaneBorder { title: "Views".to_owned(), ..PaneBorder::default() }
     }
 
-    fn draw(&self, xray: &Xray, canvas: &mut Canvas<'_>, seat: PanePlacement, _: &ScreenContext<'_>) {
-        xray.views.draw(canvas, seat.area, seat.focused, seat.index);
+    fn draw(&self, xray: &Xray, canvas: &mut Canvas<'_>, placement: PanePlacement, _: &ScreenContext<'_>) {
+        xray.views.draw(canvas, placement.area, placement.focused, placement.index);
     }
 }
 
@@ -141,7 +141,7 @@ impl Pane<Xray> for ChoicesPane {
         figure_of(xray)
     }
 
-    fn handle_action(&self, xray: &mut Xray, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_action(&self, xray: &mut Xray, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         let is_filtered = xray.choice_table().is_some_and(Table::is_filtered);
         match action {
             Action::Open => xray.focus = XrayPane::Inspection,
@@ -149,7 +149,7 @@ impl Pane<Xray> for ChoicesPane {
             Action::Sort => {}
             action => {
                 if let Some(table) = xray.choice_table_mut() {
-                    table.handle_action(action, look.page_rows);
+                    table.handle_action(action, context.page_rows);
                 }
             }
         }
@@ -167,9 +167,9 @@ impl Pane<Xray> for ChoicesPane {
         PaneBorder { title: xray.view().choices().title().to_owned(), ..PaneBorder::default() }
     }
 
-    fn draw(&self, xray: &Xray, canvas: &mut Canvas<'_>, seat: PanePlacement, _: &ScreenContext<'_>) {
+    fn draw(&self, xray: &Xray, canvas: &mut Canvas<'_>, placement: PanePlacement, _: &ScreenContext<'_>) {
         if let Some(table) = xray.choice_table() {
-            table.draw(canvas, seat.area, seat.focused, seat.index);
+            table.draw(canvas, placement.area, placement.focused, placement.index);
         }
     }
 }
@@ -195,7 +195,7 @@ impl Pane<Xray> for InspectionPane {
         figure_of(xray)
     }
 
-    fn handle_action(&self, xray: &mut Xray, action: Action, look: &ScreenContext<'_>) -> Vec<Effect> {
+    fn handle_action(&self, xray: &mut Xray, action: Action, context: &ScreenContext<'_>) -> Vec<Effect> {
         let moves_cursor = xray.view() == XrayView::Leads;
         match action {
             Action::Commit | Action::CommitDown => return xray.submit_input(),
@@ -208,7 +208,7 @@ impl Pane<Xray> for InspectionPane {
             Action::Down if moves_cursor => {
                 xray.selected_factor = (xray.selected_factor + 1).min(LeadFactor::ALL.len() - 1);
             }
-            action => drop(xray.scroll.handle_action(action, look.page_rows.into())),
+            action => drop(xray.scroll.handle_action(action, context.page_rows.into())),
         }
         Vec::new()
     }
@@ -228,7 +228,7 @@ impl Pane<Xray> for InspectionPane {
         Vec::new()
     }
 
-    fn border(&self, xray: &Xray, _: Rect, look: &ScreenContext<'_>) -> PaneBorder {
+    fn border(&self, xray: &Xray, _: Rect, context: &ScreenContext<'_>) -> PaneBorder {
         if !xray.can_inspect {
             return PaneBorder { title: "X-ray".to_owned(), ..PaneBorder::default() };
         }
@@ -249,7 +249,7 @@ impl Pane<Xray> for InspectionPane {
             (false, true) => format!("day {} of {}", xray.shown_day(), xray.last_day),
             (false, false) => format!("after day {}", xray.last_day),
         };
-        let label = |action| look.keys.label(action).unwrap_or_default();
+        let label = |action| context.keys.label(action).unwrap_or_default();
         let days = format!(
             "{} {} day · {} {} week",
             label(Action::Left),
@@ -262,7 +262,7 @@ impl Pane<Xray> for InspectionPane {
             .copied()
             .filter(|action| !matches!(action, Action::Left | Action::Right | Action::DayWeekBefore))
             .collect();
-        let others = look.hints(&others);
+        let others = context.hints(&others);
         let keys = match (view.has_day(), others.is_empty()) {
             (true, true) => days,
             (true, false) => format!("{days} · {others}"),
@@ -271,12 +271,12 @@ impl Pane<Xray> for InspectionPane {
         PaneBorder { title: format!("{}{title}", capitalize(view.title())), note, keys, shows_keys_always: true }
     }
 
-    fn draw(&self, xray: &Xray, canvas: &mut Canvas<'_>, seat: PanePlacement, look: &ScreenContext<'_>) {
+    fn draw(&self, xray: &Xray, canvas: &mut Canvas<'_>, placement: PanePlacement, context: &ScreenContext<'_>) {
         let below = u16::from(xray.input.is_some()) + u16::from(xray.problem.is_some());
-        let below = below.min(seat.area.height);
-        let area = Rect { height: seat.area.height - below, ..seat.area };
-        inspection_text::draw(xray, canvas, PanePlacement { area, ..seat }, look);
-        let mut rows = row_rects(Rect { y: area.bottom(), height: below, ..seat.area });
+        let below = below.min(placement.area.height);
+        let area = Rect { height: placement.area.height - below, ..placement.area };
+        inspection_text::draw(xray, canvas, PanePlacement { area, ..placement }, context);
+        let mut rows = row_rects(Rect { y: area.bottom(), height: below, ..placement.area });
         if let (Some(problem), Some(row)) = (&xray.problem, rows.next()) {
             canvas.draw_text(row, problem, Role::Bad);
         }

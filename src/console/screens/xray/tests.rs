@@ -16,9 +16,9 @@ fn inspectable(company: DisplayedCompany) -> DisplayedCompany {
 
 fn receive_inspection(screen: &mut Xray, company: &DisplayedCompany, found: Result<InspectionAnswer, Rejection>) -> Vec<Effect> {
     let keys = KeyBindings::bundled();
-    let look = ScreenContext { company, keys: &keys, page_rows: 5 };
+    let context = ScreenContext { company, keys: &keys, page_rows: 5 };
     screen.asked.set_answer(found);
-    screen.take_answers(&look)
+    screen.take_answers(&context)
 }
 
 fn inspection_with_line(line: &str) -> Result<InspectionAnswer, Rejection> {

@@ -72,9 +72,9 @@ impl Inspector<'_> {
     }
 
     fn evaluate_days(&mut self, what: &str, condition: Condition) -> Result<Vec<ConditionState>, Rejection> {
-        let look = InspectionPermit::start(self.run, what, &condition.to_string(), None)?;
-        let today = look.day();
-        let series = self.measured_days(&look)?;
+        let permit = InspectionPermit::start(self.run, what, &condition.to_string(), None)?;
+        let today = permit.day();
+        let series = self.measured_days(&permit)?;
         Ok(series.with_days(|days| (1..=today).map(|day| condition.evaluate(days, day)).collect()))
     }
 }

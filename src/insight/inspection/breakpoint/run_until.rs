@@ -122,10 +122,13 @@ impl Inspector<'_> {
     ///
     /// # Errors
     /// `not_possible`, `not_readable`.
-    pub(super) fn measured_days(&mut self, look: &InspectionPermit) -> Result<Arc<MeasuredDays>, Rejection> {
-        if self.cache.breakpoints.measured_days.last_day() < look.day() {
+    pub(super) fn measured_days(
+        &mut self,
+        permit: &InspectionPermit,
+    ) -> Result<Arc<MeasuredDays>, Rejection> {
+        if self.cache.breakpoints.measured_days.last_day() < permit.day() {
             let series = Arc::new(MeasuredDays::default());
-            look.replay_until(self.run, look.day(), series.clone())?;
+            permit.replay_until(self.run, permit.day(), series.clone())?;
             self.cache.breakpoints.measured_days = series;
         }
         Ok(self.cache.breakpoints.measured_days.clone())

@@ -84,15 +84,15 @@ impl Inspector<'_> {
         target: WriteTarget,
         day: Option<u32>,
     ) -> Result<FigureWrites, Rejection> {
-        let look = InspectionPermit::start(self.run, "who", &target.to_string(), day)?;
-        let day = look.day();
+        let permit = InspectionPermit::start(self.run, "who", &target.to_string(), day)?;
+        let day = permit.day();
         let opening = match target {
-            WriteTarget::Reputation(_) => look.hidden_state(self.run).params().initial.initial_reputation,
+            WriteTarget::Reputation(_) => permit.hidden_state(self.run).params().initial.initial_reputation,
             WriteTarget::Cash => self.run.manifest().cash,
             WriteTarget::Subscribers(_) => 0.0,
         };
         let diary = Arc::new(WriteRecorder::new(target, day, opening));
-        look.replay_until(self.run, day, diary.clone())?;
+        permit.replay_until(self.run, day, diary.clone())?;
         diary
             .take_result()
             .ok_or_else(|| Rejection::new("not_readable", format!("day {day} could not be re-simulated")))

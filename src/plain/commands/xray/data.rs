@@ -40,7 +40,7 @@ pub(super) fn leads_to_json(lead_equation: &LeadEquation, held: &[(LeadFactor, f
     })
 }
 
-pub(super) fn customer_to_json(lens: &IndividualView, headline: &str) -> Value {
+pub(super) fn customer_to_json(view: &IndividualView, headline: &str) -> Value {
     let day = |individual_day: &IndividualDay| {
         json!({
             "day": individual_day.day,
@@ -55,17 +55,17 @@ pub(super) fn customer_to_json(lens: &IndividualView, headline: &str) -> Value {
         })
     };
     json!({
-        "customer_id": lens.customer,
-        "group": lens.group.id(),
+        "customer_id": view.customer,
+        "group": view.group.id(),
         "headline": headline,
-        "came": lens.signup.day,
-        "signed_up": lens.signup.signed_up,
-        "shown": lens.day_shown().map(day),
-        "last_bill": lens.last_bill().map(day),
+        "came": view.signup.day,
+        "signed_up": view.signup.signed_up,
+        "shown": view.day_shown().map(day),
+        "last_bill": view.last_bill().map(day),
     })
 }
 
-pub(super) fn enterprise_to_json(lens: &EnterpriseView) -> Value {
+pub(super) fn enterprise_to_json(view: &EnterpriseView) -> Value {
     let thread = |thread_day: &EnterpriseThreadDay| {
         json!({
             "thread": thread_day.thread,
@@ -79,9 +79,9 @@ pub(super) fn enterprise_to_json(lens: &EnterpriseView) -> Value {
         })
     };
     json!({
-        "customer_id": lens.customer,
-        "group": lens.group.id(),
-        "day": lens.day,
-        "threads": lens.threads_of_day().map(thread).collect::<Vec<Value>>(),
+        "customer_id": view.customer,
+        "group": view.group.id(),
+        "day": view.day,
+        "threads": view.threads_of_day().map(thread).collect::<Vec<Value>>(),
     })
 }

@@ -237,8 +237,8 @@ impl Activity {
             Activity::Question(question) => serde_json::to_value(question),
             Activity::Answer(answer) => serde_json::to_value(answer),
             Activity::Lesson(note) => serde_json::to_value(note),
-            Activity::ExternalRead(look) => serde_json::to_value(look),
-            Activity::Inspection(look) => serde_json::to_value(look),
+            Activity::ExternalRead(read) => serde_json::to_value(read),
+            Activity::Inspection(inspection) => serde_json::to_value(inspection),
         }
     }
 }

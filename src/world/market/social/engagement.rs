@@ -20,22 +20,22 @@ pub struct EngagementDraws {
 }
 
 /// Returns the engagement of a customer's post.
-pub fn engagement(sentiment: Sentiment, draws: &EngagementDraws, law: &SocialParams) -> Engagement {
+pub fn engagement(sentiment: Sentiment, draws: &EngagementDraws, params: &SocialParams) -> Engagement {
     let factor = match sentiment {
-        Sentiment::Negative => law.virality_negative_base + draws.factor,
-        Sentiment::Positive => law.virality_positive_base + law.virality_positive_range * draws.factor,
-        Sentiment::Neutral => law.virality_neutral_base + law.virality_neutral_range * draws.factor,
+        Sentiment::Negative => params.virality_negative_base + draws.factor,
+        Sentiment::Positive => params.virality_positive_base + params.virality_positive_range * draws.factor,
+        Sentiment::Neutral => params.virality_neutral_base + params.virality_neutral_range * draws.factor,
     };
     let mut likes = (f64::from(draws.likes) * factor).trunc();
     let mut shares = (f64::from(draws.shares) * factor).trunc();
-    let reach = (likes + law.virality_share_weight * shares) / law.virality_score_divisor * factor;
-    let mut virality = reach.min(law.virality_score_max);
-    if draws.spike < law.viral_spike_probability {
+    let reach = (likes + params.virality_share_weight * shares) / params.virality_score_divisor * factor;
+    let mut virality = reach.min(params.virality_score_max);
+    if draws.spike < params.viral_spike_probability {
         let [score, more_likes, more_shares] = draws.explosion;
-        virality = (virality * (law.viral_spike_score_base + law.viral_spike_score_range * score))
-            .min(law.virality_score_max);
-        likes *= (law.viral_spike_likes_base + law.viral_spike_likes_range * more_likes).trunc();
-        shares *= (law.viral_spike_shares_base + law.viral_spike_shares_range * more_shares).trunc();
+        virality = (virality * (params.viral_spike_score_base + params.viral_spike_score_range * score))
+            .min(params.virality_score_max);
+        likes *= (params.viral_spike_likes_base + params.viral_spike_likes_range * more_likes).trunc();
+        shares *= (params.viral_spike_shares_base + params.viral_spike_shares_range * more_shares).trunc();
     }
     Engagement { likes: likes as u32, shares: shares as u32, virality }
 }
@@ -43,16 +43,16 @@ pub fn engagement(sentiment: Sentiment, draws: &EngagementDraws, law: &SocialPar
 /// Returns the ranges of base likes and shares, both ends included. As in the release, only groups whose name
 /// starts with E count as enterprises; discoverable enterprises do not.
 pub fn engagement_ranges(group_id: &str, params: &Params) -> [(u32, u32); 2] {
-    let law = &params.social;
+    let social_params = &params.social;
     if group_id.starts_with('E') {
         [
-            (law.enterprise_likes_low, law.enterprise_likes_high_exclusive - 1),
-            (law.enterprise_shares_low, law.enterprise_shares_high_exclusive - 1),
+            (social_params.enterprise_likes_low, social_params.enterprise_likes_high_exclusive - 1),
+            (social_params.enterprise_shares_low, social_params.enterprise_shares_high_exclusive - 1),
         ]
     } else {
         [
-            (law.individual_likes_low, law.individual_likes_high_exclusive - 1),
-            (law.individual_shares_low, law.individual_shares_high_exclusive - 1),
+            (social_params.individual_likes_low, social_params.individual_likes_high_exclusive - 1),
+            (social_params.individual_shares_low, social_params.individual_shares_high_exclusive - 1),
         ]
     }
 }
@@ -78,7 +78,7 @@ mod tests {
 
     #[test]
     fn engagement_matches_its_draws() {
-        let law = Params::bundled().social;
+        let params = Params::bundled().social;
         for (tone, likes, shares, [factor, spike, a, b, c], expected) in [
             (Sentiment::Negative, 40, 10, [0.4, 0.5, 0.0, 0.0, 0.0], (76, 19, 1.0)),
             (Sentiment::Positive, 40, 9, [0.4, 0.5, 0.0, 0.0, 0.0], (48, 10, 0.468)),
@@ -87,7 +87,7 @@ mod tests {
             (Sentiment::Negative, 80, 20, [0.5, 0.005, 0.99, 0.2, 0.2], (960, 120, 1.0)),
         ] {
             let draws = EngagementDraws { likes, shares, factor, spike, explosion: [a, b, c] };
-            let reactions = engagement(tone, &draws, &law);
+            let reactions = engagement(tone, &draws, &params);
             assert_eq!(
                 (reactions.likes, reactions.shares),
                 (expected.0, expected.1),

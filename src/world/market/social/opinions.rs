@@ -139,13 +139,13 @@ impl OpinionContext<'_> {
 }
 
 /// Returns the cause of a post: the first problem, otherwise a change of satisfaction, otherwise general.
-pub fn post_cause(troubles: Troubles, change: f64, law: &SocialParams) -> PostCause {
+pub fn post_cause(troubles: Troubles, change: f64, params: &SocialParams) -> PostCause {
     match troubles {
         Troubles { overload: true, .. } => PostCause::Overload,
         Troubles { outage: true, .. } => PostCause::Outage,
         Troubles { issue: true, .. } => PostCause::Issue,
         Troubles { quota: true, .. } => PostCause::Quota,
-        _ if change.abs() < law.satisfaction_change_threshold => PostCause::General,
+        _ if change.abs() < params.satisfaction_change_threshold => PostCause::General,
         _ if change > 0.0 => PostCause::Improved,
         _ => PostCause::Declined,
     }
@@ -171,7 +171,7 @@ mod tests {
 
     #[test]
     fn troubles_precede_satisfaction_changes() {
-        let law = Params::bundled().social;
+        let params = Params::bundled().social;
         let none = Troubles::default();
         let all = Troubles { overload: true, outage: true, issue: true, quota: true };
         for (troubles, change, expected) in [
@@ -183,7 +183,7 @@ mod tests {
             (none, -0.02, PostCause::Declined),
             (none, 0.019, PostCause::General),
         ] {
-            assert_eq!(post_cause(troubles, change, &law), expected, "{troubles:?} {change}");
+            assert_eq!(post_cause(troubles, change, &params), expected, "{troubles:?} {change}");
         }
         assert_eq!(all.count(), 4);
     }

@@ -31,24 +31,24 @@ impl OwnPost {
 }
 
 /// Returns the change of the lead factor by one reaction at an age in days; reactions below 0.6 have no effect.
-pub fn post_effect(effect: f64, age_days: u32, law: &CeoPosts) -> f64 {
-    let (size, threshold) = (effect.abs(), law.multiplier_viral_threshold);
+pub fn post_effect(effect: f64, age_days: u32, posts: &CeoPosts) -> f64 {
+    let (size, threshold) = (effect.abs(), posts.multiplier_viral_threshold);
     if size < threshold {
         return 0.0;
     }
-    let strength = (size - threshold) / (1.0 - threshold) * law.multiplier_max_boost_per_post;
-    effect.signum() * strength * libm::exp2(-f64::from(age_days) / law.multiplier_half_life_days)
+    let strength = (size - threshold) / (1.0 - threshold) * posts.multiplier_max_boost_per_post;
+    effect.signum() * strength * libm::exp2(-f64::from(age_days) / posts.multiplier_half_life_days)
 }
 
 /// Returns the factor on the leads of a group: 1 plus the effects of all posts, 0.75..=1.25.
-pub fn social_multiplier(group: Group, day: u32, posts: &[OwnPost], law: &CeoPosts) -> f64 {
+pub fn social_multiplier(group: Group, day: u32, posts: &[OwnPost], ceo_posts: &CeoPosts) -> f64 {
     let judged = posts.iter().filter(|post| post.day <= day);
     let sum: f64 = judged
         .filter_map(|post| {
-            post.effects.as_ref().map(|effects| post_effect(effects[group], day - post.day, law))
+            post.effects.as_ref().map(|effects| post_effect(effects[group], day - post.day, ceo_posts))
         })
         .sum();
-    (law.multiplier_neutral + sum).clamp(law.multiplier_min, law.multiplier_max)
+    (ceo_posts.multiplier_neutral + sum).clamp(ceo_posts.multiplier_min, ceo_posts.multiplier_max)
 }
 
 #[cfg(test)]

@@ -149,9 +149,9 @@ impl PostLottery {
         lost: &[LostEnterprise],
         params: &Params,
     ) {
-        let law = &params.social;
+        let social_params = &params.social;
         for cancelled_individual in gave_up {
-            let weight = cancelled_weight(cancelled_individual.satisfaction, 1.0, law);
+            let weight = cancelled_weight(cancelled_individual.satisfaction, 1.0, social_params);
             let theme = if cancelled_individual.satisfaction < 0.0 { Theme::Quality } else { Theme::Price };
             let opinion = Opinion {
                 cause: PostCause::Cancelled,
@@ -173,7 +173,7 @@ impl PostLottery {
             );
         }
         for lost_enterprise in lost {
-            let weight = lost_company_weight(f64::from(lost_enterprise.seats), law);
+            let weight = lost_company_weight(f64::from(lost_enterprise.seats), social_params);
             let opinion = Opinion {
                 cause: PostCause::Lost {
                     thread: lost_enterprise.kind,
@@ -183,7 +183,7 @@ impl PostLottery {
                 theme: Theme::Support,
                 days_subscribed: lost_enterprise
                     .days_subscribed
-                    .unwrap_or(law.enterprise_churn_event_fallback_days),
+                    .unwrap_or(social_params.enterprise_churn_event_fallback_days),
                 plan: None,
                 price: 0.0,
                 seats: lost_enterprise.seats,

@@ -8,8 +8,8 @@ use crate::params::{Competitor, MacroEconomy, Params};
 use crate::random::{Part, Stream, Streams};
 
 /// Returns the event that the press covers: the oldest one still within its coverage period.
-pub fn current_event<'a>(day: u32, events: &'a [Event], law: &Competitor) -> Option<&'a Event> {
-    events.iter().find(|event| event.day + law.competitor_event_post_days >= day)
+pub fn current_event<'a>(day: u32, events: &'a [Event], competitor: &Competitor) -> Option<&'a Event> {
+    events.iter().find(|event| event.day + competitor.competitor_event_post_days >= day)
 }
 
 /// Returns the size of an event as the press estimates it; `u` is uniform within the error range.
@@ -21,19 +21,19 @@ pub fn estimated_boost(boost: f64, u: f64) -> f64 {
 pub fn competitor_engagement(
     severity: Severity,
     [views, likes, shares]: [f64; 3],
-    law: &Competitor,
+    competitor: &Competitor,
 ) -> Engagement {
     let base = match severity {
-        Severity::Minor => law.competitor_post_base_views_minor,
-        Severity::Moderate => law.competitor_post_base_views_moderate,
-        Severity::Major => law.competitor_post_base_views_major,
-        Severity::Transformative => law.competitor_post_base_views_transformative,
+        Severity::Minor => competitor.competitor_post_base_views_minor,
+        Severity::Moderate => competitor.competitor_post_base_views_moderate,
+        Severity::Major => competitor.competitor_post_base_views_major,
+        Severity::Transformative => competitor.competitor_post_base_views_transformative,
     };
     let views = (f64::from(base) * (1.0 + views)).trunc();
     let of_views = |ratio: f64, u: f64| (views * ratio * (1.0 + u)).trunc() as u32;
     Engagement {
-        likes: of_views(law.competitor_post_likes_ratio, likes),
-        shares: of_views(law.competitor_post_shares_ratio, shares),
+        likes: of_views(competitor.competitor_post_likes_ratio, likes),
+        shares: of_views(competitor.competitor_post_shares_ratio, shares),
         virality: 0.0,
     }
 }
@@ -47,17 +47,18 @@ pub fn write_competitor_posts(
     streams: &Streams,
     facts: &mut Facts,
 ) {
-    let law = &params.competitor;
-    let Some(event) = current_event(day, events, law) else { return };
+    let competitor = &params.competitor;
+    let Some(event) = current_event(day, events, competitor) else { return };
     let mut stream = streams.open(Part::CompetitorPosts, [u64::from(day)]);
-    let u = stream.between(law.competitor_post_boost_noise_min, law.competitor_post_boost_noise_max);
+    let u = stream
+        .between(competitor.competitor_post_boost_noise_min, competitor.competitor_post_boost_noise_max);
     let estimate = estimated_boost(event.boost, u);
-    let severity = severity(estimate, law);
-    for _ in 0..law.competitor_event_posts_per_day {
-        let name = stream.index(law.competitor_names.len()) as u8;
-        let perspective = stream.index(law.post_perspective_count as usize) as u8;
+    let severity = severity(estimate, competitor);
+    for _ in 0..competitor.competitor_event_posts_per_day {
+        let name = stream.index(competitor.competitor_names.len()) as u8;
+        let perspective = stream.index(competitor.post_perspective_count as usize) as u8;
         let draws = [stream.uniform(), stream.uniform(), stream.uniform()];
-        let engagement = competitor_engagement(severity, draws, law);
+        let engagement = competitor_engagement(severity, draws, competitor);
         let matter = PostSubject::CompetitorEvent { name, perspective, severity, estimate };
         social.publish(None, Sentiment::Neutral, engagement, matter, facts);
     }
@@ -73,12 +74,12 @@ pub fn economy_tone(trend: Trend) -> Sentiment {
 }
 
 /// Returns the engagement of a post about the economy.
-pub fn economy_engagement([views, likes, shares]: [f64; 3], law: &MacroEconomy) -> Engagement {
-    let views = (law.macro_post_views_base * (1.0 + views)).trunc();
+pub fn economy_engagement([views, likes, shares]: [f64; 3], economy: &MacroEconomy) -> Engagement {
+    let views = (economy.macro_post_views_base * (1.0 + views)).trunc();
     let of_views = |ratio: f64, u: f64| (views * ratio * (1.0 + u)).trunc() as u32;
     Engagement {
-        likes: of_views(law.macro_post_likes_ratio, likes),
-        shares: of_views(law.macro_post_shares_ratio, shares),
+        likes: of_views(economy.macro_post_likes_ratio, likes),
+        shares: of_views(economy.macro_post_shares_ratio, shares),
         virality: 0.0,
     }
 }
@@ -93,28 +94,35 @@ pub fn write_economy_posts(
     streams: &Streams,
     facts: &mut Facts,
 ) {
-    let law = &params.economy;
+    let macro_economy = &params.economy;
     let mut stream = streams.open(Part::MacroPosts, [u64::from(day)]);
     let mut write = |social: &mut Social, stream: &mut Stream, trend, matter| {
         let draws = [stream.uniform(), stream.uniform(), stream.uniform()];
-        social.publish(None, economy_tone(trend), economy_engagement(draws, law), matter, facts);
+        social.publish(None, economy_tone(trend), economy_engagement(draws, macro_economy), matter, facts);
     };
-    let news = |reading: &&Reading| reading.measured_day + law.macro_pmi_publication_delay_days == day;
+    let news =
+        |reading: &&Reading| reading.measured_day + macro_economy.macro_pmi_publication_delay_days == day;
     if let Some(reading) = economy.published.as_ref().filter(news) {
         write(social, &mut stream, reading.trend, PostSubject::Reading(*reading));
     }
     let next = *social.next_round.get_or_insert_with(|| {
         let mut first = streams.open(Part::MacroPosts, [0]);
-        first.integer(law.macro_social_post_interval_min, law.macro_social_post_interval_max)
+        first.integer(
+            macro_economy.macro_social_post_interval_min,
+            macro_economy.macro_social_post_interval_max,
+        )
     });
     if day < next {
         return;
     }
-    let pause = stream.integer(law.macro_social_post_interval_min, law.macro_social_post_interval_max);
+    let pause = stream
+        .integer(macro_economy.macro_social_post_interval_min, macro_economy.macro_social_post_interval_max);
     social.next_round = Some(day + pause);
-    let trend = Trend::from_index(economy.pmi, law);
-    for _ in 0..stream.integer(law.macro_social_post_count_min, law.macro_social_post_count_max) {
-        let perspective = stream.index(law.post_perspective_count as usize) as u8;
+    let trend = Trend::from_index(economy.pmi, macro_economy);
+    for _ in 0..stream
+        .integer(macro_economy.macro_social_post_count_min, macro_economy.macro_social_post_count_max)
+    {
+        let perspective = stream.index(macro_economy.post_perspective_count as usize) as u8;
         write(social, &mut stream, trend, PostSubject::Economy { trend, pmi: economy.pmi, perspective });
     }
 }
@@ -130,11 +138,11 @@ mod tests {
 
     /// Estimate, likes and shares of two posts for given draws.
     fn posts(events: &[Event], day: u32, u: f64) -> (f64, Vec<(u32, u32)>) {
-        let law = Params::bundled().competitor;
-        let event = current_event(day, events, &law).expect("a topic");
+        let competitor = Params::bundled().competitor;
+        let event = current_event(day, events, &competitor).expect("a topic");
         let estimate = estimated_boost(event.boost, u);
         let engagement = |draws| {
-            let reactions = competitor_engagement(severity(estimate, &law), draws, &law);
+            let reactions = competitor_engagement(severity(estimate, &competitor), draws, &competitor);
             (reactions.likes, reactions.shares)
         };
         (estimate, vec![engagement([0.5, 0.5, 0.5]), engagement([0.25, 0.75, 0.1])])

@@ -19,14 +19,14 @@ pub struct PostReactions {
 }
 
 /// Returns the views of a group before noise: base f, f = 1..3 up to the threshold, 3..100 above it.
-pub fn expected_views(effect: f64, subscribers: u32, law: &CeoPosts) -> f64 {
-    let base = law.views_base_min.max(law.views_base_per_subscriber * f64::from(subscribers));
-    let (size, threshold) = (effect.abs(), law.viral_threshold);
-    let edge = law.views_threshold_multiplier;
+pub fn expected_views(effect: f64, subscribers: u32, posts: &CeoPosts) -> f64 {
+    let base = posts.views_base_min.max(posts.views_base_per_subscriber * f64::from(subscribers));
+    let (size, threshold) = (effect.abs(), posts.viral_threshold);
+    let edge = posts.views_threshold_multiplier;
     let factor = if size <= threshold {
         1.0 + size * (edge - 1.0) / threshold
     } else {
-        let slope = libm::log(law.views_max_multiplier / edge) / (1.0 - threshold);
+        let slope = libm::log(posts.views_max_multiplier / edge) / (1.0 - threshold);
         edge * libm::exp(slope * (size - threshold))
     };
     base * factor
@@ -57,7 +57,7 @@ fn apply_post_reactions(
     streams: &Streams,
     facts: &mut Facts,
 ) {
-    let law = &params.ceo_posts;
+    let posts = &params.ceo_posts;
     let subscribers = customers.active_by_group();
     let (mut views, mut comments) = (0, Vec::new());
     let mut effects = ByGroup::from_fn(|_| 0.0);
@@ -66,22 +66,22 @@ fn apply_post_reactions(
         let keys = [u64::from(verdict.post), group.index() as u64];
         let luck = streams
             .open(Part::CeoViews, keys)
-            .log_normal(law.views_noise_lognormal_mu, law.views_noise_lognormal_sigma);
-        views += (expected_views(effect, subscribers[group], law) * luck) as u64;
-        if effect.abs() >= law.viral_threshold {
+            .log_normal(posts.views_noise_lognormal_mu, posts.views_noise_lognormal_sigma);
+        views += (expected_views(effect, subscribers[group], posts) * luck) as u64;
+        if effect.abs() >= posts.viral_threshold {
             let mut stream = streams.open(Part::CeoReply, keys);
             let author = pick_author(group, customers, params, streams, &mut stream);
             let sentiment = if effect > 0.0 { Sentiment::Positive } else { Sentiment::Negative };
             let engagement = Engagement {
-                likes: stream.integer(law.reply_likes_low, law.reply_likes_high_exclusive - 1),
-                shares: stream.integer(law.reply_shares_low, law.reply_shares_high_exclusive - 1),
+                likes: stream.integer(posts.reply_likes_low, posts.reply_likes_high_exclusive - 1),
+                shares: stream.integer(posts.reply_shares_low, posts.reply_shares_high_exclusive - 1),
                 virality: effect.abs(),
             };
             let matter = PostSubject::Comment { own_post: verdict.post, group, effect };
             comments.push(social.publish(author, sentiment, engagement, matter, facts));
         }
     }
-    facts.notices.push(Notice::OwnPostSeen(reaction(verdict, views, law)));
+    facts.notices.push(Notice::OwnPostSeen(reaction(verdict, views, posts)));
     facts.own_posts_seen.push(OwnPostSeen { post: verdict.post, views, comments: comments.clone() });
     let own_post = &mut social.own[verdict.post as usize - 1];
     (own_post.effects, own_post.views, own_post.comments) = (Some(effects), views, comments);
@@ -111,12 +111,12 @@ fn pick_author(
     None
 }
 
-fn reaction(verdict: &PostReactions, views: u64, law: &CeoPosts) -> Reaction {
+fn reaction(verdict: &PostReactions, views: u64, posts: &CeoPosts) -> Reaction {
     let judged = verdict.effects.len().max(1) as f64;
     let mean = verdict.effects.iter().map(|(_, effect)| effect).sum::<f64>() / judged;
     let mut sorted = verdict.effects.clone();
     sorted.sort_by(|(_, one), (_, other)| other.abs().total_cmp(&one.abs()));
-    sorted.truncate(law.notification_top_groups as usize);
+    sorted.truncate(posts.notification_top_groups as usize);
     let strongest = std::array::from_fn(|at| sorted.get(at).copied());
     Reaction { post: verdict.post, views, mean, strongest }
 }
@@ -133,14 +133,14 @@ mod tests {
 
     #[test]
     fn views_grow_linearly_then_exponentially() {
-        let law = Params::bundled().ceo_posts;
+        let posts = Params::bundled().ceo_posts;
         for (effect, expected) in
             [(0.3, 100.0), (0.6, 150.0), (0.7, 360.421712), (0.8, 866.025404), (1.0, 5000.0), (-0.3, 100.0)]
         {
-            let views = expected_views(effect, 0, &law);
+            let views = expected_views(effect, 0, &posts);
             assert!((views - expected).abs() < 1e-6, "{effect}: got {views}, expected {expected}");
         }
-        assert_eq!(expected_views(0.0, 4000, &law), 400.0);
+        assert_eq!(expected_views(0.0, 4000, &posts), 400.0);
     }
 
     #[test]

@@ -4,19 +4,19 @@ use crate::events::Sentiment;
 use crate::params::{SentimentChances, SocialParams};
 
 /// Returns the probabilities of sentiments at a satisfaction.
-pub fn sentiment_chances(satisfaction: f64, law: &SocialParams) -> &SentimentChances {
+pub fn sentiment_chances(satisfaction: f64, params: &SocialParams) -> &SentimentChances {
     match satisfaction {
-        s if s >= law.sentiment_band_very_positive_min => &law.sentiment.very_positive,
-        s if s >= law.sentiment_band_positive_min => &law.sentiment.positive,
-        s if s >= law.sentiment_band_neutral_min => &law.sentiment.neutral,
-        s if s >= law.sentiment_band_negative_min => &law.sentiment.negative,
-        _ => &law.sentiment.very_negative,
+        s if s >= params.sentiment_band_very_positive_min => &params.sentiment.very_positive,
+        s if s >= params.sentiment_band_positive_min => &params.sentiment.positive,
+        s if s >= params.sentiment_band_neutral_min => &params.sentiment.neutral,
+        s if s >= params.sentiment_band_negative_min => &params.sentiment.negative,
+        _ => &params.sentiment.very_negative,
     }
 }
 
 /// Returns the sentiment of a post from a uniform draw.
-pub fn sentiment(satisfaction: f64, u: f64, law: &SocialParams) -> Sentiment {
-    let chances = sentiment_chances(satisfaction, law);
+pub fn sentiment(satisfaction: f64, u: f64, params: &SocialParams) -> Sentiment {
+    let chances = sentiment_chances(satisfaction, params);
     if u < chances.positive {
         Sentiment::Positive
     } else if u < chances.positive + chances.neutral {
@@ -33,7 +33,7 @@ mod tests {
 
     #[test]
     fn sentiment_matches_its_band() {
-        let law = Params::bundled().social;
+        let params = Params::bundled().social;
         for (satisfaction, u, expected) in [
             (0.2, 0.69, Sentiment::Positive),
             (0.2, 0.71, Sentiment::Neutral),
@@ -43,7 +43,7 @@ mod tests {
             (-0.2, 0.41, Sentiment::Negative),
             (-0.21, 0.19, Sentiment::Neutral),
         ] {
-            assert_eq!(sentiment(satisfaction, u, &law), expected, "{satisfaction} {u}");
+            assert_eq!(sentiment(satisfaction, u, &params), expected, "{satisfaction} {u}");
         }
     }
 }

@@ -23,47 +23,47 @@ pub struct PostWeightInputs {
 
 /// Returns the weight of a subscriber.
 #[inline]
-pub fn post_weight(voice: &PostWeightInputs, law: &SocialParams) -> f64 {
+pub fn post_weight(voice: &PostWeightInputs, params: &SocialParams) -> f64 {
     let s = voice.satisfaction;
-    let mut weight = 1.0 + law.weight_abs_satisfaction_coef * s.abs();
+    let mut weight = 1.0 + params.weight_abs_satisfaction_coef * s.abs();
     if s < 0.0 {
-        weight *= 1.0 + law.weight_negative_satisfaction_sq_coef * s * s;
+        weight *= 1.0 + params.weight_negative_satisfaction_sq_coef * s * s;
     }
     if voice.influencer {
-        weight *= law.weight_influencer_multiplier;
+        weight *= params.weight_influencer_multiplier;
     }
-    if voice.days_subscribed <= law.weight_new_customer_max_days {
-        weight *= law.weight_new_customer_multiplier;
+    if voice.days_subscribed <= params.weight_new_customer_max_days {
+        weight *= params.weight_new_customer_multiplier;
     }
-    if voice.change.abs() >= law.satisfaction_change_threshold {
-        weight *= 1.0 + law.weight_satisfaction_change_coef * voice.change.abs();
+    if voice.change.abs() >= params.satisfaction_change_threshold {
+        weight *= 1.0 + params.weight_satisfaction_change_coef * voice.change.abs();
     }
     if voice.events > 0 {
-        weight *= 1.0 + law.weight_active_event_coef * f64::from(voice.events);
+        weight *= 1.0 + params.weight_active_event_coef * f64::from(voice.events);
     }
     if voice.contract_locked {
-        weight *= law.contract_dissatisfaction_reputation_multiplier;
+        weight *= params.contract_dissatisfaction_reputation_multiplier;
     }
-    replace_nonfinite(weight * voice.seats.max(1.0), law)
+    replace_nonfinite(weight * voice.seats.max(1.0), params)
 }
 
 /// Returns the weight of an individual who cancelled today.
-pub fn cancelled_weight(satisfaction: f64, seats: f64, law: &SocialParams) -> f64 {
+pub fn cancelled_weight(satisfaction: f64, seats: f64, params: &SocialParams) -> f64 {
     let bad = satisfaction.min(0.0).abs();
     replace_nonfinite(
-        law.churn_weight_base * seats * (1.0 + law.churn_weight_negative_satisfaction_coef * bad),
-        law,
+        params.churn_weight_base * seats * (1.0 + params.churn_weight_negative_satisfaction_coef * bad),
+        params,
     )
 }
 
 /// Returns the weight of an enterprise that was lost today.
-pub fn lost_company_weight(seats: f64, law: &SocialParams) -> f64 {
-    replace_nonfinite(law.enterprise_churn_weight_base * seats.max(1.0), law)
+pub fn lost_company_weight(seats: f64, params: &SocialParams) -> f64 {
+    replace_nonfinite(params.enterprise_churn_weight_base * seats.max(1.0), params)
 }
 
 #[inline]
-fn replace_nonfinite(weight: f64, law: &SocialParams) -> f64 {
-    if weight.is_finite() { weight } else { law.weight_nonfinite_replacement }
+fn replace_nonfinite(weight: f64, params: &SocialParams) -> f64 {
+    if weight.is_finite() { weight } else { params.weight_nonfinite_replacement }
 }
 
 #[cfg(test)]
@@ -83,7 +83,7 @@ mod tests {
 
     #[test]
     fn post_weight_multiplies_its_factors() {
-        let law = Params::bundled().social;
+        let params = Params::bundled().social;
         for (voice, expected) in [
             (PLAIN, 1.0),
             (PostWeightInputs { satisfaction: 0.3, ..PLAIN }, 4.0),
@@ -113,13 +113,13 @@ mod tests {
             ),
             (PostWeightInputs { satisfaction: -40.0, ..PLAIN }, 12_832_401.0),
         ] {
-            let weight = post_weight(&voice, &law);
+            let weight = post_weight(&voice, &params);
             assert!((weight / expected - 1.0).abs() < 1e-12, "{voice:?}: got {weight}, expected {expected}");
         }
-        assert_eq!(cancelled_weight(-0.2, 1.0, &law), 15.0);
-        assert_eq!(cancelled_weight(0.3, 1.0, &law), 5.0);
-        assert_eq!(lost_company_weight(120.0, &law), 960.0);
-        assert_eq!(lost_company_weight(0.0, &law), 8.0);
-        assert_eq!(post_weight(&PostWeightInputs { satisfaction: f64::INFINITY, ..PLAIN }, &law), 1e6);
+        assert_eq!(cancelled_weight(-0.2, 1.0, &params), 15.0);
+        assert_eq!(cancelled_weight(0.3, 1.0, &params), 5.0);
+        assert_eq!(lost_company_weight(120.0, &params), 960.0);
+        assert_eq!(lost_company_weight(0.0, &params), 8.0);
+        assert_eq!(post_weight(&PostWeightInputs { satisfaction: f64::INFINITY, ..PLAIN }, &params), 1e6);
     }
 }

@@ -128,25 +128,23 @@ impl HandledConstraint {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum RowOrder {
     /// By number, and therefore by day.
-    ByNumber,
+    Number,
     /// By kind, then by day.
     ByKind,
     /// By day, then by kind.
-    ByDayAndKind,
+    DayAndKind,
 }
 
 impl RowOrder {
     /// Returns the order for sorting by a list of columns, or `None` if the table does not support it.
     fn for_columns(columns: &[c_int]) -> Option<RowOrder> {
         match columns {
-            [NUMBER | ROWID_COLUMN, ..] | [DAY] | [DAY, NUMBER | ROWID_COLUMN, ..] => {
-                Some(RowOrder::ByNumber)
-            }
+            [NUMBER | ROWID_COLUMN, ..] | [DAY] | [DAY, NUMBER | ROWID_COLUMN, ..] => Some(RowOrder::Number),
             [KIND]
             | [KIND, DAY]
             | [KIND, NUMBER | ROWID_COLUMN, ..]
             | [KIND, DAY, NUMBER | ROWID_COLUMN, ..] => Some(RowOrder::ByKind),
-            [DAY, KIND] | [DAY, KIND, NUMBER | ROWID_COLUMN, ..] => Some(RowOrder::ByDayAndKind),
+            [DAY, KIND] | [DAY, KIND, NUMBER | ROWID_COLUMN, ..] => Some(RowOrder::DayAndKind),
             _ => None,
         }
     }
@@ -226,7 +224,7 @@ unsafe impl<'vtab, K: DayTableDefinition> VTab<'vtab> for DayTable<K> {
             * share(K::TEXT, 1e-5, 1.0);
         info.set_estimated_cost(rows);
         info.set_estimated_rows(rows as i64);
-        info.set_idx_num(order.unwrap_or(RowOrder::ByNumber) as c_int);
+        info.set_idx_num(order.unwrap_or(RowOrder::Number) as c_int);
         info.set_idx_str(&handled.iter().map(|(_, constraint)| constraint.encode()).collect::<String>());
         Ok(true)
     }
@@ -349,11 +347,11 @@ impl<K: DayTableDefinition> DayCursor<'_, K> {
         match order {
             // A single row needs one scan in any order.
             _ if self.row_number_filter.is_some() => days.map(|day| ScanPass { day, kinds }).collect(),
-            RowOrder::ByNumber => days.map(|day| ScanPass { day, kinds }).collect(),
+            RowOrder::Number => days.map(|day| ScanPass { day, kinds }).collect(),
             RowOrder::ByKind => {
                 single().flat_map(|kinds| days.clone().map(move |day| ScanPass { day, kinds })).collect()
             }
-            RowOrder::ByDayAndKind => {
+            RowOrder::DayAndKind => {
                 days.flat_map(|day| single().map(move |kinds| ScanPass { day, kinds })).collect()
             }
         }
@@ -411,12 +409,12 @@ unsafe impl<K: DayTableDefinition> VTabCursor for DayCursor<'_, K> {
                 _ => kinds &= K::matching_kinds(column, comparison, number),
             }
         }
-        let order = [RowOrder::ByNumber, RowOrder::ByKind, RowOrder::ByDayAndKind];
+        let order = [RowOrder::Number, RowOrder::ByKind, RowOrder::DayAndKind];
         let order = order.into_iter().find(|row_order| *row_order as c_int == order_number);
-        let order = order.unwrap_or(RowOrder::ByNumber);
+        let order = order.unwrap_or(RowOrder::Number);
         self.passes = self.plan_passes(days, kinds, order);
         (self.pass, self.place) = (0, 0);
-        if let (Some(text), RowOrder::ByNumber, Some(first)) = (wanted_text, order, self.passes.first()) {
+        if let (Some(text), RowOrder::Number, Some(first)) = (wanted_text, order, self.passes.first()) {
             let days = first.day..first.day + self.passes.len();
             let rows = K::days(&self.store)[days.clone()].iter().map(|day| day.len()).sum();
             let index = K::texts(&self.seen).get(&days, rows, || self.text_rows(days.clone()));

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::comparison::{ComparisonRow, PublishedRange, published_range};
+use super::compared_runs::{ComparisonRow, PublishedRange, published_range};
 use novamind_report::Logbook;
 use novamind_report::ranking::published_results;
 use novamind_session::ForecastScore;

@@ -1,11 +1,11 @@
 //! Comparison of runs: result, cash by week, decisions and behavior, next to published figures.
 
-mod comparison;
+mod compared_runs;
 mod figures;
 mod run_rows;
 mod table;
 
-pub use comparison::{ComparedDecisions, Comparison, measure_for_unit};
+pub use compared_runs::{ComparedDecisions, Comparison, measure_for_unit};
 pub use figures::{ComparedFigure, FIGURES, find_figure};
 pub use table::{comparison_to_rows, comparison_to_text};
 

@@ -1,6 +1,6 @@
 //! Comparison of many runs: one row per run, best result first.
 
-use super::comparison::{Comparison, ComparisonRow};
+use super::compared_runs::{Comparison, ComparisonRow};
 use crate::lab_report::{CellValue, Column, LabReport, LabTable, Measure, column_name};
 use novamind_base::formatting::grouped_number;
 use novamind_record::trajectory::record::RunEndReason;

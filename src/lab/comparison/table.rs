@@ -1,6 +1,6 @@
 //! Comparison of runs as text and as CSV rows.
 
-use super::comparison::{Comparison, ComparisonRow, PublishedRange};
+use super::compared_runs::{Comparison, ComparisonRow, PublishedRange};
 use super::run_rows::row_per_run_report;
 use novamind_base::formatting::{dollars, grouped_number, percent};
 use novamind_report::ranking::{describe_published_conditions, published_results};

@@ -50,7 +50,7 @@ impl Forecasts {
     }
 
     /// Converts the forecasts to their form in a line.
-    pub(crate) fn to_filed(&self) -> Vec<FiledForecast> {
+    pub(crate) fn to_filed(self) -> Vec<FiledForecast> {
         let one = |(forecast, filled_naively): (Forecast, bool)| {
             let Forecast { horizon_days, point, lower, upper } = forecast;
             FiledForecast { horizon_days, point, lower, upper, filled_naively }

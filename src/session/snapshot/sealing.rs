@@ -64,7 +64,7 @@ pub(super) struct Envelope {
 impl Envelope {
     pub(super) const LENGTH_BYTES: usize = 2 * KEY_BYTES;
 
-    pub(super) fn to_bytes(&self) -> [u8; Envelope::LENGTH_BYTES] {
+    pub(super) fn to_bytes(self) -> [u8; Envelope::LENGTH_BYTES] {
         std::array::from_fn(|at| if at < KEY_BYTES { self.nonce[at] } else { self.tag[at - KEY_BYTES] })
     }
 

@@ -1,6 +1,6 @@
 //! State of the console: messages become actions, actions change the state and produce orders for the worker.
 //!
-//! Nothing here blocks, reads a file or draws. Slow work is an [`RowOrder`]; its result returns as a message.
+//! Nothing here blocks, reads a file or draws. Slow work is an [`Order`]; its result returns as a message.
 
 mod activity_log;
 mod breadcrumbs;

@@ -19,7 +19,7 @@ use novamind_tools::Rejection;
 /// are those of the run. Returns `None` if it was stopped.
 ///
 /// # Errors
-/// As for [`ReplayedWorld::of`].
+/// As for [`ReplayedWorld::from_run`].
 pub fn play_opponents(
     folder: &Path,
     configuration: &Configuration,

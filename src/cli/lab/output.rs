@@ -52,7 +52,7 @@ impl OutputOptions {
         self.svg.as_deref()
     }
 
-    /// Writes an exhibit in the chosen form.
+    /// Writes a report in the chosen form.
     ///
     /// # Errors
     /// There is no such table or no graph, or the file or standard output cannot be written.

@@ -1,6 +1,6 @@
 //! Arms by seeds: policies played on the same seeds in parallel. Each result is stored as soon as its run ends.
 //!
-//! [`Experiment::enter_console_mode`] loads results of earlier commands, [`PreparedExperiment::conduct`] plays the rest. A command that was
+//! [`Experiment::prepare`] loads results of earlier commands, [`PreparedExperiment::run`] plays the rest. A command that was
 //! stopped and is repeated resumes and prints the same output as an uninterrupted one.
 
 mod engine;

@@ -1,4 +1,4 @@
-//! Graphs of an exhibit as terminal text and as SVG.
+//! Graphs of a report as terminal text and as SVG.
 
 use super::LabReport;
 use super::text::wrap_text;

@@ -1,6 +1,6 @@
 //! Output of laboratory commands: tables of typed cells, graphs, and notes.
 //!
-//! An exhibit is written as terminal text ([`LabReport::as_text`]), comma-separated values ([`LabTable::to_csv_rows`]), JSON
+//! A report is written as terminal text ([`LabReport::to_text`]), comma-separated values ([`LabTable::to_csv_rows`]), JSON
 //! ([`LabReport::to_json`]) and SVG ([`LabReport::to_svg`]). The last three have full precision.
 
 mod data;
@@ -29,7 +29,7 @@ pub struct LabReport {
     pub notes: Vec<String>,
 }
 
-/// A table of an exhibit.
+/// A table of a report.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LabTable {
     /// Name for programs: `--table NAME` asks for it.
@@ -209,7 +209,7 @@ impl CellValue {
 }
 
 impl LabReport {
-    /// Creates an exhibit with one table.
+    /// Creates a report with one table.
     pub fn with_table(title: impl Into<String>, table: LabTable) -> LabReport {
         LabReport { title: title.into(), tables: vec![table], graphs: Vec::new(), notes: Vec::new() }
     }

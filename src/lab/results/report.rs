@@ -1,4 +1,4 @@
-//! The results table as an exhibit.
+//! The results table as a report.
 
 use super::{ResultsRow, ResultsTable};
 use crate::lab_report::{

@@ -151,7 +151,7 @@ impl RowInputs {
     }
 
     #[inline]
-    fn fill(
+    fn load_block(
         &mut self,
         group: Group,
         block: &Block,
@@ -195,7 +195,7 @@ pub fn update_block(group: Group, block: &mut Block, day: &DayContext<'_>) -> Re
     for first in (0..count).step_by(ROWS_PER_BATCH) {
         let rows = (count - first).min(ROWS_PER_BATCH);
         let range = first..first + rows;
-        found.fill(group, block, range.clone(), &delivered, day);
+        found.load_block(group, block, range.clone(), &delivered, day);
         let rate = &block.usage_rate[range.clone()];
         let (relationship, required) = (&block.relationship[range.clone()], &block.required[range.clone()]);
         let open_days = &block.open_issue_days[range.clone()];

@@ -1,5 +1,5 @@
 -- title: Where customers come from
--- what: Leads of the last twelve weeks by the channel they came through, and how many of them became customers.
+-- what: Leads of the last twelve weeks by channel, and how many of them became customers.
 -- chart: bar acquisition_source leads signed
 SELECT c.acquisition_source, count(*) AS leads, sum(s.status IN ('subscribed', 'cancelled')) AS signed,
     round(100.0 * sum(s.status IN ('subscribed', 'cancelled')) / count(*), 1) AS signed_percent,

@@ -1,5 +1,5 @@
 -- title: Advertising against new subscribers
--- what: Dollars for advertising and those who joined, week by week, and what one of them cost.
+-- what: Dollars of advertising, new subscribers and cost per new subscriber, by week.
 -- chart: line week dollars_per_new_subscriber
 SELECT joined.week, coalesce(ads.leads, 0) AS paid_leads, round(coalesce(ads.spend, 0)) AS spend,
     joined.customers AS new_subscribers,

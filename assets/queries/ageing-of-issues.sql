@@ -1,5 +1,5 @@
 -- title: Ageing of open issues
--- what: How long the open issues of customers who are still here have waited, by group.
+-- what: Age of the open issues of active customers, by group.
 -- chart: bar group_id over_two_weeks
 SELECT i.group_id, count(*) AS open, sum(i.days_open < 4) AS up_to_3_days,
     sum(i.days_open BETWEEN 4 AND 7) AS up_to_a_week, sum(i.days_open BETWEEN 8 AND 14) AS up_to_two_weeks,

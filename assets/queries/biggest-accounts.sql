@@ -1,5 +1,5 @@
 -- title: Biggest accounts
--- what: The thirty customers who pay most, since when, and how far below the list price.
+-- what: The thirty customers with the highest payments, their first day, and their discount from the list price.
 -- chart: bar customer dollars_a_month
 SELECT '#' || c.customer_id || ' ' || c.group_id AS customer, c.persona_industry AS industry, s.plan,
     s.seat_count AS seats, round(s.effective_price, 2) AS dollars_a_seat,

@@ -1,5 +1,5 @@
 -- title: Bills of the next four weeks
--- what: Bills of the next 28 days if today's subscribers all stay on their plans at today's prices and nobody joins.
+-- what: Bills of the next 28 days if today's subscribers stay on their plans at today's prices and no one joins.
 -- chart: bar day dollars_due
 WITH RECURSIVE coming (day) AS (
     SELECT max(day) + 1 FROM service_day

@@ -1,5 +1,5 @@
 -- title: Capacity headroom
--- what: The busiest day of each week against capacity, what it grew by, and the next week's peak at the same growth.
+-- what: The peak day of each week compared with capacity, its growth, and next week's peak at the same growth.
 -- chart: line week peak capacity next_peak
 WITH weeks AS (
     SELECT (day + 6) / 7 AS week, count(*) AS days, max(total_usage_units) AS peak, min(capacity_units) AS capacity,

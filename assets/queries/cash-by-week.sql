@@ -1,5 +1,5 @@
 -- title: Cash by week
--- what: What came in and went out each week, and what was left. The running sum is the cash you have.
+-- what: Income, costs and their difference by week. The running sum is the current cash.
 -- chart: line week cash
 WITH days AS MATERIALIZED (
     SELECT day, total(amount) AS net, total(amount) FILTER (WHERE amount < 0) AS cost

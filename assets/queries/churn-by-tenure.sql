@@ -1,5 +1,5 @@
 -- title: When customers leave
--- what: How many left in which month of their stay, and what share that is of those who got so far.
+-- what: Cancellations by month of the subscription, and their share of the subscriptions that reached that month.
 -- chart: bar month_of_stay left_percent
 WITH stays AS (
     SELECT (coalesce(end_day, (SELECT max(day) FROM service_day)) - start_day) / 30 + 1 AS month,

@@ -1,5 +1,5 @@
--- title: Companies by group
--- what: What became of the companies of each group: won, lost, gone or still open, and what the won ones pay.
+-- title: Enterprises by group
+-- what: Outcome of the enterprises of each group: won, lost, churned or open, and the payments of the won ones.
 -- chart: bar group_id customers lost
 SELECT c.group_id, count(*) AS companies, sum(s.status = 'subscribed') AS customers, sum(s.status = 'lost') AS lost,
     sum(s.status = 'cancelled') AS left, sum(s.status = 'lead') AS talking,

@@ -1,5 +1,5 @@
--- title: Companies by industry
--- what: In which industries companies sign and stay, by the profile they came with.
+-- title: Enterprises by industry
+-- what: Industries in which enterprises sign and stay, by profile.
 -- chart: bar industry signed
 SELECT c.persona_industry AS industry, count(*) AS companies,
     sum(s.status IN ('subscribed', 'cancelled')) AS signed, sum(s.status = 'subscribed') AS still_here,

@@ -1,5 +1,5 @@
 -- title: What a unit of usage costs
--- what: Computing and capacity in dollars for a million units, day by day: whether growth makes service cheaper.
+-- what: Compute and capacity costs in dollars per million units, by day: shows whether growth makes service cheaper.
 -- chart: line day dollars_a_million_units
 SELECT d.day, d.total_usage_units AS units, round(l.dollars, 2) AS dollars,
     round(1e6 * l.dollars / nullif(d.total_usage_units, 0), 2) AS dollars_a_million_units

@@ -1,5 +1,5 @@
 -- title: Cost per first bill by channel and group
--- what: What a lead and a customer with a first bill cost through each pair of channel and group in the last twelve weeks.
+-- what: Cost of a lead and of a first bill for each channel and group in the last twelve weeks.
 -- chart: bar channel_and_group dollars_per_first_bill
 WITH bills AS (
     SELECT c.acquisition_source AS channel_id, c.group_id, count(*) AS first_bills

@@ -1,5 +1,5 @@
 -- title: Running costs by week
--- what: What each kind of cost took week by week; a purchase counts in the week that follows its decision day.
+-- what: Each kind of cost by week; a purchase counts in the week after its decision day.
 -- chart: line week capacity compute operations development advertising
 SELECT CASE WHEN category IN ('research_project', 'market_research', 'group_research')
         THEN day / 7 + 1 ELSE (day + 6) / 7 END AS week, round(-sum((category = 'capacity') * amount)) AS capacity,

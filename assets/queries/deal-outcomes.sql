@@ -1,5 +1,5 @@
 -- title: Outcomes of threads
--- what: How threads with companies ended, by type, and how many turns a deal takes.
+-- what: Outcomes of threads with enterprises, by type, and the number of turns to a deal.
 -- chart: bar why deals
 SELECT why, count(*) AS threads, sum(reason = 'accepted') AS deals, sum(reason = 'agent_rejected') AS rejected_by_us,
     sum(reason = '') AS without_an_end, round(100.0 * sum(reason = 'accepted') / count(*), 1) AS deals_percent,

@@ -1,5 +1,5 @@
 -- title: Discounts in force
--- what: How many pay less than the list price through a promotion, and what that gives away a month.
+-- what: Number of customers with a discount, and the revenue that it costs per month.
 -- chart: bar plan given_away_a_month
 SELECT plan, count(*) AS subscribers, sum(promotion > 0) AS with_discount,
     round(avg(CASE WHEN promotion > 0 THEN promotion END), 2) AS average_discount,

@@ -1,5 +1,5 @@
 -- title: Outcome by first offer and week
--- what: What became of new companies by their first offer: the plans it names, the price a seat of the first one, the week after it.
+-- what: Outcome of new enterprises by their first offer: plans, price per seat of the first plan, week.
 WITH offers AS MATERIALIZED (
     SELECT thread_id, customer_id, day / 7 + 1 AS week, json_extract(offer_json, '$[0].plan')
         || coalesce('+' || json_extract(offer_json, '$[1].plan'), '')

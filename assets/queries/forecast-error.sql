@@ -1,5 +1,5 @@
 -- title: Forecasts against outcome
--- what: How far cash was from your forecasts, in percent of it, by the day they were due, for each horizon.
+-- what: Error of your cash forecasts in percent of cash, by due day and horizon.
 -- chart: line due_on_day one_week four_weeks twelve_weeks half_a_year
 WITH cash AS (
     SELECT day, sum(sum(amount)) OVER (ORDER BY day) AS cash

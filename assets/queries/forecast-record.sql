@@ -1,5 +1,5 @@
 -- title: Record of forecasts
--- what: For each horizon, the share of outcomes inside your interval (the aim is 95 %) and how wide it was.
+-- what: Coverage of your intervals (the aim is 95 %) and their mean width, for each horizon.
 -- chart: bar horizon inside_percent
 WITH cash AS (
     SELECT day, sum(sum(amount)) OVER (ORDER BY day) AS cash

@@ -1,5 +1,5 @@
 -- title: Joined and left by week
--- what: Whether the number of subscribers grows, and which side of it moves.
+-- what: New subscribers, cancellations and number of subscribers by week.
 -- chart: line week joined left
 WITH today AS (SELECT max(day) AS day FROM service_day),
 stays AS MATERIALIZED (

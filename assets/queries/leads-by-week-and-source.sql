@@ -1,5 +1,5 @@
 -- title: Paid leads and word of mouth by week
--- what: How many leads each group brought in the last twelve weeks, how many of them were paid for, and how many signed.
+-- what: Leads of each group in the last twelve weeks: all, paid and signed.
 -- chart: line week paid word_of_mouth
 SELECT (c.created_day + 6) / 7 AS week, c.group_id, count(*) AS leads,
     sum(c.acquisition_source <> 'network') AS paid, sum(c.acquisition_source = 'network') AS word_of_mouth,

@@ -1,5 +1,5 @@
 -- title: Length of threads
--- what: How many turns and days threads take, and how many of each length end in a deal.
+-- what: Threads by number of turns: deals, threads without a deal, and days.
 -- chart: bar turns deals without_a_deal
 SELECT turns, count(*) AS threads, sum(reason = 'accepted') AS deals, sum(reason <> 'accepted') AS without_a_deal,
     round(avg(days), 1) AS average_days, max(days) AS longest_days

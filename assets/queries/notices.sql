@@ -1,5 +1,5 @@
 -- title: Notices by kind
--- what: What the notices said, how often, and when last.
+-- what: Number of notices by type, with the first and last day.
 -- chart: bar type notices
 WITH days AS MATERIALIZED (
     SELECT type, day, count(*) AS notices

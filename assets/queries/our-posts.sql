@@ -1,5 +1,5 @@
--- title: Our posts and their readers
--- what: What we wrote in public, how often each post was seen, and how many answered.
+-- title: Your posts and their views
+-- what: Your public posts, their views and the number of replies.
 -- chart: bar post views
 SELECT '#' || agent_post_id || ' day ' || day AS post, views, json_array_length(comment_post_ids) AS comments,
     reply_to_post_id IS NOT NULL AS is_answer, content

@@ -1,5 +1,5 @@
 -- title: Days with an outage
--- what: When the service was down and for how long, and how full it was on that day.
+-- what: Days with an outage, its length, and the utilization on that day.
 -- chart: bar day outage_minutes
 SELECT day, downtime_minutes AS outage_minutes, round(p95_ms) AS latency_ms,
     round(100.0 * error_rate, 2) AS failed_percent,

@@ -1,5 +1,5 @@
--- title: Prices that are paid
--- what: How many customers pay which price on which plan: old prices stay with those who joined under them.
+-- title: Prices paid
+-- what: Number of customers by price paid and plan: subscribers keep earlier, lower prices.
 -- chart: bar plan_and_price subscribers
 WITH paid AS (
     -- Only the few different prices are rounded.

@@ -1,5 +1,5 @@
 -- title: Customers with most issues
--- what: Who had most trouble in the last four weeks, what they pay, and whether they are still here.
+-- what: Customers with the most issues in the last four weeks, their payments, and whether they are still subscribed.
 -- chart: bar customer issues
 SELECT '#' || t.customer_id || ' ' || t.group_id AS customer, t.issues, t.open, s.plan, s.seat_count AS seats,
     round(s.effective_price * s.seat_count, 2) AS dollars_a_month, s.status

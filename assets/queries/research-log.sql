@@ -1,5 +1,5 @@
 -- title: R&D log
--- what: Projects in their order: when they were paid, when they are done, and the quality they add.
+-- what: Projects in order: day of payment, day of completion, and added quality.
 -- chart: bar project quality_expected
 SELECT project_id AS project, tier, status, started_day, expected_completion_day AS done_on_day,
     expected_completion_day - started_day AS days, expected_quality_boost AS quality_expected,

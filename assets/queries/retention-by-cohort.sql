@@ -1,5 +1,5 @@
 -- title: Retention by cohort
--- what: Of those who joined in the same four weeks, how many are still here, and how long the others stayed.
+-- what: Subscribers who signed up in the same four weeks: how many are still subscribed, and how long the others stayed.
 -- chart: line joined_from_day still_here_percent
 SELECT start_day / 28 * 28 AS joined_from_day, count(*) AS joined, sum(end_day IS NULL) AS still_here,
     round(100.0 * sum(end_day IS NULL) / count(*), 1) AS still_here_percent,

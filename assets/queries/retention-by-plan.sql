@@ -1,5 +1,5 @@
 -- title: Retention by plan and tenure
--- what: Of the subscribers who could have stayed so many months, the share who did, for each plan.
+-- what: Share of subscribers who stayed for a number of months, of those who could have, by plan.
 -- chart: line months plan_A_percent plan_B_percent plan_C_percent
 WITH today AS (SELECT max(day) AS day FROM service_day),
 months AS (SELECT value AS months FROM json_each('[1, 2, 3, 4, 5, 6, 9, 12]')),

@@ -1,5 +1,5 @@
 -- title: Revenue per customer by group and plan
--- what: Which groups on which plans pay how much a month, in all and for one customer.
+-- what: Monthly revenue by group and plan, in all and per customer.
 -- chart: bar group_and_plan dollars_a_month
 SELECT c.group_id || ' ' || s.plan AS group_and_plan, count(*) AS subscribers, sum(s.seat_count) AS seats,
     round(sum(s.effective_price * s.seat_count)) AS dollars_a_month,

@@ -1,5 +1,5 @@
 -- title: Revenue by plan
--- what: What each plan brings in a month, from how many seats, and what a seat pays on average.
+-- what: Monthly revenue and seats of each plan, and the average price per seat.
 -- chart: bar plan dollars_a_month
 SELECT plan, count(*) AS subscribers, sum(seat_count) AS seats,
     round(sum(effective_price * seat_count)) AS dollars_a_month,

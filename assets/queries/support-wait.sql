@@ -1,5 +1,5 @@
 -- title: How long support takes
--- what: Issues opened in each of the last twelve weeks: how many were solved so far, and after how many days.
+-- what: Issues opened in each of the last twelve weeks, how many of them are resolved, and after how many days.
 -- chart: line opened_in_week average_days
 SELECT (open_day + 6) / 7 AS opened_in_week, count(*) AS opened, count(resolved_day) AS solved,
     round(100.0 * count(resolved_day) / count(*), 1) AS solved_percent,

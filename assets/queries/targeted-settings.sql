@@ -1,5 +1,5 @@
 -- title: Targeted settings over time
--- what: Discounts, ads and targeted spend: the whole state of a family after each call, the newest first.
+-- what: Discounts, in-app ads and targeted budgets: all values after each call, newest first.
 SELECT day, setting_type, tool_name, settings_json
 FROM config_overrides
 ORDER BY id DESC

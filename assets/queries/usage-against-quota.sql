@@ -1,5 +1,5 @@
 -- title: Usage against quota
--- what: What customers of each plan used on the last day, against their quota, and how many were stopped by it.
+-- what: Usage of the customers of each plan on the last day compared with their quota, and how many reached it.
 -- chart: bar plan percent_of_quota
 SELECT plan, max(quota) AS quota, count(*) AS customers, round(avg(units)) AS units_a_customer,
     round(100.0 * sum(units) / nullif(sum(quota), 0), 1) AS percent_of_quota,

@@ -1,5 +1,5 @@
 -- title: Usage by group
--- what: Which groups use most of the capacity, in all and for one seat, on the last day.
+-- what: Usage by group on the last day, in all and per seat.
 -- chart: bar group_id units
 SELECT c.group_id, count(*) AS users, sum(s.seat_count) AS seats, sum(u.usage_units) AS units,
     round(1.0 * sum(u.usage_units) / sum(s.seat_count)) AS units_a_seat

@@ -1,5 +1,5 @@
--- title: What we know of the groups
--- what: How well each group is studied, since when it is known, and how many of its people came.
+-- title: Known groups and their studies
+-- what: Study level of each group, the day of its discovery, and its number of leads.
 -- chart: bar group_id people
 SELECT g.group_id, g.info_level, g.is_discoverable AS had_to_be_found, g.discovered_day, g.last_research_day,
     coalesce(p.people, 0) AS people

@@ -1,12 +1,12 @@
 //! The tools of the player, one file each (docs/interfaces/tools.md).
 //!
 //! A tool has data ([`ToolSpec`]), typed arguments, a typed result, and three functions. [`Tool::current_arguments`] returns the current
-//! values of its arguments, [`Tool::parse`] parses the JSON of a call, and [`Tool::parse_plan`] returns the effect and the result of a
+//! values of its arguments, [`Tool::read`] parses the JSON of a call, and [`Tool::plan`] returns the effect and the result of a
 //! call without applying it, also for previews. Callers that know only the name of a tool use [`AnyTool`] of the `catalogue`. A
 //! new tool needs one file and an entry in the lists of `tool_id` and `catalogue`.
 //!
-//! Modules from bottom to top: `refusal`, `numbers`, `tool_id`, `notebook`; `spec`, `planned`, `surroundings`, `view`; `arguments`,
-//! `bounds`, `describe`, `keeping`, `tool`; the families of tools (`pricing` to `time`); `catalogue`.
+//! Modules from bottom to top: `rejection`, `parameter_numbers`, `tool_id`, `notebook`; `spec`, `planned_call`, `session_context`,
+//! `tool_context`; `arguments`, `limits`, `describe`, `stored_code`, `tool`; the families of tools (`pricing` to `time`); `catalogue`.
 
 mod arguments;
 pub mod catalogue;

@@ -93,7 +93,7 @@ fn lesson_is_played_to_its_end_with_the_task_pane() {
     console.assert_shows("1 Cash");
     console.press("2 enter n");
     console.assert_shows("Debrief");
-    for text in ["You had ", "the good play", "set_prices: A 20, the good play 12"] {
+    for text in ["You had ", "the reference play", "set_prices: A 20, the good play 12"] {
         console.assert_shows(text);
     }
     console.press("G");

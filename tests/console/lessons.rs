@@ -93,7 +93,7 @@ fn lesson_is_played_to_its_end_with_the_task_pane() {
     console.assert_shows("1 Cash");
     console.press("2 enter n");
     console.assert_shows("Debrief");
-    for text in ["You had ", "the reference play", "set_prices: A 20, the good play 12"] {
+    for text in ["You had ", "the reference play", "set_prices: A 20, reference play 12"] {
         console.assert_shows(text);
     }
     console.press("G");
@@ -213,10 +213,10 @@ fn finished_part_continues_with_the_next() {
     console.press("enter n '0.4' enter n");
     console.assert_shows("This part has ended: p next part");
     console.assert_shows("You guessed 40%.");
-    // Showing the good play would reveal the next part.
+    // Showing the reference play would reveal the next part.
     console.press("d");
     console.assert_shows("Debrief");
-    assert!(!console.screen().contains("The good play:"));
+    assert!(!console.screen().contains("The reference play:"));
     console.press("p");
     assert_eq!(
         console

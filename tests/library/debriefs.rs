@@ -86,7 +86,7 @@ fn debrief_curves_match_the_record_and_reference_plays() {
     let found = debrief(&session);
     assert_eq!(found.cash_by_day, session.cash_by_day());
     let plan = &lesson().plan;
-    assert_eq!(found.reference.as_ref().expect("a good play").cash_by_day, reference(&plan.good));
+    assert_eq!(found.reference.as_ref().expect("a reference play").cash_by_day, reference(&plan.good));
     assert_eq!(found.bad_play.as_ref().expect("a bad play").cash_by_day, reference(&plan.bad));
     assert_eq!(found.steps.len(), 2);
     assert_eq!(found.pitfalls, [(7, "Somebody bought.".to_owned())]);
@@ -104,7 +104,7 @@ fn first_difference_is_valued_by_resimulation() {
     assert_eq!((parting.week, parting.day, parting.decisions.len()), (1, 0, 1));
     // This single decision turns the run into the reference play.
     let effect = parting.effect.as_simulated().expect("an effect");
-    let good = found.reference.as_ref().expect("a good play").cash_by_day.clone();
+    let good = found.reference.as_ref().expect("a reference play").cash_by_day.clone();
     assert_eq!(Some(&effect.with), good.last());
     assert_eq!(Some(&effect.own), found.cash_by_day.last());
     // The higher price of the second week stays: the decision of the first week is not the complete reference play.
@@ -132,7 +132,7 @@ fn debrief_uses_the_figure_of_the_goal() {
     let actual: Vec<(u32, f64)> =
         session.weeks().iter().map(|week| (week.day, week.recurring_revenue)).collect();
     assert_eq!((judged.figure, &judged.actual), (WeekFigure::RecurringRevenue, &actual));
-    let good = judged.reference.as_ref().expect("the good play");
+    let good = judged.reference.as_ref().expect("the reference play");
     assert!(good.len() == 2 && good != &actual, "{good:?}");
     let DecisionComparison::Different(parting) = &found.comparison else { panic!("{:?}", found.comparison) };
     let (before, with) = parting.effect.as_simulated().and_then(|effect| effect.judged).expect("an effect");

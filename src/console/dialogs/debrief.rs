@@ -183,7 +183,7 @@ fn draw_curves(canvas: &mut Canvas<'_>, area: Rect, debrief: &Debrief) {
     let mut lines = Vec::new();
     lines.extend(judged.bad_play.as_ref().map(|cash_by_day| curve(cash_by_day, Role::Series(1), "bad play")));
     lines.extend(
-        judged.reference.as_ref().map(|cash_by_day| curve(cash_by_day, Role::Series(2), "good play")),
+        judged.reference.as_ref().map(|cash_by_day| curve(cash_by_day, Role::Series(2), "reference")),
     );
     lines.push(curve(&judged.actual, Role::Series(0), "you"));
     let unit = match judged.figure.unit() {
@@ -221,7 +221,7 @@ fn draw_cash_curves(canvas: &mut Canvas<'_>, area: Rect, debrief: &Debrief) {
         debrief
             .reference
             .as_ref()
-            .map(|reference| curve(&reference.cash_by_day, Role::Series(2), "good play")),
+            .map(|reference| curve(&reference.cash_by_day, Role::Series(2), "reference")),
     );
     lines.push(curve(&debrief.cash_by_day, Role::Series(0), "you"));
     draw_daily_curves(canvas, area, &lines, AxisUnit::Dollars);

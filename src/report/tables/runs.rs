@@ -143,7 +143,7 @@ pub(super) fn columns() -> Vec<Column<Logbook>> {
         "first_forecast_error_182", "share", FIRST_ERROR_MEANING => first_weeks_error(run, 182);
         "weeks_filled_naively", "count", "weeks with at least one naive forecast"
             => run.measures.filled_naively.0;
-        "weeks_filed_at_limit", "count", "weeks submitted by a time limit; their rationale is not the player's and counts no \
+        "weeks_filed_at_limit", "count", "weeks filed by a time limit; their rationale is not the player's and counts no \
          words" => run.weeks.iter().filter(|week| week.filed_at_limit).count();
         "acting_calls", "count", "accepted calls that changed something; excludes read-only calls" => run.measures.tools.calls;
         "acting_calls_per_week", "per week", "acting calls per simulated week" => rounded(run.measures.tools.per_week);

@@ -6,12 +6,12 @@
 //! The root package contains the command line, [`cli`]. Its library re-exports the crates of the workspace for tests and for
 //! documentation. `docs/architecture.md` lists the contents and the allowed imports of each crate.
 //!
-//! * [`world::simulate_day::step_day`] lists the steps of a day in order, one line per mechanism.
+//! * [`world::day::step_day`] lists the steps of a day in order, one line per mechanism.
 //! * Mechanisms emit events ([`world::events`]); `database` turns them into rows, `voice` turns some into texts.
 //! * A tool is a specification ([`tools::ToolSpec`]) and a pure plan. A call is planned, its line is written to disk, then it is
 //!   applied, which cannot fail. Memory is never ahead of the trajectory, and the trajectory never ahead of the confirmation.
 //! * `database` and the answers of tools decide what a player may see. Hidden state leaves a session only through a
-//!   [`session::Look`], in debug runs and finished runs.
+//!   [`session::InspectionPermit`], in debug runs and finished runs.
 //! * Parameters are in `configs/`; a scenario overrides some of them.
 //! * Random draws depend on keys, not on generator state ([`world::random`]): the same version, seed and actions give the same
 //!   bits on any number of threads and any machine.

@@ -401,9 +401,12 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         }
         context.is_experimenter = has_code;
         if !has_code {
-            return Err(Failure::usage(
-                "with --study this command needs the experimenter's code: --code, or NOVAMIND_CODE",
-            ));
+            return Err(Failure::usage(match arguments.code {
+                Some(_) => {
+                    "the code is wrong; this command needs the experimenter's code: --code, or NOVAMIND_CODE"
+                }
+                None => "with --study this command needs the experimenter's code: --code, or NOVAMIND_CODE",
+            }));
         }
     }
     match arguments.command {

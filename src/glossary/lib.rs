@@ -1,7 +1,7 @@
 //! The glossary: terms of the company, and the documentation of tools and tables.
 //!
 //! Terms are defined in `assets/glossary.toml` and contain only information visible to players. Interfaces request an
-//! [`Explanation`] of a [`LedgerSubject`] and display it in their own way.
+//! [`Explanation`] of a [`Subject`] and display it in their own way.
 
 mod explanation;
 mod subject;

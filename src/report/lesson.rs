@@ -183,12 +183,12 @@ fn describe_next_action(page: &LessonStatus) -> String {
     let open = page.question.as_ref().is_some_and(|question| question.guess.is_none());
     match page.next_part {
         Some(part) => format!(
-            "This part is complete. `lesson next` starts part {part}; `again {}` repeats the step.",
+            "This part is complete. `lesson next` starts part {part}; `retry {}` restarts the step.",
             page.step + 1
         ),
         None if page.is_finished => {
             format!(
-                "The lesson is complete. `debrief` shows the result; `again {}` repeats the step.",
+                "The lesson is complete. `debrief` shows the result; `retry {}` restarts the step.",
                 page.step + 1
             )
         }

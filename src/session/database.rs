@@ -77,7 +77,7 @@ impl RunDatabase {
     }
 
     /// Opens a separate connection, for a thread that queries while the session works. Its queries are recorded with
-    /// [`Session::record_query`](crate::Session::note_query).
+    /// [`Session::record_query`](crate::Session::record_query).
     ///
     /// # Errors
     /// The run has no database, or it cannot be read.

@@ -218,7 +218,7 @@ impl ParticipantSession {
     /// Opens a run of the participant to continue it.
     ///
     /// # Errors
-    /// Fails like [`Session::from_open_file`].
+    /// Fails like [`Session::open`].
     pub fn open_run(&self, folder: &Path) -> Result<Session, RunError> {
         let mut session = Session::open_sealed(folder, Access::Write, true, self.study.seal_key.clone())?;
         session.connect_model(self.study.protocol.voice.as_ref());

@@ -1,7 +1,7 @@
 //! Commands that change the world. A tool call becomes a command, its random draws are resolved, and applying
 //! it cannot fail.
 //!
-//! The steps are separate so that a call can be validated without side effects ([`CommandId`]), recorded with
+//! The steps are separate so that a call can be validated without side effects ([`Command`]), recorded with
 //! its result ([`World::resolve`] changes nothing), and only then applied ([`World::apply`]).
 
 use super::enterprise::messages::{OfferDraft, OfferMessage};

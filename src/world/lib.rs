@@ -1,6 +1,6 @@
 //! The simulator: pure and deterministic, without I/O, clock, SQL or text output.
 //!
-//! Start with [`simulate_day::step_day`], which lists the steps of a day. Each mechanism is a function over the parts
+//! Start with [`day::step_day`], which lists the steps of a day. Each mechanism is a function over the parts
 //! of the state it changes, and each formula is a small pure function whose tests contain check values
 //! (`docs/mechanics/README.md`).
 //!

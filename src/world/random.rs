@@ -118,7 +118,7 @@ impl Streams {
     }
 
     /// Returns the streams of the same run with different draws after a day: equal salts give equal draws.
-    /// Draws up to that day that are read again stay the same, see [`Draws::open_for_day`].
+    /// Draws up to that day that are read again stay the same, see [`Streams::open_for_day`].
     pub fn redrawn_after(&self, salt: u64, last_own_day: u32) -> Self {
         let keys = part_keys("novamind random streams, redrawn, version 1", &[self.seed, salt]);
         let original = self.original.clone().unwrap_or_else(|| (last_own_day, self.keys.clone()));
@@ -149,7 +149,7 @@ impl Streams {
         stream_key(&self.keys[part as usize], entity)
     }
 
-    /// Returns the stream keys of a part for many entities; [`Stream::from_key`] opens each as [`Draws::new`] does.
+    /// Returns the stream keys of a part for many entities; [`Stream::from_key`] opens each as [`Streams::open`] does.
     pub fn keys<const KEYS: usize>(&self, part: Part, entities: &[[u64; KEYS]]) -> Vec<StreamKey> {
         map_in_lanes(
             entities,

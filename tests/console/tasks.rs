@@ -17,7 +17,7 @@ const SIZES: [(u16, u16); 2] = [(80, 24), (120, 40)];
 /// Keys of each step of the tour: those that its texts name, and a statement and a sentence to type.
 const TOUR: [(&str, &str); 18] = [
     ("The idea", "3"),
-    ("What they want", "down enter"),
+    ("Required quality", "down enter"),
     ("A price", "8 enter down enter '45' enter ctrl-s"),
     ("A model", "down enter down enter '2' enter ctrl-s"),
     ("A quota", "down enter down enter '400' enter ctrl-s"),

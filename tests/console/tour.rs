@@ -14,7 +14,7 @@ fn tour_advances_by_actions_and_resumes() {
     console.assert_shows("Tour · 1 of 18 · The idea");
     console.assert_shows("day 0/84");
     console.press("3");
-    console.assert_shows("Tour · 2 of 18 · What they want");
+    console.assert_shows("Tour · 2 of 18 · Required quality");
     console.press("down enter");
     console.assert_shows("Tour · 3 of 18 · A price");
     console.press("8 enter down enter '45' enter ctrl-s");

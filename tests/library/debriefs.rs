@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use novamind::course::{
-    Debrief, DecisionComparison, Lesson, PlayedPart, ReferencePlay, retry_step, submit_guess,
+    Debrief, DecisionComparison, Lesson, PlayedPart, ReferencePlay, retry_step, submit_guess, take_hint,
 };
 use novamind::record::figures::WeekFigure;
 use novamind::record::folder::configuration::Configuration;
@@ -183,8 +183,9 @@ fn reference_play_is_hidden_until_the_part_is_over() {
     submit_guess(&mut session, 0.5).expect("a guess");
     advance_week(&mut session);
     assert_eq!(PlayedPart::from_session(&session).expect_err("it continues").code, "lesson_not_over");
-    let other = Session::create(NewRun::default(), &Configuration::bundled()).expect("a run");
+    let mut other = Session::create(NewRun::default(), &Configuration::bundled()).expect("a run");
     assert_eq!(PlayedPart::from_session(&other).expect_err("no lesson").code, "not_in_a_lesson");
+    assert_eq!(take_hint(&mut other).expect_err("no lesson").code, "not_in_a_lesson");
 }
 
 #[test]

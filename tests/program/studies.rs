@@ -234,7 +234,8 @@ fn other_commands_require_the_experimenter_code() {
         [&["runs"][..], &["run", "--policy", "baseline"], &["scenario", "show", "default"], &["tools"]]
     {
         with(command).assert_fails(2, &["experimenter's code"]);
-        with(&[&["--code", "guess"], command].concat()).assert_fails(2, &["experimenter's code"]);
+        with(&[&["--code", "guess"], command].concat())
+            .assert_fails(2, &["the code is wrong", "experimenter's code"]);
     }
     assert_eq!(with(&["--code", "open sesame", "runs"]).exit_code, 0);
     // Each wrong code is recorded as a line, without the code.

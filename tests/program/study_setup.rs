@@ -108,7 +108,7 @@ fn check_reports_impossible_designs() {
     lab.edit("warning_minutes = 2", "warning_minutes = 1");
     lab.edit("offer = \"none\"", "offer = \"optional\"");
     let output = lab.run("check", &[]).stdout;
-    assert!(output.contains("scenario default, for the practice practice\n"), "{output}");
+    assert!(output.contains("scenario default, practice scenario practice\n"), "{output}");
 }
 
 #[test]

@@ -367,5 +367,5 @@ fn describe_import(
         None => "not signed".to_owned(),
     };
     let name = under.map_or(String::new(), |name| format!(" as {name}"));
-    format!("run {}{name} {remark}\n  checksum {}\n  {signed}\n", seal.run, seal.checksum)
+    format!("run {} {remark}{name}\n  checksum {}\n  {signed}\n", seal.run, seal.checksum)
 }

@@ -63,7 +63,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     // The file is replaced atomically, because participants may start meanwhile.
     write_atomically(&target, csv.as_bytes())?;
     print(&format!(
-        "{}: {} participants in blocks of {cells}, drawn with {draw}\n{}{}",
+        "{}: {} participants in blocks of {cells}, drawn with seed {draw}\n{}{}",
         target.display(),
         made.rows.len(),
         incomplete_block_message(made.rows.len(), cells),

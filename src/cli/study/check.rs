@@ -125,7 +125,7 @@ fn check_scenarios(study: &Study, context: &Context) -> Result<String, String> {
         }
     }
     let [session, practice @ ..] = names.as_slice() else { return Ok(String::new()) };
-    let practice: String = practice.iter().map(|name| format!(", for the practice {name}")).collect();
+    let practice: String = practice.iter().map(|name| format!(", practice scenario {name}")).collect();
     Ok(format!("scenario {session}{practice}"))
 }
 

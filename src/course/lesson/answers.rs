@@ -31,8 +31,11 @@ pub fn submit_guess(session: &mut Session, value: f64) -> Result<(), Rejection> 
 /// Returns the next hint of the step and records that it was taken.
 ///
 /// # Errors
-/// `no_hint` if the step has no further hint, `not_saved`.
+/// `not_in_a_lesson`, `no_hint` if the step has no further hint, `not_saved`.
 pub fn take_hint(session: &mut Session) -> Result<String, Rejection> {
+    if session.lesson().is_none() {
+        return Err(Rejection::new("not_in_a_lesson", "this run is not part of a lesson"));
+    }
     let Some((step, given, text)) = next_hint(session) else {
         return Err(Rejection::new("no_hint", "this step has no further hint"));
     };

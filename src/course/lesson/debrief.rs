@@ -225,7 +225,7 @@ impl PlayedPart {
     /// `not_in_a_lesson`, `lesson_not_over`.
     pub fn from_session(session: &Session) -> Result<PlayedPart, Rejection> {
         let Some(standing) = session.lesson() else {
-            let message = "this run does not belong to a lesson; novamind lesson list shows all lessons";
+            let message = "this run is not part of a lesson; novamind lesson list shows the lessons";
             return Err(Rejection::new("not_in_a_lesson", message));
         };
         if lesson_step(session).is_some() {

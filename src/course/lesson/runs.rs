@@ -15,7 +15,7 @@ use novamind_tools::Rejection;
 /// `not_in_a_lesson`, `step_unknown` for a step that has not started, `not_saved`.
 pub fn retry_step(session: &Session, step: usize) -> Result<Session, Rejection> {
     let Some(standing) = session.lesson() else {
-        return Err(Rejection::new("not_in_a_lesson", "this run does not belong to a lesson"));
+        return Err(Rejection::new("not_in_a_lesson", "this run is not part of a lesson"));
     };
     if !standing.has_started(step) {
         let message = format!("choose a step from 1 to {}", standing.last_started_step() + 1);
@@ -41,7 +41,7 @@ pub fn retry_step(session: &Session, step: usize) -> Result<Session, Rejection> 
 /// `not_in_a_lesson`, `part_unknown`, `not_saved`.
 pub fn start_part(session: &Session, part: usize) -> Result<Session, Rejection> {
     let Some(standing) = session.lesson() else {
-        return Err(Rejection::new("not_in_a_lesson", "this run does not belong to a lesson"));
+        return Err(Rejection::new("not_in_a_lesson", "this run is not part of a lesson"));
     };
     let parts = standing.lesson.plan.parts.len();
     if part >= parts {

@@ -119,7 +119,7 @@ impl CauseAnalysis {
 }
 
 /// Prepares a question. Records an inspection first if the figure is hidden in unfinished runs. Returns the folder for
-/// [`CauseAnalysis::read`].
+/// [`CauseAnalysis::explain`].
 ///
 /// # Errors
 /// `not_in_this_mode`, `not_possible`, `day_unknown`, `not_saved`.
@@ -149,7 +149,7 @@ fn session_visibility(run: &Session) -> Result<InputVisibility, Rejection> {
     input_visibility(run.manifest(), is_over)
 }
 
-/// Returns the folder of this run for [`CauseAnalysis::read`].
+/// Returns the folder of this run for [`CauseAnalysis::explain`].
 ///
 /// # Errors
 /// `not_in_this_mode` for an unfinished baseline run, `not_possible` for a run in memory.

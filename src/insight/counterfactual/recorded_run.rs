@@ -53,7 +53,7 @@ impl RecordedRun {
     /// Reads new events and keeps the states that are still valid.
     ///
     /// # Errors
-    /// As [`RecordedRun::from_open_file`].
+    /// As [`RecordedRun::open`].
     pub(crate) fn refresh(&mut self) -> Result<(), RunError> {
         let length = std::fs::metadata(&self.path).map_err(RunError::io(&self.path))?.len();
         if length == self.length_bytes {

@@ -184,7 +184,7 @@ impl WhatIf {
             .collect())
     }
 
-    /// Returns the branches of [`WhatIf::compare`], and those of [`WhatIf::sample_futures`] if a number of futures is given. Returns `None`
+    /// Returns the branches of [`WhatIf::compare`], and those of [`WhatIf::futures`] if a number of futures is given. Returns `None`
     /// if stopped.
     ///
     /// # Errors

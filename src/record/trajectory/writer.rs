@@ -127,7 +127,7 @@ impl TrajectoryWriter {
     /// Appends a copy of another line's event and day.
     ///
     /// # Errors
-    /// As [`TrajectoryWriter::append_line`].
+    /// As [`TrajectoryWriter::append`].
     pub fn append_copy(&mut self, line: &Line) -> Result<(), RunError> {
         let fields = line.record_fields();
         self.append_fields(line.record.kind(), line.day, fields, Durability::Written).map(|_| ())

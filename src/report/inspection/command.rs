@@ -173,9 +173,9 @@ impl InspectionCommand {
     /// [`CompanyView::debug_parameters`] and [`Session::set_parameter`].
     ///
     /// [`CompanyView::debug_parameters`]: novamind_session::CompanyView::debug_parameters
-    /// [`Inspector::find_condition_days`]: novamind_insight::Inspector::find_days
-    /// [`Inspector::figure_writes`]: novamind_insight::Inspector::who_writes
-    /// [`Inspector::compare_days`]: novamind_insight::Inspector::difference_of_days
+    /// [`Inspector::find_condition_days`]: novamind_insight::Inspector::find_condition_days
+    /// [`Inspector::figure_writes`]: novamind_insight::Inspector::figure_writes
+    /// [`Inspector::compare_days`]: novamind_insight::Inspector::compare_days
     pub fn run(&self, session: &mut Session) -> Result<InspectionOutput, Rejection> {
         let today = session.day();
         match self {

@@ -51,10 +51,10 @@ impl Session {
         self.advance_with_json(&json!(rationale), &predictions, forecasts.filled_naively, via, progress)
     }
 
-    /// Like [`Session::advance_week`], with rationale and predictions as JSON.
+    /// Like [`Session::advance`], with rationale and predictions as JSON.
     ///
     /// # Errors
-    /// As [`Session::advance_week`].
+    /// As [`Session::advance`].
     pub fn advance_with_json(
         &mut self,
         rationale: &Value,

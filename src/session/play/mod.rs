@@ -251,7 +251,7 @@ impl Session {
         self.simulation.state_hash()
     }
 
-    /// Returns whether hidden state may be shown; see [`can_inspect`](permission::may_look_inside).
+    /// Returns whether hidden state may be shown; see [`can_inspect`](permission::can_inspect).
     pub fn can_inspect(&self) -> bool {
         permission::can_inspect(&self.manifest, self.history.ended, self.folder())
     }

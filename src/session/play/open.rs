@@ -46,10 +46,10 @@ impl Session {
         Session::open_sealed(folder, access, projection, SealKey::default())
     }
 
-    /// Like [`Session::from_open_file`], for a run whose snapshots are sealed with `key`.
+    /// Like [`Session::open`], for a run whose snapshots are sealed with `key`.
     ///
     /// # Errors
-    /// As [`Session::from_open_file`].
+    /// As [`Session::open`].
     pub fn open_sealed(
         folder: &Path,
         access: Access,
@@ -62,7 +62,7 @@ impl Session {
     /// Like [`Session::open_sealed`]. With `keeping`, stores what a reading command had to simulate.
     ///
     /// # Errors
-    /// As [`Session::from_open_file`].
+    /// As [`Session::open`].
     pub(crate) fn open_with_cache(
         folder: &Path,
         access: Access,

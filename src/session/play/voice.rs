@@ -194,7 +194,7 @@ impl Session {
     /// Opens a run to continue it, with its language model if the configuration names it.
     ///
     /// # Errors
-    /// As [`Session::from_open_file`].
+    /// As [`Session::open`].
     pub fn open_to_play(folder: &Path, configuration: &Configuration) -> Result<Session, RunError> {
         let mut session = Session::open(folder, Access::Write, true)?;
         session.connect_model(configuration.voice.as_ref());

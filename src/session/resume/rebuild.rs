@@ -85,7 +85,7 @@ impl Session {
     /// folder, if possible, so that the next command opens it immediately.
     ///
     /// # Errors
-    /// As [`Session::from_open_file`].
+    /// As [`Session::open`].
     pub fn open_to_read(folder: &Path, projection: bool) -> Result<Session, RunError> {
         let keeping = CacheFunctions {
             may_store: may_store_end,

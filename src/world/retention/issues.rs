@@ -2,7 +2,7 @@
 //! (`docs/mechanics/retention/issues.md`).
 //!
 //! Everything is decided from the values at the start of the day. Issues are found before the satisfaction update and
-//! settled after it, by block in the sweeps of [`crate::simulate_day`]; in between, the operations budget is allocated.
+//! settled after it, by block in the sweeps of [`crate::day`]; in between, the operations budget is allocated.
 
 use super::support_pools::ResolutionRound;
 use crate::canonical::canonical;

@@ -189,7 +189,7 @@ fn named_query_is_inserted_and_run() {
     handle_action(&mut screen, &company, Action::Library);
     type_statement(&mut screen, &company, "revplan");
     let lines = screen_rows(&screen, &company, 120, 37);
-    assert!(contains(&lines, "› revplan") && contains(&lines, "What each plan brings in a month"), "{lines:#?}");
+    assert!(contains(&lines, "› revplan") && contains(&lines, "Monthly revenue and seats of each plan"), "{lines:#?}");
     assert!(contains(&lines, "FROM subscriptions"), "the statement is shown: {lines:#?}");
     let effects = handle_action(&mut screen, &company, Action::Commit);
     assert!(sql(&effects).starts_with("-- title: Revenue by plan"), "{effects:?}");

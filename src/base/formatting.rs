@@ -240,7 +240,7 @@ pub fn escape_html(text: &str) -> String {
     safe
 }
 
-/// Makes text safe for a terminal: characters that [act](acts) are escaped; line ends and tabs are kept.
+/// Makes text safe for a terminal: control and bidirectional formatting characters are escaped; line ends and tabs are kept.
 pub fn escape_control_characters(text: &str) -> Cow<'_, str> {
     if !text.contains(is_control_or_bidi) {
         return Cow::Borrowed(text);

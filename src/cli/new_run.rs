@@ -7,7 +7,8 @@ use super::{Context, Failure};
 use crate::record::consent::ConsentGiven;
 use crate::record::mode::Mode;
 #[cfg(feature = "server")]
-use crate::session::{Fault, NewRun, Storage, baseline_terms};
+use crate::session::baseline_terms;
+use crate::session::{Fault, NewRun, Storage};
 
 #[derive(Debug, Args, Clone, Default, PartialEq)]
 pub struct NewRunOptions {

@@ -157,7 +157,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_packed_table_has_a_loader() {
+    fn every_loader_has_a_catalogue_table() {
         for (table, _) in LOADERS {
             assert!(super::super::catalogue::table(table).is_some(), "{table}");
         }

@@ -204,7 +204,7 @@ pub(super) struct Guard {
 }
 
 impl Guard {
-    /// Moves the views of the visible tables behind new views with the same names.
+    /// Replaces the views of the visible tables by temporary views of the same names, which read copies with names that cannot be guessed.
     ///
     /// SQLite reports to the authorizer in which view a table is read, but it treats common table expressions like views. So
     /// internal tables are readable only in views with unpredictable names.

@@ -41,7 +41,7 @@ pub(super) struct CheckedStatement {
     pub columns: Vec<String>,
     /// Whether it is an EXPLAIN QUERY PLAN.
     pub is_plan: bool,
-    /// Columns of tables that are copied for it, with an index by customer. All tables for a RIGHT or FULL JOIN, because the
+    /// Columns to copy, by table, before the statement runs; each copy gets an index by customer. All tables for a RIGHT or FULL JOIN, because the
     /// engine cannot search a view there. `issues` for a correlated subquery, because a stored index of issues would slow down
     /// every week.
     pub copied: ColumnsByTable,

@@ -111,14 +111,16 @@ pub fn collect(
             }
             Err(error) => {
                 let problem = error.to_string();
-                collected.tables.add_unread(id, &problem);
+                collected.tables.add_unreadable_run(id, &problem);
                 notes.push(CollectNote::Unverified { run: id.clone(), problem });
             }
         }
     }
     archive_conflicts(&conflicts, out, keys, &mut notes)?;
     for id in conflicts.keys() {
-        collected.tables.add_unread(id, "two records contradict each other; both are kept in conflicts");
+        collected
+            .tables
+            .add_unreadable_run(id, "two records contradict each other; both are kept in conflicts");
     }
     let known: BTreeSet<&String> = runs.iter().map(|run| &run.manifest.id).chain(conflicts.keys()).collect();
     let unknown = labels.keys().filter(|run| !known.contains(run));

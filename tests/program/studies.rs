@@ -405,7 +405,7 @@ fn final_page_shows_only_permitted_results() {
                 assert_eq!(shown_words, [false; 5], "{after}");
                 assert!(!end.stdout.contains("day 35 ·") || json, "{}", end.stdout);
             }
-            // A participant who returns to the questions does not see it either.
+            // A participant who returns to the questions sees the result only if the study permits it.
             let program_output = visit(&format!("{label}\n"));
             assert_eq!(program_output.stdout.contains('$'), shows, "{results}:\n{}", program_output.stdout);
         }

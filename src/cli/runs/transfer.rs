@@ -147,7 +147,7 @@ impl Export {
                     } else {
                         format!("{}  not exported: {problem}\n", run.id)
                     });
-                    tables.add_unread(&run.id, &problem);
+                    tables.add_unreadable_run(&run.id, &problem);
                     worst = Some(worst.map_or(failure.code, |code: u8| code.max(failure.code)));
                 }
             }
@@ -367,5 +367,5 @@ fn describe_import(
         None => "not signed".to_owned(),
     };
     let name = under.map_or(String::new(), |name| format!(" as {name}"));
-    format!("run {} {remark}{name}\n  checksum {}\n  {signed}\n", seal.run, seal.checksum)
+    format!("run {}{name}: {remark}\n  checksum {}\n  {signed}\n", seal.run, seal.checksum)
 }

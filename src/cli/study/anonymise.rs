@@ -85,7 +85,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         )
     });
     print(&format!(
-        "the tables of {} without names are in {}; keep {} and {}\n{told_apart}",
+        "the anonymized tables of {} are in {}; keep {} and {}, and publish neither\n{told_apart}",
         pluralize(links.len() as u32, "run"),
         options.out.display(),
         options.secret.display(),

@@ -1,7 +1,7 @@
 //! Counterfactuals: re-simulates days of a run in memory with edits and the same random draws.
 //!
 //! Random streams are keyed by their purpose, so an edit does not change the draws of other mechanisms. A re-simulation needs no
-//! database, trajectory or notices. Its input is a [`MemorySnapshot`](kept_state::KeptState) of the run, the [`RecordedStep`](script::Move)s that
+//! database, trajectory or notices. Its input is a [`MemorySnapshot`](memory_snapshot::MemorySnapshot) of the run, the [`RecordedStep`](recorded_steps::RecordedStep)s that
 //! follow it, and [`Edits`](edits::Edits); its output are figures.
 
 pub(crate) mod analysis_cache;

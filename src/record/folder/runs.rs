@@ -269,7 +269,7 @@ pub fn find_run_to_read(runs: &Path, id: &str) -> Result<PathBuf, RunError> {
     find_matching_run(runs, id, |_| true)
 }
 
-/// Searches the runs of all participants if the folder is the common one.
+/// Finds a wanted run by id, unique prefix or `latest`; in the common folder, among the runs of all participants.
 fn find_matching_run(
     runs: &Path,
     id: &str,

@@ -52,7 +52,7 @@ pub fn class_questions<'a>(view: &'a ClassView<'a>) -> Vec<ClassQuestion<'a>> {
 
 /// Returns the first run of each student in a part, because later tries know the outcome.
 fn first_attempts<'a>(view: &'a ClassView<'a>, part: u32) -> impl Iterator<Item = &'a ClassRun> {
-    let of_part: Vec<&ClassRun> = view.undamaged_runs().filter(|run| run.evidence.part == part).collect();
+    let of_part: Vec<&ClassRun> = view.valid_runs().filter(|run| run.evidence.part == part).collect();
     let is_first = |at: usize| at == 0 || of_part[at - 1].label != of_part[at].label;
     let firsts: Vec<&ClassRun> =
         (0..of_part.len()).filter(|at| is_first(*at)).map(|at| of_part[at]).collect();
@@ -88,7 +88,7 @@ pub fn pitfall_counts<'a>(view: &'a ClassView<'a>) -> Vec<PitfallCount<'a>> {
     let known = view.lesson.map(|lesson| lesson.plan.pitfalls.as_slice()).unwrap_or_default();
     let met_by = |name: &str| {
         let labels: std::collections::BTreeSet<&str> = view
-            .undamaged_runs()
+            .valid_runs()
             .filter(|run| run.evidence.pitfalls.iter().any(|pitfall| pitfall == name))
             .map(|run| run.label.as_str())
             .collect();

@@ -71,9 +71,9 @@ impl ClassView<'_> {
             return Err(unknown_name_message("student", label, similar_names(label, labels)));
         }
         if let Some(name) = &self.display.decision
-            && !self.undamaged_runs().any(|run| run.evidence.decisions.contains_key(name))
+            && !self.valid_runs().any(|run| run.evidence.decisions.contains_key(name))
         {
-            let known = self.undamaged_runs().flat_map(|run| run.evidence.decisions.keys());
+            let known = self.valid_runs().flat_map(|run| run.evidence.decisions.keys());
             return Err(unknown_name_message(
                 "decision",
                 name,
@@ -81,15 +81,15 @@ impl ClassView<'_> {
             ));
         }
         if let Some(name) = &self.display.figure
-            && !self.undamaged_runs().any(|run| run.evidence.figures.contains_key(name))
+            && !self.valid_runs().any(|run| run.evidence.figures.contains_key(name))
         {
-            let known = self.undamaged_runs().flat_map(|run| run.evidence.figures.keys());
+            let known = self.valid_runs().flat_map(|run| run.evidence.figures.keys());
             return Err(unknown_name_message("figure", name, similar_names(name, known.map(String::as_str))));
         }
         Ok(())
     }
 
-    fn undamaged_runs(&self) -> impl Iterator<Item = &ClassRun> {
+    fn valid_runs(&self) -> impl Iterator<Item = &ClassRun> {
         self.collection
             .runs
             .iter()

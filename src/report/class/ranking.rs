@@ -37,10 +37,8 @@ pub fn rank_students<'a>(view: &'a ClassView<'a>) -> Vec<RankedStudent<'a>> {
 }
 
 fn score_by_parts<'a>(view: &'a ClassView<'a>, label: &str) -> Option<(f64, Vec<&'a ClassRun>)> {
-    let class_runs: Vec<&ClassRun> = view
-        .undamaged_runs()
-        .filter(|run| run.label == label && run.verdict == RunVerdict::Finished)
-        .collect();
+    let class_runs: Vec<&ClassRun> =
+        view.valid_runs().filter(|run| run.label == label && run.verdict == RunVerdict::Finished).collect();
     let best = |part: u32| {
         let scored = class_runs
             .iter()
@@ -57,11 +55,11 @@ fn score_by_parts<'a>(view: &'a ClassView<'a>, label: &str) -> Option<(f64, Vec<
 }
 
 fn score_by_cash<'a>(view: &'a ClassView<'a>, label: &str, day: u32) -> Option<(f64, Vec<&'a ClassRun>)> {
-    let run = view.undamaged_runs().find(|run| run.label == label)?;
+    let run = view.valid_runs().find(|run| run.label == label)?;
     let cash = run.evidence.cash.iter().rev().find(|(number, _)| *number <= day)?.1;
     Some((cash, vec![run]))
 }
 
 fn common_day(view: &ClassView<'_>) -> u32 {
-    view.undamaged_runs().map(|run| run.evidence.day).min().unwrap_or(0)
+    view.valid_runs().map(|run| run.evidence.day).min().unwrap_or(0)
 }

@@ -107,7 +107,7 @@ impl StudyTables {
     }
 
     /// Adds a run that could not be read: only its name and the problem.
-    pub fn add_unread(&mut self, run: &str, problem: &str) {
+    pub fn add_unreadable_run(&mut self, run: &str, problem: &str) {
         let cell = |column: Column<Logbook>| match &*column.heading.name {
             "run" => run.to_owned(),
             "problem" => problem.to_owned(),
@@ -211,7 +211,7 @@ mod tests {
         let book = Logbook::new(&session, &lines, &[]);
         let mut tables = StudyTables::default();
         tables.add(&book, &lines, &[]);
-        tables.add_unread("0123abcd", "line 3 is damaged");
+        tables.add_unreadable_run("0123abcd", "line 3 is damaged");
         let files: BTreeMap<&str, Vec<Vec<String>>> = tables.into_files().into_iter().collect();
         let runs = rows_by_column(&files["runs"]);
         assert_eq!([runs[0]["participant"], runs[0]["weeks"], runs[0]["if_words"]], ["P 07", "2", "1"]);

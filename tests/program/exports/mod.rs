@@ -146,7 +146,7 @@ fn conflicting_record_is_imported_under_another_name() {
         .assert_fails(2, &["exactly one archive"]);
     let imported = other.run(&["runs", "import", &path, "--under", "second"]);
     assert!(
-        imported.exit_code == 0 && imported.stdout.contains("imported as second"),
+        imported.exit_code == 0 && imported.stdout.contains("as second: imported"),
         "{}{}",
         imported.stdout,
         imported.stderr

@@ -69,7 +69,7 @@ impl SaveQueryForm {
                 ("Use letters, digits, spaces, - and _ (at most 60 characters).".to_owned(), Role::Warning)
             }
             NameStatus::Free(name) => {
-                (format!("Saved as queries/{name}.sql in your configuration."), Role::Dim)
+                (format!("Saves to queries/{name}.sql in your configuration."), Role::Dim)
             }
             NameStatus::OwnQuery(name) if again(&name) => {
                 (format!("! {name} already exists. Press enter again to replace it."), Role::Warning)

@@ -84,7 +84,7 @@ pub struct Clock {
     /// Reason of the stop that the user entered, if the study asks for it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
-    /// Milliseconds for which the clock was stopped, when it is started.
+    /// Milliseconds for which the clock had been stopped; only in events that start it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stood_ms: Option<u64>,
 }

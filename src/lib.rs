@@ -24,7 +24,7 @@
 //! use novamind::session::{NewRun, Session};
 //! use serde_json::json;
 //!
-//! let mut run = Session::create(NewRun { seed: Some(7), ..NewRun::default() }, &Configuration::shipped())?;
+//! let mut run = Session::create(NewRun { seed: Some(7), ..NewRun::default() }, &Configuration::bundled())?;
 //! run.call("set_prices", &json!({"A": 16, "B": 34, "C": 70}), Via::Script)?;
 //! run.call("set_usage_quotas", &json!({"A": 150, "B": 400, "C": 900}), Via::Script)?;
 //! run.call("set_targeted_ad_spend", &json!({"targeted_spend": {"social_media": {"S2": 700}}}), Via::Script)?;

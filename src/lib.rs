@@ -37,7 +37,6 @@
 
 pub mod cli;
 
-use novamind_assets as shipped;
 use novamind_base::{formatting, statistics};
 #[doc(inline)]
 pub use novamind_console as console;

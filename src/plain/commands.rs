@@ -143,9 +143,6 @@ const COMMANDS: &[(&str, &str)] = &[
     ("query", ""),
     ("next-week", ""),
     ("what", ""),
-    // Names of earlier versions.
-    ("again", ""),
-    ("back", ""),
 ];
 
 /// Commands that only show something. Their use is recorded.
@@ -243,7 +240,7 @@ impl Interpreter {
     fn execute_text_command(&mut self, word: &str, rest: &str, line: &str) -> CommandResponse {
         // Columns are counted in the whole line.
         let column = line.trim_end().chars().count() - rest.chars().count() + 1;
-        match word {
+        match grammar::current_name(word) {
             "inbox" => self.inbox_where(rest, column),
             "memo" if rest.is_empty() => self.show_notes(),
             "memo" => self.add_note(rest),
@@ -256,7 +253,7 @@ impl Interpreter {
             "pause" => self.pause(rest),
             "break" => self.breakpoint_command(rest, column).unwrap_or_else(syntax_error),
             "run" => self.run_days(rest, column).unwrap_or_else(syntax_error),
-            "since" | "back" => self.run_back(word, rest, column).unwrap_or_else(syntax_error),
+            "since" => self.run_back(word, rest, column).unwrap_or_else(syntax_error),
             "find" => self.find_days(rest, column).unwrap_or_else(syntax_error),
             "who" => self.find_writers(rest, column).unwrap_or_else(syntax_error),
             "resume" => self.resume(rest),
@@ -318,7 +315,7 @@ impl Interpreter {
     }
 
     fn execute_command(&mut self, word: &str, column: usize, arguments: &[Argument]) -> CommandResponse {
-        let outcome = match word {
+        let outcome = match grammar::current_name(word) {
             "quit" | "exit" => expect_no_arguments(arguments).map(|()| CommandResponse::Quit),
             "dashboard" => expect_no_arguments(arguments).map(|()| self.dashboard()),
             "status" => expect_no_arguments(arguments).map(|()| self.status()),
@@ -351,7 +348,7 @@ impl Interpreter {
             "lesson" => self.lesson_command(arguments),
             "guess" => self.run_guess(arguments),
             "hint" => expect_no_arguments(arguments).map(|()| self.run_hint()),
-            "retry" | "again" => self.restart_step(word, arguments),
+            "retry" => self.restart_step(word, arguments),
             "debrief" => expect_no_arguments(arguments).map(|()| self.debrief()),
             "branches" => expect_no_arguments(arguments).map(|()| self.branches()),
             "xray" => self.xray_command(arguments),
@@ -471,7 +468,7 @@ fn positional_argument(tool: &'static dyn AnyTool) -> Option<&'static str> {
 }
 
 fn unknown_command(word: &str, column: usize) -> ParseError {
-    let commands = COMMANDS.iter().map(|(name, _)| *name);
+    let commands = COMMANDS.iter().chain(&grammar::FORMER_NAMES).map(|(name, _)| *name);
     let tools = novamind_tools::CATALOGUE.iter().map(|tool| tool.spec().name());
     let name = word.rsplit('.').next().unwrap_or(word);
     if novamind_tools::find(name).is_some_and(|tool| tool.spec().kind == ToolKind::Time) {

@@ -28,10 +28,18 @@ pub enum ParsedLine {
     },
 }
 
+/// Names of commands in earlier versions, which still work, with the current ones.
+pub const FORMER_NAMES: [(&str, &str); 2] = [("again", "retry"), ("back", "since")];
+
+/// Returns the current name of a command.
+pub fn current_name(word: &str) -> &str {
+    FORMER_NAMES.iter().find(|(former, _)| *former == word).map_or(word, |(_, current)| current)
+}
+
 /// Commands that take the rest of the line as text.
-const TEXT_COMMANDS: [&str; 18] = [
+const TEXT_COMMANDS: [&str; 17] = [
     "sql", "query", "memo", "explain", "what", "glossary", "check", "rules", "why", "whatif", "pause",
-    "resume", "break", "run", "since", "back", "find", "who",
+    "resume", "break", "run", "since", "find", "who",
 ];
 
 /// Reads a line.
@@ -49,7 +57,7 @@ pub fn parse_line(line: &str) -> Result<ParsedLine, ParseError> {
     let is_text = match word.as_str() {
         "inbox" => has_condition(reader.remaining()),
         "xray" => xray_statement(reader.remaining()).is_some(),
-        word => TEXT_COMMANDS.contains(&word),
+        word => TEXT_COMMANDS.contains(&current_name(word)),
     };
     if is_text {
         return Ok(ParsedLine::TextCommand { word, rest: reader.remaining().trim().to_owned() });

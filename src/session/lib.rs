@@ -58,7 +58,7 @@ pub use novamind_world::enterprise::OfferResponse;
 pub use novamind_world::events::{Category, EndCause, Severity, Source};
 pub use novamind_world::fault::Fault;
 pub use novamind_world::identifiers;
-pub use novamind_world::market::competitors::Event as RivalEvent;
+pub use novamind_world::market::competitors::Event as CompetitorEvent;
 pub use novamind_world::market::surges::Surge;
 pub use novamind_world::reputation::{ReputationCause, Spillover, SpilloverEffect};
 pub use novamind_world::settings::{CoreSettings, Settings};

@@ -13,7 +13,6 @@ use crate::lab::{
     policy_names,
 };
 use crate::session::ErrorBands;
-use crate::shipped;
 
 #[derive(Debug, Args)]
 pub struct Options {
@@ -51,7 +50,7 @@ pub fn run(options: &Options, context: &Context) -> Result<(), Failure> {
 fn play_runs(options: &Options, context: &Context) -> Result<Vec<PlayedWeeks>, Failure> {
     let names: Vec<String> = match options.only.is_empty() {
         true => {
-            let names = shipped::policies().into_iter().map(|(name, _)| name);
+            let names = novamind_assets::policies().into_iter().map(|(name, _)| name);
             names.filter(|name| !STRONG_POLICIES.contains(name)).map(str::to_owned).collect()
         }
         false => options.only.clone(),

@@ -1,5 +1,6 @@
 //! Actions of a student in a step besides playing: answering the question and taking hints.
 
+use super::runs::require_lesson;
 use novamind_record::lesson::{LessonProgress, Measurement};
 use novamind_record::trajectory::record::{LessonEvent, LessonNote};
 use novamind_session::{Session, lesson_step, measure};
@@ -33,9 +34,7 @@ pub fn submit_guess(session: &mut Session, value: f64) -> Result<(), Rejection> 
 /// # Errors
 /// `not_in_a_lesson`, `no_hint` if the step has no further hint, `not_saved`.
 pub fn take_hint(session: &mut Session) -> Result<String, Rejection> {
-    if session.lesson().is_none() {
-        return Err(Rejection::new("not_in_a_lesson", "this run is not part of a lesson"));
-    }
+    require_lesson(session)?;
     let Some((step, given, text)) = next_hint(session) else {
         return Err(Rejection::new("no_hint", "this step has no further hint"));
     };

@@ -2,6 +2,7 @@
 
 use novamind_record::error::RunError;
 use novamind_record::folder::configuration::Configuration;
+use novamind_record::lesson::LessonProgress;
 use novamind_record::mode::Mode;
 use novamind_record::stamp::HandoutEntry;
 use novamind_record::trajectory::Trajectory;
@@ -9,14 +10,17 @@ use novamind_record::trajectory::record::{LessonEvent, LessonNote};
 use novamind_session::{LessonEntry, NewRun, Session, Storage, create_lesson_branch};
 use novamind_tools::Rejection;
 
+/// Returns the lesson of a run, or the rejection `not_in_a_lesson`.
+pub(super) fn require_lesson(session: &Session) -> Result<&LessonProgress, Rejection> {
+    session.lesson().ok_or_else(|| Rejection::new("not_in_a_lesson", "this run is not part of a lesson"))
+}
+
 /// Retries a step, counted from 0, from its beginning. Returns a separate run that counts the tries.
 ///
 /// # Errors
 /// `not_in_a_lesson`, `step_unknown` for a step that has not started, `not_saved`.
 pub fn retry_step(session: &Session, step: usize) -> Result<Session, Rejection> {
-    let Some(standing) = session.lesson() else {
-        return Err(Rejection::new("not_in_a_lesson", "this run is not part of a lesson"));
-    };
+    let standing = require_lesson(session)?;
     if !standing.has_started(step) {
         let message = format!("choose a step from 1 to {}", standing.last_started_step() + 1);
         return Err(Rejection::for_field("step", "step_unknown", message));
@@ -40,9 +44,7 @@ pub fn retry_step(session: &Session, step: usize) -> Result<Session, Rejection> 
 /// # Errors
 /// `not_in_a_lesson`, `part_unknown`, `not_saved`.
 pub fn start_part(session: &Session, part: usize) -> Result<Session, Rejection> {
-    let Some(standing) = session.lesson() else {
-        return Err(Rejection::new("not_in_a_lesson", "this run is not part of a lesson"));
-    };
+    let standing = require_lesson(session)?;
     let parts = standing.lesson.plan.parts.len();
     if part >= parts {
         return Err(Rejection::for_field("part", "part_unknown", format!("choose a part from 1 to {parts}")));

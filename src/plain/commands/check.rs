@@ -102,7 +102,7 @@ impl Interpreter {
 
 /// Returns the problem of a word that is not a tool.
 fn not_a_tool(word: &str, column: usize) -> ParseError {
-    if !COMMANDS.iter().any(|(name, _)| *name == word) {
+    if !COMMANDS.iter().any(|(name, _)| *name == grammar::current_name(word)) {
         return unknown_command(word, column);
     }
     let text = format!(

@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use super::super::grammar::{Argument, ParseError};
+use super::super::grammar::{Argument, ParseError, current_name};
 use super::super::response::CommandResponse;
 use super::{
     COMMANDS, NEXT_WEEK_COMMANDS, argument_error, explanations, find_tool, inbox, overview, parameters,
@@ -120,11 +120,7 @@ pub(super) fn help(
         );
         return Ok(CommandResponse::success("help", text, json!({ "commands": lines, "tools": tools })));
     };
-    let name = match name {
-        "again" => "retry",
-        "back" => "since",
-        name => name,
-    };
+    let name = current_name(name);
     let is_theirs = !led || !NOT_FOR_PARTICIPANTS.contains(&name);
     if let Some(text) = command_help(name, led).filter(|_| is_theirs) {
         return Ok(CommandResponse::success("help", text.clone(), json!({ "command": text })));

@@ -6,7 +6,7 @@ use novamind_base::formatting::{escape_csv_cell, grouped_number, escape_control_
 use novamind_database::{Cell, QueryResult};
 use novamind_session::rows_to_json;
 use novamind_tui::theme::Role;
-use novamind_tui::widgets::{TableCell as TableCell, TableColumn};
+use novamind_tui::widgets::{TableCell, TableColumn};
 
 /// Maximum column width on the screen; longer values can be opened.
 const MAX_COLUMN_WIDTH: u16 = 48;

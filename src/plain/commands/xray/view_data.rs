@@ -7,7 +7,7 @@ use novamind_insight::{
     NextCompetitorMove, NextDraws, QualityEquation, ReputationEquation, SatisfactionEquation,
     SatisfactionTerm, Spillover, SubscriberContribution,
 };
-use novamind_session::RivalEvent;
+use novamind_session::CompetitorEvent;
 use novamind_session::identifiers::{Group, Plan};
 
 pub(super) fn quality_to_json(quality_equation: &QualityEquation) -> Value {
@@ -87,8 +87,8 @@ pub(super) fn spillover_to_json(spillover: &Spillover) -> Value {
     })
 }
 
-fn competitor_event_to_json(event: &RivalEvent) -> Value {
-    let RivalEvent { day, boost, sampled, u, by_feedback } = event;
+fn competitor_event_to_json(event: &CompetitorEvent) -> Value {
+    let CompetitorEvent { day, boost, sampled, u, by_feedback } = event;
     json!({"day": day, "raised_by": boost, "drawn_size": sampled, "share": u, "copied": by_feedback})
 }
 

@@ -5,10 +5,13 @@ mod agent;
 mod bench;
 mod class;
 mod completions;
+mod doctor;
 mod failure;
 mod keys;
 mod lab;
 mod lesson;
+mod machine_checks;
+mod man;
 #[cfg(feature = "server")]
 mod mcp;
 mod new_run;
@@ -111,8 +114,12 @@ enum Command {
     Mcp(mcp::Options),
     /// Measure how fast this machine simulates
     Bench(bench::Options),
+    /// Check this machine and print what a bug report needs
+    Doctor(doctor::Options),
     /// Print a completion script for a shell
     Completions(completions::Options),
+    /// Print a manual page, or write all of them to a folder
+    Man(man::Options),
 }
 
 impl Command {
@@ -140,7 +147,9 @@ impl Command {
             #[cfg(feature = "server")]
             Command::Mcp(_) => "mcp",
             Command::Bench(_) => "bench",
+            Command::Doctor(_) => "doctor",
             Command::Completions(_) => "completions",
+            Command::Man(_) => "man",
         }
     }
 }
@@ -433,7 +442,9 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
         #[cfg(feature = "server")]
         Some(Command::Mcp(options)) => mcp::run(&options, &context),
         Some(Command::Bench(options)) => bench::run(&options, &context),
+        Some(Command::Doctor(options)) => doctor::run(&options, &context),
         Some(Command::Completions(options)) => completions::run(&options),
+        Some(Command::Man(options)) => man::run(&options),
     }
 }
 

@@ -51,4 +51,5 @@ pub use query::{QueryConnection, QueryError, ScriptError};
 pub use query_interrupt::{Interrupt, QueryTicket};
 pub use query_result::{Cell, QueryResult, number_at, text_at};
 pub use rows::{ForecastRow, ProjectionEntry};
+pub use rusqlite::version as sqlite_version;
 pub use sqlite_export::export_sqlite;

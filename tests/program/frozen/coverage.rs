@@ -20,11 +20,14 @@ const FORMS: [&str; 10] = [
 ];
 
 /// Commands and options without a case, with the reason.
-const EXCEPTIONS: [(&str, &str); 12] = [
+const EXCEPTIONS: [(&str, &str); 15] = [
     ("bench", "measures time"),
     ("bench --json", "measures time"),
     ("completions", "written by the library that parses the command line"),
-    ("study check", "says what this machine is like"),
+    ("man", "written by the library that formats manual pages"),
+    ("doctor", "describes the machine"),
+    ("doctor --json", "describes the machine"),
+    ("study check", "describes the machine"),
     ("serve", "its routes are cases of `served`"),
     ("lesson play", "`play --lesson`"),
     ("lesson play --json", "`play --json`"),

@@ -175,9 +175,9 @@ fn check_runs_folder(runs: &Path) -> Result<String, String> {
     ))
 }
 
-/// Returns the nearest folder of a path that exists.
+/// Returns the path, or its nearest parent that exists.
 fn existing_ancestor(path: &Path) -> &Path {
-    path.ancestors().find(|ancestor| ancestor.is_dir()).unwrap_or(Path::new("."))
+    path.ancestors().find(|ancestor| ancestor.exists()).unwrap_or(Path::new("."))
 }
 
 /// Checks that the user's keys, theme and scenarios can be read.

@@ -28,10 +28,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let mut command = &root;
     for name in &options.command {
         command = command.find_subcommand(name).ok_or_else(|| {
-            Failure::usage(format!(
-                "{} has no command {name}",
-                command.get_display_name().unwrap_or("novamind")
-            ))
+            Failure::usage(format!("{} has no command {name}", command.get_bin_name().unwrap_or("novamind")))
         })?;
     }
     print(&page(command)?)
@@ -54,7 +51,10 @@ fn page_name(command: &Command) -> String {
 /// Returns a page in roff, to be read with `man -l`.
 fn page(command: &Command) -> Result<String, Failure> {
     let mut page = Vec::new();
-    let manual = clap_mangen::Man::new(command.clone()).title(page_name(command)).manual("NovaMind console");
+    let manual = clap_mangen::Man::new(command.clone())
+        .title(page_name(command))
+        .manual("NovaMind console")
+        .source(concat!("novamind ", env!("CARGO_PKG_VERSION")));
     manual.render(&mut page).map_err(|error| Failure::failed(format!("manual page: {error}")))?;
     String::from_utf8(page).map_err(|error| Failure::failed(format!("manual page: {error}")))
 }

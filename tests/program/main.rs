@@ -16,6 +16,7 @@ mod frozen;
 mod golden;
 #[cfg(feature = "server")]
 mod hostile_requests;
+mod installation;
 #[cfg(feature = "server")]
 mod interfaces;
 mod kept_runs;

@@ -120,7 +120,7 @@ pub fn check_window() -> Result<String, String> {
             MIN_WINDOW_SIZE.0, MIN_WINDOW_SIZE.1
         )),
         Ok((columns, rows)) => Ok(format!("{columns}×{rows}")),
-        Err(_) => Ok("no terminal here: run this check on the machines of participants".to_owned()),
+        Err(_) => Ok("output is not a terminal: the window was not checked".to_owned()),
     }
 }
 

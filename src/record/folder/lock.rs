@@ -22,8 +22,25 @@ pub fn is_served(folder: &Path) -> bool {
     folder.join(SERVER_FILE).exists() && is_locked(folder)
 }
 
-/// Locks a run for writing. The operating system releases the lock when the process ends.
-pub fn lock_run(folder: &Path, id: &str) -> Result<File, RunError> {
+/// The lock of a run, released when it is dropped. The operating system releases it when the process ends.
+///
+/// Closing the file is not enough: a child process has a copy of the file from its creation until it starts its program, and a
+/// file stays locked until all copies are closed.
+#[derive(Debug)]
+pub struct RunLock(File);
+
+impl Drop for RunLock {
+    fn drop(&mut self) {
+        // If this fails, closing the file releases the lock.
+        let _ = self.0.unlock();
+    }
+}
+
+/// Locks a run for writing.
+///
+/// # Errors
+/// Another program has locked the run, or the lock file cannot be opened.
+pub fn lock_run(folder: &Path, id: &str) -> Result<RunLock, RunError> {
     let path = folder.join("lock");
     let open = File::options().create(true).truncate(false).read(true).write(true).open(&path);
     let mut file = open.map_err(|error| match error.kind() {
@@ -36,7 +53,7 @@ pub fn lock_run(folder: &Path, id: &str) -> Result<File, RunError> {
         Ok(()) => {
             // For information only; the lock on the file decides.
             let _ = file.set_len(0).and_then(|()| writeln!(file, "process {}", std::process::id()));
-            Ok(file)
+            Ok(RunLock(file))
         }
         Err(TryLockError::WouldBlock) => {
             let holder = std::fs::read_to_string(&path).unwrap_or_default().trim().to_owned();
@@ -77,6 +94,15 @@ mod tests {
         fn drop(&mut self) {
             self.0.store(true, Ordering::Relaxed);
         }
+    }
+
+    #[test]
+    fn dropped_lock_is_free_although_a_child_process_has_a_copy_of_the_file() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let lock = lock_run(folder.path(), "0123abcd").expect("free");
+        let _copy = lock.0.try_clone().expect("a copy");
+        drop(lock);
+        assert!(lock_run(folder.path(), "0123abcd").is_ok());
     }
 
     #[test]

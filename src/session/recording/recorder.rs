@@ -1,6 +1,5 @@
 //! The recorder of a run: its trajectory, the durability of lines, and the lock against other programs.
 
-use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use crate::figures::attendance::Attendance;
@@ -8,7 +7,7 @@ use novamind_database::ProjectionPosition;
 use novamind_record::clock::{now, parse_nanoseconds};
 use novamind_record::error::RunError;
 use novamind_record::files::read_regular_file;
-use novamind_record::folder::lock::lock_run;
+use novamind_record::folder::lock::{RunLock, lock_run};
 use novamind_record::folder::manifest::Manifest;
 use novamind_record::folder::manifest::to_start_record;
 use novamind_record::trajectory::{Durability, Line, Record, Trajectory, TrajectoryWriter};
@@ -29,7 +28,7 @@ pub(crate) struct Recorder {
     folder: Option<PathBuf>,
     afterwards: Option<TrajectoryWriter>,
     attendance: Attendance,
-    _lock: Option<File>,
+    _lock: Option<RunLock>,
 }
 
 impl Recorder {
@@ -58,7 +57,7 @@ impl Recorder {
     }
 
     /// Continues the trajectory of a run whose lock is held.
-    pub(crate) fn resume(path: &Path, read: &Trajectory, lock: File) -> Result<Recorder, RunError> {
+    pub(crate) fn resume(path: &Path, read: &Trajectory, lock: RunLock) -> Result<Recorder, RunError> {
         let trajectory = TrajectoryWriter::resume(path, read)?;
         let folder = path.parent().map(Path::to_owned);
         Ok(Recorder {

@@ -8,7 +8,7 @@ use crate::cli::{Context, Failure, print};
 use crate::session::Machine;
 use novamind_study::{LAB_KEY_FILE, Occasion, PracticeOffer, SEAL_KEY_FILE, Study};
 
-/// Free bytes that a session of a large company needs with its database.
+/// Free disk space in bytes that a session of a large company needs, including the database.
 const MIN_FREE_BYTES: u64 = 2 << 30;
 /// Columns and rows of the smallest supported window.
 const MIN_WINDOW_SIZE: (u16, u16) = (60, 16);
@@ -19,11 +19,11 @@ struct CheckItem {
 }
 
 enum CheckOutcome {
-    /// The point is in order.
+    /// The check passed.
     Passed(String),
-    /// The experimenter should know it; it may be intended.
+    /// The check found a property of the study that may be intended, for the experimenter to confirm.
     Note(String),
-    /// It must be fixed before a session starts.
+    /// The check found a problem that must be fixed before a session starts.
     Failed(String),
 }
 
@@ -72,19 +72,21 @@ pub fn run(folder: &Path, context: &Context) -> Result<(), Failure> {
     print(&text)?;
     match failed {
         0 => Ok(()),
-        1 => Err(Failure::failed("1 point is wrong: this machine is not ready")),
-        failed => Err(Failure::failed(format!("{failed} points are wrong: this machine is not ready"))),
+        1 => Err(Failure::failed("1 check failed: this machine is not ready")),
+        failed => Err(Failure::failed(format!("{failed} checks failed: this machine is not ready"))),
     }
 }
 
-/// Describes the keys of the study. A damaged key has already failed the reading of the study.
+/// Describes the keys of the study. Damaged keys need no check, because a study with a damaged key cannot be read.
 fn describe_keys(folder: &Path) -> &'static str {
     let is_here = |file: &str| folder.join(file).exists();
     match (is_here(SEAL_KEY_FILE), is_here(LAB_KEY_FILE)) {
         (true, false) => "seal.key seals snapshots",
-        (true, true) => "seal.key seals snapshots; lab.key is here: keep it off the machines of participants",
-        (false, true) => "no seal.key; lab.key is here: create the other with `novamind study key`",
-        (false, false) => "none: snapshots are sealed without a study key, archives are not signed",
+        (true, true) => {
+            "seal.key seals snapshots; lab.key is here: keep lab.key off the machines of participants"
+        }
+        (false, true) => "no seal.key; lab.key is here: create seal.key with `novamind study key`",
+        (false, false) => "no keys: snapshots are sealed without a study key, archives are not signed",
     }
 }
 
@@ -129,7 +131,7 @@ fn check_scenarios(study: &Study, context: &Context) -> Result<String, String> {
     Ok(format!("scenario {session}{practice}"))
 }
 
-/// Checks that the wall clock runs evenly and is not earlier than the build of this program.
+/// Checks that the wall clock runs evenly and is not earlier than the build date of this program.
 fn check_clock() -> Result<String, String> {
     let wall = || std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
     const BUILT_AFTER: u64 = 1_760_000_000;
@@ -145,7 +147,7 @@ fn check_clock() -> Result<String, String> {
     Ok("runs evenly".to_owned())
 }
 
-/// Checks that the folder of runs can be written. Creates it if it does not exist, as the first session does.
+/// Checks that the folder of runs can be written. Creates a missing folder, as the first session does.
 fn check_writable(folder: &Path) -> Result<(), String> {
     std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     let probe = folder.join(format!(".novamind-check-{}", std::process::id()));
@@ -161,7 +163,7 @@ fn check_free_space(folder: &Path) -> Result<String, String> {
     match free.map(|kilobytes| kilobytes * 1024) {
         None => Ok("this system does not report free space".to_owned()),
         Some(free) if free < MIN_FREE_BYTES => {
-            Err(format!("{} MB are free; a long session may need {}", free >> 20, MIN_FREE_BYTES >> 20))
+            Err(format!("{} MB are free; a long session may need {} MB", free >> 20, MIN_FREE_BYTES >> 20))
         }
         Some(free) => Ok(format!("{} GB free", free >> 30)),
     }
